@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The Python environments in .venv/: made on first use, reused while their requirements stay the same."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterator
+
+import pythons
+import system_libraries
+from shell import ROOT, VENVS, CommandFailed, Unavailable, content_hash, run, say, tail, warn
+
+REQUIREMENTS = ROOT / "scripts" / "requirements"
+_SCHEME = "1"  # raise it to have every environment made anew
+
+
+@dataclass(frozen=True)
+class Environment:
+    """An environment that is ready to be used."""
+
+    name: str
+    folder: Path
+    requirements: str
+    """The requirements file's stem, e.g. "bpy-5.2"."""
+
+    @property
+    def python(self) -> Path:
+        return self.tool("python")
+
+    def tool(self, name: str) -> Path:
+        """A program of the environment."""
+        return self.folder / ("Scripts" if os.name == "nt" else "bin") / name
+
+    @property
+    def label(self) -> str:
+        """What a person calls it: "Blender 5.2" rather than "bpy-5"."""
+        return self.requirements.replace("bpy-", "Blender ")
+
+
+def dev() -> Environment:
+    """The environment for building, checking and measuring."""
+    return _ensure("dev", "dev", *pythons.find(*_newest_supported()))
+
+
+def blender_oldest() -> Environment:
+    """Blender 4.2 LTS as a Python module."""
+    return _ensure_blender("bpy-4.2", "bpy-4.2", *pythons.find("3.11"))
+
+
+def blender_newest() -> Environment:
+    """The newest Blender as a Python module that this machine's Pythons allow."""
+    try:
+        return _ensure_blender("bpy-5", "bpy-5.2", *pythons.find("3.13"))
+    except Unavailable as reason:
+        warn(f"Blender 5.2 is not used: {reason}. Blender 5.0 is used instead.")
+    return _ensure_blender("bpy-5", "bpy-5.0", *pythons.find("3.11"))
+
+
+def any_blender() -> Environment:
+    """The newest Blender, or the oldest supported one when that is all there is."""
+    try:
+        return blender_newest()
+    except Unavailable as reason:
+        warn(f"Blender 5 is not used: {reason}. Blender 4.2 is used instead.")
+    return blender_oldest()
+
+
+def add(environment: Environment, requirements: str) -> None:
+    """Installs a further requirements file into an environment, once."""
+    path = REQUIREMENTS / f"{requirements}.txt"
+    stamp = environment.folder / f"{requirements}.stamp"
+    wanted = content_hash([path])
+    if _read(stamp) != wanted:
+        run([environment.python, "-m", "pip", "install", "--quiet", "-r", path])
+        stamp.write_text(wanted)
+
+
+def _newest_supported() -> tuple[str, ...]:
+    # 3.14 is left out: the pinned tools have not been tried with it.
+    return tuple(version for version in pythons.NEWEST_FIRST if version != "3.14")
+
+
+def _ensure_blender(name: str, requirements: str, python: Path, version: str) -> Environment:
+    environment = _ensure(name, requirements, python, version)
+    stamp = environment.folder / "imports.stamp"
+    with _lock(name):
+        if not stamp.exists():
+            system_libraries.make_bpy_import(environment.python)
+            stamp.touch()
+    return environment
+
+
+def _ensure(name: str, requirements: str, python: Path, version: str) -> Environment:
+    environment = Environment(name, VENVS / name, requirements)
+    stamp = environment.folder / "installed.stamp"
+    wanted = content_hash([REQUIREMENTS / f"{requirements}.txt"], version, _SCHEME)
+    with _lock(name):
+        if _read(stamp) != wanted or not environment.python.exists():
+            _create(environment, python, version)
+            stamp.write_text(wanted)
+    return environment
+
+
+def _create(environment: Environment, python: Path, version: str) -> None:
+    path = REQUIREMENTS / f"{environment.requirements}.txt"
+    say(f"setting up .venv/{environment.name} (Python {version}, {environment.requirements}.txt) ...")
+    began = time.monotonic()
+    try:
+        run([python, "-m", "venv", "--clear", environment.folder])
+        run(
+            [environment.python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", path]
+        )
+    except CommandFailed as failure:
+        raise Unavailable(
+            f"the packages of {path.name} could not be installed:\n{tail(failure.output, 5)}"
+        ) from failure
+    say(f"  done in {time.monotonic() - began:.0f} s")
+
+
+def _read(path: Path) -> str:
+    return path.read_text() if path.exists() else ""
+
+
+@contextlib.contextmanager
+def _lock(name: str) -> Iterator[None]:
+    """Keeps two commands that run at the same time from making the same environment."""
+    VENVS.mkdir(exist_ok=True)
+    with open(VENVS / f"{name}.lock", "w") as file:
+        with contextlib.suppress(ImportError):  # Windows has no fcntl; nor does it matter there
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX)
+        yield

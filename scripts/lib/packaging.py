@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Builds the wheel and the extension zip, installs both. Nothing here starts Blender's interface."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sysconfig
+from pathlib import Path
+
+import environment
+from environment import Environment
+from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, say, version
+
+WHEEL_SOURCES = ("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", "rust")
+PORTABLE = ("--zig", "--compatibility", "manylinux_2_28")
+# Tags of wheels -> Blender's names of platforms.
+_PLATFORMS = {
+    "linux-x86_64": "linux-x64",
+    "linux-aarch64": "linux-arm64",
+    "macosx-x86_64": "macos-x64",
+    "macosx-arm64": "macos-arm64",
+    "win-amd64": "windows-x64",
+    "win-arm64": "windows-arm64",
+}
+
+
+def platform() -> str:
+    """Blender's name of this machine's platform, e.g. "linux-x64"."""
+    words = sysconfig.get_platform().split("-")
+    return _PLATFORMS.get(f"{words[0]}-{words[-1]}", f"{words[0]}-{words[-1]}")
+
+
+def build_wheel(dev: Environment, portable: bool = False, log: Path | None = None) -> Path:
+    """The release wheel in dist/, built anew only when a source has changed."""
+    folder = DIST / "portable" if portable else DIST
+    if portable:
+        environment.add(dev, "portable")
+    stamp = folder / "wheel.stamp"
+    wanted = content_hash(files_below(*WHEEL_SOURCES), *(PORTABLE if portable else ()))
+    found = _only_wheel(folder)
+    if found is None or not stamp.exists() or stamp.read_text() != wanted:
+        for old in folder.glob("authalic-*.whl"):
+            old.unlink()
+        _maturin(dev, folder, PORTABLE if portable else (), log)
+        found = _only_wheel(folder)
+        stamp.write_text(wanted)
+    if found is None:
+        raise Unavailable(f"maturin wrote no wheel into {folder}")
+    return found
+
+
+def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Path:
+    """The extension zip in dist/: the sources of addon/, a generated manifest, and the wheel."""
+    folder = OUT / "extension"
+    _lay_out_extension(folder, wheel)
+    target = DIST / f"authalic-{version()}-{platform()}.zip"
+    target.unlink(missing_ok=True)
+    tool = [blender.python, _blender_ext(blender)]
+    run([*tool, "validate", folder], log=log)
+    run([*tool, "build", "--source-dir", folder, "--output-filepath", target], log=log)
+    run([*tool, "validate", target], log=log)
+    return target
+
+
+def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> None:
+    """Installs the wheel into an environment unless this very wheel is there already."""
+    stamp = target.folder / "authalic.stamp"
+    wanted = content_hash([wheel])
+    if not stamp.exists() or stamp.read_text() != wanted:
+        pip = [target.python, "-m", "pip", "--disable-pip-version-check"]
+        run([*pip, "install", "--quiet", "--no-deps", "--force-reinstall", wheel], log=log)
+        stamp.write_text(wanted)
+
+
+def install_extension(
+    archive: Path, blender: Environment, profile: Path, log: Path | None = None
+) -> dict[str, str]:
+    """Installs the zip into a new, empty Blender profile; returns the variables that select the profile.
+
+    The package `authalic` that Blender then imports is the one out of the zip: the environments of
+    Blender never have it installed otherwise.
+    """
+    shutil.rmtree(profile, ignore_errors=True)
+    profile.mkdir(parents=True)
+    variables = {"BLENDER_USER_RESOURCES": str(profile), "AUTHALIC_EXTENSION_ZIP": str(archive)}
+    run([blender.python, ROOT / "scripts" / "lib" / "install_in_blender.py", archive], variables, log)
+    return variables
+
+
+def announce(path: Path) -> None:
+    """One line about a file that was written."""
+    say(f"{path.relative_to(ROOT)}  ({path.stat().st_size / 1e6:.1f} MB)")
+
+
+def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path | None) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    command = [dev.python, "-m", "maturin", "build", "--release", "--locked", "--out", folder]
+    run([*command, "--interpreter", dev.python, *options], {"VIRTUAL_ENV": str(dev.folder)}, log)
+
+
+def _only_wheel(folder: Path) -> Path | None:
+    return next(iter(sorted(folder.glob(f"authalic-{version()}-*.whl"))), None)
+
+
+def _lay_out_extension(folder: Path, wheel: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    ignored = shutil.ignore_patterns("__pycache__", "*.in", "*.pyc")
+    shutil.copytree(ROOT / "addon", folder, ignore=ignored)
+    (folder / "wheels").mkdir()
+    shutil.copy(wheel, folder / "wheels")
+    template = (ROOT / "addon" / "blender_manifest.toml.in").read_text(encoding="utf-8")
+    manifest = template.replace("@VERSION@", version()).replace("@PLATFORMS@", json.dumps([platform()]))
+    manifest = manifest.replace("@WHEELS@", json.dumps([f"./wheels/{wheel.name}"]))
+    (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
+
+
+def _blender_ext(blender: Environment) -> Path:
+    found = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
+    if not found:
+        raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
+    return found[0]

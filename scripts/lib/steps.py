@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The steps of scripts/test, in the order in which they run."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as xml
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable
+
+import environment
+import packaging
+from environment import Environment
+from shell import OUT, CommandFailed, run
+
+LOGS = OUT / "test"
+_PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
+
+
+@dataclass
+class Count:
+    """Tests that passed, failed, and were skipped."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+
+    def __add__(self, other: Count) -> Count:
+        pairs = zip((self.passed, self.failed, self.skipped), (other.passed, other.failed, other.skipped))
+        return Count(*(mine + theirs for mine, theirs in pairs))
+
+
+class TestsFailed(Exception):
+    """A run of tests of which some failed, or which did not end well."""
+
+    def __init__(self, count: Count, message: str, output: str) -> None:
+        super().__init__(message)
+        self.count = count
+        self.output = output
+
+
+@dataclass(frozen=True)
+class Step:
+    """A named step; `run` takes the file for its log and returns the tests it counted."""
+
+    name: str
+    what: str
+    run: Callable[[Path], Count]
+
+
+def check_rust_format(log: Path) -> Count:
+    run(["cargo", "fmt", "--all", "--check"], log=log)
+    return Count()
+
+
+def check_clippy(log: Path) -> Count:
+    run(["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"], log=log)
+    return Count()
+
+
+def test_rust(log: Path) -> Count:
+    # The release profile: the wheel shares its dependencies, and the tests run real solves.
+    try:
+        output = run(["cargo", "test", "--locked", "--release", "--workspace", "--no-fail-fast"], log=log)
+    except CommandFailed as failure:
+        raise TestsFailed(count_cargo(failure.output), str(failure), failure.output) from failure
+    return count_cargo(output)
+
+
+def check_rust_docs(log: Path) -> Count:
+    command = ["cargo", "doc", "--locked", "--workspace", "--no-deps", "--document-private-items"]
+    run(command, {"RUSTDOCFLAGS": "-D warnings"}, log)
+    return Count()
+
+
+def check_python_style(log: Path) -> Count:
+    ruff = environment.dev().tool("ruff")
+    run([ruff, "check", *_PYTHON_SOURCES], log=log)
+    run([ruff, "format", "--check", *_PYTHON_SOURCES], log=log)
+    return Count()
+
+
+def install_wheel(log: Path) -> Count:
+    dev = environment.dev()
+    packaging.install_wheel(packaging.build_wheel(dev, log=log), dev, log)
+    return Count()
+
+
+def check_types(log: Path) -> Count:
+    """The stub against the built module, then the package's own types."""
+    install_wheel(log)
+    python = environment.dev().python
+    run([python, "-m", "mypy.stubtest", "authalic._native"], log=log)
+    run([python, "-m", "mypy", "rust/python/authalic"], log=log)
+    return Count()
+
+
+def test_python(log: Path) -> Count:
+    install_wheel(log)
+    return _pytest(environment.dev(), ["tests", "--ignore=tests/blender", "--ignore=tests/gui"], {}, log)
+
+
+def build_extension(log: Path) -> Count:
+    _extension(environment.any_blender(), log)
+    return Count()
+
+
+def test_blender_oldest(log: Path) -> Count:
+    return _test_in_blender(environment.blender_oldest(), log)
+
+
+def test_blender_newest(log: Path) -> Count:
+    return _test_in_blender(environment.blender_newest(), log)
+
+
+STEPS = (
+    Step("rustfmt", "formatting of the Rust code", check_rust_format),
+    Step("clippy", "lints of the Rust code", check_clippy),
+    Step("rust", "tests of the Rust crates", test_rust),
+    Step("rustdoc", "documentation of the Rust crates", check_rust_docs),
+    Step("ruff", "formatting and lints of the Python code", check_python_style),
+    Step("wheel", "build of the wheel, installed into .venv/dev", install_wheel),
+    Step("types", "stub against the built module, types of the package", check_types),
+    Step("python", "tests of the Python package and of the project's structure", test_python),
+    Step("extension", "build and validation of the extension zip", build_extension),
+    Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest),
+    Step("blender-5", "tests of the installed extension in the newest Blender", test_blender_newest),
+)
+
+
+def count_cargo(output: str) -> Count:
+    """The sums over the lines `test result: ok. 3 passed; 0 failed; 1 ignored; ...`."""
+    rows = re.findall(r"(?m)^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored", output)
+    return sum((Count(*map(int, row)) for row in rows), Count())
+
+
+def count_junit(report: Path) -> Count:
+    """The sums over the test suites of a JUnit report; none when there is no readable report."""
+    try:
+        suites = list(xml.parse(str(report)).getroot().iter("testsuite"))
+    except (OSError, xml.ParseError):
+        return Count()
+    total, bad, skipped = (
+        sum(int(suite.get(key, 0)) for suite in suites for key in keys)
+        for keys in (("tests",), ("failures", "errors"), ("skipped",))
+    )
+    return Count(total - bad - skipped, bad, skipped)
+
+
+def _extension(blender: Environment, log: Path) -> Path:
+    wheel = packaging.build_wheel(environment.dev(), log=log)
+    return packaging.build_zip(wheel, blender, log)
+
+
+def _test_in_blender(blender: Environment, log: Path) -> Count:
+    archive = _extension(blender, log)
+    variables = packaging.install_extension(archive, blender, LOGS / f"profile-{blender.name}", log)
+    return _pytest(blender, ["tests/blender"], variables, log)
+
+
+def _pytest(where: Environment, places: list[str], variables: dict[str, str], log: Path) -> Count:
+    """Runs pytest; a run that has written its report but does not end is killed and fails."""
+    report = log.with_suffix(".xml")
+    report.unlink(missing_ok=True)
+    command = [where.python, "-m", "pytest", f"--junitxml={report}", *places]
+    try:
+        run(command, variables, log, report)
+    except CommandFailed as failure:
+        raise TestsFailed(count_junit(report), str(failure), failure.output) from failure
+    return count_junit(report)

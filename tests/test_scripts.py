@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
 import pythons
 import steps
-from shell import CommandFailed, Unavailable, run
+from shell import ROOT, CommandFailed, Unavailable, run, version
 
 
 @pytest.fixture
@@ -69,3 +69,7 @@ def test_a_command_that_hangs_after_its_report_is_killed(monkeypatch, tmp_path):
     script = f"import time; open({str(report)!r}, 'w').close(); time.sleep(60)"
     with pytest.raises(CommandFailed):
         run([sys.executable, "-c", script], report=report)
+
+
+def test_the_changelog_has_an_entry_for_the_version():
+    assert f"\n## {version()} " in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")

@@ -3,41 +3,364 @@
 //!
 //! Every message names what failed, the elements (the first few indices and how many there are) and what
 //! the caller can do about it. Only broken input and failed numerics are errors: a run that stops early
-//! returns its best map with a [`Status`](crate::Status).
+//! returns its best map with a status instead.
 
 use std::fmt;
 
 use thiserror::Error;
 
-/// How many indices an [`Elements`] keeps and prints.
+/// How many elements an [`Elements`] keeps and prints.
 pub const NAMED_ELEMENTS: usize = 8;
 
-/// Indices of offending elements: the first few and the count of all.
+/// Offending elements: the indices of the first few and the count of all.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Elements {
-    /// The first [`NAMED_ELEMENTS`] indices, in the order found.
+    /// The indices of the first [`NAMED_ELEMENTS`] elements, in the order found: `arity` numbers for each.
     pub first: Vec<usize>,
     /// How many elements offend in all.
     pub count: usize,
+    /// How many indices name one element: 1 for vertices, faces and loops; 2 for edges, named by their ends.
+    pub arity: usize,
 }
 
 impl Elements {
     /// Collects the indices of an iterator, or `None` where it is empty.
     pub fn collect(indices: impl IntoIterator<Item = usize>) -> Option<Self> {
-        let mut all = indices.into_iter();
-        let first: Vec<usize> = all.by_ref().take(NAMED_ELEMENTS).collect();
-        let count = first.len() + all.count();
-        (count > 0).then_some(Self { first, count })
+        Self::gather(indices.into_iter().map(|index| [index]))
+    }
+
+    /// Collects edges, each named by its two vertices, or `None` where there are none.
+    pub fn edges(edges: impl IntoIterator<Item = [u32; 2]>) -> Option<Self> {
+        Self::gather(edges.into_iter().map(|edge| edge.map(|end| end as usize)))
+    }
+
+    fn gather<const ARITY: usize>(mut all: impl Iterator<Item = [usize; ARITY]>) -> Option<Self> {
+        let named: Vec<_> = all.by_ref().take(NAMED_ELEMENTS).collect();
+        let count = named.len() + all.count();
+        (count > 0).then(|| Self {
+            first: named.concat(),
+            count,
+            arity: ARITY,
+        })
+    }
+
+    /// The elements as a phrase: `face 3`, `2 edges ((0, 4), (4, 7))`, `12 vertices (0, 1, 2, …)`.
+    fn named(&self, noun: &str) -> String {
+        match self.count {
+            1 => format!("{noun} {self}"),
+            count => format!("{count} {} ({self})", plural(noun)),
+        }
+    }
+
+    fn name(&self, element: &[usize]) -> String {
+        let indices: Vec<String> = element.iter().map(usize::to_string).collect();
+        match self.arity {
+            1 => indices.concat(),
+            _ => format!("({})", indices.join(", ")),
+        }
     }
 }
 
 impl fmt::Display for Elements {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named: Vec<String> = self.first.iter().map(usize::to_string).collect();
+        let named: Vec<String> = self
+            .first
+            .chunks(self.arity.max(1))
+            .map(|e| self.name(e))
+            .collect();
         write!(formatter, "{}", named.join(", "))?;
-        match self.count - self.first.len() {
+        match self.count.saturating_sub(named.len()) {
             0 => Ok(()),
-            more => write!(formatter, " and {more} more"),
+            _ => write!(formatter, ", …"),
         }
     }
+}
+
+fn plural(noun: &str) -> String {
+    match noun {
+        "vertex" => "vertices".into(),
+        _ => format!("{noun}s"),
+    }
+}
+
+/// Why a call was refused or failed.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The vertex array is empty.
+    #[error("the mesh has no vertices")]
+    NoVertices,
+
+    /// The face array is empty.
+    #[error("the mesh has no faces: it needs at least one triangle")]
+    NoFaces,
+
+    /// More faces than 32-bit corner indices can number.
+    #[error(
+        "the mesh has {found} faces, more than the {limit} that can be numbered: simplify it or split it"
+    )]
+    TooManyFaces {
+        /// How many faces were given.
+        found: usize,
+        /// How many can be numbered.
+        limit: usize,
+    },
+
+    /// A coordinate is NaN or infinite.
+    #[error("NaN or infinite coordinates at {}: repair or remove them", .vertices.named("vertex"))]
+    NonFinite {
+        /// The vertices with such a coordinate.
+        vertices: Elements,
+    },
+
+    /// A face names a vertex that does not exist.
+    #[error(
+        "{} out of range: {value} is not one of the {n_vertices} vertices (indices start at 0)",
+        .faces.named("face")
+    )]
+    IndexOutOfRange {
+        /// The faces with such an index.
+        faces: Elements,
+        /// The first such index.
+        value: i64,
+        /// How many vertices there are.
+        n_vertices: usize,
+    },
+
+    /// A face has the same vertex at two of its corners.
+    #[error("the same vertex twice in {}: remove these degenerate faces", .faces.named("face"))]
+    RepeatedVertex {
+        /// The faces that repeat a vertex.
+        faces: Elements,
+    },
+
+    /// A face has the vertices of an earlier one, in any order.
+    #[error("{} repeating the vertices of an earlier face: remove the duplicates", .faces.named("face"))]
+    DuplicateFaces {
+        /// The later ones of each set of duplicates.
+        faces: Elements,
+    },
+
+    /// The corners of a face lie on a line, as far as double precision can tell.
+    #[error("no area in {}: the corners lie on a line; dissolve or collapse these faces", .faces.named("face"))]
+    ZeroArea {
+        /// The faces without area.
+        faces: Elements,
+    },
+
+    /// An edge belongs to three or more faces.
+    #[error(
+        "more than two faces at {}: delete the interior faces there, or mark these edges as seams",
+        .edges.named("edge")
+    )]
+    NonManifoldEdges {
+        /// The edges, each by its two vertices.
+        edges: Elements,
+    },
+
+    /// The faces cannot be given one consistent orientation.
+    #[error(
+        "the surface is not orientable (one-sided, like a Moebius strip): crossing {} turns it inside out; \
+         cut it open by a seam",
+        .edges.named("edge")
+    )]
+    NotOrientable {
+        /// An edge at which the orientation cannot be made consistent.
+        edges: Elements,
+    },
+
+    /// The faces around a vertex form more than one fan.
+    #[error(
+        "parts of the surface that touch only in a point, at {}: split these vertices",
+        .vertices.named("vertex")
+    )]
+    NonManifoldVertices {
+        /// The vertices with several fans.
+        vertices: Elements,
+    },
+
+    /// A vertex belongs to no face.
+    #[error("{} without a face: remove loose vertices", .vertices.named("vertex"))]
+    UnreferencedVertices {
+        /// The loose vertices.
+        vertices: Elements,
+    },
+
+    /// A disk was asked for and the mesh falls into several pieces.
+    #[error("the mesh is {} separate pieces, first faces {faces}: map each piece by itself (cut returns them)", .faces.count)]
+    SeveralComponents {
+        /// The lowest face of each component.
+        faces: Elements,
+    },
+
+    /// A disk was asked for and the surface has no boundary.
+    #[error(
+        "the surface is closed (genus {genus}), a disk needs a boundary: \
+         mark seams and cut it, or use a sphere map for genus 0"
+    )]
+    ClosedSurface {
+        /// The number of handles.
+        genus: usize,
+    },
+
+    /// A disk was asked for and the surface has handles.
+    #[error(
+        "the surface has genus {genus} (handles like a torus), a disk has none: cut each handle open by seams"
+    )]
+    HasHandles {
+        /// The number of handles.
+        genus: usize,
+    },
+
+    /// A disk was asked for and the surface has several boundary loops.
+    #[error(
+        "the surface has {} boundary loops of {} edges, at vertices {vertices}; a disk has one: \
+         set fill_holes=True to fill all but the longest, or cut them together by seams",
+        .vertices.count, list(sizes)
+    )]
+    SeveralBoundaries {
+        /// A vertex of each loop, the longest loop first.
+        vertices: Elements,
+        /// The edge counts of the same loops.
+        sizes: Vec<usize>,
+    },
+
+    /// A seam names a vertex that does not exist.
+    #[error("{} out of range: there are {n_vertices} vertices (indices start at 0)", .seams.named("seam"))]
+    SeamOutOfRange {
+        /// The seams, each by the two vertices given.
+        seams: Elements,
+        /// How many vertices there are.
+        n_vertices: usize,
+    },
+
+    /// A seam is not an edge of any face.
+    #[error("{} not an edge of the mesh: a seam joins two vertices of one face", .seams.named("seam"))]
+    SeamNotEdge {
+        /// The seams, each by the two vertices given.
+        seams: Elements,
+    },
+
+    /// A density is zero, negative, NaN or infinite.
+    #[error("density must be positive and finite, but is {value} at {}", .faces.named("face"))]
+    Density {
+        /// The faces with such a density.
+        faces: Elements,
+        /// The first such value.
+        value: f64,
+    },
+
+    /// An initial map has NaN or infinite coordinates.
+    #[error("the initial map is NaN or infinite at {}", .vertices.named("vertex"))]
+    InitialNonFinite {
+        /// The vertices with such a coordinate.
+        vertices: Elements,
+    },
+
+    /// An initial map does not put the boundary onto the unit circle.
+    #[error("the initial map leaves the unit circle at boundary {}: {reason}", .vertices.named("vertex"))]
+    InitialBoundary {
+        /// The boundary vertices at fault.
+        vertices: Elements,
+        /// What is wrong with them.
+        reason: String,
+    },
+
+    /// An initial map folds faces over.
+    #[error("the initial map folds {}: start from a map without folds, or leave initial out", .faces.named("face"))]
+    InitialFolded {
+        /// The folded faces.
+        faces: Elements,
+    },
+
+    /// An array has the wrong shape or content.
+    #[error("{name} must be {expected}, but is {found}")]
+    InvalidArray {
+        /// The argument.
+        name: &'static str,
+        /// What was given.
+        found: String,
+        /// What is accepted.
+        expected: String,
+    },
+
+    /// An option has a value outside its range.
+    #[error("{name} must be {expected}, but is {found}")]
+    InvalidOption {
+        /// The option.
+        name: &'static str,
+        /// What was given.
+        found: String,
+        /// What is accepted.
+        expected: String,
+    },
+
+    /// A linear system could not be factored.
+    #[error(
+        "the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)"
+    )]
+    FactorizationFailed {
+        /// The matrix.
+        what: String,
+    },
+
+    /// No map without folded faces was found.
+    #[error("no map without folds was found, left over: {}; remesh the thinnest parts", .folded.named("face"))]
+    NoEmbedding {
+        /// The faces that stayed folded.
+        folded: Elements,
+    },
+}
+
+impl Error {
+    /// The elements at fault, where the error has any.
+    pub fn elements(&self) -> Option<&Elements> {
+        match self {
+            Self::NonFinite { vertices }
+            | Self::NonManifoldVertices { vertices }
+            | Self::UnreferencedVertices { vertices }
+            | Self::SeveralBoundaries { vertices, .. }
+            | Self::InitialNonFinite { vertices }
+            | Self::InitialBoundary { vertices, .. } => Some(vertices),
+            Self::IndexOutOfRange { faces, .. }
+            | Self::RepeatedVertex { faces }
+            | Self::DuplicateFaces { faces }
+            | Self::ZeroArea { faces }
+            | Self::SeveralComponents { faces }
+            | Self::Density { faces, .. }
+            | Self::InitialFolded { faces } => Some(faces),
+            Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
+            Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
+            Self::NoEmbedding { folded } => Some(folded),
+            _ => None,
+        }
+    }
+
+    /// Whether the arrays given are at fault: the mesh, its seams, its density or its initial map.
+    pub fn is_mesh_error(&self) -> bool {
+        !self.is_solver_error() && !matches!(self, Self::InvalidOption { .. })
+    }
+
+    /// Whether the numerics failed on good input.
+    pub fn is_solver_error(&self) -> bool {
+        matches!(
+            self,
+            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. }
+        )
+    }
+}
+
+/// The first few numbers of a list as text.
+fn list(numbers: &[usize]) -> String {
+    let named: Vec<String> = numbers
+        .iter()
+        .take(NAMED_ELEMENTS)
+        .map(usize::to_string)
+        .collect();
+    let more = if numbers.len() > NAMED_ELEMENTS {
+        ", …"
+    } else {
+        ""
+    };
+    named.join(", ") + more
 }

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Lengths, areas and angles of triangles in space.
+//!
+//! Vectors are plain `[f64; 3]`. Areas and cotangents are meant for points in the unit bounding box of
+//! [`normalized`], where no square of a length over- or underflows.
+
+/// A point or vector in space.
+pub type Vector = [f64; 3];
+
+/// `a + b`.
+pub fn add(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// `a - b`.
+pub fn sub(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `factor * a`.
+pub fn scaled(a: Vector, factor: f64) -> Vector {
+    a.map(|x| factor * x)
+}
+
+/// The inner product of `a` and `b`.
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The cross product of `a` and `b`.
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The length of `a`.
+pub fn norm(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The distance of two points.
+pub fn distance(a: Vector, b: Vector) -> f64 {
+    norm(sub(a, b))
+}
+
+/// The corners of face `[i, j, k]`.
+pub fn triangle(points: &[Vector], face: [u32; 3]) -> [Vector; 3] {
+    face.map(|v| points[v as usize])
+}
+
+/// The vector normal to a triangle, as long as its area; counterclockwise corners see it point at them.
+pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
+    scaled(cross(sub(b, a), sub(c, a)), 0.5)
+}
+
+/// The area of a triangle.
+pub fn area(corners: [Vector; 3]) -> f64 {
+    norm(area_vector(corners))
+}
+
+/// The lengths of the edges opposite to each corner.
+pub fn edge_lengths([a, b, c]: [Vector; 3]) -> [f64; 3] {
+    [distance(b, c), distance(c, a), distance(a, b)]
+}
+
+/// The cotangents of the angles at the corners of a triangle of positive area.
+pub fn cotangents(corners: [Vector; 3]) -> [f64; 3] {
+    let double_area = 2.0 * area(corners);
+    let [a, b, c] = corners;
+    let inner = |p, q, r| dot(sub(q, p), sub(r, p)) / double_area;
+    [inner(a, b, c), inner(b, c, a), inner(c, a, b)]
+}
+
+/// The area of every face, (m,).
+pub fn face_areas(points: &[Vector], faces: &[[u32; 3]]) -> Vec<f64> {
+    faces
+        .iter()
+        .map(|&face| area(triangle(points, face)))
+        .collect()
+}
+
+/// The cotangents at the corners of every face, (m, 3).
+pub fn corner_cotangents(points: &[Vector], faces: &[[u32; 3]]) -> Vec<[f64; 3]> {
+    faces
+        .iter()
+        .map(|&face| cotangents(triangle(points, face)))
+        .collect()
+}
+
+/// The length of a closed polygon through the given points.
+pub fn loop_length(points: &[Vector], vertices: &[u32]) -> f64 {
+    let last = vertices.len().saturating_sub(1);
+    let next = |i: usize| if i == last { 0 } else { i + 1 };
+    (0..vertices.len())
+        .map(|i| {
+            distance(
+                points[vertices[i] as usize],
+                points[vertices[next(i)] as usize],
+            )
+        })
+        .sum()
+}
+
+/// Centres points on their bounding box and scales its diagonal to one; returns them with the diagonal.
+///
+/// Finite coordinates of any size are accepted. Points that all coincide come back as zeros with scale 1.
+pub fn normalized(vertices: &[Vector]) -> (Vec<Vector>, f64) {
+    let (centre, half) = bounding_box(vertices);
+    let widest = half.iter().fold(0.0, |widest, &h| f64::max(widest, h));
+    if widest == 0.0 {
+        return (vec![[0.0; 3]; vertices.len()], 1.0);
+    }
+    // Dividing by the widest side first keeps every square within range.
+    let diagonal = 2.0 * norm(half.map(|h| h / widest));
+    let points = vertices
+        .iter()
+        .map(|&v| sub(v, centre).map(|x| x / widest / diagonal))
+        .collect();
+    (points, (widest * diagonal).min(f64::MAX))
+}
+
+/// The centre of the bounding box and half its sides.
+fn bounding_box(vertices: &[Vector]) -> (Vector, Vector) {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for vertex in vertices {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(vertex[axis]);
+            high[axis] = high[axis].max(vertex[axis]);
+        }
+    }
+    // Halved before they are added: the full side of a box can overflow.
+    let [low, high] = [scaled(low, 0.5), scaled(high, 0.5)];
+    (add(high, low), sub(high, low))
+}

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Triangle meshes: validated once, then trusted.
+//!
+//! [`TriangleMesh`] is an oriented manifold surface with or without boundary, every face of which has an
+//! area. [`cut()`] opens any set of triangles along seams into [`Patch`]es that can become meshes.
+
+mod cut;
+pub mod geometry;
+pub mod orientation;
+mod soup;
+mod topology;
+mod validate;
+
+pub use cut::{Patch, cut};
+pub use orientation::{Orientation, consistent};
+pub use soup::TriangleSoup;
+pub use topology::Topology;
+
+use crate::error::{Elements, Error};
+use geometry::Vector;
+use topology::{EdgeTable, NO_CORNER, VertexCorners};
+
+/// A validated triangle mesh: an oriented manifold surface without degenerate faces.
+///
+/// Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
+///
+/// ```
+/// use authalic::mesh::TriangleMesh;
+///
+/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]])?;
+/// assert_eq!(mesh.boundary_loops(), [vec![0, 1, 2, 3]]);
+/// assert!(mesh.require_disk().is_ok());
+/// # Ok::<(), authalic::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct TriangleMesh {
+    points: Vec<Vector>,
+    scale: f64,
+    faces: Vec<[u32; 3]>,
+    flipped: Vec<u32>,
+    areas: Vec<f64>,
+    opposite: Vec<u32>,
+    corners: VertexCorners,
+    on_boundary: Vec<bool>,
+    topology: Topology,
+}
+
+impl TriangleMesh {
+    /// Validates `vertices` (n, 3) and `faces` (m, 3).
+    ///
+    /// Faces that are turned against their component are flipped: the first vertex stays, the other two
+    /// change places.
+    ///
+    /// # Errors
+    /// Each with the elements at fault, and the first cause first: empty arrays, coordinates that are not
+    /// finite, indices out of range, faces that repeat a vertex, duplicate faces, faces without area,
+    /// edges of three or more faces, surfaces that cannot be oriented, vertices in which parts only touch,
+    /// and vertices without a face.
+    pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
+        // 1. The arrays and each face by itself.
+        validate::arrays(vertices, faces)?;
+        let (points, scale) = geometry::normalized(vertices);
+        let table = EdgeTable::new(points.len(), faces);
+        validate::no_duplicates(faces, &table)?;
+        validate::positive_areas(vertices, &points, scale, faces)?;
+        // 2. A manifold in its edges, with one orientation.
+        validate::manifold_edges(&table)?;
+        let mut opposite = table.opposites();
+        drop(table);
+        let mut faces = faces.to_vec();
+        let orientation = Orientation::propagate(&faces, &opposite);
+        validate::refuse(Elements::edges(orientation.conflict), |edges| {
+            Error::NotOrientable { edges }
+        })?;
+        orientation.apply(&mut faces, &mut opposite);
+        // 3. A manifold in its vertices.
+        let corners = VertexCorners::new(points.len(), &faces);
+        validate::manifold_vertices(&corners, points.len(), &opposite)?;
+        // 4. What kind of surface it is.
+        let flipped = flipped_indices(&orientation);
+        let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
+        let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
+        let areas = geometry::face_areas(&points, &faces);
+        Ok(Self {
+            points,
+            scale,
+            faces,
+            flipped,
+            areas,
+            opposite,
+            corners,
+            on_boundary,
+            topology,
+        })
+    }
+
+    /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
+    ///
+    /// All geometry is computed on these, so that huge and tiny coordinates neither over- nor underflow.
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// The diagonal of the bounding box: a length in the input is a length of [`Self::points`] times this.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The faces, consistently oriented, (m, 3).
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The faces that were flipped to orient the mesh, in ascending order.
+    pub fn flipped_faces(&self) -> &[u32] {
+        &self.flipped
+    }
+
+    /// How many vertices the mesh has.
+    pub fn n_vertices(&self) -> usize {
+        self.points.len()
+    }
+
+    /// How many faces the mesh has.
+    pub fn n_faces(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The areas of the faces of [`Self::points`], (m,), all positive.
+    pub fn face_areas(&self) -> &[f64] {
+        &self.areas
+    }
+
+    /// The corner across the edge opposite to a corner, or `None` on the boundary.
+    pub fn opposite(&self, corner: u32) -> Option<u32> {
+        let across = self.opposite[corner as usize];
+        (across != NO_CORNER).then_some(across)
+    }
+
+    /// The corners at a vertex, in ascending order.
+    pub fn vertex_corners(&self, vertex: usize) -> &[u32] {
+        self.corners.of(vertex)
+    }
+
+    /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest vertex.
+    pub fn boundary_loops(&self) -> &[Vec<u32>] {
+        &self.topology.boundary_loops
+    }
+
+    /// Whether a vertex lies on the boundary.
+    pub fn is_boundary(&self, vertex: usize) -> bool {
+        self.on_boundary[vertex]
+    }
+
+    /// Vertices − edges + faces.
+    pub fn euler_characteristic(&self) -> i64 {
+        self.topology.euler_characteristic
+    }
+
+    /// How many connected components the mesh has.
+    pub fn n_components(&self) -> usize {
+        self.topology.n_components()
+    }
+
+    /// The number of handles, summed over the components.
+    pub fn genus(&self) -> usize {
+        self.topology.genus.unwrap_or(0)
+    }
+
+    /// What kind of surface the mesh is.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Refuses anything but a topological disk.
+    ///
+    /// # Errors
+    /// Several components, a closed surface, handles, or several boundary loops; each with its own message.
+    pub fn require_disk(&self) -> Result<(), Error> {
+        let Topology {
+            boundary_loops,
+            first_faces,
+            ..
+        } = &self.topology;
+        let genus = self.genus();
+        if first_faces.len() > 1 {
+            let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
+            return validate::refuse(faces, |faces| Error::SeveralComponents { faces });
+        }
+        match (boundary_loops.len(), genus) {
+            (0, _) => Err(Error::ClosedSurface { genus }),
+            (1, 0) => Ok(()),
+            (_, 0) => several_boundaries(boundary_loops),
+            _ => Err(Error::HasHandles { genus }),
+        }
+    }
+}
+
+fn several_boundaries(loops: &[Vec<u32>]) -> Result<(), Error> {
+    let sizes = loops.iter().map(Vec::len).collect();
+    let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0] as usize));
+    validate::refuse(vertices, |vertices| Error::SeveralBoundaries {
+        vertices,
+        sizes,
+    })
+}
+
+fn flipped_indices(orientation: &Orientation) -> Vec<u32> {
+    let flipped = orientation
+        .flipped
+        .iter()
+        .enumerate()
+        .filter(|(_, flipped)| **flipped);
+    flipped.map(|(face, _)| face as u32).collect()
+}
+
+fn mark_boundary(n_vertices: usize, loops: &[Vec<u32>]) -> Vec<bool> {
+    let mut on_boundary = vec![false; n_vertices];
+    for &vertex in loops.iter().flatten() {
+        on_boundary[vertex as usize] = true;
+    }
+    on_boundary
+}

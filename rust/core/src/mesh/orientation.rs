@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One orientation for all faces of a component, found by walking from face to face.
+//!
+//! The orientation that most faces of a component already have wins; at a tie that of its lowest face.
+//! Edges of three or more faces do not connect. Linear in the number of faces.
+
+use super::topology::{EdgeTable, NO_CORNER, half_edge};
+
+/// Which faces must be flipped, and what hangs together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Orientation {
+    /// Per face: whether it has to be flipped to agree with its component, (m,).
+    pub flipped: Vec<bool>,
+    /// An edge at which some component cannot be oriented. Its faces are left as given.
+    pub conflict: Option<[u32; 2]>,
+    /// Per face: the number of its edge-connected component, (m,). Components are ordered by lowest face.
+    pub component: Vec<u32>,
+    /// The lowest face of each component.
+    pub first_faces: Vec<u32>,
+}
+
+/// Orients faces that nobody has validated.
+///
+/// Every index must be below `n_vertices`. Edges of three or more faces are no connections; components that
+/// cannot be oriented are left as they are.
+///
+/// # Panics
+/// If an index is out of range.
+pub fn consistent(n_vertices: usize, faces: &[[u32; 3]]) -> Orientation {
+    let opposite = EdgeTable::new(n_vertices, faces).opposites();
+    Orientation::propagate(faces, &opposite)
+}
+
+impl Orientation {
+    /// Orients faces across the pairs of corners in `opposite`.
+    pub(crate) fn propagate(faces: &[[u32; 3]], opposite: &[u32]) -> Self {
+        let mut walk = Self {
+            flipped: vec![false; faces.len()],
+            conflict: None,
+            component: vec![u32::MAX; faces.len()],
+            first_faces: Vec::new(),
+        };
+        let mut members = Vec::new();
+        for seed in 0..faces.len() as u32 {
+            if walk.component[seed as usize] == u32::MAX {
+                let conflict = walk.flood(faces, opposite, seed, &mut members);
+                walk.settle(&members, conflict.is_some());
+                walk.conflict = walk.conflict.or(conflict);
+            }
+        }
+        walk
+    }
+
+    /// Orients one component like its seed and lists its faces; returns the first edge that contradicts.
+    fn flood(
+        &mut self,
+        faces: &[[u32; 3]],
+        opposite: &[u32],
+        seed: u32,
+        members: &mut Vec<u32>,
+    ) -> Option<[u32; 2]> {
+        let label = self.first_faces.len() as u32;
+        self.first_faces.push(seed);
+        self.component[seed as usize] = label;
+        members.clear();
+        members.push(seed);
+        let mut conflict = None;
+        let mut head = 0;
+        while head < members.len() {
+            let face = members[head];
+            head += 1;
+            for corner in 3 * face..3 * face + 3 {
+                let other = opposite[corner as usize];
+                if other == NO_CORNER {
+                    continue;
+                }
+                let [from, to] = half_edge(faces, corner);
+                let agree = half_edge(faces, other)[0] != from;
+                let wanted = self.flipped[face as usize] ^ !agree;
+                let neighbour = other / 3;
+                if self.component[neighbour as usize] == u32::MAX {
+                    self.component[neighbour as usize] = label;
+                    self.flipped[neighbour as usize] = wanted;
+                    members.push(neighbour);
+                } else if self.flipped[neighbour as usize] != wanted {
+                    conflict = conflict.or(Some([from.min(to), from.max(to)]));
+                }
+            }
+        }
+        conflict
+    }
+
+    /// Lets the majority of a component decide, or leaves it alone where it cannot be oriented.
+    fn settle(&mut self, members: &[u32], conflict: bool) {
+        let flips = members
+            .iter()
+            .filter(|&&face| self.flipped[face as usize])
+            .count();
+        let invert = 2 * flips > members.len();
+        if flips > 0 && (conflict || invert) {
+            for &face in members {
+                let flipped = &mut self.flipped[face as usize];
+                *flipped = !conflict && (*flipped ^ invert);
+            }
+        }
+    }
+
+    /// Flips the faces: the first corner stays, the other two change places; `opposite` follows.
+    pub(crate) fn apply(&self, faces: &mut [[u32; 3]], opposite: &mut [u32]) {
+        if !self.flipped.contains(&true) {
+            return;
+        }
+        for (face, _) in self
+            .flipped
+            .iter()
+            .enumerate()
+            .filter(|(_, flipped)| **flipped)
+        {
+            faces[face].swap(1, 2);
+            opposite.swap(3 * face + 1, 3 * face + 2);
+        }
+        for corner in opposite.iter_mut().filter(|corner| **corner != NO_CORNER) {
+            *corner = self.moved(*corner);
+        }
+    }
+
+    /// Where a corner of the faces as given lies after [`Self::apply`].
+    fn moved(&self, corner: u32) -> u32 {
+        match (self.flipped[corner as usize / 3], corner % 3) {
+            (true, 1) => corner + 1,
+            (true, 2) => corner - 1,
+            _ => corner,
+        }
+    }
+}

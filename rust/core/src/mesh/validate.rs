@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The checks a mesh has to pass, each naming the elements at fault.
+
+use super::geometry::{self, Vector, triangle};
+use super::topology::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
+use crate::error::{Elements, Error};
+
+/// Corner indices must fit into 32 bits with one value to spare.
+const MOST_FACES: usize = (u32::MAX / 3) as usize;
+
+/// A face is flat if its height is below this many roundings of its coordinates.
+const ROUNDINGS: f64 = 4.0;
+
+/// Heights below this part of the bounding box would underflow when squared.
+const SMALLEST_HEIGHT: f64 = 1e-60;
+
+/// Checks the arrays alone: sizes, finite coordinates, index range, three different vertices per face.
+pub(super) fn arrays(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), Error> {
+    sizes(vertices.len(), faces.len())?;
+    finite(vertices)?;
+    in_range(vertices.len(), faces)?;
+    distinct_corners(faces)
+}
+
+fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), Error> {
+    match (n_vertices, n_faces) {
+        (0, _) => Err(Error::NoVertices),
+        (_, 0) => Err(Error::NoFaces),
+        (_, found) if found > MOST_FACES => Err(Error::TooManyFaces {
+            found,
+            limit: MOST_FACES,
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn finite(vertices: &[Vector]) -> Result<(), Error> {
+    let bad = which(vertices, |vertex| !vertex.iter().all(|x| x.is_finite()));
+    refuse(bad, |vertices| Error::NonFinite { vertices })
+}
+
+fn in_range(n_vertices: usize, faces: &[[u32; 3]]) -> Result<(), Error> {
+    let outside = |v: &u32| *v as usize >= n_vertices;
+    let bad = which(faces, |face| face.iter().any(outside));
+    refuse(bad, |bad| {
+        let value = faces[bad.first[0]]
+            .into_iter()
+            .find(outside)
+            .map_or(0, i64::from);
+        Error::IndexOutOfRange {
+            faces: bad,
+            value,
+            n_vertices,
+        }
+    })
+}
+
+fn distinct_corners(faces: &[[u32; 3]]) -> Result<(), Error> {
+    let bad = which(faces, |[a, b, c]| a == b || b == c || c == a);
+    refuse(bad, |faces| Error::RepeatedVertex { faces })
+}
+
+/// Refuses faces with the same vertices as an earlier one.
+pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(), Error> {
+    let mut repeated = Vec::new();
+    let mut apexes = Vec::new();
+    for ([_, high], entries) in table.edges().filter(|(_, entries)| entries.len() > 1) {
+        apexes.clear();
+        apexes.extend(
+            entries
+                .iter()
+                .map(corner_of_entry)
+                .map(|c| (vertex_at(faces, c), c / 3)),
+        );
+        apexes.sort_unstable();
+        let same = apexes.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        // Each face is looked at once, from the edge of its two lower vertices.
+        repeated.extend(
+            same.filter(|pair| pair[1].0 > high)
+                .map(|pair| pair[1].1 as usize),
+        );
+    }
+    repeated.sort_unstable();
+    refuse(Elements::collect(repeated), |faces| Error::DuplicateFaces {
+        faces,
+    })
+}
+
+/// Refuses faces whose corners lie on a line, `points` being `vertices` divided by `scale` and centred.
+pub(super) fn positive_areas(
+    vertices: &[Vector],
+    points: &[Vector],
+    scale: f64,
+    faces: &[[u32; 3]],
+) -> Result<(), Error> {
+    let bad = which(faces, |&face| {
+        // What the coordinates were rounded to, here and where the mesh came from.
+        let given = largest(triangle(vertices, face)) / scale;
+        is_flat(
+            triangle(points, face),
+            given.max(largest(triangle(points, face))),
+        )
+    });
+    refuse(bad, |faces| Error::ZeroArea { faces })
+}
+
+/// Whether a triangle's height over its longest edge drowns in the rounding of its coordinates.
+fn is_flat(corners: [Vector; 3], largest_coordinate: f64) -> bool {
+    let longest = geometry::edge_lengths(corners)
+        .into_iter()
+        .fold(0.0, f64::max);
+    let height = 2.0 * geometry::area(corners) / longest;
+    let rounding = ROUNDINGS * f64::EPSILON * largest_coordinate.max(longest);
+    // Corners that all coincide have no height at all: 0 / 0.
+    height.is_nan() || height <= rounding.max(SMALLEST_HEIGHT)
+}
+
+fn largest(corners: [Vector; 3]) -> f64 {
+    corners
+        .as_flattened()
+        .iter()
+        .fold(0.0, |largest, x| f64::max(largest, x.abs()))
+}
+
+/// Refuses edges of three or more faces.
+pub(super) fn manifold_edges(table: &EdgeTable) -> Result<(), Error> {
+    let bad = table
+        .edges()
+        .filter(|(_, entries)| entries.len() > 2)
+        .map(|(edge, _)| edge);
+    refuse(Elements::edges(bad), |edges| Error::NonManifoldEdges {
+        edges,
+    })
+}
+
+/// Refuses vertices with several fans, then vertices without a face.
+pub(super) fn manifold_vertices(
+    corners: &VertexCorners,
+    n: usize,
+    opposite: &[u32],
+) -> Result<(), Error> {
+    let pinched = Elements::collect((0..n).filter(|&v| !corners.is_one_fan(v, opposite)));
+    refuse(pinched, |vertices| Error::NonManifoldVertices { vertices })?;
+    let loose = Elements::collect((0..n).filter(|&v| corners.of(v).is_empty()));
+    refuse(loose, |vertices| Error::UnreferencedVertices { vertices })
+}
+
+/// The indices of the items that are bad.
+fn which<T>(items: &[T], bad: impl Fn(&T) -> bool) -> Option<Elements> {
+    Elements::collect(
+        items
+            .iter()
+            .enumerate()
+            .filter(|(_, item)| bad(item))
+            .map(|(index, _)| index),
+    )
+}
+
+/// An error where there are elements at fault.
+pub(super) fn refuse(
+    bad: Option<Elements>,
+    error: impl FnOnce(Elements) -> Error,
+) -> Result<(), Error> {
+    bad.map_or(Ok(()), |elements| Err(error(elements)))
+}

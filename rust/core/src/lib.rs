@@ -1,8 +1,34 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Area-preserving (authalic) maps of triangle meshes.
-#![warn(missing_docs)]
+//!
+//! ```
+//! use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};
+//!
+//! // a pyramid without its base: one boundary loop, so a disk
+//! let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+//! let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+//! let mesh = TriangleMesh::new(&vertices, &faces)?;
+//!
+//! let map = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent)?;
+//!
+//! println!("{} after {} iterations", map.status.as_str(), map.history.iterations());
+//! assert!(map.distortion.folded.is_empty());
+//! # Ok::<(), authalic::Error>(())
+//! ```
+//!
+//! Rooms and their order are described in `ARCHITECTURE.md`.
 
+mod control;
+mod disk;
+mod distortion;
+pub mod energy;
 mod error;
 pub mod mesh;
+pub mod optimize;
+mod parallel;
+pub mod sparse;
 
+pub use control::{History, Observer, Record, Silent, Status};
+pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};
+pub use distortion::{Distortion, Image, check_density, distortion, folded_in_plane};
 pub use error::{Elements, Error};

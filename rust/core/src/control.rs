@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! How a long run speaks with its caller: progress, cancel, status and history.
+
+use std::time::Instant;
+
+/// Listens to a run and may end it.
+///
+/// Any `FnMut(f64, &str) -> bool` is one.
+///
+/// ```
+/// use authalic::Observer;
+/// let mut seen = 0.0;
+/// let mut observer = |fraction: f64, _message: &str| {
+///     seen = fraction;
+///     true
+/// };
+/// assert!(observer.progress(0.5, "half"));
+/// ```
+pub trait Observer {
+    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message;
+    /// `false` cancels, and the run returns its best map so far.
+    fn progress(&mut self, fraction: f64, message: &str) -> bool;
+}
+
+impl<F: FnMut(f64, &str) -> bool> Observer for F {
+    fn progress(&mut self, fraction: f64, message: &str) -> bool {
+        self(fraction, message)
+    }
+}
+
+/// An [`Observer`] that never cancels and ignores what it hears.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn progress(&mut self, _fraction: f64, _message: &str) -> bool {
+        true
+    }
+}
+
+/// Why a run ended. The map it returns is sound whatever the status says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The gradient norm fell below the tolerance.
+    Converged,
+    /// The iterations asked for were done.
+    MaxIterations,
+    /// No step along the search direction lowers the energy any more.
+    Stalled,
+    /// The observer asked to stop.
+    Cancelled,
+}
+
+impl Status {
+    /// The status as the word the Python package uses.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::MaxIterations => "max_iterations",
+            Self::Stalled => "stalled",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}
+
+/// One line of the [`History`] of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Record {
+    /// Counts from 0, the start map.
+    pub iteration: usize,
+    /// E_A of the map, target areas rescaled to the image's area.
+    pub authalic_energy: f64,
+    /// Length of the step along the search direction; 0 for the start.
+    pub step: f64,
+    /// Norm of the gradient in the metric of the preconditioner, √(gᵀM⁻¹g).
+    pub gradient_norm: f64,
+    /// Seconds since the run began.
+    pub seconds: f64,
+}
+
+/// What happened in each iteration of a run, the start first.
+#[derive(Debug, Clone)]
+pub struct History {
+    began: Instant,
+    records: Vec<Record>,
+}
+
+impl History {
+    /// An empty history whose clock starts now.
+    pub fn start() -> Self {
+        Self { began: Instant::now(), records: Vec::new() }
+    }
+
+    /// Adds the next iteration, numbered in order.
+    pub fn push(&mut self, authalic_energy: f64, step: f64, gradient_norm: f64) {
+        self.records.push(Record {
+            iteration: self.records.len(),
+            authalic_energy,
+            step,
+            gradient_norm,
+            seconds: self.seconds(),
+        });
+    }
+
+    /// The records, one per iteration.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// Iterations done: the records less the start.
+    pub fn iterations(&self) -> usize {
+        self.records.len().saturating_sub(1)
+    }
+
+    /// Seconds since the history was started.
+    pub fn seconds(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+}

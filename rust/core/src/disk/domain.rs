@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Maps to the unit disk as a [`Domain`]: interior vertices in the plane, boundary vertices held or sliding on the circle.
+//!
+//! Reduced coordinates: first coordinates of the interior vertices, then their second ones, then, where the boundary
+//! slides, one angle per boundary vertex. The preconditioner is the block diagonal of the frozen quadratic form
+//! E_S ≈ fᵀ(I₂ ⊗ L_S(f⁰))f: the paper's M = I₂ ⊗ [L_S(f⁰)]_II twice over one factor, and the boundary block
+//! projected on the tangents of the circle.
+
+use std::f64::consts::PI;
+
+use super::boundary::runs_once_around;
+use super::{Boundary, certificate};
+use crate::energy::StretchEnergy;
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::optimize::Domain;
+use crate::parallel;
+use crate::sparse::{Cholesky, Laplacian};
+
+/// A Laplacian with its factor.
+#[derive(Debug)]
+struct Block {
+    laplacian: Laplacian,
+    factor: Cholesky,
+}
+
+/// Maps of one mesh to the unit disk.
+#[derive(Debug)]
+pub(super) struct DiskDomain<'a> {
+    mesh: &'a TriangleMesh,
+    energy: StretchEnergy<'a>,
+    interior: Block,
+    /// Only where the boundary slides.
+    boundary: Option<Block>,
+    /// Maps with a folded face have an infinite objective.
+    guarded: bool,
+}
+
+impl<'a> DiskDomain<'a> {
+    /// Analyses the systems of the domain; the preconditioner must be set before it is used.
+    pub(super) fn new(
+        mesh: &'a TriangleMesh,
+        targets: &'a [f64],
+        interior: Laplacian,
+        boundary: Boundary,
+    ) -> Result<Self, Error> {
+        let block = |laplacian: Laplacian| {
+            let factor = Cholesky::analyse(laplacian.matrix())?;
+            Ok(Block { laplacian, factor })
+        };
+        let boundary = match boundary {
+            Boundary::ArcLength => None,
+            Boundary::Sliding => Some(block(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?),
+        };
+        let energy = StretchEnergy::new(mesh, targets);
+        Ok(Self { mesh, energy, interior: block(interior)?, boundary, guarded: false })
+    }
+
+    /// From now on a map with a folded face has an infinite objective.
+    pub(super) fn guard(&mut self) {
+        self.guarded = true;
+    }
+
+    /// Sets M = 2 I₂ ⊗ L_S(f) at f = `map`.
+    pub(super) fn set_preconditioner(&mut self, map: &[[f64; 2]]) -> Result<(), Error> {
+        let scale = 2.0 * PI / self.energy.area(map);
+        let mut weights = self.energy.laplacian_weights(map);
+        parallel::fill_with_old(&mut weights, |_, weight| scale * weight);
+        self.interior.laplacian.assemble(self.mesh, &weights);
+        self.interior.factor.refactor(self.interior.laplacian.matrix())?;
+        if let Some(Block { laplacian, factor }) = &mut self.boundary {
+            let cosine = |i: usize, j: usize| map[i][0] * map[j][0] + map[i][1] * map[j][1];
+            laplacian.assemble_scaled(self.mesh, &weights, cosine);
+            factor.refactor(laplacian.matrix())?;
+        }
+        Ok(())
+    }
+
+    fn free(&self) -> &[u32] {
+        self.interior.laplacian.free()
+    }
+
+    /// Vertices that slide, in the order of their angles in reduced coordinates.
+    fn sliding(&self) -> &[u32] {
+        self.boundary.as_ref().map_or(&[], |block| block.laplacian.free())
+    }
+
+    fn allows(&self, map: &[[f64; 2]]) -> bool {
+        (self.boundary.is_none() || runs_once_around(&self.mesh.boundary_loops()[0], map))
+            && (!self.guarded || certificate::clearly_unfolded(self.mesh, map))
+    }
+}
+
+impl Domain for DiskDomain<'_> {
+    type Map = Vec<[f64; 2]>;
+
+    fn objective(&self, map: &Self::Map) -> f64 {
+        let value = self.energy.value(map);
+        if value.area > 0.0 && self.allows(map) { value.objective() } else { f64::INFINITY }
+    }
+
+    fn gradient(&self, map: &Self::Map) -> (f64, Vec<f64>) {
+        let (value, gradient) = self.energy.gradient(map);
+        let objective = if value.area > 0.0 && self.allows(map) { value.objective() } else { f64::INFINITY };
+        let free = self.free().iter().map(|&v| v as usize);
+        let along_circle = |v: &u32| {
+            let ([u, w], g) = (map[*v as usize], gradient[*v as usize]);
+            u * g[1] - w * g[0]
+        };
+        let reduced = free.clone().map(|v| gradient[v][0]).chain(free.map(|v| gradient[v][1]));
+        (objective, reduced.chain(self.sliding().iter().map(along_circle)).collect())
+    }
+
+    fn authalic_energy(&self, map: &Self::Map) -> f64 {
+        self.energy.value(map).authalic_energy
+    }
+
+    fn precondition(&self, gradient: &[f64]) -> Vec<f64> {
+        let mut h = gradient.to_vec();
+        let (plane, angles) = h.split_at_mut(2 * self.free().len());
+        self.interior.factor.solve(plane);
+        if let Some(block) = &self.boundary {
+            block.factor.solve(angles);
+        }
+        h
+    }
+
+    fn retract(&self, map: &Self::Map, direction: &[f64], step: f64) -> Self::Map {
+        let mut moved = map.clone();
+        let n = self.free().len();
+        for (i, &vertex) in self.free().iter().enumerate() {
+            moved[vertex as usize][0] += step * direction[i];
+            moved[vertex as usize][1] += step * direction[n + i];
+        }
+        for (&vertex, angle) in self.sliding().iter().zip(&direction[2 * n..]) {
+            let ([u, v], (sine, cosine)) = (map[vertex as usize], (step * angle).sin_cos());
+            let (x, y) = (cosine * u - sine * v, sine * u + cosine * v);
+            let length = x.hypot(y);
+            moved[vertex as usize] = [x / length, y / length];
+        }
+        moved
+    }
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Virtual filling of extra boundary loops, so that a surface with holes maps like a disk.
+//!
+//! Every loop but the longest is closed by a fan to one new vertex. The fan exists only inside the solver: it
+//! keeps the hole open in the map at about the size it has on the surface, and its vertex and faces are dropped
+//! from the result.
+
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, area, area_vector, cross, dot, norm, scaled, sub};
+
+/// A hole's faces get at least this part of the mean target, so that a slit without area stays solvable.
+const SMALLEST_SHARE: f64 = 0.05;
+
+/// A surface with its holes filled; the original vertices and faces come first.
+#[derive(Debug)]
+pub(super) struct Filled {
+    pub mesh: TriangleMesh,
+    pub targets: Vec<f64>,
+}
+
+/// Fills all loops but the longest. `targets` are the areas of the given faces.
+///
+/// # Errors
+/// As [`TriangleMesh::new`], where a fan doubles a face.
+pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled, Error> {
+    let (mut points, mut faces, mut targets) = (mesh.points().to_vec(), mesh.faces().to_vec(), targets.to_vec());
+    let scale = targets.iter().sum::<f64>() / mesh.face_areas().iter().sum::<f64>();
+    let least = SMALLEST_SHARE * targets.iter().sum::<f64>() / targets.len() as f64;
+    for hole in &mesh.boundary_loops()[1..] {
+        let corners: Vec<Vector> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
+        let share = (scale * spanned_area(&corners) / hole.len() as f64).max(least);
+        let apex = points.len() as u32;
+        points.push(apex_of(&corners));
+        for k in 0..hole.len() {
+            // the loop has the surface on its left, the fan lies on its right
+            faces.push([hole[(k + 1) % hole.len()], hole[k], apex]);
+            targets.push(share);
+        }
+    }
+    Ok(Filled { mesh: TriangleMesh::new(&points, &faces)?, targets })
+}
+
+/// Area of the flat polygon nearest to a loop: the length of its area vector.
+fn spanned_area(corners: &[Vector]) -> f64 {
+    norm(loop_normal(corners))
+}
+
+/// Σ of the area vectors of the fan around the centroid.
+fn loop_normal(corners: &[Vector]) -> Vector {
+    let centre = centroid(corners);
+    edges(corners).fold([0.0; 3], |sum, (from, to)| add(sum, area_vector([centre, from, to])))
+}
+
+/// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle is fattest.
+fn apex_of(corners: &[Vector]) -> Vector {
+    let (centre, normal) = (centroid(corners), loop_normal(corners));
+    let length: f64 = edges(corners).map(|(from, to)| norm(sub(to, from))).sum();
+    let mut directions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    if norm(normal) > 0.0 {
+        let unit = scaled(normal, 1.0 / norm(normal));
+        directions.push(unit);
+        directions.extend(edges(corners).take(1).map(|(from, to)| cross(unit, sub(to, from))));
+    }
+    let candidates = directions.into_iter().map(|direction| add(centre, scaled(direction, 0.1 * length)));
+    let thinnest = |apex: &Vector| {
+        edges(corners).map(|(from, to)| area([from, to, *apex]) / dot(sub(to, from), sub(to, from))).fold(f64::INFINITY, f64::min)
+    };
+    candidates.max_by(|a, b| thinnest(a).total_cmp(&thinnest(b))).expect("there are candidates")
+}
+
+fn centroid(corners: &[Vector]) -> Vector {
+    scaled(corners.iter().fold([0.0; 3], |sum, &corner| add(sum, corner)), 1.0 / corners.len() as f64)
+}
+
+fn edges(corners: &[Vector]) -> impl Iterator<Item = (Vector, Vector)> {
+    (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]))
+}

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Area-preserving maps of disks to the unit disk.
+//!
+//! [`disk_map`] is the entry. The papers' methods (Liu & Yueh 2023) start from a harmonic map with an arc-length boundary, take
+//! fixed-point steps and, by default, conjugate gradients. They cannot promise an unfolded map, so every result is checked by
+//! exact predicates; folds are unfolded, and where that fails the run is repeated from Tutte's embedding without ever leaving it.
+//!
+//! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost: about 5
+//! sparse Cholesky factorisations of the interior vertices and one solve per iteration.
+
+mod boundary;
+mod certificate;
+mod domain;
+mod fixed_point;
+mod holes;
+mod start;
+mod unfold;
+
+use std::borrow::Cow;
+
+use crate::control::{History, Observer, Status};
+use crate::distortion::{Distortion, Image, check_density, distortion};
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::optimize::Domain as _;
+use crate::optimize::nonlinear_cg::{CgOptions, minimize};
+use crate::sparse::Laplacian;
+
+use domain::DiskDomain;
+use fixed_point::{FixedPointOptions, fixed_point};
+
+/// A map of the vertices into the plane.
+type Map = Vec<[f64; 2]>;
+
+/// Fixed-point steps before the conjugate gradients, the paper's 5.
+const FIXED_POINT_STEPS: usize = 5;
+
+/// How a disk map is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Method {
+    /// Fixed-point iteration of the stretch energy (Liu & Yueh 2023, equation (2.5)).
+    FixedPoint,
+    /// Preconditioned nonlinear conjugate gradients (Liu & Yueh 2023, Algorithm 3.1).
+    #[default]
+    ConjugateGradient,
+}
+
+/// What the boundary vertices may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Boundary {
+    /// Held on the circle at arcs proportional to the edge lengths, as in the papers.
+    ArcLength,
+    /// Free to slide along the circle in their order, which lets the faces at the boundary keep their areas too.
+    #[default]
+    Sliding,
+}
+
+/// Options of [`disk_map`].
+#[derive(Debug, Clone, Default)]
+pub struct DiskMapOptions<'a> {
+    /// The method; conjugate gradients.
+    pub method: Method,
+    /// The boundary; sliding.
+    pub boundary: Boundary,
+    /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
+    pub density: Option<&'a [f64]>,
+    /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic map where `None`.
+    pub initial: Option<&'a [[f64; 2]]>,
+    /// Iterations at the most; 50 where `None`, as in the paper's tables.
+    pub max_iterations: Option<usize>,
+    /// Converged when √(gᵀM⁻¹g) falls below this; 10⁻⁸ where `None`.
+    pub tolerance: Option<f64>,
+    /// Fill all boundary loops but the longest virtually instead of refusing them; off.
+    pub fill_holes: bool,
+}
+
+/// A one-to-one map of a disk to the unit disk.
+#[derive(Debug, Clone)]
+pub struct DiskMap {
+    /// (n, 2): the image of each vertex in the unit disk; positive faces run counter-clockwise.
+    pub uv: Vec<[f64; 2]>,
+    /// Why the run ended.
+    pub status: Status,
+    /// The energy after every iteration, that of the virtually filled surface where holes were filled.
+    pub history: History,
+    /// The figures of the map on the faces given.
+    pub distortion: Distortion,
+    /// Wall time of the whole call.
+    pub seconds: f64,
+}
+
+/// Maps a disk to the unit disk so that areas are kept.
+///
+/// # Errors
+/// Input that is no disk, and options out of range, are refused before any work. [`Error::NoEmbedding`] where
+/// every start folds in double precision.
+///
+/// ```
+/// use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};
+/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+/// let mesh = TriangleMesh::new(&vertices, &faces)?;
+/// let map = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent)?;
+/// assert!(map.distortion.folded.is_empty());
+/// assert!(map.distortion.area_ratio_std < 1e-6);
+/// # Ok::<(), authalic::Error>(())
+/// ```
+pub fn disk_map(
+    mesh: &TriangleMesh,
+    options: &DiskMapOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<DiskMap, Error> {
+    let mut history = History::start();
+    // 1. Refuse what is no disk before any work
+    options.check(mesh)?;
+    // 2. Targets; holes filled virtually
+    let given: Cow<'_, [f64]> = options.density.map_or_else(|| mesh.face_areas().into(), Cow::from);
+    let filled = match mesh.boundary_loops().len() {
+        1 => None,
+        _ => Some(holes::fill_holes(mesh, &given)?),
+    };
+    let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
+    // 3. Minimise the stretch energy, unfold what folded
+    let (mut uv, status) = Run { mesh: surface, targets, options }.solve(&mut history, observer)?;
+    // 4. Figures of the faces given
+    uv.truncate(mesh.n_vertices());
+    let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
+    Ok(DiskMap { uv, status, seconds: history.seconds(), history, distortion })
+}
+
+impl DiskMapOptions<'_> {
+    fn check(&self, mesh: &TriangleMesh) -> Result<(), Error> {
+        match mesh.require_disk() {
+            Err(Error::SeveralBoundaries { .. }) if self.fill_holes => {}
+            verdict => verdict?,
+        }
+        if let Some(density) = self.density {
+            check_density(density, mesh.n_faces())?;
+        }
+        if let Some(initial) = self.initial {
+            check_initial(mesh, initial)?;
+        }
+        match self.tolerance {
+            Some(tolerance) if !(tolerance >= 0.0 && tolerance.is_finite()) => Err(Error::InvalidOption {
+                name: "tolerance",
+                found: tolerance.to_string(),
+                expected: "a finite number ≥ 0".into(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A start map must be finite and run once around the unit circle; its folds are mended like any others.
+fn check_initial(mesh: &TriangleMesh, initial: &[[f64; 2]]) -> Result<(), Error> {
+    if initial.len() != mesh.n_vertices() || mesh.boundary_loops().len() != 1 {
+        let expected = format!("of shape ({}, 2) on a surface with one boundary loop", mesh.n_vertices());
+        let found = format!("of shape ({}, 2) with {} loops", initial.len(), mesh.boundary_loops().len());
+        return Err(Error::InvalidArray { name: "initial", found, expected });
+    }
+    let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
+    if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
+        return Err(Error::InitialNonFinite { vertices });
+    }
+    let boundary = &mesh.boundary_loops()[0];
+    let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
+    if let Some(vertices) = Elements::collect(boundary.iter().map(|&v| v as usize).filter(off_circle)) {
+        return Err(Error::InitialBoundary { vertices, reason: "its distance from the origin is not 1".into() });
+    }
+    if !boundary::runs_once_around(boundary, initial) {
+        let vertices = Elements::collect(boundary.iter().map(|&v| v as usize)).expect("a loop has vertices");
+        return Err(Error::InitialBoundary { vertices, reason: "it does not run once around it, counter-clockwise".into() });
+    }
+    Ok(())
+}
+
+/// One computation on a surface with one boundary loop.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    mesh: &'a TriangleMesh,
+    targets: &'a [f64],
+    options: &'a DiskMapOptions<'a>,
+}
+
+impl Run<'_> {
+    /// The papers' method, then whatever it takes to have no folded face.
+    fn solve(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
+        // 1. The method as published
+        let (map, status) = self.as_published(history, observer)?;
+        if certificate::is_bijective(self.mesh, &map) {
+            return Ok((map, status));
+        }
+        // 2. Unfold what folded
+        if let Some(map) = unfold::unfold(self.mesh, &map) {
+            return Ok(self.descend_guarded(map, status, history, observer));
+        }
+        // 3. Tutte's embedding, and a descent that never leaves it
+        let mut map = boundary::arc_length(self.mesh);
+        start::tutte(self.mesh, &mut self.interior(), &mut map)?;
+        match Elements::collect(certificate::folded(self.mesh, &map)) {
+            None => Ok(self.descend_guarded(map, status, history, observer)),
+            Some(folded) => Err(Error::NoEmbedding { folded }),
+        }
+    }
+
+    /// Harmonic start, fixed-point steps, conjugate gradients; may fold.
+    fn as_published(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
+        // 1. The start map
+        let mut interior = self.interior();
+        let start = match self.options.initial {
+            Some(initial) => initial.to_vec(),
+            None => {
+                let mut map = boundary::arc_length(self.mesh);
+                start::harmonic(self.mesh, &mut interior, &mut map)?;
+                map
+            }
+        };
+        let mut domain = DiskDomain::new(self.mesh, self.targets, interior, self.options.boundary)?;
+        // 2. Fixed-point steps
+        let map = match (self.options.method, self.options.initial) {
+            (Method::ConjugateGradient, Some(_)) => start,
+            (method, _) => {
+                let options = self.fixed_point_options(method);
+                let (map, status) = fixed_point(&mut domain, start, &options, history, observer);
+                if method == Method::FixedPoint || status == Status::Cancelled {
+                    return Ok((map, status));
+                }
+                map
+            }
+        };
+        // 3. Conjugate gradients
+        domain.set_preconditioner(&map)?;
+        Ok(minimize(&domain, map, &self.cg_options(), history, observer))
+    }
+
+    /// Conjugate gradients from an unfolded map that stay unfolded.
+    fn descend_guarded(
+        &self,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        if status == Status::Cancelled {
+            return (map, status);
+        }
+        let Ok(mut domain) = DiskDomain::new(self.mesh, self.targets, self.interior(), self.options.boundary) else {
+            return (map, Status::Stalled);
+        };
+        domain.guard();
+        if !domain.objective(&map).is_finite() || domain.set_preconditioner(&map).is_err() {
+            return (map, Status::Stalled);
+        }
+        minimize(&domain, map, &self.cg_options(), history, observer)
+    }
+
+    fn interior(&self) -> Laplacian {
+        Laplacian::new(self.mesh, |vertex| !self.mesh.is_boundary(vertex))
+    }
+
+    fn fixed_point_options(&self, method: Method) -> FixedPointOptions {
+        let options = self.cg_options();
+        let max_iterations = match method {
+            Method::FixedPoint => options.max_iterations,
+            Method::ConjugateGradient => FIXED_POINT_STEPS,
+        };
+        FixedPointOptions { max_iterations, tolerance: options.tolerance, energy: 0.0 }
+    }
+
+    fn cg_options(&self) -> CgOptions {
+        let default = CgOptions::default();
+        CgOptions {
+            max_iterations: self.options.max_iterations.unwrap_or(default.max_iterations),
+            tolerance: self.options.tolerance.unwrap_or(default.tolerance),
+            ..default
+        }
+    }
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Quality figures of a map: area ratios, authalic energy, folds, angle distortion.
+//!
+//! All are signed: the image area of a folded face is negative, its log₂ area ratio −∞ and its angle distortion +∞, so it never
+//! scores like a good one. Target areas are rescaled so that their sum is the image's area A = Σ|a_τ|; then
+//! E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)). Which faces are folded is decided by exact
+//! predicates.
+
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use crate::error::{Elements, Error};
+use crate::mesh::geometry::{Vector, area, distance, dot, sub, triangle};
+use crate::parallel;
+
+/// The figures of one map. Per-face arrays have one entry per face, in order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distortion {
+    /// E_A on targets rescaled to the image's area; 0 for an area-preserving map.
+    pub authalic_energy: f64,
+    /// Mean over the faces of the signed image area over the rescaled target; 1 for an area-preserving map.
+    pub area_ratio_mean: f64,
+    /// Population standard deviation of the same ratio.
+    pub area_ratio_std: f64,
+    /// log₂ of the same ratio, (m,); −∞ for a folded face.
+    pub log2_area_ratio: Vec<f64>,
+    /// Faces whose exact orientation in the image is not positive, ascending.
+    pub folded: Vec<usize>,
+    /// σ₁/σ₂ ≥ 1 of the linear map of each face, (m,); 1 where angles are kept, +∞ for a folded face.
+    pub angle_distortion: Vec<f64>,
+    /// Mean of [`Self::angle_distortion`] over the faces.
+    pub angle_distortion_mean: f64,
+    /// Its 99th percentile, linearly interpolated.
+    pub angle_distortion_p99: f64,
+    /// Its maximum.
+    pub angle_distortion_max: f64,
+}
+
+/// A map of vertices, into the plane or onto the unit sphere.
+#[derive(Debug, Clone, Copy)]
+pub enum Image<'a> {
+    /// (n, 2) positions; a face is positive where it runs counter-clockwise.
+    Plane(&'a [[f64; 2]]),
+    /// (n, 3) positions around the origin; a face is positive where it is seen counter-clockwise from outside.
+    Sphere(&'a [[f64; 3]]),
+}
+
+impl Image<'_> {
+    fn corners(&self, face: [u32; 3]) -> [Vector; 3] {
+        match self {
+            Self::Plane(map) => face.map(|v| [map[v as usize][0], map[v as usize][1], 0.0]),
+            Self::Sphere(map) => triangle(map, face),
+        }
+    }
+
+    fn is_folded(&self, face: [u32; 3]) -> bool {
+        match self {
+            Self::Plane(map) => {
+                let [a, b, c] = face.map(|v| map[v as usize]).map(|[x, y]| Coord { x, y });
+                orient2d(a, b, c) <= 0.0
+            }
+            Self::Sphere(map) => {
+                let [a, b, c] = triangle(map, face).map(|[x, y, z]| Coord3D { x, y, z });
+                // positive where the origin lies below the plane through a, b, c
+                orient3d(a, b, c, Coord3D { x: 0.0, y: 0.0, z: 0.0 }) <= 0.0
+            }
+        }
+    }
+}
+
+/// Faces whose exact orientation in the plane is not positive, ascending.
+pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
+    folded(faces, Image::Plane(map))
+}
+
+/// Measures a map of the surface `points`, `faces` with one positive target area per face.
+///
+/// The lengths must agree, the indices be in range, the faces have area and one orientation: call it on a
+/// [`TriangleMesh`](crate::mesh::TriangleMesh), or validate first.
+///
+/// # Errors
+/// [`Error::InvalidArray`] where the whole image has no area.
+pub fn distortion(
+    points: &[Vector],
+    faces: &[[u32; 3]],
+    image: Image<'_>,
+    targets: &[f64],
+) -> Result<Distortion, Error> {
+    // 1. Signed areas of the image, and the scale c = A/|M| of the targets
+    let folded = folded(faces, image);
+    let areas = signed_areas(faces, image, &folded);
+    let scale = parallel::sum(areas.len(), |face| areas[face].abs()) / parallel::sum(targets.len(), |face| targets[face]);
+    if !(scale > 0.0 && scale.is_finite()) {
+        let found = "collapsed to a line or a point".to_string();
+        return Err(Error::InvalidArray { name: "image", found, expected: "a map whose faces have area".into() });
+    }
+    // 2. Area ratios and what is made of them
+    let ratio = parallel::map(areas.len(), |face| areas[face] / (scale * targets[face]));
+    let count = ratio.len() as f64;
+    let mean = parallel::sum(ratio.len(), |face| ratio[face]) / count;
+    let variance = parallel::sum(ratio.len(), |face| (ratio[face] - mean).powi(2)) / count;
+    let energy = parallel::sum(ratio.len(), |face| scale * targets[face] * (ratio[face] - 1.0).powi(2));
+    // 3. Singular values of the linear map of each face
+    let angle = angle_distortion(points, faces, image, &folded);
+    let (angle_mean, angle_p99, angle_max) = summary(&angle);
+    Ok(Distortion {
+        authalic_energy: energy,
+        area_ratio_mean: mean,
+        area_ratio_std: variance.sqrt(),
+        log2_area_ratio: parallel::map(ratio.len(), |face| ratio[face].max(0.0).log2()),
+        folded,
+        angle_distortion: angle,
+        angle_distortion_mean: angle_mean,
+        angle_distortion_p99: angle_p99,
+        angle_distortion_max: angle_max,
+    })
+}
+
+/// Checks one target measure per face: positive and finite.
+pub fn check_density(density: &[f64], n_faces: usize) -> Result<(), Error> {
+    if density.len() != n_faces {
+        let expected = format!("of shape ({n_faces},), one value per face");
+        return Err(Error::InvalidArray { name: "density", found: format!("of shape ({},)", density.len()), expected });
+    }
+    let bad = |face: &usize| !(density[*face] > 0.0 && density[*face].is_finite());
+    match Elements::collect((0..n_faces).filter(bad)) {
+        Some(faces) => Err(Error::Density { value: density[faces.first[0]], faces }),
+        None => Ok(()),
+    }
+}
+
+fn folded(faces: &[[u32; 3]], image: Image<'_>) -> Vec<usize> {
+    let is_folded = parallel::map(faces.len(), |face| image.is_folded(faces[face]));
+    (0..faces.len()).filter(|&face| is_folded[face]).collect()
+}
+
+/// Flat image areas with the exact sign; an area whose rounded sign differs is one of rounding size anyway.
+fn signed_areas(faces: &[[u32; 3]], image: Image<'_>, folded: &[usize]) -> Vec<f64> {
+    let mut areas = parallel::map(faces.len(), |face| area(image.corners(faces[face])));
+    for &face in folded {
+        areas[face] = -areas[face];
+    }
+    areas
+}
+
+fn angle_distortion(points: &[Vector], faces: &[[u32; 3]], image: Image<'_>, folded: &[usize]) -> Vec<f64> {
+    let mut ratios = parallel::map(faces.len(), |face| {
+        singular_value_ratio(triangle(points, faces[face]), image.corners(faces[face]))
+    });
+    for &face in folded {
+        ratios[face] = f64::INFINITY;
+    }
+    ratios
+}
+
+/// σ₁/σ₂ of the linear map from one triangle to another, both laid into the plane.
+///
+/// σ₁ ± σ₂ come from the conformal and the anticonformal part of the map, which does not cancel near σ₁ = σ₂.
+fn singular_value_ratio(rest: [Vector; 3], image: [Vector; 3]) -> f64 {
+    let ([base, x, height], [to_base, to_x, to_height]) = (laid_flat(rest), laid_flat(image));
+    let (a, d) = (to_base / base, to_height / height);
+    let b = (to_x - x * a) / height;
+    let (sum, difference) = ((a + d).hypot(b), (a - d).hypot(b));
+    match sum > difference {
+        true => (sum + difference) / (sum - difference),
+        false => f64::INFINITY,
+    }
+}
+
+/// A triangle as (0, 0), (base, 0), (x, height).
+fn laid_flat([a, b, c]: [Vector; 3]) -> [f64; 3] {
+    let base = distance(a, b);
+    [base, dot(sub(c, a), sub(b, a)) / base, 2.0 * area([a, b, c]) / base]
+}
+
+/// Mean, 99th percentile and maximum.
+fn summary(values: &[f64]) -> (f64, f64, f64) {
+    let mean = parallel::sum(values.len(), |i| values[i]) / values.len() as f64;
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let last = sorted.len() - 1;
+    let position = 0.99 * last as f64;
+    let (low, part) = (position as usize, position.fract());
+    let p99 = match part > 0.0 {
+        true => sorted[low] * (1.0 - part) + sorted[low + 1] * part,
+        false => sorted[low],
+    };
+    (mean, p99, sorted[last])
+}

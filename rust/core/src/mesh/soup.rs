@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Triangles that need not form a surface, for figures that only need areas and orientations.
+
+use super::geometry::{self, Vector};
+use super::{orientation, validate};
+use crate::error::Error;
+
+/// Validated triangles: finite, in range, with area, oriented alike where they hang together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleSoup {
+    /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
+    pub points: Vec<Vector>,
+    /// The faces, (m, 3), turned like most of their component.
+    pub faces: Vec<[u32; 3]>,
+}
+
+impl TriangleSoup {
+    /// Validates vertices (n, 3) and faces (m, 3); faces may touch, cross or repeat in any way.
+    ///
+    /// # Errors
+    /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex, faces without area.
+    pub fn new(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<Self, Error> {
+        validate::arrays(vertices, faces)?;
+        let (points, scale) = geometry::normalized(vertices);
+        validate::positive_areas(vertices, &points, scale, faces)?;
+        let flipped = orientation::consistent(points.len(), faces).flipped;
+        let turned = |(&[a, b, c], flip): (&[u32; 3], bool)| if flip { [a, c, b] } else { [a, b, c] };
+        let faces = faces.iter().zip(flipped).map(turned).collect();
+        Ok(Self { points, faces })
+    }
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A line search for the strong Wolfe conditions.
+//!
+//! Nocedal & Wright (2006), Algorithms 3.5 and 3.6: bracket an interval that holds an acceptable step, then shrink it
+//! by safeguarded interpolation. Conditions (4.1) of Liu & Yueh (2023): for 0 < c₁ < c₂ < ½,
+//!
+//! ```text
+//! φ(α) ≤ φ(0) + c₁ α φ'(0),      |φ'(α)| ≤ c₂ |φ'(0)|.
+//! ```
+//!
+//! The objective may be +∞ (a map that is not allowed); such a step only shortens the bracket.
+//! Cost: two or three evaluations where the first trial is not accepted at once.
+
+/// Constants of the strong Wolfe conditions and bounds of the search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WolfeOptions {
+    /// c₁ of the sufficient decrease; 10⁻⁴ as is usual.
+    pub decrease: f64,
+    /// c₂ of the curvature condition; below ½, which makes every conjugate direction one of descent.
+    pub curvature: f64,
+    /// Evaluations before the search gives up; 30 halvings reach 10⁻⁹ of the first trial.
+    pub max_evaluations: usize,
+}
+
+impl Default for WolfeOptions {
+    fn default() -> Self {
+        Self { decrease: 1e-4, curvature: 0.4, max_evaluations: 30 }
+    }
+}
+
+/// An objective along a curve at one step: φ(α), φ'(α), and what the caller wants back with it.
+#[derive(Debug, Clone)]
+pub struct Trial<T> {
+    /// The step α.
+    pub step: f64,
+    /// φ(α), +∞ where the step is not allowed.
+    pub value: f64,
+    /// φ'(α); not looked at where the value is infinite.
+    pub slope: f64,
+    /// The caller's data at this step.
+    pub data: T,
+}
+
+impl WolfeOptions {
+    /// Whether a trial satisfies both conditions.
+    pub fn accepts<T>(&self, start: &Trial<T>, trial: &Trial<T>) -> bool {
+        self.decreases(start, trial) && trial.slope.abs() <= self.curvature * start.slope.abs()
+    }
+
+    fn decreases<T>(&self, start: &Trial<T>, trial: &Trial<T>) -> bool {
+        trial.value <= start.value + self.decrease * trial.step * start.slope
+    }
+}
+
+/// Finds a step that satisfies the strong Wolfe conditions.
+///
+/// `start` is the trial at α = 0 with negative slope, `first` the first trial at α > 0, and `evaluate` computes others.
+/// Returns the accepted trial; where none is found, the best one that at least decreases enough, or `None`.
+pub fn strong_wolfe<T: Clone>(
+    start: &Trial<T>,
+    first: Trial<T>,
+    options: &WolfeOptions,
+    mut evaluate: impl FnMut(f64) -> Trial<T>,
+) -> Option<Trial<T>> {
+    // 1. Bracket: `low` is the best step so far, `high` an end beyond which need not be looked
+    let (mut low, mut high) = (start.clone(), None);
+    let mut trial = first;
+    for _ in 0..options.max_evaluations {
+        // 2. Accept, or move one end of the bracket to the trial
+        if options.accepts(start, &trial) {
+            return Some(trial);
+        }
+        if !options.decreases(start, &trial) || trial.value >= low.value {
+            high = Some(trial);
+        } else {
+            let width = high.as_ref().map_or(1.0, |end: &Trial<T>| end.step - low.step);
+            if trial.slope * width >= 0.0 {
+                high = Some(low);
+            }
+            low = trial;
+        }
+        // 3. Next trial: doubled while nothing bounds the step, inside the bracket afterwards
+        let step = match &high {
+            None => 2.0 * low.step,
+            Some(end) => inside(&low, end),
+        };
+        trial = evaluate(step);
+    }
+    (low.step > 0.0).then_some(low)
+}
+
+/// The minimiser of the quadratic through φ(low), φ'(low), φ(high), kept off both ends by a tenth of the bracket.
+fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
+    let width = high.step - low.step;
+    let bend = high.value - low.value - low.slope * width;
+    let fraction = match bend.is_finite() && bend > 0.0 {
+        true => (-0.5 * low.slope * width / bend).clamp(0.1, 0.9),
+        false => 0.5,
+    };
+    low.step + fraction * width
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Optimisers over maps. They know a map only through its [`Domain`], so the disk and every later domain share them.
+
+pub mod line_search;
+pub mod nonlinear_cg;
+
+/// A space of maps with an energy: what an optimiser needs to know of it.
+///
+/// Directions, gradients and preconditioned gradients are vectors in reduced coordinates (one number per degree of
+/// freedom), in which the domain's retraction starts as a straight line.
+pub trait Domain {
+    /// A map.
+    type Map: Clone;
+
+    /// The objective at `map`; +∞ where the map is not allowed.
+    fn objective(&self, map: &Self::Map) -> f64;
+
+    /// The objective at `map` and its gradient in reduced coordinates.
+    fn gradient(&self, map: &Self::Map) -> (f64, Vec<f64>);
+
+    /// E_A of `map`, as reported in histories.
+    fn authalic_energy(&self, map: &Self::Map) -> f64;
+
+    /// M⁻¹ `gradient`, M symmetric positive definite.
+    fn precondition(&self, gradient: &[f64]) -> Vec<f64>;
+
+    /// The map reached from `map` along `direction` after `step`.
+    fn retract(&self, map: &Self::Map, direction: &[f64], step: f64) -> Self::Map;
+}

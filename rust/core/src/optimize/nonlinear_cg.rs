@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Preconditioned nonlinear conjugate gradients.
+//!
+//! Liu & Yueh (2023), Algorithm 3.1: the direction (3.4) with the Fletcher–Reeves β in the metric of M⁻¹, the step of the
+//! quadratic model (3.3), and, where that step violates the strong Wolfe conditions (4.1) that the proof of
+//! convergence needs, a line search that satisfies them (0 < c₁ < c₂ < ½).
+//!
+//! Cost of one iteration: two evaluations of the objective, one of its gradient, one solve with M.
+
+use super::Domain;
+use super::line_search::{Trial, WolfeOptions, strong_wolfe};
+use crate::control::{History, Observer, Status};
+use crate::parallel;
+
+/// Options of [`minimize`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CgOptions {
+    /// Iterations at the most; the paper's 50.
+    pub max_iterations: usize,
+    /// Converged when √(gᵀM⁻¹g) falls below this. 10⁻⁸ is beyond what 50 iterations reach, so that it stops
+    /// only runs that have nothing left to do.
+    pub tolerance: f64,
+    /// The strong Wolfe conditions.
+    pub wolfe: WolfeOptions,
+}
+
+impl Default for CgOptions {
+    fn default() -> Self {
+        Self { max_iterations: 50, tolerance: 1e-8, wolfe: WolfeOptions::default() }
+    }
+}
+
+/// A map on the way with all that the next iteration needs of it.
+#[derive(Clone)]
+struct State<M> {
+    map: M,
+    gradient: Vec<f64>,
+}
+
+/// Lowers the domain's objective from `start` and returns the last map, the best one found, with the status.
+pub fn minimize<D: Domain>(
+    domain: &D,
+    start: D::Map,
+    options: &CgOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (D::Map, Status) {
+    // 1. Gradient g, preconditioned gradient h = M⁻¹g, direction p = −h
+    let (mut value, gradient) = domain.gradient(&start);
+    let mut state = State { map: start, gradient };
+    let mut h = domain.precondition(&state.gradient);
+    let mut norm2 = parallel::dot(&state.gradient, &h);
+    let mut direction = descent(&h);
+    let mut step = 1.0;
+    history.push(domain.authalic_energy(&state.map), 0.0, norm2.max(0.0).sqrt());
+    for iteration in 0..options.max_iterations {
+        if norm2.max(0.0).sqrt() <= options.tolerance {
+            return (state.map, Status::Converged);
+        }
+        if !observer.progress(iteration as f64 / options.max_iterations as f64, "Minimising the stretch energy") {
+            return (state.map, Status::Cancelled);
+        }
+        // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none
+        let found = line_step(domain, &state, value, &direction, step, &options.wolfe).or_else(|| {
+            direction = descent(&h);
+            line_step(domain, &state, value, &direction, 1.0, &options.wolfe)
+        });
+        let Some(trial) = found else {
+            return (state.map, Status::Stalled);
+        };
+        (step, value, state) = (trial.step, trial.value, trial.data.expect("an accepted trial has its state"));
+        // 3. Fletcher–Reeves in the metric of M⁻¹: β = hᵀg / λ
+        h = domain.precondition(&state.gradient);
+        let last_norm2 = std::mem::replace(&mut norm2, parallel::dot(&state.gradient, &h));
+        let beta = norm2 / last_norm2;
+        parallel::fill_with_old(&mut direction, |i, p| beta * p - h[i]);
+        history.push(domain.authalic_energy(&state.map), step, norm2.max(0.0).sqrt());
+    }
+    (state.map, Status::MaxIterations)
+}
+
+fn descent(h: &[f64]) -> Vec<f64> {
+    parallel::map(h.len(), |i| -h[i])
+}
+
+/// The step (3.3) from φ(0), φ'(0) and φ at the last step, accepted under the strong Wolfe conditions or searched for.
+fn line_step<D: Domain>(
+    domain: &D,
+    state: &State<D::Map>,
+    value: f64,
+    direction: &[f64],
+    last_step: f64,
+    wolfe: &WolfeOptions,
+) -> Option<Trial<Option<State<D::Map>>>> {
+    let slope = parallel::dot(&state.gradient, direction);
+    if slope >= 0.0 || !slope.is_finite() {
+        return None;
+    }
+    let start = Trial { step: 0.0, value, slope, data: None };
+    let last = domain.objective(&domain.retract(&state.map, direction, last_step));
+    let bend = last - value - last_step * slope;
+    let quadratic = -0.5 * last_step * last_step * slope / bend;
+    let model_holds = bend.is_finite() && bend > 0.0;
+    let first = if model_holds { quadratic.min(10.0 * last_step) } else { 0.5 * last_step };
+    let evaluate = |step: f64| evaluate(domain, state, direction, step);
+    strong_wolfe(&start, evaluate(first), wolfe, evaluate)
+}
+
+/// φ and φ' at `step`, with the map and the gradient there.
+fn evaluate<D: Domain>(
+    domain: &D,
+    state: &State<D::Map>,
+    direction: &[f64],
+    step: f64,
+) -> Trial<Option<State<D::Map>>> {
+    let map = domain.retract(&state.map, direction, step);
+    let (value, gradient) = domain.gradient(&map);
+    let slope = parallel::dot(&gradient, direction);
+    Trial { step, value, slope, data: Some(State { map, gradient }) }
+}

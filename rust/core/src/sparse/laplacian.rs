@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Assembly of weighted graph Laplacians of a mesh, restricted to its free vertices.
+//!
+//! The sparsity pattern of `L_II` is the mesh's edges and never changes, so it is computed once and only the
+//! values are written again. A weight belongs to a corner: `weight[c]` is what the face of corner `c` adds to the
+//! edge opposite `c`. Every entry gathers its own corners in a fixed order, in parallel, without atomics.
+
+use sprs::{CsMat, CsMatI};
+
+use crate::mesh::TriangleMesh;
+use crate::parallel;
+
+const NONE: u32 = u32::MAX;
+
+/// The two corners that face an edge; the second is [`NONE`] on the boundary.
+type EdgeCorners = [u32; 2];
+
+/// The matrix `L_II` of a mesh over its free vertices I, upper triangle, pattern fixed.
+#[derive(Debug, Clone)]
+pub struct Laplacian {
+    /// Mesh vertex of each unknown, ascending.
+    free: Vec<u32>,
+    /// Unknown of each mesh vertex, `u32::MAX` where it is held.
+    unknown: Vec<u32>,
+    /// The upper triangle with the diagonal last in each column.
+    matrix: CsMat<f64>,
+    /// For each stored entry the corners it gathers; a diagonal entry has `[NONE, NONE]`.
+    gathers: Vec<EdgeCorners>,
+    /// Column of each stored entry.
+    columns: Vec<u32>,
+}
+
+impl Laplacian {
+    /// Analyses the pattern of the vertices for which `is_free` holds.
+    pub fn new(mesh: &TriangleMesh, is_free: impl Fn(usize) -> bool) -> Self {
+        let (free, unknown) = number_unknowns(mesh.n_vertices(), is_free);
+        let columns = upper_columns(mesh, &free, &unknown);
+        let (matrix, gathers, columns) = compress(columns);
+        Self { free, unknown, matrix, gathers, columns }
+    }
+
+    /// Mesh vertex of each unknown, ascending.
+    pub fn free(&self) -> &[u32] {
+        &self.free
+    }
+
+    /// Unknown of a mesh vertex, `None` where the vertex is held.
+    pub fn unknown(&self, vertex: usize) -> Option<usize> {
+        (self.unknown[vertex] != NONE).then_some(self.unknown[vertex] as usize)
+    }
+
+    /// The assembled matrix: upper triangle, compressed columns.
+    pub fn matrix(&self) -> &CsMat<f64> {
+        &self.matrix
+    }
+
+    /// Writes the values from one weight per corner (of the edge opposite it); `entry(i, j)` scales the entry of
+    /// the mesh vertices i, j, so that a caller can project onto tangents.
+    pub fn assemble_scaled(
+        &mut self,
+        mesh: &TriangleMesh,
+        weights: &[f64],
+        entry: impl Fn(usize, usize) -> f64 + Sync,
+    ) {
+        let (free, gathers, columns) = (&self.free, &self.gathers, &self.columns);
+        let rows = self.matrix.indices().to_vec();
+        parallel::fill(self.matrix.data_mut(), |k| {
+            let (row, column) = (free[rows[k]] as usize, free[columns[k] as usize] as usize);
+            let value = match gathers[k] {
+                [NONE, _] => diagonal(mesh, weights, row),
+                [one, NONE] => -weights[one as usize],
+                [one, two] => -(weights[one as usize] + weights[two as usize]),
+            };
+            value * entry(row, column)
+        });
+    }
+
+    /// (L f)_I for a planar map f of all vertices: the first coordinates of the free vertices, then the second.
+    pub fn residual(&self, mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]]) -> Vec<f64> {
+        let by_vertex = parallel::map(self.free.len(), |i| apply(mesh, weights, map, self.free[i] as usize));
+        by_vertex.iter().map(|value| value[0]).chain(by_vertex.iter().map(|value| value[1])).collect()
+    }
+
+    /// Writes the values from one weight per corner (of the edge opposite it).
+    pub fn assemble(&mut self, mesh: &TriangleMesh, weights: &[f64]) {
+        self.assemble_scaled(mesh, weights, |_, _| 1.0);
+    }
+}
+
+/// (L f)_v for one vertex.
+fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: usize) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for &corner in mesh.vertex_corners(vertex) {
+        let (face, k) = (corner as usize / 3, corner as usize % 3);
+        for (neighbour, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
+            let other = map[mesh.faces()[face][neighbour] as usize];
+            let weight = weights[3 * face + facing];
+            sum[0] += weight * (map[vertex][0] - other[0]);
+            sum[1] += weight * (map[vertex][1] - other[1]);
+        }
+    }
+    sum
+}
+
+/// L_vv: the weights of all edges at `vertex`.
+fn diagonal(mesh: &TriangleMesh, weights: &[f64], vertex: usize) -> f64 {
+    mesh.vertex_corners(vertex)
+        .iter()
+        .map(|&corner| {
+            let face = corner / 3 * 3;
+            weights[(face + (corner + 1) % 3) as usize] + weights[(face + (corner + 2) % 3) as usize]
+        })
+        .sum()
+}
+
+fn number_unknowns(n_vertices: usize, is_free: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<u32>) {
+    let free: Vec<u32> = (0..n_vertices).filter(|&v| is_free(v)).map(|v| v as u32).collect();
+    let mut unknown = vec![NONE; n_vertices];
+    for (i, &v) in free.iter().enumerate() {
+        unknown[v as usize] = i as u32;
+    }
+    (free, unknown)
+}
+
+/// For each column the rows above the diagonal with the corners that face the edge, ascending.
+fn upper_columns(mesh: &TriangleMesh, free: &[u32], unknown: &[u32]) -> Vec<Vec<(u32, EdgeCorners)>> {
+    parallel::map(free.len(), |column| {
+        let vertex = free[column];
+        let mut rows: Vec<(u32, EdgeCorners)> = Vec::with_capacity(4);
+        for &corner in mesh.vertex_corners(vertex as usize) {
+            let face = mesh.faces()[corner as usize / 3];
+            let base = corner / 3 * 3;
+            for (neighbour, facing) in [(1, 2), (2, 1)] {
+                let neighbour = face[((corner + neighbour) % 3) as usize];
+                let facing = base + (corner % 3 + facing) % 3;
+                add_neighbour(&mut rows, unknown[neighbour as usize], column as u32, facing);
+            }
+        }
+        rows.sort_unstable();
+        rows
+    })
+}
+
+/// Adds the corner `facing` to the entry (row, column), which an earlier face may have begun.
+fn add_neighbour(rows: &mut Vec<(u32, EdgeCorners)>, row: u32, column: u32, facing: u32) {
+    if row == NONE || row > column {
+        return;
+    }
+    match rows.iter_mut().find(|(seen, _)| *seen == row) {
+        // ascending, so that the order of gathering does not depend on the order of the one-ring
+        Some((_, corners)) => *corners = [corners[0].min(facing), corners[0].max(facing)],
+        None => rows.push((row, [facing, NONE])),
+    }
+}
+
+type Compressed = (CsMatI<f64, usize>, Vec<EdgeCorners>, Vec<u32>);
+
+/// Compressed columns with the diagonal appended to each.
+fn compress(columns: Vec<Vec<(u32, EdgeCorners)>>) -> Compressed {
+    let n = columns.len();
+    let stored = n + columns.iter().map(Vec::len).sum::<usize>();
+    let (mut starts, mut rows) = (Vec::with_capacity(n + 1), Vec::with_capacity(stored));
+    let (mut gathers, mut column_of) = (Vec::with_capacity(stored), Vec::with_capacity(stored));
+    starts.push(0);
+    for (column, entries) in columns.into_iter().enumerate() {
+        for (row, corners) in entries {
+            rows.push(row as usize);
+            gathers.push(corners);
+        }
+        rows.push(column);
+        gathers.push([NONE, NONE]);
+        column_of.resize(rows.len(), column as u32);
+        starts.push(rows.len());
+    }
+    let values = vec![0.0; rows.len()];
+    (CsMatI::new_csc((n, n), starts, rows, values), gathers, column_of)
+}

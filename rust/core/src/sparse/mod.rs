@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Sparse systems on a mesh: assembly with a fixed pattern, and factorisation behind one interface.
+
+mod factor;
+mod laplacian;
+
+pub use factor::{Cholesky, solve_general};
+pub use laplacian::Laplacian;

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Area-preserving (authalic) maps of triangle meshes.
+
+>>> import authalic
+>>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+>>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
+>>> authalic.disk_map(pyramid, faces).uv.shape
+(5, 2)
+"""
+
+from ._native import (
+    DiskMap,
+    Distortion,
+    MeshError,
+    Patch,
+    SolverError,
+    __version__,
+    cut,
+    disk_map,
+    distortion,
+)
+
+__all__ = [
+    "DiskMap",
+    "Distortion",
+    "MeshError",
+    "Patch",
+    "SolverError",
+    "__version__",
+    "cut",
+    "disk_map",
+    "distortion",
+]

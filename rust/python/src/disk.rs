@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::disk_map`.
+
+use authalic::mesh::TriangleMesh;
+use authalic::{Boundary, DiskMapOptions, Method, Record};
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::intern;
+use pyo3::prelude::*;
+
+use crate::arrays::{from_indices, from_points, indices, points, values};
+use crate::distortion::Distortion;
+use crate::run::run;
+
+/// A one-to-one map of a disk to the unit disk.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct DiskMap {
+    /// (n, 2) float64: the image of each vertex in the unit disk.
+    uv: Py<PyArray2<f64>>,
+    /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
+    faces: Py<PyArray2<i64>>,
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says.
+    status: &'static str,
+    /// Iterations done, fixed-point steps included.
+    iterations: usize,
+    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start first.
+    history: Py<PyAny>,
+    /// The figures of the map.
+    distortion: Py<Distortion>,
+    /// Wall time of the call.
+    seconds: f64,
+}
+
+#[pymethods]
+impl DiskMap {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "DiskMap({} vertices, {} after {} iterations, {:.2} s, {})",
+            self.uv.bind(py).len()?,
+            self.status,
+            self.iterations,
+            self.seconds,
+            self.distortion.bind(py).repr()?,
+        ))
+    }
+}
+
+/// Maps a disk to the unit disk so that areas are kept.
+///
+/// The papers' methods (Liu & Yueh 2023): a harmonic start with an arc-length boundary, fixed-point steps (equation 2.5) and, by
+/// default, preconditioned nonlinear conjugate gradients (Algorithm 3.1). Folds that they leave are unfolded: the
+/// result has none, decided by exact predicates.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     Positions, any unit.
+/// faces : (m, 3) integer array
+///     Triangles of an orientable manifold with one boundary loop and no handles.
+/// method : {"conjugate_gradient", "fixed_point"}
+///     The optimiser.
+/// boundary : {"sliding", "arc_length"}
+///     Whether boundary vertices slide along the circle in their order, or stay at arcs proportional to the edge
+///     lengths as in the papers.
+/// density : (m,) real array, optional
+///     Positive target measure of each face, on any scale. Default: the face areas.
+/// angle_weight : float
+///     Weight of the angles against the areas; only 0 (authalic) until a method that trades them lands.
+/// initial : (n, 2) real array, optional
+///     A start map whose boundary runs once around the unit circle. Default: harmonic, then five fixed-point steps.
+/// max_iterations : int, optional
+///     Default 50, as in the paper's tables; the five fixed-point steps come on top.
+/// tolerance : float, optional
+///     Converged when √(gᵀM⁻¹g), the gradient_norm of the history, falls below it. Default 1e-8.
+/// fill_holes : bool
+///     Fill all boundary loops but the longest virtually instead of refusing them. Default False.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between iterations; False cancels and returns the best map so far.
+///
+/// Returns
+/// -------
+/// DiskMap
+///
+/// Raises
+/// ------
+/// MeshError
+///     The input is no disk or an array does not fit; nothing was computed.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     Every start folds in double precision.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+/// >>> result = authalic.disk_map(pyramid, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])
+/// >>> result.uv.shape, len(result.distortion.folded)
+/// ((5, 2), 0)
+#[pyfunction]
+#[pyo3(signature = (vertices, faces, *, method="conjugate_gradient", boundary="sliding", density=None, angle_weight=0.0,
+                    initial=None, max_iterations=None, tolerance=None, fill_holes=false, progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn disk_map(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    method: &str,
+    boundary: &str,
+    density: Option<&Bound<'_, PyAny>>,
+    angle_weight: f64,
+    initial: Option<&Bound<'_, PyAny>>,
+    max_iterations: Option<i64>,
+    tolerance: Option<f64>,
+    fill_holes: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<DiskMap> {
+    // 1. Arguments to plain data
+    let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
+    check_angle_weight(angle_weight)?;
+    let max_iterations = max_iterations.map(parse_iterations).transpose()?;
+    let vertices = points::<3>(vertices, "vertices")?;
+    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let density = density.map(|density| values(density, "density")).transpose()?;
+    let initial = initial.map(|initial| points::<2>(initial, "initial")).transpose()?;
+    // 2. The run
+    let (map, faces) = run(py, progress, move |observer| {
+        let mesh = TriangleMesh::new(&vertices, &faces)?;
+        let (density, initial) = (density.as_deref(), initial.as_deref());
+        let options = DiskMapOptions { method, boundary, density, initial, max_iterations, tolerance, fill_holes };
+        Ok((authalic::disk_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
+    })?;
+    // 3. The result
+    Ok(DiskMap {
+        uv: from_points(py, &map.uv),
+        faces: from_indices(py, &faces),
+        status: map.status.as_str(),
+        iterations: map.history.iterations(),
+        history: history(py, map.history.records())?,
+        distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+        seconds: map.seconds,
+    })
+}
+
+fn parse_method(method: &str) -> PyResult<Method> {
+    match method {
+        "fixed_point" => Ok(Method::FixedPoint),
+        "conjugate_gradient" => Ok(Method::ConjugateGradient),
+        other => Err(PyValueError::new_err(format!(
+            "method must be \"conjugate_gradient\" or \"fixed_point\", but is {other:?}"
+        ))),
+    }
+}
+
+fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
+    match boundary {
+        "arc_length" => Ok(Boundary::ArcLength),
+        "sliding" => Ok(Boundary::Sliding),
+        other => Err(PyValueError::new_err(format!("boundary must be \"sliding\" or \"arc_length\", but is {other:?}"))),
+    }
+}
+
+fn check_angle_weight(angle_weight: f64) -> PyResult<()> {
+    match angle_weight == 0.0 {
+        true => Ok(()),
+        false => Err(PyValueError::new_err(format!(
+            "angle_weight must be 0 for the methods \"conjugate_gradient\" and \"fixed_point\", but is {angle_weight}"
+        ))),
+    }
+}
+
+fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
+    usize::try_from(max_iterations)
+        .map_err(|_| PyValueError::new_err(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
+}
+
+/// The history as a numpy structured array.
+pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
+    let fields = ["iteration", "authalic_energy", "step", "gradient_norm", "seconds"];
+    let dtype: Vec<(&str, &str)> = fields.iter().map(|&name| (name, if name == "iteration" { "i8" } else { "f8" })).collect();
+    let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (records.len(), dtype))?;
+    array.set_item("iteration", PyArray1::from_iter(py, records.iter().map(|record| record.iteration as i64)))?;
+    let column = |pick: fn(&Record) -> f64| PyArray1::from_iter(py, records.iter().map(pick));
+    array.set_item("authalic_energy", column(|record| record.authalic_energy))?;
+    array.set_item("step", column(|record| record.step))?;
+    array.set_item("gradient_norm", column(|record| record.gradient_norm))?;
+    array.set_item("seconds", column(|record| record.seconds))?;
+    Ok(array.unbind())
+}

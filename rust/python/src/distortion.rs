@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::distortion`.
+
+use authalic::mesh::TriangleSoup;
+use authalic::{Image, check_density};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::{from_index_list, indices, points, values, width};
+use crate::errors::bad_array;
+use crate::run::run;
+
+/// Quality figures of a map; all are signed, so a folded face never scores like a good one.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Distortion {
+    /// E_A = Σ (a − |τ|)²/|τ| on targets rescaled to the image's area; 0 for an area-preserving map.
+    authalic_energy: f64,
+    /// Mean over the faces of the signed image area over the rescaled target.
+    area_ratio_mean: f64,
+    /// Population standard deviation of the same ratio.
+    area_ratio_std: f64,
+    /// (m,) float64: log2 of the same ratio, -inf for a folded face.
+    log2_area_ratio: Py<PyArray1<f64>>,
+    /// (k,) int64: faces whose exact orientation in the image is not positive, ascending.
+    folded: Py<PyArray1<i64>>,
+    /// (m,) float64: σ₁/σ₂ ≥ 1 of the linear map of each face, inf for a folded face.
+    angle_distortion: Py<PyArray1<f64>>,
+    /// Mean of angle_distortion over the faces.
+    angle_distortion_mean: f64,
+    /// Its 99th percentile.
+    angle_distortion_p99: f64,
+    /// Its maximum.
+    angle_distortion_max: f64,
+}
+
+impl Distortion {
+    pub fn new(py: Python<'_>, figures: &authalic::Distortion) -> Self {
+        Self {
+            authalic_energy: figures.authalic_energy,
+            area_ratio_mean: figures.area_ratio_mean,
+            area_ratio_std: figures.area_ratio_std,
+            log2_area_ratio: PyArray1::from_slice(py, &figures.log2_area_ratio).unbind(),
+            folded: from_index_list(py, figures.folded.iter().copied()),
+            angle_distortion: PyArray1::from_slice(py, &figures.angle_distortion).unbind(),
+            angle_distortion_mean: figures.angle_distortion_mean,
+            angle_distortion_p99: figures.angle_distortion_p99,
+            angle_distortion_max: figures.angle_distortion_max,
+        }
+    }
+}
+
+#[pymethods]
+impl Distortion {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Distortion(authalic_energy={:.3e}, area_ratio_std={:.3e}, folded={}, angle_distortion_mean={:.3})",
+            self.authalic_energy,
+            self.area_ratio_std,
+            self.folded.bind(py).len()?,
+            self.angle_distortion_mean,
+        ))
+    }
+}
+
+/// A map of the vertices, owned.
+enum OwnedImage {
+    Plane(Vec<[f64; 2]>),
+    Sphere(Vec<[f64; 3]>),
+}
+
+impl OwnedImage {
+    fn extract(image: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Self> {
+        let owned = match width(image, "image")? {
+            2 => Self::Plane(points(image, "image")?),
+            _ => Self::Sphere(points(image, "image")?),
+        };
+        match owned.rows() {
+            rows if rows == n_vertices => Ok(owned),
+            rows => {
+                let expected = format!("of shape ({n_vertices}, 2) or ({n_vertices}, 3), one row per vertex");
+                Err(bad_array(image.py(), "image", format!("of {rows} rows"), expected))
+            }
+        }
+    }
+
+    fn rows(&self) -> usize {
+        match self {
+            Self::Plane(map) => map.len(),
+            Self::Sphere(map) => map.len(),
+        }
+    }
+}
+
+/// Measures a map: area ratios, authalic energy, folds, angle distortion.
+///
+/// Target areas are rescaled so that they sum to the image's area. Which faces are folded is decided exactly.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     Positions on the surface, any unit.
+/// faces : (m, 3) integer array
+///     Triangles; they need not form a manifold. Faces turned against the rest of their component are turned back.
+/// image : (n, 2) or (n, 3) real array
+///     The map: into the plane (a face is positive counter-clockwise), or onto a sphere around the origin
+///     (positive counter-clockwise from outside).
+/// density : (m,) real array, optional
+///     Positive target measure of each face, on any scale. Default: the face areas.
+///
+/// Returns
+/// -------
+/// Distortion
+///
+/// Raises
+/// ------
+/// MeshError
+///     Arrays of wrong shape, NaN, faces without area, an image without area.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+/// >>> figures = authalic.distortion(square, [[0, 1, 2], [0, 2, 3]], [[0, 0], [2, 0], [2, 2], [0, 2]])
+/// >>> figures.area_ratio_std, len(figures.folded)
+/// (0.0, 0)
+#[pyfunction]
+#[pyo3(signature = (vertices, faces, image, *, density=None))]
+pub fn distortion(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    image: &Bound<'_, PyAny>,
+    density: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Distortion> {
+    let vertices = points::<3>(vertices, "vertices")?;
+    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let image = OwnedImage::extract(image, vertices.len())?;
+    let density = density.map(|density| values(density, "density")).transpose()?;
+    let figures = run(py, None, move |_| {
+        let soup = TriangleSoup::new(&vertices, &faces)?;
+        let targets = density.unwrap_or_else(|| authalic::mesh::geometry::face_areas(&soup.points, &soup.faces));
+        check_density(&targets, faces.len())?;
+        let image = match &image {
+            OwnedImage::Plane(map) => Image::Plane(map),
+            OwnedImage::Sphere(map) => Image::Sphere(map),
+        };
+        authalic::distortion(&soup.points, &soup.faces, image, &targets)
+    })?;
+    Ok(Distortion::new(py, &figures))
+}

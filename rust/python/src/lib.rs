@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Python bindings of the crate `authalic`: the module `authalic._native`, re-exported by the package `authalic`.
+
+mod arrays;
+mod disk;
+mod distortion;
+mod errors;
+mod mesh;
+mod run;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("MeshError", module.py().get_type::<errors::MeshError>())?;
+    module.add("SolverError", module.py().get_type::<errors::SolverError>())?;
+    module.add_class::<mesh::Patch>()?;
+    module.add_class::<distortion::Distortion>()?;
+    module.add_class::<disk::DiskMap>()?;
+    module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
+    module.add_function(wrap_pyfunction!(disk::disk_map, module)?)
+}

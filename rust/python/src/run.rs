@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Long calls: on a thread of their own, without the GIL, with progress, Ctrl-C and panics contained.
+//!
+//! The calling thread only waits. Every 50 ms it looks for signals, so Ctrl-C raises at once even inside a
+//! factorisation; the worker is left behind, sees the flag at its next report and ends.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use authalic::{Error, Observer};
+use pyo3::prelude::*;
+
+use crate::errors::{SolverError, to_python};
+
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// What the worker tells the waiting thread.
+enum Message<T> {
+    Progress(f64, String),
+    Done(Result<T, Error>),
+    Panicked(String),
+}
+
+/// The worker's end of the line.
+struct Remote<T> {
+    cancelled: Arc<AtomicBool>,
+    /// Only where the caller gave a progress function: each report waits for its answer, so that where a run is
+    /// cancelled does not depend on timing.
+    line: Option<(Sender<Message<T>>, Receiver<bool>)>,
+}
+
+impl<T> Observer for Remote<T> {
+    fn progress(&mut self, fraction: f64, message: &str) -> bool {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return false;
+        }
+        let Some((sender, answers)) = &self.line else {
+            return true;
+        };
+        let sent = sender.send(Message::Progress(fraction, message.to_owned()));
+        sent.is_ok() && answers.recv().unwrap_or(false)
+    }
+}
+
+/// Runs `work` to its end, or until the progress function or Ctrl-C stops it.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&mut dyn Observer) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    let (sender, messages) = channel();
+    let (answer, answers) = channel();
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let line = progress.map(|_| (sender.clone(), answers));
+    let mut remote = Remote { cancelled: cancelled.clone(), line };
+    std::thread::spawn(move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| work(&mut remote)));
+        // the caller may have gone on Ctrl-C: nobody is left to tell
+        let _ = sender.send(outcome.map_or_else(|panic| Message::Panicked(panic_text(&*panic)), Message::Done));
+    });
+    // a receiver is not Sync; the lock lets it be waited on without the GIL
+    let outcome = wait(py, progress, &Mutex::new(messages), &answer);
+    cancelled.store(true, Ordering::Relaxed);
+    outcome
+}
+
+/// Serves progress and signals until the worker is done.
+fn wait<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    messages: &Mutex<Receiver<Message<T>>>,
+    answer: &Sender<bool>,
+) -> PyResult<T> {
+    loop {
+        match py.detach(|| messages.lock().expect("only this thread locks").recv_timeout(SIGNAL_INTERVAL)) {
+            Ok(Message::Done(result)) => return result.map_err(|error| to_python(py, &error)),
+            Ok(Message::Panicked(text)) => return Err(internal(&text)),
+            Ok(Message::Progress(fraction, text)) => {
+                // a worker that has gone meanwhile needs no answer
+                let _ = answer.send(go_on(progress, fraction, &text)?);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Err(internal("the worker thread ended without a result")),
+        }
+        py.check_signals()?;
+    }
+}
+
+/// Asks the caller's progress function; any result but a false one goes on, and `None` counts as going on.
+fn go_on(progress: Option<&Bound<'_, PyAny>>, fraction: f64, text: &str) -> PyResult<bool> {
+    let Some(progress) = progress else {
+        return Ok(true);
+    };
+    let answer = progress.call1((fraction, text))?;
+    if answer.is_none() { Ok(true) } else { answer.is_truthy() }
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "unknown".into())
+}
+
+fn internal(text: &str) -> PyErr {
+    SolverError::new_err(format!("internal error, please report it with the mesh: {text}"))
+}

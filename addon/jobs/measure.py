@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The measurement of a context's objects: figures of their active UV layers and a face attribute."""
+
+from .. import bridge, mesh_io
+from . import targets
+from .targets import NothingToDo
+
+ATTRIBUTE = "authalic_log2_area_ratio"
+
+
+def job(context):
+    """A `bridge.Job` that measures the active UV layers; its `apply` writes the attribute, returns figures.
+
+    Raises `NothingToDo` where no object has faces and UVs.
+    """
+    objects, _ = targets.editable(context)
+    mapped = [obj for obj in objects if obj.data.uv_layers.active]
+    read = [(obj, mesh_io.read(obj, uv_layer=obj.data.uv_layers.active.name)) for obj in mapped]
+    chosen = [(obj, surface) for obj, surface in read if len(surface.triangles)]
+    if not chosen:
+        raise NothingToDo("The selected objects have no faces with a UV map")
+    surfaces = [surface for _, surface in chosen]
+
+    def finish(figures):
+        if figures is None:
+            raise NothingToDo("No face has an area, or all UVs lie in one point")
+        for (obj, _), values in zip(chosen, figures.log2):
+            mesh_io.write_face_attribute(obj.data, ATTRIBUTE, values)
+        return figures
+
+    return bridge.Job(lambda progress: bridge.measure(surfaces), finish)
+
+
+def line(figures):
+    """The figures in one line."""
+    parts = [
+        f"area ratio mean {figures.mean:.3f}, SD {figures.deviation:.3g}",
+        f"log2 {figures.log2_min:.2f} to {figures.log2_max:.2f}",
+        "1 flip" if figures.flips == 1 else f"{figures.flips} flips",
+        f"angle distortion {figures.angle:.2f}",
+    ]
+    if figures.without_area:
+        parts.append(f"{figures.without_area} triangles without area left out")
+    return ", ".join(parts)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The unwrap from a context's objects to their UV layers: the one path of the operator and of scripts."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .. import bridge, mesh_io
+from .. import islands as shapes
+from ..packing import PackSettings, pack
+from . import targets
+
+_NAMED = 3
+
+
+class CannotUnwrap(Exception):
+    """The unwrap was refused and nothing was changed."""
+
+
+@dataclass
+class Settings:
+    """All options of the unwrap; an empty `uv_layer` is the active one."""
+
+    uv_layer: str = ""
+    mapping: bridge.UnwrapSettings = field(default_factory=bridge.UnwrapSettings)
+    packing: PackSettings = field(default_factory=PackSettings)
+
+
+@dataclass
+class Report:
+    """What was done: the mapped islands, their measurement, and what was left as it was."""
+
+    islands: int
+    figures: bridge.Measurement | None
+    refusals: list
+    notes: list
+    seconds: float
+
+    def __str__(self):
+        parts = [f"{_count(self.islands, 'island')}"]
+        if self.figures is not None:
+            parts += [f"area ratio SD {self.figures.deviation:.3g}", _count(self.figures.flips, "flip")]
+        line = ", ".join([*parts, f"{self.seconds:.2f} s"])
+        left = [f"left as it was: {describe(self.refusals)}"] if self.refusals else []
+        return "; ".join([line, *left, *self.notes])
+
+
+def job(context, settings):
+    """A `bridge.Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
+
+    Raises `targets.NothingToDo` or `CannotUnwrap` before anything is computed.
+    """
+    started = time.perf_counter()
+    selected_only = context.mode == "EDIT_MESH"
+    objects, refusals = targets.editable(context)
+    layers = [_layer(obj, settings.uv_layer) for obj in objects]
+    read = [
+        (obj, layer, mesh_io.read(obj, selected_only=selected_only, uv_layer=layer))
+        for obj, layer in zip(objects, layers)
+    ]
+    chosen = [part for part in read if len(part[2].triangles)]
+    if not chosen:
+        raise targets.NothingToDo(_why_nothing(selected_only, refusals))
+    surfaces = [surface for _, _, surface in chosen]
+
+    def work(progress):
+        return bridge.unwrap(surfaces, settings.mapping, progress)
+
+    def finish(mapping):
+        mapping.refusals[:0] = refusals
+        figures = _write(chosen, mapping, settings.packing)
+        seconds = time.perf_counter() - started
+        return Report(len(mapping.islands), figures, mapping.refusals, _notes(chosen), seconds)
+
+    return bridge.Job(work, finish)
+
+
+def describe(refusals):
+    """The first few refusals, and how many there are."""
+    named = "; ".join(str(refusal) for refusal in refusals[:_NAMED])
+    more = len(refusals) - _NAMED
+    return f"{named}; and {more} more" if more > 0 else named
+
+
+def _layer(obj, wanted):
+    layer = mesh_io.layer_name(obj.data, wanted)
+    if not mesh_io.has_room_for(obj.data, layer):
+        raise CannotUnwrap(
+            f'{obj.name} has {mesh_io.MAX_UV_LAYERS} UV maps, no room for "{layer}"; '
+            "remove one or name one of them"
+        )
+    return layer
+
+
+def _why_nothing(selected_only, refusals):
+    if refusals:
+        return describe(refusals)
+    return "No faces are selected" if selected_only else "The selected objects have no faces"
+
+
+def _write(chosen, mapping, settings):
+    """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
+    if not mapping.islands:
+        raise CannotUnwrap(f"No island could be unwrapped: {describe(mapping.refusals)}")
+    shapes.scale_to_one_density(mapping.islands)
+    pack(mapping.islands, settings)
+    parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
+    figures = bridge.measure([_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts)])
+    for (obj, layer, _), (corners, uv) in zip(chosen, parts):
+        if len(corners):
+            mesh_io.write_uv(obj.data, mesh_io.ensure_layer(obj.data, layer), corners, uv)
+    return figures
+
+
+def _gather(islands, index):
+    """The corners (k,) and UVs (k, 2), as Blender will keep them, of one surface's islands."""
+    own = [island for island in islands if island.surface == index]
+    corners = np.concatenate([np.empty(0, int), *(island.corners for island in own)])
+    uv = np.concatenate([np.empty((0, 2)), *(island.uv for island in own)]).astype(np.float32)
+    if not np.isfinite(uv).all():
+        raise CannotUnwrap("The packed UVs are not finite; nothing was changed")
+    return corners, uv
+
+
+def _mapped(surface, corners, uv):
+    """The part of a surface that was mapped, with its new UVs."""
+    values = np.full((len(surface.corner_vertex), 2), np.nan, np.float32)
+    values[corners] = uv
+    return surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
+
+
+def _notes(chosen):
+    uneven = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
+    if not uneven:
+        return []
+    return [f"{', '.join(uneven[:_NAMED])}: non-uniform scale, areas are those of the non-scaled mesh"]
+
+
+def _count(number, noun):
+    return f"{number} {noun}" + ("" if number == 1 else "s")

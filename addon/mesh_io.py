@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Between Blender's meshes and numpy arrays, in object mode and, without leaving it, in edit mode."""
+
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import bmesh
+import bpy
+import numpy as np
+
+MAX_UV_LAYERS = 8
+_NAME_BYTES = 63
+
+
+@dataclass
+class Surface:
+    """The triangles of an object's mesh, or of its selected faces, with all numbers those of the mesh.
+
+    `positions` (n, 3) have the shape of the mesh and the size of the object in the world. `triangles` (t, 3)
+    are vertices, `corners` (t, 3) mesh corners, `polygons` (t,) polygons; `seams` (k, 2) vertices.
+    `pinned` (c,) and `uv` (c, 2) of the UV layer, if there is one, have one entry per mesh corner.
+    """
+
+    name: str
+    positions: np.ndarray
+    triangles: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+    seams: np.ndarray
+    corner_vertex: np.ndarray
+    polygon_start: np.ndarray
+    polygon_size: np.ndarray
+    pinned: np.ndarray | None = None
+    uv: np.ndarray | None = None
+
+    @property
+    def polygon_count(self):
+        return len(self.polygon_start)
+
+    def restricted(self, triangles, uv):
+        """The part of the surface given by a mask (t,) of its triangles, with other UVs."""
+        part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
+        return replace(self, uv=uv, **part)
+
+
+def read(obj, *, selected_only=False, uv_layer=None):
+    """The surface of an object; with `selected_only` that of its selected, visible faces."""
+    with _readable(obj.data) as mesh:
+        polygons = _polygons(mesh)
+        corner_vertex = _attribute(mesh, ".corner_vert", np.int32)
+        corners, owner = _loop_triangles(mesh, polygons)
+        chosen = _selected(mesh) if selected_only else np.ones(len(mesh.polygons), bool)
+        corners, owner = corners[chosen[owner]], owner[chosen[owner]]
+        positions = _attribute(mesh, "position", np.float32, 3).astype(float)
+        surface = Surface(
+            name=obj.name,
+            positions=positions,
+            triangles=corner_vertex[corners],
+            corners=corners,
+            polygons=owner,
+            seams=_seams(mesh, np.repeat(chosen, polygons[1])),
+            corner_vertex=corner_vertex,
+            polygon_start=polygons[0],
+            polygon_size=polygons[1],
+        )
+        if uv_layer is not None and uv_layer in mesh.uv_layers:
+            surface.uv = read_uv(mesh, uv_layer)
+            surface.pinned = _attribute(mesh, f".pn.{uv_layer}", bool)
+    surface.positions *= _world_size(obj, surface)
+    return surface
+
+
+def read_uv(mesh, layer):
+    """The UVs (c, 2) of a layer of a mesh that is not in edit mode, float32."""
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers[layer].uv.foreach_get("vector", uv)
+    return uv.reshape(-1, 2)
+
+
+def write_uv(mesh, layer, corners, uv):
+    """Writes UVs (k, 2) at the mesh corners (k,) of a layer; all other corners keep theirs, bit for bit."""
+    if mesh.is_editmode:
+        _write_uv_edit(mesh, layer, corners, uv)
+        return
+    values = read_uv(mesh, layer)
+    values[corners] = uv
+    # Not `uv_layers[layer].uv`: in Blender 4.2 that writes into the array which the undo step shares.
+    mesh.attributes[layer].data.foreach_set("vector", values.ravel())
+    mesh.update()
+
+
+def layer_name(mesh, wanted):
+    """The name the UV layer `wanted` has or will have; empty means the active one, "UVMap" if there is none."""
+    if wanted:
+        return wanted.encode()[:_NAME_BYTES].decode(errors="ignore")
+    return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"
+
+
+def has_room_for(mesh, layer):
+    """Whether the UV layer is there or can be added."""
+    return layer in mesh.uv_layers or len(mesh.uv_layers) < MAX_UV_LAYERS
+
+
+def ensure_layer(mesh, layer):
+    """Makes a UV layer the active one, adding it as a copy of the active one if need be; returns its name."""
+    if layer not in mesh.uv_layers:
+        layer = _add_layer_edit(mesh, layer) if mesh.is_editmode else mesh.uv_layers.new(name=layer).name
+    mesh.uv_layers.active = mesh.uv_layers[layer]
+    return layer
+
+
+def write_face_attribute(mesh, name, values):
+    """Writes a float (p,) for each polygon into the face attribute `name`."""
+    if mesh.is_editmode:
+        edit = bmesh.from_edit_mesh(mesh)
+        layer = edit.faces.layers.float.get(name) or edit.faces.layers.float.new(name)
+        for face, value in zip(edit.faces, values.tolist()):
+            face[layer] = value
+        bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+        return
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    attribute = attribute or mesh.attributes.new(name, "FLOAT", "FACE")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+    mesh.update()
+
+
+def has_uniform_scale(obj):
+    """Whether the object's scale is the same, up to mirroring, in all directions."""
+    scale = np.abs(obj.matrix_world.to_scale())
+    return bool(scale.max() - scale.min() <= 1e-4 * scale.max())
+
+
+@contextmanager
+def _readable(mesh):
+    """The mesh; in edit mode, where its arrays are empty, a passing copy of what is being edited."""
+    if not mesh.is_editmode:
+        yield mesh
+        return
+    copy = bpy.data.meshes.new(".authalic")
+    try:
+        bmesh.from_edit_mesh(mesh).to_mesh(copy)
+        yield copy
+    finally:
+        bpy.data.meshes.remove(copy)
+
+
+def _attribute(mesh, name, dtype, width=1):
+    """The values of an attribute, (n,) or (n, width); None where the mesh has no such attribute."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None:
+        return None
+    values = np.empty(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get("value" if width == 1 else "vector", values)
+    return values if width == 1 else values.reshape(-1, width)
+
+
+def _polygons(mesh):
+    """The first corner and the number of corners of each polygon."""
+    start, size = np.empty((2, len(mesh.polygons)), np.int32)
+    mesh.polygons.foreach_get("loop_start", start)
+    mesh.polygons.foreach_get("loop_total", size)
+    return start, size
+
+
+def _selected(mesh):
+    selected, hidden = np.empty((2, len(mesh.polygons)), bool)
+    mesh.polygons.foreach_get("select", selected)
+    mesh.polygons.foreach_get("hide", hidden)
+    return selected & ~hidden
+
+
+def _loop_triangles(mesh, polygons):
+    """The corners (t, 3) and the polygon (t,) of each triangle, as Blender itself divides its polygons."""
+    start, size = polygons
+    if (size == 3).all():
+        return start[:, None] + np.arange(3, dtype=np.int32), np.arange(len(start), dtype=np.int32)
+    mesh.calc_loop_triangles()
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    owner = np.empty(len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    mesh.loop_triangles.foreach_get("polygon_index", owner)
+    return corners.reshape(-1, 3), owner
+
+
+def _seams(mesh, corner_chosen):
+    """The seams, as pairs of vertices, among the edges of the chosen corners' faces."""
+    seam = np.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_seam", seam)
+    used = np.zeros(len(mesh.edges), bool)
+    if len(mesh.loops):
+        used[_attribute(mesh, ".corner_edge", np.int32)[corner_chosen]] = True
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    return ends.reshape(-1, 2)[seam & used]
+
+
+def _world_size(obj, surface):
+    """How much larger than its mesh an object is in the world, as the root of the ratio of the areas."""
+    points = surface.positions[surface.triangles]
+    matrix = np.array(obj.matrix_world)[:3, :3]
+    local, world = _total_area(points), _total_area(points @ matrix.T)
+    ratio = np.sqrt(world / local) if local > 0 else 1.0
+    return ratio if np.isfinite(ratio) and ratio > 0 else 1.0
+
+
+def _total_area(triangles):
+    a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    return np.nansum(np.linalg.norm(np.cross(a, b), axis=1))
+
+
+def _write_uv_edit(mesh, layer, corners, uv):
+    edit = bmesh.from_edit_mesh(mesh)
+    uv_layer = edit.loops.layers.uv[layer]
+    values = dict(zip(corners.tolist(), uv.tolist()))
+    start = 0
+    for face in edit.faces:
+        for corner, loop in enumerate(face.loops, start):
+            if corner in values:
+                loop[uv_layer].uv = values[corner]
+        start += len(face.loops)
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+def _add_layer_edit(mesh, name):
+    edit = bmesh.from_edit_mesh(mesh)
+    old = mesh.uv_layers.active.name if mesh.uv_layers.active else None
+    new = edit.loops.layers.uv.new(name)
+    if old is not None:
+        source = edit.loops.layers.uv[old]
+        for face in edit.faces:
+            for loop in face.loops:
+                loop[new].uv = loop[source].uv
+    return new.name

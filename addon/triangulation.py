@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles of a mesh of quads and n-gons, fit for the native library. Plain numpy, no bpy."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Blender keeps coordinates in single precision: a height below this part of the largest coordinate is
+# nothing but rounding.
+_FLAT = 2 * float(np.finfo(np.float32).eps)
+
+
+@dataclass
+class Triangles:
+    """Triangles with the mesh corner of each of their corners, -1 at the centre of a divided polygon."""
+
+    positions: np.ndarray
+    triangles: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+
+
+def areas(triangles):
+    """Areas (t,) of triangles (t, 3, 3) in space."""
+    a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    return np.linalg.norm(np.cross(a, b), axis=1) / 2
+
+
+def signed_areas(triangles):
+    """Signed areas (t,) of triangles (t, 3, 2) in the plane."""
+    a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+
+
+def has_area(triangles):
+    """Which triangles (t, 3, 3) have an area beyond the rounding of their coordinates, (t,)."""
+    sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
+    rounding = _FLAT * np.abs(triangles).max(axis=(1, 2), initial=0)
+    return 2 * areas(triangles) > sides * rounding
+
+
+def sound(surface):
+    """The triangles of a surface, with the polygons that a triangulation would harm divided from their centre.
+
+    Harm is a diagonal that coincides with an edge or another polygon's diagonal, where the surface would
+    seem to branch, or a triangle without area, as corners in a line give.
+    """
+    bad = _branching(surface) | _with_flat_triangle(surface)
+    bad &= surface.polygon_size > 3
+    keep = ~bad[surface.polygons]
+    kept = Triangles(
+        surface.positions, surface.triangles[keep], surface.corners[keep], surface.polygons[keep]
+    )
+    return _divided(surface, np.flatnonzero(bad), kept) if bad.any() else kept
+
+
+def _branching(surface):
+    """Which polygons have a diagonal that is also an edge or a diagonal of another polygon, (p,)."""
+    first, second = surface.corners.ravel(), np.roll(surface.corners, -1, axis=1).ravel()
+    polygon = np.repeat(surface.polygons, 3)
+    steps = (second - first) % surface.polygon_size[polygon]
+    is_diagonal = (steps != 1) & (surface.polygon_size[polygon] > 3)
+    bad = np.zeros(surface.polygon_count, bool)
+    if not is_diagonal.any():
+        return bad
+    ends = np.sort(np.stack([surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()]), axis=0)
+    key = ends[0].astype(np.int64) * len(surface.positions) + ends[1]
+    own = polygon[is_diagonal]
+    diagonals, index = np.unique(key[is_diagonal], return_inverse=True)
+    lowest = np.full(len(diagonals), surface.polygon_count)
+    np.minimum.at(lowest, index, own)
+    shared = np.zeros(len(diagonals), bool)
+    shared[index[own != lowest[index]]] = True
+    bad[own[shared[index] | np.isin(diagonals, key[~is_diagonal])[index]]] = True
+    return bad
+
+
+def _with_flat_triangle(surface):
+    bad = np.zeros(surface.polygon_count, bool)
+    with np.errstate(invalid="ignore"):
+        flat = ~has_area(surface.positions[surface.triangles])
+    bad[surface.polygons[flat]] = True
+    return bad
+
+
+def _divided(surface, polygons, kept):
+    """`kept` and, for each of `polygons`, a fan of triangles around the mean of its corners."""
+    size, start = surface.polygon_size[polygons], surface.polygon_start[polygons]
+    which = np.repeat(np.arange(len(polygons)), size)
+    turn = np.arange(len(which)) - np.repeat(np.cumsum(size) - size, size)
+    here = start[which] + turn
+    there = start[which] + (turn + 1) % size[which]
+    vertex = surface.corner_vertex[here]
+    centres = np.zeros((len(polygons), 3))
+    np.add.at(centres, which, surface.positions[vertex] / size[which][:, None])
+    fans = np.stack([vertex, surface.corner_vertex[there], len(surface.positions) + which], axis=1)
+    corners = np.stack([here, there, np.full(len(which), -1)], axis=1)
+    return Triangles(
+        np.concatenate([kept.positions, centres]),
+        np.concatenate([kept.triangles, fans]),
+        np.concatenate([kept.corners, corners]),
+        np.concatenate([kept.polygons, polygons[which]]),
+    )

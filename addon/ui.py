@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar panels of the 3D view and the UV editor, and the entries in the UV menus."""
+
+import bpy
+
+from .operators.unwrap import draw_options
+
+
+class _Panel:
+    bl_category = "Authalic"
+    bl_region_type = "UI"
+
+
+class _UnwrapPanel(_Panel):
+    bl_label = "Authalic Unwrap"
+
+    def draw(self, context):
+        layout = self.layout
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("authalic.unwrap", icon="UV")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        # What the button was used with last, and will be used with next.
+        draw_options(layout, context.window_manager.operator_properties_last("authalic.unwrap"))
+
+
+class _MeasurePanel(_Panel):
+    bl_label = "Area Distortion"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("authalic.measure", text="Measure")
+        column = layout.column(align=True)
+        # One figure a line: a sidebar is narrow.
+        for figure in filter(None, context.window_manager.authalic_figures.split(", ")):
+            column.label(text=figure[:1].upper() + figure[1:], translate=False)
+
+
+class AUTHALIC_PT_unwrap_view3d(_UnwrapPanel, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+
+
+class AUTHALIC_PT_measure_view3d(_MeasurePanel, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+
+
+class AUTHALIC_PT_unwrap_image(_UnwrapPanel, bpy.types.Panel):
+    bl_space_type = "IMAGE_EDITOR"
+
+
+class AUTHALIC_PT_measure_image(_MeasurePanel, bpy.types.Panel):
+    bl_space_type = "IMAGE_EDITOR"
+
+
+def _draw_menu(self, _context):
+    self.layout.separator()
+    self.layout.operator("authalic.unwrap")
+
+
+_CLASSES = (
+    AUTHALIC_PT_unwrap_view3d,
+    AUTHALIC_PT_measure_view3d,
+    AUTHALIC_PT_unwrap_image,
+    AUTHALIC_PT_measure_image,
+)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    # Serves the UV editor's menu and the 3D view's.
+    bpy.types.IMAGE_MT_uvs_unwrap.append(_draw_menu)
+
+
+def unregister():
+    bpy.types.IMAGE_MT_uvs_unwrap.remove(_draw_menu)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -47,8 +47,9 @@ pub fn distance(a: Vector, b: Vector) -> f64 {
 }
 
 /// The corners of face `[i, j, k]`.
-pub fn triangle(points: &[Vector], face: [u32; 3]) -> [Vector; 3] {
-    face.map(|v| points[v as usize])
+#[inline]
+pub fn triangle(points: &[Vector], [i, j, k]: [u32; 3]) -> [Vector; 3] {
+    [points[i as usize], points[j as usize], points[k as usize]]
 }
 
 /// The vector normal to a triangle, as long as its area; counterclockwise corners see it point at them.

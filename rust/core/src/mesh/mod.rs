@@ -63,7 +63,7 @@ impl TriangleMesh {
         let (points, scale) = geometry::normalized(vertices);
         let table = EdgeTable::new(points.len(), faces);
         validate::no_duplicates(faces, &table)?;
-        validate::positive_areas(vertices, &points, scale, faces)?;
+        let areas = validate::positive_areas(vertices, &points, scale, faces)?;
         // 2. A manifold in its edges, with one orientation.
         validate::manifold_edges(&table)?;
         let mut opposite = table.opposites();
@@ -81,7 +81,6 @@ impl TriangleMesh {
         let flipped = flipped_indices(&orientation);
         let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
         let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
-        let areas = geometry::face_areas(&points, &faces);
         Ok(Self {
             points,
             scale,

@@ -40,48 +40,38 @@ impl Orientation {
             component: vec![u32::MAX; faces.len()],
             first_faces: Vec::new(),
         };
-        let mut members = Vec::new();
+        let mut conflicts = Vec::new();
         for seed in 0..faces.len() as u32 {
             if walk.component[seed as usize] == u32::MAX {
-                let conflict = walk.flood(faces, opposite, seed, &mut members);
-                walk.settle(&members, conflict.is_some());
-                walk.conflict = walk.conflict.or(conflict);
+                conflicts.push(walk.flood(faces, opposite, seed));
             }
         }
+        walk.settle(&conflicts);
         walk
     }
 
-    /// Orients one component like its seed and lists its faces; returns the first edge that contradicts.
-    fn flood(
-        &mut self,
-        faces: &[[u32; 3]],
-        opposite: &[u32],
-        seed: u32,
-        members: &mut Vec<u32>,
-    ) -> Option<[u32; 2]> {
+    /// Orients one component like its seed; returns the first edge that contradicts.
+    fn flood(&mut self, faces: &[[u32; 3]], opposite: &[u32], seed: u32) -> Option<[u32; 2]> {
         let label = self.first_faces.len() as u32;
         self.first_faces.push(seed);
         self.component[seed as usize] = label;
-        members.clear();
-        members.push(seed);
         let mut conflict = None;
-        let mut head = 0;
-        while head < members.len() {
-            let face = members[head];
-            head += 1;
-            for corner in 3 * face..3 * face + 3 {
-                let other = opposite[corner as usize];
+        let mut pending = vec![seed];
+        while let Some(face) = pending.pop() {
+            let [a, b, c] = faces[face as usize];
+            let flipped = self.flipped[face as usize];
+            for (side, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
+                let other = opposite[3 * face as usize + side];
                 if other == NO_CORNER {
                     continue;
                 }
-                let [from, to] = half_edge(faces, corner);
                 let agree = half_edge(faces, other)[0] != from;
-                let wanted = self.flipped[face as usize] ^ !agree;
+                let wanted = flipped ^ !agree;
                 let neighbour = other / 3;
                 if self.component[neighbour as usize] == u32::MAX {
                     self.component[neighbour as usize] = label;
                     self.flipped[neighbour as usize] = wanted;
-                    members.push(neighbour);
+                    pending.push(neighbour);
                 } else if self.flipped[neighbour as usize] != wanted {
                     conflict = conflict.or(Some([from.min(to), from.max(to)]));
                 }
@@ -90,18 +80,20 @@ impl Orientation {
         conflict
     }
 
-    /// Lets the majority of a component decide, or leaves it alone where it cannot be oriented.
-    fn settle(&mut self, members: &[u32], conflict: bool) {
-        let flips = members
-            .iter()
-            .filter(|&&face| self.flipped[face as usize])
-            .count();
-        let invert = 2 * flips > members.len();
-        if flips > 0 && (conflict || invert) {
-            for &face in members {
-                let flipped = &mut self.flipped[face as usize];
-                *flipped = !conflict && (*flipped ^ invert);
-            }
+    /// Lets the majority of each component decide, or leaves it alone where it cannot be oriented.
+    fn settle(&mut self, conflicts: &[Option<[u32; 2]>]) {
+        self.conflict = conflicts.iter().find_map(|conflict| *conflict);
+        if !self.flipped.contains(&true) {
+            return;
+        }
+        // Positive where most faces of a component are turned against its lowest face.
+        let mut majority = vec![0i64; conflicts.len()];
+        for (&flipped, &component) in self.flipped.iter().zip(&self.component) {
+            majority[component as usize] += if flipped { 1 } else { -1 };
+        }
+        for (flipped, &component) in self.flipped.iter_mut().zip(&self.component) {
+            let component = component as usize;
+            *flipped = conflicts[component].is_none() && (*flipped ^ (majority[component] > 0));
         }
     }
 

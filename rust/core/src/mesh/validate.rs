@@ -86,30 +86,37 @@ pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(),
     })
 }
 
-/// Refuses faces whose corners lie on a line, `points` being `vertices` divided by `scale` and centred.
+/// Computes the areas of the faces of `points`, which are `vertices` centred and divided by `scale`.
+///
+/// Refuses faces whose corners lie on a line.
 pub(super) fn positive_areas(
     vertices: &[Vector],
     points: &[Vector],
     scale: f64,
     faces: &[[u32; 3]],
-) -> Result<(), Error> {
-    let bad = which(faces, |&face| {
-        // What the coordinates were rounded to, here and where the mesh came from.
-        let given = largest(triangle(vertices, face)) / scale;
-        is_flat(
-            triangle(points, face),
-            given.max(largest(triangle(points, face))),
-        )
-    });
-    refuse(bad, |faces| Error::ZeroArea { faces })
+) -> Result<Vec<f64>, Error> {
+    let areas = geometry::face_areas(points, faces);
+    let bad = faces
+        .iter()
+        .zip(&areas)
+        .enumerate()
+        .filter(|(_, (face, area))| {
+            // What the coordinates were rounded to, here and where the mesh came from.
+            let corners = triangle(points, **face);
+            let given = largest(triangle(vertices, **face)) / scale;
+            is_flat(corners, **area, given.max(largest(corners)))
+        });
+    let bad = Elements::collect(bad.map(|(face, _)| face));
+    refuse(bad, |faces| Error::ZeroArea { faces })?;
+    Ok(areas)
 }
 
 /// Whether a triangle's height over its longest edge drowns in the rounding of its coordinates.
-fn is_flat(corners: [Vector; 3], largest_coordinate: f64) -> bool {
+fn is_flat(corners: [Vector; 3], area: f64, largest_coordinate: f64) -> bool {
     let longest = geometry::edge_lengths(corners)
         .into_iter()
         .fold(0.0, f64::max);
-    let height = 2.0 * geometry::area(corners) / longest;
+    let height = 2.0 * area / longest;
     let rounding = ROUNDINGS * f64::EPSILON * largest_coordinate.max(longest);
     // Corners that all coincide have no height at all: 0 / 0.
     height.is_nan() || height <= rounding.max(SMALLEST_HEIGHT)

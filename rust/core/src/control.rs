@@ -28,6 +28,22 @@ impl<F: FnMut(f64, &str) -> bool> Observer for F {
     }
 }
 
+/// Passes a phase's progress on as the part `from..to` of the whole.
+pub(crate) struct Phase<'a> {
+    /// Who listens to the whole run.
+    pub whole: &'a mut dyn Observer,
+    /// The fraction at which the phase begins.
+    pub from: f64,
+    /// The fraction at which it ends.
+    pub to: f64,
+}
+
+impl Observer for Phase<'_> {
+    fn progress(&mut self, fraction: f64, message: &str) -> bool {
+        self.whole.progress(self.from + fraction * (self.to - self.from), message)
+    }
+}
+
 /// An [`Observer`] that never cancels and ignores what it hears.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
@@ -89,6 +105,13 @@ impl History {
     /// An empty history whose clock starts now.
     pub fn start() -> Self {
         Self { began: Instant::now(), records: Vec::new() }
+    }
+
+    /// Adds the start map, where no earlier phase of the same run has added its last map already.
+    pub fn push_start(&mut self, authalic_energy: f64, gradient_norm: f64) {
+        if self.records.is_empty() {
+            self.push(authalic_energy, 0.0, gradient_norm);
+        }
     }
 
     /// Adds the next iteration, numbered in order.

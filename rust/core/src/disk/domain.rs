@@ -9,11 +9,12 @@
 use std::f64::consts::PI;
 
 use super::boundary::runs_once_around;
-use super::{Boundary, certificate};
+use super::{Boundary, Map, certificate};
 use crate::energy::StretchEnergy;
+use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::optimize::Domain;
+use crate::optimize::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
 
@@ -24,6 +25,13 @@ struct Block {
     factor: Cholesky,
 }
 
+impl Block {
+    fn analyse(laplacian: Laplacian) -> Result<Self, Error> {
+        let factor = Cholesky::analyse(laplacian.matrix())?;
+        Ok(Self { laplacian, factor })
+    }
+}
+
 /// Maps of one mesh to the unit disk.
 #[derive(Debug)]
 pub(super) struct DiskDomain<'a> {
@@ -32,37 +40,52 @@ pub(super) struct DiskDomain<'a> {
     interior: Block,
     /// Only where the boundary slides.
     boundary: Option<Block>,
+    /// The map at which the preconditioner was set; empty where it was not.
+    preconditioned_at: Map,
     /// Maps with a folded face have an infinite objective.
     guarded: bool,
 }
 
 impl<'a> DiskDomain<'a> {
     /// Analyses the systems of the domain; the preconditioner must be set before it is used.
-    pub(super) fn new(
-        mesh: &'a TriangleMesh,
-        targets: &'a [f64],
-        interior: Laplacian,
-        boundary: Boundary,
-    ) -> Result<Self, Error> {
-        let block = |laplacian: Laplacian| {
-            let factor = Cholesky::analyse(laplacian.matrix())?;
-            Ok(Block { laplacian, factor })
-        };
+    pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
+        let interior = Block::analyse(Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
             Boundary::ArcLength => None,
-            Boundary::Sliding => Some(block(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?),
+            Boundary::Sliding => Some(Block::analyse(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?),
         };
         let energy = StretchEnergy::new(mesh, targets);
-        Ok(Self { mesh, energy, interior: block(interior)?, boundary, guarded: false })
+        Ok(Self { mesh, energy, interior, boundary, preconditioned_at: Map::new(), guarded: false })
     }
 
-    /// From now on a map with a folded face has an infinite objective.
+    /// Solves L_II f_I = −L_IB f_B in place for one weight per corner, the boundary held.
+    pub(super) fn solve_dirichlet(&mut self, weights: &[f64], map: &mut [[f64; 2]]) -> Result<(), Error> {
+        self.preconditioned_at.clear();
+        let Block { laplacian, factor } = &mut self.interior;
+        laplacian.assemble(self.mesh, weights);
+        factor.refactor(laplacian.matrix())?;
+        let mut correction = laplacian.residual(self.mesh, weights, map);
+        factor.solve(&mut correction);
+        let n = laplacian.free().len();
+        for (i, &vertex) in laplacian.free().iter().enumerate() {
+            map[vertex as usize][0] -= correction[i];
+            map[vertex as usize][1] -= correction[n + i];
+        }
+        Ok(())
+    }
+
+    /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.
     pub(super) fn guard(&mut self) {
         self.guarded = true;
+        self.energy = self.energy.with_profile(Profile::Barrier);
     }
 
     /// Sets M = 2 I₂ ⊗ L_S(f) at f = `map`.
     pub(super) fn set_preconditioner(&mut self, map: &[[f64; 2]]) -> Result<(), Error> {
+        if self.preconditioned_at == map {
+            return Ok(());
+        }
+        self.preconditioned_at.clear();
         let scale = 2.0 * PI / self.energy.area(map);
         let mut weights = self.energy.laplacian_weights(map);
         parallel::fill_with_old(&mut weights, |_, weight| scale * weight);
@@ -73,6 +96,7 @@ impl<'a> DiskDomain<'a> {
             laplacian.assemble_scaled(self.mesh, &weights, cosine);
             factor.refactor(laplacian.matrix())?;
         }
+        self.preconditioned_at = map.to_vec();
         Ok(())
     }
 
@@ -85,6 +109,10 @@ impl<'a> DiskDomain<'a> {
         self.boundary.as_ref().map_or(&[], |block| block.laplacian.free())
     }
 
+    fn objective_if_allowed(&self, map: &[[f64; 2]], value: Value) -> f64 {
+        if value.area > 0.0 && self.allows(map) { value.objective } else { f64::INFINITY }
+    }
+
     fn allows(&self, map: &[[f64; 2]]) -> bool {
         (self.boundary.is_none() || runs_once_around(&self.mesh.boundary_loops()[0], map))
             && (!self.guarded || certificate::clearly_unfolded(self.mesh, map))
@@ -92,27 +120,22 @@ impl<'a> DiskDomain<'a> {
 }
 
 impl Domain for DiskDomain<'_> {
-    type Map = Vec<[f64; 2]>;
+    type Map = Map;
 
     fn objective(&self, map: &Self::Map) -> f64 {
-        let value = self.energy.value(map);
-        if value.area > 0.0 && self.allows(map) { value.objective() } else { f64::INFINITY }
+        self.objective_if_allowed(map, self.energy.value(map))
     }
 
-    fn gradient(&self, map: &Self::Map) -> (f64, Vec<f64>) {
+    fn gradient(&self, map: &Self::Map) -> (Energies, Vec<f64>) {
         let (value, gradient) = self.energy.gradient(map);
-        let objective = if value.area > 0.0 && self.allows(map) { value.objective() } else { f64::INFINITY };
+        let energies = Energies { objective: self.objective_if_allowed(map, value), authalic_energy: value.authalic_energy };
         let free = self.free().iter().map(|&v| v as usize);
         let along_circle = |v: &u32| {
             let ([u, w], g) = (map[*v as usize], gradient[*v as usize]);
             u * g[1] - w * g[0]
         };
         let reduced = free.clone().map(|v| gradient[v][0]).chain(free.map(|v| gradient[v][1]));
-        (objective, reduced.chain(self.sliding().iter().map(along_circle)).collect())
-    }
-
-    fn authalic_energy(&self, map: &Self::Map) -> f64 {
-        self.energy.value(map).authalic_energy
+        (energies, reduced.chain(self.sliding().iter().map(along_circle)).collect())
     }
 
     fn precondition(&self, gradient: &[f64]) -> Vec<f64> {

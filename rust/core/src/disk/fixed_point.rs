@@ -36,7 +36,8 @@ pub(super) fn fixed_point(
     let (mut best, mut map) = ((f64::INFINITY, start.clone()), start);
     for iteration in 0..=options.max_iterations {
         // 1. Keep the best map; M of the current one and the step it asks for
-        let (energy, (_, gradient)) = (domain.authalic_energy(&map), domain.gradient(&map));
+        let (energies, gradient) = domain.gradient(&map);
+        let energy = energies.authalic_energy;
         if energy < best.0 {
             best = (energy, map.clone());
         }
@@ -45,7 +46,10 @@ pub(super) fn fixed_point(
         }
         let correction = domain.precondition(&gradient);
         let norm = parallel::dot(&gradient, &correction).max(0.0).sqrt();
-        history.push(energy, if iteration == 0 { 0.0 } else { 1.0 }, norm);
+        match iteration {
+            0 => history.push_start(energy, norm),
+            _ => history.push(energy, 1.0, norm),
+        }
         // 2. Enough?
         if norm <= options.tolerance || energy <= options.energy {
             return (best.1, Status::Converged);

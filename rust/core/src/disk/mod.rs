@@ -18,13 +18,12 @@ mod unfold;
 
 use std::borrow::Cow;
 
-use crate::control::{History, Observer, Status};
+use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, check_density, distortion};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::optimize::Domain as _;
 use crate::optimize::nonlinear_cg::{CgOptions, minimize};
-use crate::sparse::Laplacian;
 
 use domain::DiskDomain;
 use fixed_point::{FixedPointOptions, fixed_point};
@@ -187,77 +186,67 @@ struct Run<'a> {
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.
     fn solve(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
+        let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
-        let (map, status) = self.as_published(history, observer)?;
+        let (map, status) = self.as_published(&mut domain, history, observer)?;
         if certificate::is_bijective(self.mesh, &map) {
             return Ok((map, status));
         }
-        // 2. Unfold what folded
-        if let Some(map) = unfold::unfold(self.mesh, &map) {
-            return Ok(self.descend_guarded(map, status, history, observer));
+        // 2. Unfold what folded; where that fails, Tutte's embedding
+        let unfolded = match unfold::unfold(self.mesh, &map) {
+            Some(map) => map,
+            None => start::tutte(self.mesh, &mut domain)?,
+        };
+        if let Some(folded) = Elements::collect(certificate::folded(self.mesh, &unfolded)) {
+            return Err(Error::NoEmbedding { folded });
         }
-        // 3. Tutte's embedding, and a descent that never leaves it
-        let mut map = boundary::arc_length(self.mesh);
-        start::tutte(self.mesh, &mut self.interior(), &mut map)?;
-        match Elements::collect(certificate::folded(self.mesh, &map)) {
-            None => Ok(self.descend_guarded(map, status, history, observer)),
-            Some(folded) => Err(Error::NoEmbedding { folded }),
+        // 3. A descent that never leaves it
+        match status {
+            Status::Cancelled => Ok((unfolded, status)),
+            _ => Ok(self.descend_guarded(&mut domain, unfolded, history, observer)),
         }
     }
 
     /// Harmonic start, fixed-point steps, conjugate gradients; may fold.
-    fn as_published(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
-        // 1. The start map
-        let mut interior = self.interior();
-        let start = match self.options.initial {
-            Some(initial) => initial.to_vec(),
-            None => {
-                let mut map = boundary::arc_length(self.mesh);
-                start::harmonic(self.mesh, &mut interior, &mut map)?;
-                map
+    fn as_published(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        // 1. The start map, fixed-point steps from it
+        let (map, status) = match (self.options.initial, self.options.method) {
+            (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
+            (initial, method) => {
+                let start = initial.map_or_else(|| start::harmonic(self.mesh, domain), |map| Ok(map.to_vec()))?;
+                let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
+                let mut phase = Phase { whole: observer, from: 0.0, to };
+                fixed_point(domain, start, &self.fixed_point_options(method), history, &mut phase)
             }
         };
-        let mut domain = DiskDomain::new(self.mesh, self.targets, interior, self.options.boundary)?;
-        // 2. Fixed-point steps
-        let map = match (self.options.method, self.options.initial) {
-            (Method::ConjugateGradient, Some(_)) => start,
-            (method, _) => {
-                let options = self.fixed_point_options(method);
-                let (map, status) = fixed_point(&mut domain, start, &options, history, observer);
-                if method == Method::FixedPoint || status == Status::Cancelled {
-                    return Ok((map, status));
-                }
-                map
-            }
-        };
-        // 3. Conjugate gradients
+        if self.options.method == Method::FixedPoint || status == Status::Cancelled {
+            return Ok((map, status));
+        }
+        // 2. Conjugate gradients
         domain.set_preconditioner(&map)?;
-        Ok(minimize(&domain, map, &self.cg_options(), history, observer))
+        let mut phase = Phase { whole: observer, from: 0.2, to: 0.8 };
+        Ok(minimize(domain, map, &self.cg_options(), history, &mut phase))
     }
 
     /// Conjugate gradients from an unfolded map that stay unfolded.
     fn descend_guarded(
         &self,
+        domain: &mut DiskDomain<'_>,
         map: Map,
-        status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
-        if status == Status::Cancelled {
-            return (map, status);
-        }
-        let Ok(mut domain) = DiskDomain::new(self.mesh, self.targets, self.interior(), self.options.boundary) else {
-            return (map, Status::Stalled);
-        };
         domain.guard();
         if !domain.objective(&map).is_finite() || domain.set_preconditioner(&map).is_err() {
             return (map, Status::Stalled);
         }
-        minimize(&domain, map, &self.cg_options(), history, observer)
-    }
-
-    fn interior(&self) -> Laplacian {
-        Laplacian::new(self.mesh, |vertex| !self.mesh.is_boundary(vertex))
+        let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
+        minimize(domain, map, &self.cg_options(), history, &mut phase)
     }
 
     fn fixed_point_options(&self, method: Method) -> FixedPointOptions {

@@ -15,9 +15,12 @@
 //! E_A(f) = E_S(f) − A = Σ (a_τ − |τ|)² / |τ| ≥ 0.
 //! ```
 //!
-//! What is minimised is E_A·π/A, the authalic energy of the image rescaled to the unit disk's area. For a fixed boundary A is
+//! What is minimised is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to the unit disk's area. For a fixed boundary A is
 //! constant and this is the papers' stretch energy up to constants; for a sliding one the factor removes the
 //! false minimum A → 0. The residual form is used because E_S − A cancels: near the minimum E_S ≈ π and E_A ≈ 10⁻⁶.
+//!
+//! A descent that must not fold uses [`Profile::Barrier`] instead of (ρ − 1)² for the area ratio ρ = a_τ/|τ|: the same minimum and
+//! the same curvature there, but infinite as ρ → 0.
 //!
 //! Cost: one pass over the faces, one gather over the corners of each vertex.
 
@@ -26,12 +29,42 @@ use std::f64::consts::PI;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
+/// What a face of area ratio ρ costs per target area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Profile {
+    /// (ρ − 1)², the papers' energy.
+    #[default]
+    Stretch,
+    /// ½ (ρ − 1)² (1 + 1/ρ) for ρ > 0, +∞ otherwise.
+    Barrier,
+}
+
+impl Profile {
+    /// The cost ψ(ρ).
+    pub fn cost(self, ratio: f64) -> f64 {
+        match self {
+            Self::Stretch => (ratio - 1.0).powi(2),
+            Self::Barrier if ratio > 0.0 => 0.5 * (ratio - 1.0).powi(2) * (1.0 + 1.0 / ratio),
+            Self::Barrier => f64::INFINITY,
+        }
+    }
+
+    /// Its derivative ψ'(ρ).
+    pub fn slope(self, ratio: f64) -> f64 {
+        match self {
+            Self::Stretch => 2.0 * (ratio - 1.0),
+            Self::Barrier => 0.5 * (2.0 * ratio - 1.0 - ratio.powi(-2)),
+        }
+    }
+}
+
 /// Stretch energy of maps of one mesh into the plane, for given target areas.
 #[derive(Debug, Clone, Copy)]
 pub struct StretchEnergy<'a> {
     mesh: &'a TriangleMesh,
     targets: &'a [f64],
     total_target: f64,
+    profile: Profile,
 }
 
 /// The value of the energy with what it is made of.
@@ -41,13 +74,8 @@ pub struct Value {
     pub authalic_energy: f64,
     /// Signed area A of the image.
     pub area: f64,
-}
-
-impl Value {
-    /// E_A·π/A, the objective of the optimisers.
-    pub fn objective(self) -> f64 {
-        self.authalic_energy * PI / self.area
-    }
+    /// Σ |τ| ψ(ρ)·π/A, what the optimisers minimise: E_A·π/A for the papers' profile.
+    pub objective: f64,
 }
 
 impl<'a> StretchEnergy<'a> {
@@ -55,27 +83,29 @@ impl<'a> StretchEnergy<'a> {
     pub fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
         assert_eq!(targets.len(), mesh.n_faces(), "one target area per face");
         let total_target = parallel::sum(targets.len(), |face| targets[face]);
-        Self { mesh, targets, total_target }
+        Self { mesh, targets, total_target, profile: Profile::Stretch }
     }
 
-    /// E_A and the area of the image of `map`.
+    /// The same energy with another cost of area ratios.
+    pub fn with_profile(self, profile: Profile) -> Self {
+        Self { profile, ..self }
+    }
+
+    /// The energies and the area of the image of `map`.
     pub fn value(&self, map: &[[f64; 2]]) -> Value {
-        let areas = self.areas(map);
-        self.value_of_areas(&areas)
+        self.value_of_areas(&self.areas(map))
     }
 
-    /// The value at `map` and the gradient of the objective E_A·π/A by every vertex.
+    /// The value at `map` and the gradient of the objective by every vertex.
     ///
-    /// With c = A/|M|: ∇E_A = Σ 2 (a_τ/(c|τ|) − 1) ∇a_τ − (E_A/A) ∇A.
+    /// With c = A/|M| and ρ = a_τ/(c|τ|) the derivative by a_τ is π/A (ψ'(ρ_τ) − Σ a ψ'(ρ)/A); ∇a_τ carries it to the vertices.
     pub fn gradient(&self, map: &[[f64; 2]]) -> (Value, Vec<[f64; 2]>) {
         let areas = self.areas(map);
         let value = self.value_of_areas(&areas);
         let scale = value.area / self.total_target;
-        let shift = 1.0 + value.authalic_energy / value.area;
-        // ∂E_A·π/A by the area of each face; ∇A is the same sum with the factor 1
-        let by_area = parallel::map(areas.len(), |face| {
-            2.0 * PI / value.area * (areas[face] / (scale * self.targets[face]) - shift)
-        });
+        let slope = |face: usize| self.profile.slope(areas[face] / (scale * self.targets[face]));
+        let shift = parallel::sum(areas.len(), |face| areas[face] * slope(face)) / value.area;
+        let by_area = parallel::map(areas.len(), |face| PI / value.area * (slope(face) - shift));
         (value, self.gather(map, &by_area))
     }
 
@@ -103,11 +133,13 @@ impl<'a> StretchEnergy<'a> {
     fn value_of_areas(&self, areas: &[f64]) -> Value {
         let area = parallel::sum(areas.len(), |face| areas[face]);
         let scale = area / self.total_target;
-        let authalic_energy = parallel::sum(areas.len(), |face| {
-            let target = scale * self.targets[face];
-            (areas[face] - target).powi(2) / target
-        });
-        Value { authalic_energy, area }
+        let total = |profile: Profile| {
+            let cost = |face: usize| profile.cost(areas[face] / (scale * self.targets[face]));
+            scale * parallel::sum(areas.len(), |face| self.targets[face] * cost(face))
+        };
+        let authalic_energy = total(Profile::Stretch);
+        let minimised = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
+        Value { authalic_energy, area, objective: minimised * PI / area }
     }
 
     fn corners(&self, map: &[[f64; 2]], face: usize) -> [[f64; 2]; 3] {

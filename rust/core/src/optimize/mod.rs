@@ -4,6 +4,15 @@
 pub mod line_search;
 pub mod nonlinear_cg;
 
+/// The energies of a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energies {
+    /// What is minimised; +∞ where the map is not allowed.
+    pub objective: f64,
+    /// E_A, as reported in histories.
+    pub authalic_energy: f64,
+}
+
 /// A space of maps with an energy: what an optimiser needs to know of it.
 ///
 /// Directions, gradients and preconditioned gradients are vectors in reduced coordinates (one number per degree of
@@ -15,11 +24,8 @@ pub trait Domain {
     /// The objective at `map`; +∞ where the map is not allowed.
     fn objective(&self, map: &Self::Map) -> f64;
 
-    /// The objective at `map` and its gradient in reduced coordinates.
-    fn gradient(&self, map: &Self::Map) -> (f64, Vec<f64>);
-
-    /// E_A of `map`, as reported in histories.
-    fn authalic_energy(&self, map: &Self::Map) -> f64;
+    /// The energies at `map` and the gradient of the objective in reduced coordinates.
+    fn gradient(&self, map: &Self::Map) -> (Energies, Vec<f64>);
 
     /// M⁻¹ `gradient`, M symmetric positive definite.
     fn precondition(&self, gradient: &[f64]) -> Vec<f64>;

@@ -7,7 +7,7 @@
 //!
 //! Cost of one iteration: two evaluations of the objective, one of its gradient, one solve with M.
 
-use super::Domain;
+use super::{Domain, Energies};
 use super::line_search::{Trial, WolfeOptions, strong_wolfe};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
@@ -34,6 +34,7 @@ impl Default for CgOptions {
 #[derive(Clone)]
 struct State<M> {
     map: M,
+    energies: Energies,
     gradient: Vec<f64>,
 }
 
@@ -46,13 +47,13 @@ pub fn minimize<D: Domain>(
     observer: &mut dyn Observer,
 ) -> (D::Map, Status) {
     // 1. Gradient g, preconditioned gradient h = M⁻¹g, direction p = −h
-    let (mut value, gradient) = domain.gradient(&start);
-    let mut state = State { map: start, gradient };
+    let (energies, gradient) = domain.gradient(&start);
+    let mut state = State { map: start, energies, gradient };
     let mut h = domain.precondition(&state.gradient);
     let mut norm2 = parallel::dot(&state.gradient, &h);
     let mut direction = descent(&h);
     let mut step = 1.0;
-    history.push(domain.authalic_energy(&state.map), 0.0, norm2.max(0.0).sqrt());
+    history.push_start(state.energies.authalic_energy, norm2.max(0.0).sqrt());
     for iteration in 0..options.max_iterations {
         if norm2.max(0.0).sqrt() <= options.tolerance {
             return (state.map, Status::Converged);
@@ -61,20 +62,20 @@ pub fn minimize<D: Domain>(
             return (state.map, Status::Cancelled);
         }
         // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none
-        let found = line_step(domain, &state, value, &direction, step, &options.wolfe).or_else(|| {
+        let found = line_step(domain, &state, &direction, step, &options.wolfe).or_else(|| {
             direction = descent(&h);
-            line_step(domain, &state, value, &direction, 1.0, &options.wolfe)
+            line_step(domain, &state, &direction, 1.0, &options.wolfe)
         });
         let Some(trial) = found else {
             return (state.map, Status::Stalled);
         };
-        (step, value, state) = (trial.step, trial.value, trial.data.expect("an accepted trial has its state"));
+        (step, state) = (trial.step, trial.data.expect("an accepted trial has its state"));
         // 3. Fletcher–Reeves in the metric of M⁻¹: β = hᵀg / λ
         h = domain.precondition(&state.gradient);
         let last_norm2 = std::mem::replace(&mut norm2, parallel::dot(&state.gradient, &h));
         let beta = norm2 / last_norm2;
         parallel::fill_with_old(&mut direction, |i, p| beta * p - h[i]);
-        history.push(domain.authalic_energy(&state.map), step, norm2.max(0.0).sqrt());
+        history.push(state.energies.authalic_energy, step, norm2.max(0.0).sqrt());
     }
     (state.map, Status::MaxIterations)
 }
@@ -87,7 +88,6 @@ fn descent(h: &[f64]) -> Vec<f64> {
 fn line_step<D: Domain>(
     domain: &D,
     state: &State<D::Map>,
-    value: f64,
     direction: &[f64],
     last_step: f64,
     wolfe: &WolfeOptions,
@@ -96,12 +96,18 @@ fn line_step<D: Domain>(
     if slope >= 0.0 || !slope.is_finite() {
         return None;
     }
+    let value = state.energies.objective;
     let start = Trial { step: 0.0, value, slope, data: None };
     let last = domain.objective(&domain.retract(&state.map, direction, last_step));
     let bend = last - value - last_step * slope;
     let quadratic = -0.5 * last_step * last_step * slope / bend;
-    let model_holds = bend.is_finite() && bend > 0.0;
-    let first = if model_holds { quadratic.min(10.0 * last_step) } else { 0.5 * last_step };
+    let first = match bend {
+        // the last step is not allowed any more: well before it
+        bend if !bend.is_finite() => 0.5 * last_step,
+        bend if bend > 0.0 => quadratic.min(10.0 * last_step),
+        // still descending there: beyond it
+        _ => 2.0 * last_step,
+    };
     let evaluate = |step: f64| evaluate(domain, state, direction, step);
     strong_wolfe(&start, evaluate(first), wolfe, evaluate)
 }
@@ -114,7 +120,7 @@ fn evaluate<D: Domain>(
     step: f64,
 ) -> Trial<Option<State<D::Map>>> {
     let map = domain.retract(&state.map, direction, step);
-    let (value, gradient) = domain.gradient(&map);
+    let (energies, gradient) = domain.gradient(&map);
     let slope = parallel::dot(&gradient, direction);
-    Trial { step, value, slope, data: Some(State { map, gradient }) }
+    Trial { step, value: energies.objective, slope, data: Some(State { map, energies, gradient }) }
 }

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Types of the native module; the documentation stands in the docstrings of the module itself."""
+
+from collections.abc import Callable
+from typing import Literal, TypeAlias, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "DiskMap",
+    "Distortion",
+    "MeshError",
+    "Patch",
+    "SolverError",
+    "__version__",
+    "cut",
+    "disk_map",
+    "distortion",
+]
+
+_Reals: TypeAlias = NDArray[np.float64]
+_Indices: TypeAlias = NDArray[np.int64]
+_Progress: TypeAlias = Callable[[float, str], bool | None]
+_Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
+
+__version__: str
+
+class MeshError(ValueError):
+    indices: tuple[int, ...] | tuple[tuple[int, ...], ...]
+    count: int
+
+class SolverError(RuntimeError):
+    indices: tuple[int, ...] | tuple[tuple[int, ...], ...]
+    count: int
+
+@final
+class Patch:
+    @property
+    def vertices(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def vertex_of(self) -> _Indices: ...
+    @property
+    def corner_of(self) -> _Indices: ...
+    @property
+    def face_of(self) -> _Indices: ...
+    @property
+    def euler_characteristic(self) -> int: ...
+    @property
+    def genus(self) -> int | None: ...
+    @property
+    def boundary_loops(self) -> list[_Indices]: ...
+    @property
+    def is_disk(self) -> bool: ...
+    @property
+    def is_closed(self) -> bool: ...
+
+@final
+class Distortion:
+    @property
+    def authalic_energy(self) -> float: ...
+    @property
+    def area_ratio_mean(self) -> float: ...
+    @property
+    def area_ratio_std(self) -> float: ...
+    @property
+    def log2_area_ratio(self) -> _Reals: ...
+    @property
+    def folded(self) -> _Indices: ...
+    @property
+    def angle_distortion(self) -> _Reals: ...
+    @property
+    def angle_distortion_mean(self) -> float: ...
+    @property
+    def angle_distortion_p99(self) -> float: ...
+    @property
+    def angle_distortion_max(self) -> float: ...
+
+@final
+class DiskMap:
+    @property
+    def uv(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def status(self) -> _Status: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def history(self) -> NDArray[np.void]: ...
+    @property
+    def distortion(self) -> Distortion: ...
+    @property
+    def seconds(self) -> float: ...
+
+def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
+def distortion(
+    vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
+) -> Distortion: ...
+def disk_map(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    *,
+    method: Literal["conjugate_gradient", "fixed_point"] = "conjugate_gradient",
+    boundary: Literal["sliding", "arc_length"] = "sliding",
+    density: ArrayLike | None = None,
+    angle_weight: float = 0.0,
+    initial: ArrayLike | None = None,
+    max_iterations: int | None = None,
+    tolerance: float | None = None,
+    fill_holes: bool = False,
+    progress: _Progress | None = None,
+) -> DiskMap: ...

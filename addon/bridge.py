@@ -9,8 +9,9 @@ import re
 import threading
 from dataclasses import dataclass, field
 
-import authalic
 import numpy as np
+
+import authalic
 
 from . import triangulation
 
@@ -25,11 +26,11 @@ class Cancelled(Exception):
 
 @dataclass
 class UnwrapSettings:
-    """How islands are mapped. `iterations` 0 leaves the number to the solver."""
+    """How islands are mapped; the solver stops earlier where it has converged."""
 
     domain: str = "AUTO"
     fill_holes: bool = True
-    iterations: int = 0
+    iterations: int = 200
 
 
 @dataclass
@@ -144,7 +145,7 @@ def _keep_going(_fraction, _message):
 def unwrap(surfaces, settings, progress=_keep_going):
     """Maps every island of every surface (`mesh_io.Surface`) onto a disk of its own.
 
-    Raises `Cancelled` when `progress` returns False.
+    Raises `Cancelled` when `progress` returns False. Islands that cannot be mapped are refused, not raised.
     """
     result = Mapping()
     pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
@@ -165,14 +166,14 @@ def unwrap(surfaces, settings, progress=_keep_going):
 
 def measure(surfaces):
     """Figures of the UVs of `surfaces`, all on one scale; None where no triangle has an area."""
-    points = np.concatenate([surface.positions[surface.triangles].reshape(-1, 3) for surface in surfaces])
-    image = np.concatenate([surface.uv[surface.corners].reshape(-1, 2) for surface in surfaces])
-    good = triangulation.has_area(points.reshape(-1, 3, 3))
-    if not good.any() or not triangulation.signed_areas(image.reshape(-1, 3, 2)[good]).any():
+    points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
+    image = np.concatenate([surface.uv[surface.corners] for surface in surfaces]).astype(float)
+    good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
+    points, image = points[good], image[good]
+    if not triangulation.signed_areas(image).any():
         return None
-    points, image = points.reshape(-1, 3, 3)[good], image.reshape(-1, 3, 2)[good]
-    faces = np.arange(3 * len(points)).reshape(-1, 3)
-    figures = authalic.distortion(points.reshape(-1, 3), faces, image.reshape(-1, 2).astype(float))
+    corners = np.arange(3 * len(points)).reshape(-1, 3)
+    figures = authalic.distortion(points.reshape(-1, 3), corners, image.reshape(-1, 2))
     log2 = np.clip(figures.log2_area_ratio, -LOG2_LIMIT, LOG2_LIMIT)
     log2[figures.folded] = -LOG2_LIMIT
     unfolded = np.ones(len(log2), bool)
@@ -214,7 +215,12 @@ class _Piece:
 
     def in_mesh_terms(self, message):
         """The message with the indices of the mesh in place of those of the patch."""
-        numbers = {"face": self.polygons, "faces": self.polygons, "vertex": self.vertices, "vertices": self.vertices}
+        numbers = {
+            "face": self.polygons,
+            "faces": self.polygons,
+            "vertex": self.vertices,
+            "vertices": self.vertices,
+        }
 
         def translate(match):
             own = numbers[match[1]]
@@ -258,7 +264,7 @@ def _map(piece, settings, progress):
     found = authalic.disk_map(
         piece.points,
         faces,
-        max_iterations=settings.iterations or None,
+        max_iterations=settings.iterations,
         fill_holes=settings.fill_holes,
         progress=progress,
     )
@@ -292,7 +298,9 @@ def _check(piece, settings):
         holes = "a handle" if patch.genus == 1 else f"{patch.genus} handles"
         raise _Unsuitable(f"has {holes}, like a torus; mark seams to cut it open")
     if len(patch.boundary_loops) > 1 and not settings.fill_holes:
-        raise _Unsuitable(f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them")
+        raise _Unsuitable(
+            f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them"
+        )
 
 
 def _sub_progress(progress, start, share):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-_DIRECTIONS = 64
+_DIRECTIONS = 32
 
 
 def scale_to_one_density(islands):
@@ -17,7 +17,7 @@ def scale_to_one_density(islands):
 def outline(uv):
     """A convex polygon (k, 2), counter-clockwise, around points (n, 2): what the packer has to keep apart.
 
-    It is bounded by the supporting lines in 64 directions, so that around a disk it is .1 % too wide.
+    It is bounded by the supporting lines in 32 directions, so that around a disk it is .5 % too wide.
     """
     angles = np.arange(_DIRECTIONS) * (2 * np.pi / _DIRECTIONS)
     normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -26,6 +26,18 @@ def outline(uv):
     along = (np.roll(reach, -1) - reach * np.cos(angles[1])) / np.sin(angles[1])
     tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     return _without_repeats(reach[:, None] * normals + along[:, None] * tangents)
+
+
+def upright(outline):
+    """The turn, a complex number of modulus 1, that gives an outline (k, 2) its smallest bounding box."""
+    z = outline @ [1, 1j]
+    sides = np.roll(z, -1) - z
+    turns = np.concatenate([[1], np.abs(sides) / sides])
+    turned = turns[:, None] * z
+    boxes = np.ptp(turned.real, axis=1) * np.ptp(turned.imag, axis=1)
+    # Only for a real gain: a round island stays as it is.
+    best = boxes.argmin()
+    return turns[best] if boxes[best] < 0.97 * boxes[0] else 1
 
 
 def similarity(before, after):

@@ -65,7 +65,8 @@ def read(obj, *, selected_only=False, uv_layer=None):
         )
         if uv_layer is not None and uv_layer in mesh.uv_layers:
             surface.uv = read_uv(mesh, uv_layer)
-            surface.pinned = _attribute(mesh, f".pn.{uv_layer}", bool)
+            pins = _attribute(mesh, f".pn.{uv_layer}", bool)
+            surface.pinned = pins if len(pins) else None
     surface.positions *= _world_size(obj, surface)
     return surface
 
@@ -90,7 +91,7 @@ def write_uv(mesh, layer, corners, uv):
 
 
 def layer_name(mesh, wanted):
-    """The name the UV layer `wanted` has or will have; empty means the active one, "UVMap" if there is none."""
+    """The name the UV layer `wanted` has or will have; empty is the active one, or else "UVMap"."""
     if wanted:
         return wanted.encode()[:_NAME_BYTES].decode(errors="ignore")
     return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"
@@ -114,7 +115,7 @@ def write_face_attribute(mesh, name, values):
     if mesh.is_editmode:
         edit = bmesh.from_edit_mesh(mesh)
         layer = edit.faces.layers.float.get(name) or edit.faces.layers.float.new(name)
-        for face, value in zip(edit.faces, values.tolist()):
+        for face, value in zip(edit.faces, values.tolist(), strict=True):
             face[layer] = value
         bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
         return
@@ -148,10 +149,10 @@ def _readable(mesh):
 
 
 def _attribute(mesh, name, dtype, width=1):
-    """The values of an attribute, (n,) or (n, width); None where the mesh has no such attribute."""
+    """The values of an attribute, (n,) or (n, width); none where the mesh has no such attribute."""
     attribute = mesh.attributes.get(name)
-    if attribute is None:
-        return None
+    if attribute is None:  # an empty mesh lacks even its positions
+        return np.empty((0, width) if width > 1 else 0, dtype)
     values = np.empty(len(attribute.data) * width, dtype)
     attribute.data.foreach_get("value" if width == 1 else "vector", values)
     return values if width == 1 else values.reshape(-1, width)
@@ -214,7 +215,7 @@ def _total_area(triangles):
 def _write_uv_edit(mesh, layer, corners, uv):
     edit = bmesh.from_edit_mesh(mesh)
     uv_layer = edit.loops.layers.uv[layer]
-    values = dict(zip(corners.tolist(), uv.tolist()))
+    values = dict(zip(corners.tolist(), uv.tolist(), strict=True))
     start = 0
     for face in edit.faces:
         for corner, loop in enumerate(face.loops, start):

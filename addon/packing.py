@@ -16,7 +16,10 @@ from . import islands as shapes
 
 @dataclass
 class PackSettings:
-    """The options of Blender's Pack Islands."""
+    """The options of Blender's Pack Islands, but for `rotate`: the islands are turned upright before.
+
+    Blender's own search for rotations takes seconds for a few disks, which gain nothing by it.
+    """
 
     rotate: bool = True
     margin_method: str = "SCALED"
@@ -26,8 +29,11 @@ class PackSettings:
 
 def pack(islands, settings):
     """Moves, turns and scales the UVs of islands, all by one scale, into the unit square."""
+    if settings.rotate:
+        for island in islands:
+            island.uv = shapes.moved(island.uv, shapes.upright(shapes.outline(island.uv)), 0)
     outlines = [shapes.outline(island.uv) for island in islands]
-    for island, before, after in zip(islands, outlines, _packed(outlines, settings)):
+    for island, before, after in zip(islands, outlines, _packed(outlines, settings), strict=True):
         island.uv = shapes.moved(island.uv, *shapes.similarity(before, after))
 
 
@@ -39,7 +45,7 @@ def _packed(outlines, settings):
             with bpy.context.temp_override(edit_object=obj):
                 bpy.ops.uv.pack_islands(
                     udim_source="ACTIVE_UDIM",
-                    rotate=settings.rotate,
+                    rotate=False,
                     scale=True,
                     margin_method=settings.margin_method,
                     margin=settings.margin,
@@ -74,7 +80,7 @@ def _scratch_object(outlines):
 def _fill(mesh, outlines):
     points = np.concatenate(outlines)
     ends = np.cumsum([len(outline) for outline in outlines]).tolist()
-    faces = [range(end - len(outline), end) for end, outline in zip(ends, outlines)]
+    faces = [range(end - len(outline), end) for end, outline in zip(ends, outlines, strict=True)]
     mesh.from_pydata(np.pad(points, ((0, 0), (0, 1))).tolist(), [], [list(face) for face in faces])
     mesh.polygons.foreach_set("select", np.ones(len(faces), bool))
     layer = mesh.uv_layers.new(name="UVMap", do_init=False)

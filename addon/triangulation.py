@@ -40,7 +40,7 @@ def has_area(triangles):
 
 
 def sound(surface):
-    """The triangles of a surface, with the polygons that a triangulation would harm divided from their centre.
+    """The triangles of a surface, with polygons that triangles would harm divided from their centre.
 
     Harm is a diagonal that coincides with an edge or another polygon's diagonal, where the surface would
     seem to branch, or a triangle without area, as corners in a line give.
@@ -63,7 +63,9 @@ def _branching(surface):
     bad = np.zeros(surface.polygon_count, bool)
     if not is_diagonal.any():
         return bad
-    ends = np.sort(np.stack([surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()]), axis=0)
+    ends = np.sort(
+        np.stack([surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()]), axis=0
+    )
     key = ends[0].astype(np.int64) * len(surface.positions) + ends[1]
     own = polygon[is_diagonal]
     diagonals, index = np.unique(key[is_diagonal], return_inverse=True)
@@ -77,8 +79,9 @@ def _branching(surface):
 
 def _with_flat_triangle(surface):
     bad = np.zeros(surface.polygon_count, bool)
+    points = surface.positions[surface.triangles]
     with np.errstate(invalid="ignore"):
-        flat = ~has_area(surface.positions[surface.triangles])
+        flat = ~has_area(points) & np.isfinite(points).all(axis=(1, 2))
     bad[surface.polygons[flat]] = True
     return bad
 

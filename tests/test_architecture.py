@@ -26,7 +26,7 @@ CORE_ROOMS = (
 CORE_RANK = {room: rank for rank, rooms in enumerate(CORE_ROOMS) for room in rooms}
 
 # The same for the add-on; every module that is not named here is pure logic below the operators.
-ADDON_RANK = {"bridge": 1, "operators": 2, "ui": 3, "registration": 4, "__init__": 4}
+ADDON_RANK = {"bridge": 1, "jobs": 2, "operators": 3, "ui": 4, "registration": 5, "__init__": 5}
 
 
 def rust_files(folder: Path) -> list[Path]:

@@ -24,7 +24,7 @@ def job(context):
     def finish(figures):
         if figures is None:
             raise NothingToDo("No face has an area, or all UVs lie in one point")
-        for (obj, _), values in zip(chosen, figures.log2):
+        for (obj, _), values in zip(chosen, figures.log2, strict=True):
             mesh_io.write_face_attribute(obj.data, ATTRIBUTE, values)
         return figures
 

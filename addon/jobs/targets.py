@@ -13,10 +13,7 @@ def meshes(context):
 
     Of several objects with one mesh the active one counts, else the first.
     """
-    if context.mode == "EDIT_MESH":
-        objects = context.objects_in_mode
-    else:
-        objects = context.selected_objects
+    objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
     active = context.view_layer.objects.active
     found = {}
     for obj in sorted(objects, key=lambda obj: obj != active):

@@ -57,7 +57,7 @@ def job(context, settings):
     layers = [_layer(obj, settings.uv_layer) for obj in objects]
     read = [
         (obj, layer, mesh_io.read(obj, selected_only=selected_only, uv_layer=layer))
-        for obj, layer in zip(objects, layers)
+        for obj, layer in zip(objects, layers, strict=True)
     ]
     chosen = [part for part in read if len(part[2].triangles)]
     if not chosen:
@@ -106,8 +106,9 @@ def _write(chosen, mapping, settings):
     shapes.scale_to_one_density(mapping.islands)
     pack(mapping.islands, settings)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
-    figures = bridge.measure([_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts)])
-    for (obj, layer, _), (corners, uv) in zip(chosen, parts):
+    mapped = [_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts, strict=True)]
+    figures = bridge.measure(mapped)
+    for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
         if len(corners):
             mesh_io.write_uv(obj.data, mesh_io.ensure_layer(obj.data, layer), corners, uv)
     return figures

@@ -15,7 +15,7 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
 
     bl_idname = "authalic.measure"
     bl_label = "Measure Area Distortion"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
 
     @classmethod
     def poll(cls, context):

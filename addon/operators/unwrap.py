@@ -19,7 +19,7 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
 
     bl_idname = "authalic.unwrap"
     bl_label = "Authalic Unwrap"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
 
     domain: EnumProperty(
         name="Domain",
@@ -32,25 +32,24 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
     )
     fill_holes: BoolProperty(
         name="Fill Holes",
-        description="Virtually fill holes in the mesh before unwrapping, all but the longest boundary of an island",
+        description="Virtually fill holes in the mesh before unwrapping, all but the longest boundary",
         default=True,
     )
     iterations: IntProperty(
         name="Iterations",
-        description="Most iterations of the solver, 0 for its own choice",
-        min=0,
-        soft_max=200,
-        default=0,
+        description="Most iterations of the solver. More share the areas out more evenly, fewer are faster",
+        min=1,
+        soft_max=1000,
+        default=200,
     )
     uv_layer: StringProperty(
         name="UV Map",
         description="The UV map to write, added if there is none of this name. Empty for the active one",
-        maxlen=63,
         default="",
         search=_layer_names,
         search_options={"SUGGESTION"},
     )
-    rotate: BoolProperty(name="Rotate", description="Rotate islands to improve layout", default=True)
+    rotate: BoolProperty(name="Rotate", description="Rotate islands upright to improve layout", default=True)
     shape_method: EnumProperty(
         name="Shape Method",
         description="How closely the packer follows the outlines of the islands",

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes for the tests, and what is measured on them with numpy alone."""
+
+import bmesh
+import bpy
+import numpy as np
+
+
+def add(vertices, faces, name="Mesh", seams=()):
+    """A new selected, active object."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([tuple(map(float, v)) for v in vertices], [], [list(map(int, f)) for f in faces])
+    mesh.update(calc_edges=True)
+    wanted = {tuple(sorted(seam)) for seam in seams}
+    for edge in mesh.edges:
+        edge.use_seam = tuple(sorted(edge.vertices)) in wanted
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(obj)
+    select(obj)
+    return obj
+
+
+def select(*objects):
+    """Selects exactly these; the first is the active one."""
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in objects:
+        obj.select_set(True)
+    bpy.context.view_layer.objects.active = objects[0]
+
+
+def grid(n=6, bump=0.6, offset=(0, 0, 0)):
+    """Vertices and quads of a square with a bump in the middle."""
+    side = np.linspace(-1, 1, n + 1)
+    x, y = (a.ravel() for a in np.meshgrid(side, side))
+    vertices = np.stack([x, y, bump * np.exp(-4 * (x * x + y * y))], axis=1) + offset
+    first = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    return vertices, np.stack([first, first + 1, first + n + 2, first + n + 1], axis=1)
+
+
+def add_grid(name="Grid", **options):
+    return add(*grid(**options), name)
+
+
+def suzanne(levels=2):
+    bpy.ops.mesh.primitive_monkey_add()
+    obj = bpy.context.object
+    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = levels
+    bpy.ops.object.modifier_apply(modifier=modifier.name)
+    return obj
+
+
+def seam_sphere():
+    """A UV sphere, cut open along a meridian from pole to pole."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
+    obj = bpy.context.object
+    position = np.array([vertex.co for vertex in obj.data.vertices])
+    meridian = (np.abs(position[:, 1]) < 1e-5) & (position[:, 0] > -1e-5)
+    for edge in obj.data.edges:
+        edge.use_seam = all(meridian[vertex] for vertex in edge.vertices)
+    return obj
+
+
+def torus():
+    bpy.ops.mesh.primitive_torus_add(major_segments=12, minor_segments=8)
+    return bpy.context.object
+
+
+def join(*objects):
+    select(*objects)
+    bpy.ops.object.join()
+    return bpy.context.object
+
+
+def edit(*objects):
+    select(*objects)
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def select_faces(obj, chosen, hidden=()):
+    """Selects the faces in edit mode for which `chosen(index)` holds, hiding those in `hidden`."""
+    mesh = bmesh.from_edit_mesh(obj.data)
+    for vertex in mesh.verts:
+        vertex.select = False
+    for item in (*mesh.edges, *mesh.faces):
+        item.select = False
+    for face in mesh.faces:
+        if face.index in hidden:
+            face.hide_set(True)
+        elif chosen(face.index):
+            face.select_set(True)
+    bmesh.update_edit_mesh(obj.data)
+
+
+def uv(obj, layer=None):
+    """UVs (c, 2) float32 of a layer, by default the active one, in object mode or edit mode."""
+    if obj.data.is_editmode:
+        obj.update_from_editmode()
+        mesh = bmesh.from_edit_mesh(obj.data)
+        loops = mesh.loops.layers.uv[layer or obj.data.uv_layers.active.name]
+        return np.array([loop[loops].uv for face in mesh.faces for loop in face.loops], np.float32)
+    data = (obj.data.uv_layers[layer] if layer else obj.data.uv_layers.active).data
+    return np.array([item.uv for item in data], np.float32)
+
+
+def set_uv(obj, values, layer=None):
+    data = (obj.data.uv_layers[layer] if layer else obj.data.uv_layers.active).data
+    data.foreach_set("uv", np.ascontiguousarray(values, np.float32).ravel())
+
+
+def triangles(obj):
+    """Corners (t, 3), polygons (t,) and world positions (t, 3, 3) of the loop triangles; object mode."""
+    obj.data.calc_loop_triangles()
+    corners = np.array([tuple(triangle.loops) for triangle in obj.data.loop_triangles])
+    polygons = np.array([triangle.polygon_index for triangle in obj.data.loop_triangles])
+    vertices = np.array([tuple(triangle.vertices) for triangle in obj.data.loop_triangles])
+    positions = np.array([tuple(obj.matrix_world @ vertex.co) for vertex in obj.data.vertices])
+    return corners, polygons, positions[vertices]
+
+
+def surface_areas(points):
+    return np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1) / 2
+
+
+def uv_areas(image):
+    """Signed areas (t,) of triangles (t, 3, 2), by the shoelace formula."""
+    x, y = image[..., 0].astype(float), image[..., 1].astype(float)
+    return (x * (np.roll(y, -1, axis=1) - np.roll(y, 1, axis=1))).sum(axis=1) / 2
+
+
+def area_ratios(obj, layer=None):
+    """UV area over surface area (t,), rescaled so that both sums agree; negative for a flip."""
+    corners, _, points = triangles(obj)
+    image, area = uv_areas(uv(obj, layer)[corners]), surface_areas(points)
+    return image / area * (area.sum() / np.abs(image).sum())
+
+
+def islands(obj, layer=None):
+    """The UV island number of each triangle, by what triangles share UVs at a vertex."""
+    corners, _, _ = triangles(obj)
+    vertices = np.array([loop.vertex_index for loop in obj.data.loops])
+    key = np.column_stack([vertices, uv(obj, layer).view(np.int32)])
+    points = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)[corners]
+    label = np.arange(points.max() + 1)
+    while True:
+        lowest = label[points].min(axis=1)
+        new = label.copy()
+        np.minimum.at(new, points.ravel(), np.repeat(lowest, 3))
+        if (new == label).all():
+            return np.unique(lowest, return_inverse=True)[1].reshape(-1)
+        label = new
+
+
+def densities(*objects):
+    """UV area over world area of every island of all objects."""
+    found = []
+    for obj in objects:
+        corners, _, points = triangles(obj)
+        image, area, label = uv_areas(uv(obj)[corners]), surface_areas(points), islands(obj)
+        found += list(np.bincount(label, image) / np.bincount(label, area))
+    return np.array(found)
+
+
+def tetrahedron(centre=(0, 0, 0)):
+    vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) + centre
+    return vertices, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+
+
+def moebius(n=12, offset=(0, 0, 0)):
+    """A one-sided strip of quads."""
+    angle = np.repeat(np.arange(n) * 2 * np.pi / n, 2)
+    width = np.tile([-0.3, 0.3], n)
+    radius = 1 + width * np.cos(angle / 2)
+    vertices = np.stack([radius * np.cos(angle), radius * np.sin(angle), width * np.sin(angle / 2)], axis=1)
+    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(n - 1)]
+    return vertices + offset, np.array([*faces, [2 * n - 2, 1, 0, 2 * n - 1]])
+
+
+def together(*parts):
+    """Several (vertices, faces) as one; faces stay lists, so that they may differ in size."""
+    vertices, faces, start = [], [], 0
+    for points, polygons in parts:
+        vertices += [tuple(point) for point in points]
+        faces += [[int(v) + start for v in polygon] for polygon in polygons]
+        start += len(points)
+    return np.array(vertices), faces

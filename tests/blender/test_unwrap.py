@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.unwrap in object mode: the UVs it writes, measured from the mesh by numpy alone."""
+
+import bpy
+import meshes
+import numpy as np
+import pytest
+
+
+def unwrap(**options):
+    return bpy.ops.authalic.unwrap(**options)
+
+
+def assert_sound(obj, deviation=0.1, layer=None):
+    """UVs in the unit square, without flips, with areas as even as a coarse mesh allows."""
+    uv, ratios = meshes.uv(obj, layer), meshes.area_ratios(obj, layer)
+    assert np.isfinite(uv).all() and uv.min() >= 0 and uv.max() <= 1
+    assert (ratios > 0).all()
+    assert ratios.std() <= deviation
+
+
+def assert_no_overlap(*objects, resolution=512):
+    """No pixel centre of the unit square lies strictly inside triangles of two islands."""
+    found = np.zeros((resolution, resolution), int)
+    for obj in objects:
+        corners, _, _ = meshes.triangles(obj)
+        image, label = meshes.uv(obj)[corners].astype(float), meshes.islands(obj)
+        for island in range(label.max() + 1):
+            found += _coverage(image[label == island], resolution)
+    assert found.max() == 1
+
+
+def _coverage(triangles, resolution):
+    covered = np.zeros((resolution, resolution), bool)
+    for triangle in triangles * resolution - 0.5:
+        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
+        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+        inside = np.ones(x.shape, bool)
+        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
+        covered[y[inside], x[inside]] = True
+    return covered
+
+
+def test_suzanne_reaches_the_bar():
+    obj = meshes.suzanne()
+    assert unwrap() == {"FINISHED"}
+    assert_sound(obj, deviation=0.03)
+    assert meshes.islands(obj).max() == 2
+    density = meshes.densities(obj)
+    assert density.max() / density.min() == pytest.approx(1, abs=1e-4)
+    assert_no_overlap(obj)
+
+
+def test_seam_cut_sphere():
+    obj = meshes.seam_sphere()
+    assert unwrap() == {"FINISHED"}
+    assert_sound(obj)
+    assert meshes.islands(obj).max() == 0
+
+
+@pytest.mark.parametrize("fill", ["NOTHING", "NGON", "TRIFAN"])
+def test_ngons_and_fans(fill):
+    bpy.ops.mesh.primitive_cylinder_add(vertices=24, end_fill_type=fill)
+    obj = bpy.context.object
+    for edge in obj.data.edges:  # the rims, and one line down the side
+        z = [obj.data.vertices[vertex].co.z for vertex in edge.vertices]
+        vertical = z[0] * z[1] < 0
+        rim = not vertical and all(np.hypot(*obj.data.vertices[v].co.xy) > 0.5 for v in edge.vertices)
+        edge.use_seam = rim or (vertical and obj.data.vertices[edge.vertices[0]].co.y > 0.999)
+    assert unwrap() == {"FINISHED"}
+    assert_sound(obj, deviation=0.2)
+    density = meshes.densities(obj)
+    assert len(density) == (1 if fill == "NOTHING" else 3)
+    assert density.max() / density.min() == pytest.approx(1, abs=1e-4)
+    assert_no_overlap(obj)
+
+
+def test_ngon_with_corners_in_a_line():
+    outline = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0), (3, 1, 0), (2, 1, 0), (0, 1, 0)]
+    obj = meshes.add([*outline, (0, 2, 0), (3, 2, 0)], [range(7), [6, 5, 4, 8, 7]])
+    assert unwrap() == {"FINISHED"}
+    uv = meshes.uv(obj)
+    assert len(np.unique(uv, axis=0)) == 9 and meshes.uv_areas(uv[None, :7]).item() > 0
+
+
+def test_quads_that_share_a_diagonal_stay_whole():
+    # Two quads with two edges in common: one way of halving them makes their diagonals coincide.
+    vertices = [(0, 0, 0), (1, -1, 0.2), (2, 0, 0), (1, 0.3, 0), (1, 1, 0.2)]
+    obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
+    assert unwrap() == {"FINISHED"}
+    assert len(np.unique(meshes.uv(obj), axis=0)) == 5
+
+
+def test_a_bow_of_quads_over_one_diagonal():
+    # Both quads can only be halved along 0-2, which the mesh also has as an edge of the triangle.
+    vertices = [(0, 0, 0), (1, -1, 0), (2, 0, 0), (1, -0.1, 0), (1, 1, 0)]
+    obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
+    assert unwrap() == {"FINISHED"}
+    corner = [loop.vertex_index for loop in obj.data.loops]
+    uv = meshes.uv(obj)
+    for vertex in range(5):
+        assert len({tuple(uv[i]) for i in range(8) if corner[i] == vertex}) == 1
+
+
+def test_one_density_over_objects_in_the_world():
+    first, second = meshes.add_grid("First"), meshes.add_grid("Second", n=5, bump=0.3, offset=(4, 0, 0))
+    second.scale = (3, 3, 3)
+    bpy.context.view_layer.update()
+    meshes.select(first, second)
+    assert unwrap() == {"FINISHED"}
+    density = meshes.densities(first, second)
+    assert density[0] == pytest.approx(density[1], rel=1e-4)
+    assert_no_overlap(first, second)
+
+
+def test_shared_mesh_is_unwrapped_once():
+    first = meshes.add_grid()
+    second = bpy.data.objects.new("Second", first.data)
+    bpy.context.collection.objects.link(second)
+    meshes.select(first, second)
+    assert unwrap() == {"FINISHED"}
+    uv = meshes.uv(first)
+    # One island alone: a disk that fills the square.
+    assert np.ptp(uv, axis=0).min() > 0.95
+
+
+@pytest.mark.parametrize("scale", [(-1, 1, 1), (-2, -2, -2)])
+def test_mirrored_object_is_not_flipped(scale):
+    obj = meshes.add_grid()
+    obj.scale = scale
+    bpy.context.view_layer.update()
+    assert unwrap() == {"FINISHED"}
+    assert_sound(obj)
+
+
+def test_new_layer_is_added_and_active():
+    obj = meshes.add_grid()
+    obj.data.uv_layers.new(name="Old")
+    before = meshes.uv(obj, "Old")
+    assert unwrap(uv_layer="New") == {"FINISHED"}
+    assert [layer.name for layer in obj.data.uv_layers] == ["Old", "New"]
+    assert obj.data.uv_layers.active.name == "New"
+    assert [layer.active_render for layer in obj.data.uv_layers] == [True, False]
+    assert (meshes.uv(obj, "Old") == before).all()
+    assert_sound(obj, layer="New")
+
+
+def test_named_layer_is_written_again():
+    obj = meshes.add_grid()
+    for name in ("First", "Second"):
+        obj.data.uv_layers.new(name=name)
+    before = meshes.uv(obj, "First")
+    assert unwrap(uv_layer="Second") == {"FINISHED"}
+    assert len(obj.data.uv_layers) == 2 and (meshes.uv(obj, "First") == before).all()
+    assert_sound(obj, layer="Second")
+
+
+def test_layer_is_added_where_there_is_none():
+    obj = meshes.add_grid()
+    assert unwrap() == {"FINISHED"}
+    assert [layer.name for layer in obj.data.uv_layers] == ["UVMap"]
+
+
+def test_long_layer_name_is_found_again():
+    obj, name = meshes.add_grid(), "é" * 40
+    unwrap(uv_layer=name)
+    unwrap(uv_layer=name)
+    assert len(obj.data.uv_layers) == 1
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_ninth_layer_is_refused(mode):
+    obj = meshes.add_grid()
+    for index in range(8):
+        obj.data.uv_layers.new(name=f"Layer {index}")
+    before = [meshes.uv(obj, layer.name) for layer in obj.data.uv_layers]
+    bpy.ops.object.mode_set(mode=mode)
+    with pytest.raises(RuntimeError, match=r"8 UV maps.*Ninth"):
+        unwrap(uv_layer="Ninth")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert len(obj.data.uv_layers) == 8
+    assert all((meshes.uv(obj, f"Layer {i}") == before[i]).all() for i in range(8))
+
+
+def test_closed_mesh_is_refused_and_left_alone():
+    obj = meshes.add(*meshes.tetrahedron())
+    with pytest.raises(RuntimeError, match="Mesh at face 0: is closed; mark seams"):
+        unwrap(uv_layer="New")
+    assert len(obj.data.uv_layers) == 0
+
+
+def test_torus_is_refused_by_its_handle():
+    meshes.torus()
+    with pytest.raises(RuntimeError, match="is closed; mark seams"):
+        unwrap()
+
+
+def test_holes_need_fill_holes():
+    bpy.ops.mesh.primitive_cylinder_add(vertices=12, end_fill_type="NOTHING")
+    with pytest.raises(RuntimeError, match="2 boundaries; turn on Fill Holes"):
+        unwrap(fill_holes=False)
+    assert unwrap(fill_holes=True) == {"FINISHED"}
+    assert_sound(bpy.context.object)
+
+
+def refused_with_others():
+    """An object of a grid (36 quads), a one-sided strip, a tetrahedron and a face without area."""
+    flat = (np.array([[9, 0, 0], [10, 0, 0], [11, 0, 0]]), [[0, 1, 2]])
+    parts = [meshes.grid(), meshes.moebius(offset=(4, 0, 0)), meshes.tetrahedron((0, 5, 0)), flat]
+    obj = meshes.add(*meshes.together(*parts), "Mixed")
+    obj.data.uv_layers.new(name="UVMap")
+    meshes.set_uv(obj, np.random.default_rng(1).random((len(obj.data.loops), 2)))
+    return obj
+
+
+def test_refused_islands_are_named_and_left_alone(capfd):
+    obj = refused_with_others()
+    before = meshes.uv(obj)
+    assert unwrap() == {"FINISHED"}
+    after = meshes.uv(obj)
+    assert (before[144:] == after[144:]).all() and (before[:144] != after[:144]).any(axis=1).all()
+    said = capfd.readouterr().out
+    assert "Unwrapped 1 island" in said
+    assert "Mixed at face 36: is one-sided" in said
+    assert "Mixed at face 48: is closed; mark seams" in said
+    assert "face 52" in said and "no area" in said
+
+
+def test_pinned_island_is_left_alone(capfd):
+    obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
+    obj.data.uv_layers.new(name="UVMap")
+    obj.data.attributes.new(".pn.UVMap", "BOOLEAN", "CORNER").data[150].value = True
+    before = meshes.uv(obj)
+    assert unwrap() == {"FINISHED"}
+    assert (meshes.uv(obj)[144:] == before[144:]).all()
+    assert "face 36: has pinned UVs" in capfd.readouterr().out
+    assert obj.data.attributes[".pn.UVMap"].data[150].value
+
+
+def test_island_with_a_bad_coordinate_is_left_alone(capfd):
+    obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
+    obj.data.vertices[60].co.x = float("nan")
+    assert unwrap() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "face 36" in said and "vertex 60" in said
+
+
+def test_branching_edge_acts_as_a_seam():
+    vertices, faces = meshes.grid(n=2, bump=0)
+    fin = [*vertices, (0, -1, 1), (0, 0, 1)]
+    obj = meshes.add(fin, [*faces, [1, 4, 10, 9]])
+    assert unwrap() == {"FINISHED"}
+    assert np.isfinite(meshes.uv(obj)).all() and (meshes.area_ratios(obj) > 0).all()
+
+
+def test_empty_mesh_and_no_mesh(capfd):
+    empty = meshes.add([], [], "Empty")
+    assert unwrap() == {"CANCELLED"}
+    assert "no faces" in capfd.readouterr().out
+    meshes.select(meshes.add_grid(), empty)
+    assert unwrap() == {"FINISHED"}
+    bpy.ops.object.select_all(action="DESELECT")
+    with pytest.raises(RuntimeError, match=r"poll.*Select at least one mesh object"):
+        unwrap()
+
+
+def test_other_data_is_untouched():
+    obj = meshes.add_grid()
+    mesh = obj.data
+    mesh.uv_layers.new(name="First")
+    mesh.uv_layers.new(name="Second")
+    mesh.uv_layers["Second"].active_render = True
+    mesh.uv_layers.active = mesh.uv_layers["First"]
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Key")
+    key.data[3].co.z = 5
+    normals = np.random.default_rng(2).normal(size=(len(mesh.loops), 3))
+    mesh.normals_split_custom_set(normals / np.linalg.norm(normals, axis=1)[:, None])
+
+    def state():
+        keys = [[tuple(point.co) for point in block.data] for block in mesh.shape_keys.key_blocks]
+        corner = [tuple(normal.vector) for normal in mesh.corner_normals]
+        return (
+            keys,
+            corner,
+            meshes.uv(obj, "Second").tolist(),
+            [layer.active_render for layer in mesh.uv_layers],
+        )
+
+    before = state()
+    assert unwrap() == {"FINISHED"}
+    assert state() == before and mesh.uv_layers.active.name == "First"
+    assert_sound(obj, layer="First")
+
+
+def test_scene_is_as_it_was():
+    first, second = meshes.add_grid("First"), meshes.add_grid("Second")
+    other = meshes.add_grid("Other")
+    meshes.select(second, first)
+
+    def state():
+        data = [
+            sorted(block.name for block in getattr(bpy.data, kind))
+            for kind in ("meshes", "objects", "scenes")
+        ]
+        tools = bpy.context.tool_settings
+        return (
+            *data,
+            bpy.context.scene.name,
+            bpy.context.mode,
+            bpy.context.view_layer.objects.active,
+            [obj.select_get() for obj in (first, second, other)],
+            [[p.select for p in obj.data.polygons] for obj in (first, second)],
+            tools.use_uv_select_sync,
+        )
+
+    before = state()
+    unwrap()
+    bpy.ops.authalic.measure()
+    assert state() == before
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_undo(mode):
+    obj = meshes.add_grid()
+    obj.data.uv_layers.new(name="UVMap")
+    bpy.ops.object.mode_set(mode=mode)
+    if mode == "EDIT":
+        meshes.select_faces(obj, lambda index: True)
+    bpy.ops.ed.undo_push(message="Start")
+    before = meshes.uv(obj)
+    bpy.ops.authalic.unwrap("EXEC_DEFAULT", True)
+    assert (meshes.uv(obj) != before).any()
+    bpy.ops.ed.undo()
+    assert bpy.context.object.mode == mode
+    assert (meshes.uv(bpy.context.object) == before).all()
+
+
+def test_packing_options():
+    obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
+    fill = []
+    for options in ({"margin": 0.0}, {"margin": 0.1}, {"margin": 0.1, "margin_method": "FRACTION"}):
+        assert unwrap(shape_method="AABB", rotate=False, **options) == {"FINISHED"}
+        corners, _, _ = meshes.triangles(obj)
+        fill.append(meshes.uv_areas(meshes.uv(obj)[corners]).sum())
+    assert fill[0] > fill[1] and fill[0] > fill[2]
+
+
+def test_non_uniform_scale_is_said(capfd):
+    obj = meshes.add_grid()
+    obj.scale = (1, 2, 1)
+    bpy.context.view_layer.update()
+    assert unwrap() == {"FINISHED"}
+    assert "non-uniform scale" in capfd.readouterr().out

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Meshes of known topology built in code, and the real ones where a data folder is there."""
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+DATA = Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
+
+
+class Mesh(NamedTuple):
+    """Vertices (n, 3) float64 and faces (m, 3) int64."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+
+
+def single_triangle():
+    return Mesh(np.array([[0.0, 0, 0], [2, 0, 0], [0, 1, 1]]), np.array([[0, 1, 2]]))
+
+
+def single_quad():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]])
+    return Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def fan(sides=6):
+    """A pyramid over a regular polygon, its apex the vertex 0."""
+    angle = 2 * np.pi * np.arange(sides) / sides
+    rim = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+    around = 1 + np.arange(sides)
+    faces = np.stack([np.zeros(sides, int), around, np.roll(around, -1)], axis=1)
+    return Mesh(np.vstack([[0, 0, 0.7], rim]), faces)
+
+
+def quads(rows, columns, wrap=False):
+    """Triangles of a grid of vertices numbered row by row; the last column meets the first with `wrap`."""
+    index = np.arange(rows * columns).reshape(rows, columns)
+    if wrap:
+        index = np.hstack([index, index[:, :1]])
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+
+
+def grid(rows=9, columns=13, aspect=1.5):
+    """A flat rectangle."""
+    y, x = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, aspect, columns), indexing="ij")
+    return Mesh(np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3), quads(rows, columns))
+
+
+def with_pole(rows_of_points, pole):
+    """A tube of rings (r, k, 3) whose first ring is closed by a fan to one more vertex, the last one."""
+    rings, around = rows_of_points.shape[:2]
+    first = np.arange(around)
+    cap = np.stack([np.full(around, rings * around), first, np.roll(first, -1)], axis=1)
+    faces = np.vstack([quads(rings, around, wrap=True)[:, ::-1], cap])
+    return Mesh(np.vstack([rows_of_points.reshape(-1, 3), pole]), faces)
+
+
+def bumpy_cap(rings=14, around=30, noise=0.04, seed=1):
+    """A round cap with bumps and a rough surface."""
+    radius = np.linspace(0, 1, rings + 1)[1:, None]
+    angle = 2 * np.pi * np.arange(around) / around
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    z = 0.8 * np.exp(-6 * ((x - 0.4) ** 2 + y**2)) + 0.5 * np.exp(-9 * ((x + 0.4) ** 2 + (y - 0.3) ** 2))
+    z = z + noise * np.random.default_rng(seed).standard_normal(z.shape)
+    return with_pole(np.stack([x, y, z], axis=-1), [0, 0, 0.4])
+
+
+def tube_disk(around=12, along=50, radius=0.35):
+    """A long thin finger closed at its tip: a disk whose boundary is a small circle far away."""
+    angle = 2 * np.pi * np.arange(around) / around
+    height = np.linspace(6, 0, along)[:, None] + 0 * angle
+    x, y = (radius * trig(angle) + 0 * height for trig in (np.cos, np.sin))
+    return with_pole(np.stack([x, y, height], axis=-1), [0, 0, 6.2])
+
+
+def slit_sphere(stacks=16, slices=24):
+    """A sphere slit open along a meridian: both poles lie on the boundary."""
+    polar = np.linspace(0, np.pi, stacks + 1)[1:-1, None]
+    angle = np.linspace(0, 2 * np.pi, slices + 1)
+    x, y, z = np.sin(polar) * np.cos(angle), np.sin(polar) * np.sin(angle), np.cos(polar) + 0 * angle
+    rows = np.stack([x, y, z], axis=-1)
+    n, left = rows[..., 0].size, np.arange(slices)
+    north = np.stack([np.full(slices, n), left, left + 1], axis=1)
+    south = np.stack([np.full(slices, n + 1), n - slices + left, n - slices - 1 + left], axis=1)
+    faces = np.vstack([quads(stacks - 1, slices + 1)[:, ::-1], north, south])
+    return Mesh(np.vstack([rows.reshape(-1, 3), [0, 0, 1], [0, 0, -1]]), faces)
+
+
+def sphere(stacks=10, slices=14):
+    """A closed sphere and a meridian of it, from pole to pole, as seams."""
+    slit = slit_sphere(stacks, slices)
+    column = np.arange((stacks - 1) * (slices + 1)) % (slices + 1)
+    twin = np.arange(len(slit.vertices))
+    twin[:-2][column == slices] -= slices
+    used, faces = np.unique(twin[slit.faces], return_inverse=True)
+    closed = Mesh(slit.vertices[used], faces.reshape(-1, 3))
+    poles, meridian = [len(used) - 2, len(used) - 1], np.arange(stacks - 1) * slices
+    path = np.concatenate([poles[:1], meridian, poles[1:]])
+    return closed, np.stack([path[:-1], path[1:]], axis=1)
+
+
+def annulus(around=40, rings=5, inner=0.4):
+    """A flat ring of two boundary loops."""
+    radius = np.linspace(1, inner, rings)[:, None]
+    angle = 2 * np.pi * np.arange(around) / around
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * radius + 0 * angle], axis=-1)
+    return Mesh(points.reshape(-1, 3), quads(rings, around, wrap=True))
+
+
+def plate_with_holes(side=25):
+    """A square plate with three square holes of different sizes."""
+    mesh = grid(side, side, aspect=1.0)
+    centre = mesh.vertices[mesh.faces].mean(axis=1)[:, :2]
+    solid = np.ones(len(mesh.faces), bool)
+    for hole, half in (((0.25, 0.25), 0.09), ((0.7, 0.3), 0.13), ((0.5, 0.75), 0.05)):
+        solid &= np.abs(centre - hole).max(axis=1) > half
+    return compact(Mesh(mesh.vertices, mesh.faces[solid]))
+
+
+def torus(around=18, along=10):
+    """A closed torus, genus 1."""
+    u, v = (2 * np.pi * np.arange(k) / k for k in (along, around))
+    ring = (2 + np.cos(u))[:, None]
+    points = np.stack([ring * np.cos(v), ring * np.sin(v), np.sin(u)[:, None] + 0 * v], axis=-1)
+    index = np.arange(along * around).reshape(along, around)
+    right, down = np.roll(index, -1, 1), np.roll(index, -1, 0)
+    corner = np.roll(right, -1, 0)
+    faces = np.stack([index, right, corner, index, corner, down], axis=-1).reshape(-1, 3)
+    return Mesh(points.reshape(-1, 3), faces)
+
+
+def moebius(around=20):
+    """A strip with half a turn: one boundary loop, but only one side."""
+    angle = 2 * np.pi * np.arange(around) / around
+    across = np.array([-0.3, 0.0, 0.3])[:, None]
+    ring = 1 + across * np.cos(angle / 2)
+    points = np.stack([ring * np.cos(angle), ring * np.sin(angle), across * np.sin(angle / 2)], axis=-1)
+    index = np.arange(3 * around).reshape(3, around)
+    index = np.hstack([index, index[::-1, :1]])
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    return Mesh(points.reshape(-1, 3), np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3))
+
+
+def compact(mesh):
+    """The mesh without vertices that no face uses."""
+    used, faces = np.unique(mesh.faces, return_inverse=True)
+    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+
+
+DISKS = {
+    "single_triangle": single_triangle(),
+    "single_quad": single_quad(),
+    "fan": fan(),
+    "grid": grid(),
+    "strip": grid(2, 30, aspect=12.0),
+    "bumpy_cap": bumpy_cap(),
+    "rough_cap": bumpy_cap(noise=0.15, seed=7),
+    "slit_sphere": slit_sphere(),
+    "tube_disk": tube_disk(),
+}
+
+
+def real_files(folder):
+    """The .npz files of a folder of the data, none without it."""
+    return sorted((DATA / folder).glob("*.npz"))
+
+
+def load(path):
+    with np.load(path) as file:
+        return Mesh(file["V"].astype(np.float64), file["F"].astype(np.int64))

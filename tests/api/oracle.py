@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The figures of a map by other formulas than the library's, in numpy and in exact fractions."""
+
+from fractions import Fraction
+
+import numpy as np
+from scipy import sparse
+
+
+def face_areas(vertices, faces):
+    """Areas by Heron's formula from the edge lengths, (m,)."""
+    a, b, c = np.sort(edge_lengths(vertices, faces), axis=1)[:, ::-1].T
+    return np.sqrt(np.maximum((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c)), 0)) / 4
+
+
+def edge_lengths(vertices, faces):
+    """The length of the edge opposite to each corner, (m, 3)."""
+    corners = np.asarray(vertices)[faces]
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1), axis=2)
+
+
+def signed_areas(uv, faces):
+    """Image areas by the determinant of homogeneous coordinates, (m,)."""
+    return np.linalg.det(np.concatenate([np.asarray(uv)[faces], np.ones((len(faces), 3, 1))], axis=2)) / 2
+
+
+def folded(uv, faces):
+    """Faces whose orientation is not positive, by exact arithmetic wherever rounding could decide."""
+    a, b, c = np.moveaxis(np.asarray(uv, float)[faces], 1, 0)
+    left = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
+    right = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    doubtful = left - right <= 1e-13 * (np.abs(left) + np.abs(right))
+    return [face for face in np.flatnonzero(doubtful) if exact_area(uv[faces[face]]) <= 0]
+
+
+def exact_area(corners):
+    """Twice the signed area of a triangle as a fraction."""
+    (ax, ay), (bx, by), (cx, cy) = [[Fraction(float(x)) for x in corner] for corner in corners]
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+
+def authalic_energy(uv, faces, targets):
+    """Σ (a − |τ|)²/|τ| with the targets rescaled to the image's area."""
+    areas = signed_areas(uv, faces)
+    targets = targets * np.abs(areas).sum() / targets.sum()
+    return ((areas - targets) ** 2 / targets).sum()
+
+
+def area_ratio(uv, faces, targets):
+    """Signed image area over the rescaled target, (m,)."""
+    areas = signed_areas(uv, faces)
+    return areas / targets * (targets.sum() / np.abs(areas).sum())
+
+
+def stretch_laplacian(uv, faces, targets):
+    """L_S: half the sum of cotangent weights of the image, each times its image area over the target."""
+    cotangents, areas = image_cotangents(uv, faces), signed_areas(uv, faces)
+    weights = 0.5 * cotangents * (areas / targets)[:, None]
+    i, j = np.roll(faces, -1, axis=1).ravel(), np.roll(faces, -2, axis=1).ravel()
+    half = sparse.coo_matrix((weights.ravel(), (i, j)), shape=(len(uv), len(uv)))
+    adjacency = (half + half.T).tocsr()
+    return sparse.diags(np.asarray(adjacency.sum(axis=1)).ravel()) - adjacency
+
+
+def image_cotangents(uv, faces):
+    """The cotangent of the angle at each corner of the image, by the law of cosines, (m, 3)."""
+    square = edge_lengths(uv, faces) ** 2
+    areas = signed_areas(uv, faces)
+    return (square.sum(axis=1, keepdims=True) - 2 * square) / (4 * areas[:, None])
+
+
+def stretch_energy(uv, faces, targets):
+    """½ fᵀ (I ⊗ L_S) f."""
+    laplacian = stretch_laplacian(uv, faces, targets)
+    return 0.5 * sum(column @ (laplacian @ column) for column in np.asarray(uv).T)
+
+
+def angle_distortion(vertices, faces, uv):
+    """σ₁/σ₂ of the linear map of each face, (m,), by the singular value decomposition."""
+    ratio = np.empty(len(faces))
+    for k, face in enumerate(faces):
+        rest = in_own_plane(vertices[face])
+        image = (uv[face[1:]] - uv[face[0]]).T
+        first, second = np.linalg.svd(image @ np.linalg.inv(rest), compute_uv=False)
+        ratio[k] = first / second
+    return ratio
+
+
+def in_own_plane(corners):
+    """The two edges from the first corner as columns (2, 2), in an orthonormal frame of the face."""
+    edges = (corners[1:] - corners[0]).T
+    triangle = np.linalg.qr(edges).R
+    return triangle if np.linalg.det(triangle) > 0 else np.diag([1, -1]) @ triangle
+
+
+def boundary_loop(faces):
+    """The vertices of the one boundary loop in its order, the surface on its left."""
+    directed = {(int(a), int(b)) for face in faces for a, b in zip(face, np.roll(face, -1), strict=True)}
+    after = dict(edge for edge in directed if edge[::-1] not in directed)
+    loop = [min(after)]
+    while after[loop[-1]] != loop[0]:
+        loop.append(after[loop[-1]])
+    assert len(loop) == len(after), "more than one loop"
+    return np.array(loop)
+
+
+def boundary_arcs(uv, loop):
+    """The arc of the circle from each boundary vertex to the next, (k,)."""
+    angle = np.arctan2(*uv[loop].T[::-1])
+    return (np.roll(angle, -1) - angle) % (2 * np.pi)
+
+
+def assert_disk_embedding(result):
+    """No fold by exact arithmetic, boundary once around the unit circle in its order, all in the disk."""
+    loop = boundary_loop(result.faces)
+    radius = np.hypot(*result.uv.T)
+    assert folded(result.uv, result.faces) == []
+    assert len(result.distortion.folded) == 0
+    assert np.abs(radius[loop] - 1).max() <= 1e-12
+    arcs = boundary_arcs(result.uv, loop)
+    assert (arcs > 0).all()
+    assert abs(arcs.sum() - 2 * np.pi) < 1e-9
+    assert radius.max() <= 1 + 1e-12

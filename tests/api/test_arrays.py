@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Arrays of any dtype and memory layout go in; what is no array of numbers is refused."""
+
+import numpy as np
+import pytest
+
+import authalic
+
+from . import meshes
+
+# halves and whole numbers, so that every float type holds them exactly
+VERTICES = np.hstack([meshes.grid(7, 9).vertices[:, :2] * 48, np.arange(63)[:, None] % 4 / 2])
+FACES = meshes.grid(7, 9).faces
+
+
+def strided(array):
+    """The same values as every second entry of every third row, backwards in memory."""
+    wide = np.full((3 * len(array), 2 * array.shape[1]), 99, array.dtype)[::-1]
+    wide[::3, ::2] = array
+    return wide[::3, ::2]
+
+
+def read_only(array):
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+def unaligned(array):
+    buffer = np.zeros(array.nbytes + 1, np.uint8)[1:]
+    view = buffer.view(array.dtype).reshape(array.shape)
+    view[:] = array
+    assert not view.flags.aligned
+    return view
+
+
+LAYOUTS = {
+    "fortran": np.asfortranarray,
+    "strided": strided,
+    "read_only": read_only,
+    "unaligned": unaligned,
+    "byte_swapped": lambda array: array.astype(array.dtype.newbyteorder()),
+    "nested_lists": lambda array: array.tolist(),
+    "tuples": lambda array: tuple(map(tuple, array.tolist())),
+    "list_of_rows": list,
+    "matrix_subclass": lambda array: array.view(np.recarray),
+}
+
+
+@pytest.fixture(scope="module")
+def expected():
+    return authalic.disk_map(VERTICES, FACES).uv
+
+
+@pytest.mark.parametrize("dtype", ["f2", "f4", "f8", "longdouble", "i2", "i4", "i8"])
+def test_vertices_of_any_real_dtype(dtype, expected):
+    vertices = VERTICES.astype(dtype)
+    if np.dtype(dtype).kind == "f":
+        assert np.array_equal(vertices, VERTICES)
+        assert np.array_equal(authalic.disk_map(vertices, FACES).uv, expected)
+    else:
+        like = authalic.disk_map(vertices.astype(float), FACES).uv
+        assert np.array_equal(authalic.disk_map(vertices, FACES).uv, like)
+
+
+@pytest.mark.parametrize("dtype", ["u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", "f8"])
+def test_faces_of_any_integer_dtype_and_whole_reals(dtype, expected):
+    assert np.array_equal(authalic.disk_map(VERTICES, FACES.astype(dtype)).uv, expected)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
+def test_any_memory_layout(layout, expected):
+    assert np.array_equal(authalic.disk_map(layout(VERTICES), layout(FACES)).uv, expected)
+
+
+def test_a_memory_map(tmp_path, expected):
+    np.save(tmp_path / "vertices.npy", VERTICES)
+    mapped = np.load(tmp_path / "vertices.npy", mmap_mode="r")
+    assert isinstance(mapped, np.memmap)
+    assert np.array_equal(authalic.disk_map(mapped, FACES).uv, expected)
+
+
+def test_an_object_with_the_array_protocol(expected):
+    class Tensor:
+        def __array__(self, dtype=None, copy=None):
+            return VERTICES
+
+    assert np.array_equal(authalic.disk_map(Tensor(), FACES).uv, expected)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
+def test_images_and_densities_of_any_layout(layout, expected):
+    density = np.arange(1.0, len(FACES) + 1)
+    plain = authalic.distortion(VERTICES, FACES, expected, density=density)
+    image, weights = layout(expected), layout(density[:, None])
+    weights = np.asarray(weights)[:, 0]
+    given = authalic.distortion(VERTICES, FACES, image, density=weights)
+    assert given.authalic_energy == plain.authalic_energy
+
+
+@pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
+def test_seams_and_start_maps_of_any_layout(layout, expected):
+    seams = np.array([[2, 11], [11, 20]])
+    assert len(authalic.cut(VERTICES, FACES, seams=layout(seams))[0].vertices) == len(VERTICES) + 2
+    plain = authalic.disk_map(VERTICES, FACES, initial=expected, max_iterations=3).uv
+    assert np.array_equal(
+        authalic.disk_map(VERTICES, FACES, initial=layout(expected), max_iterations=3).uv, plain
+    )
+
+
+def test_inputs_are_left_unchanged():
+    arrays = {
+        "vertices": VERTICES.copy(),
+        "faces": FACES.copy(),
+        "density": np.ones(len(FACES)),
+        "initial": authalic.disk_map(VERTICES, FACES).uv,
+    }
+    arrays["faces"][5] = arrays["faces"][5][::-1]  # turned, which the library repairs in its own copy
+    before = {name: array.copy() for name, array in arrays.items()}
+    result = authalic.disk_map(**arrays)
+    authalic.distortion(arrays["vertices"], arrays["faces"], arrays["initial"], density=arrays["density"])
+    authalic.cut(arrays["vertices"], arrays["faces"])
+    assert all(np.array_equal(arrays[name], before[name]) for name in arrays)
+    assert np.array_equal(np.sort(result.faces, axis=1), np.sort(FACES, axis=1))
+
+
+def test_results_do_not_share_memory_with_the_input():
+    (patch,) = authalic.cut(VERTICES, FACES)
+    assert np.array_equal(patch.vertices, VERTICES)
+    assert not np.shares_memory(patch.vertices, VERTICES)
+    assert not np.shares_memory(patch.faces, FACES)
+
+
+BAD_VERTICES = {
+    "flat": VERTICES.ravel(),
+    "two_columns": VERTICES[:, :2],
+    "four_columns": np.hstack([VERTICES, VERTICES[:, :1]]),
+    "three_dimensions": VERTICES[None],
+    "scalar": 3.0,
+    "none": None,
+    "complex": VERTICES.astype(complex),
+    "objects": VERTICES.astype(object),
+    "strings": VERTICES.astype(str),
+    "text": "vertices",
+    "dates": np.zeros((63, 3), "M8[s]"),
+    "structured": np.zeros((63, 3), [("x", float)]),
+    "ragged": [[0, 0, 0], [1, 0], [0, 1, 0]],
+    "dictionary": {"x": 1},
+}
+
+
+@pytest.mark.parametrize("vertices", BAD_VERTICES.values(), ids=BAD_VERTICES)
+def test_vertices_that_are_no_n_by_3_reals_are_refused(vertices):
+    for call in (authalic.disk_map, authalic.cut):
+        with pytest.raises(authalic.MeshError, match=r"^vertices must be ") as caught:
+            call(vertices, FACES)
+        assert (caught.value.indices, caught.value.count) == ((), 0)
+
+
+BAD_FACES = {
+    "flat": FACES.ravel(),
+    "quads": np.zeros((4, 4), int),
+    "three_dimensions": FACES[None],
+    "scalar": 3,
+    "none": None,
+    "complex": FACES.astype(complex),
+    "objects": FACES.astype(object),
+    "strings": FACES.astype(str),
+    "fractions": FACES + 0.5,
+    "nan": np.where(FACES == 0, np.nan, FACES),
+    "infinite": np.where(FACES == 0, np.inf, FACES),
+    "ragged": [[0, 1, 2], [1, 2]],
+}
+
+
+@pytest.mark.parametrize("faces", BAD_FACES.values(), ids=BAD_FACES)
+def test_faces_that_are_no_m_by_3_integers_are_refused(faces):
+    for call in (authalic.disk_map, authalic.cut):
+        with pytest.raises(authalic.MeshError, match=r"^faces must be "):
+            call(VERTICES, faces)
+
+
+@pytest.mark.parametrize(
+    ("image", "words"),
+    [
+        (VERTICES[:5, :2], "of 5 rows"),
+        (np.zeros((63, 4)), "image must be of shape"),
+        (np.zeros(63), "image must be of shape"),
+        (VERTICES[:, :2].astype(complex), "image must be real numbers, but is of dtype complex128"),
+        (np.zeros((63, 2)), "image must be a map whose faces have area"),
+    ],
+)
+def test_bad_images_are_refused(image, words):
+    with pytest.raises(authalic.MeshError, match=words):
+        authalic.distortion(VERTICES, FACES, image)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_densities_that_are_not_positive_are_refused_by_face(value):
+    density = np.ones(len(FACES))
+    density[[4, 17]] = value
+    for call in (
+        lambda: authalic.disk_map(VERTICES, FACES, density=density),
+        lambda: authalic.distortion(VERTICES, FACES, VERTICES[:, :2], density=density),
+    ):
+        with pytest.raises(authalic.MeshError, match="density must be positive and finite") as caught:
+            call()
+        assert (caught.value.indices, caught.value.count) == ((4, 17), 2)
+
+
+@pytest.mark.parametrize("density", [np.ones(5), np.ones((96, 1)), 1.0, np.ones(96, complex), ["a"] * 96])
+def test_densities_of_the_wrong_shape_or_dtype_are_refused(density):
+    with pytest.raises(authalic.MeshError, match="density must be"):
+        authalic.disk_map(VERTICES, FACES, density=density)
+
+
+@pytest.mark.parametrize("seams", [[0, 1], [[0, 1, 2]], [["a", "b"]], [[0.5, 1]], 3])
+def test_seams_that_are_no_k_by_2_integers_are_refused(seams):
+    with pytest.raises(authalic.MeshError, match="seams must be"):
+        authalic.cut(VERTICES, FACES, seams=seams)
+
+
+def test_empty_seams_of_any_shape_cut_nothing():
+    for seams in ([], np.zeros((0, 2)), np.zeros((0, 2), int)):
+        assert len(authalic.cut(VERTICES, FACES, seams=seams)) == 1

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Names, signatures, results and documentation of the package."""
+
+import doctest
+import inspect
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import authalic
+
+from . import meshes
+
+NAMES = {
+    "DiskMap",
+    "Distortion",
+    "MeshError",
+    "Patch",
+    "SolverError",
+    "__version__",
+    "cut",
+    "disk_map",
+    "distortion",
+}
+KEYWORDS = {
+    "disk_map": {
+        "method": "conjugate_gradient",
+        "boundary": "sliding",
+        "density": None,
+        "angle_weight": 0.0,
+        "initial": None,
+        "max_iterations": None,
+        "tolerance": None,
+        "fill_holes": False,
+        "progress": None,
+    },
+    "distortion": {"density": None},
+    "cut": {"seams": None},
+}
+POSITIONAL = {
+    "disk_map": ["vertices", "faces"],
+    "distortion": ["vertices", "faces", "image"],
+    "cut": ["vertices", "faces"],
+}
+FUNCTIONS = sorted(KEYWORDS)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return authalic.disk_map(*meshes.bumpy_cap())
+
+
+def public_attributes(value):
+    return {name for name in dir(value) if not name.startswith("_")}
+
+
+def test_the_package_tested_is_the_installed_one():
+    assert meshes.ROOT / "rust" not in Path(authalic.__file__).resolve().parents
+
+
+def test_the_package_has_the_names_of_the_contract_and_is_typed():
+    assert set(authalic.__all__) == NAMES
+    assert all(hasattr(authalic, name) for name in NAMES)
+    folder = Path(authalic.__file__).parent
+    assert (folder / "py.typed").exists()
+    assert (folder / "_native.pyi").exists()
+
+
+def test_the_version_is_that_of_the_workspace():
+    manifest = tomllib.loads((meshes.ROOT / "Cargo.toml").read_text())
+    assert authalic.__version__ == manifest["workspace"]["package"]["version"]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_mesh_comes_first_and_all_else_is_keyword_only(name):
+    parameters = inspect.signature(getattr(authalic, name)).parameters.values()
+    positional = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+    keywords = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
+    assert positional == POSITIONAL[name]
+    assert keywords == KEYWORDS[name]
+    assert len(parameters) == len(positional) + len(keywords)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_keyword_given_by_position_is_refused(name):
+    arguments = [*meshes.single_quad(), np.zeros((4, 2))][: len(POSITIONAL[name])]
+    with pytest.raises(TypeError, match="positional"):
+        getattr(authalic, name)(*arguments, None)
+
+
+@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "Distortion", "Patch"])
+def test_everything_is_documented(name):
+    assert len(getattr(authalic, name).__doc__) > 20
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_docstrings_have_all_sections_and_name_all_parameters(name):
+    text = getattr(authalic, name).__doc__
+    for section in ("Parameters\n------", "Returns\n------", "Raises\n------", "Examples\n------"):
+        assert section in text
+    for parameter in [*POSITIONAL[name], *KEYWORDS[name]]:
+        assert f"\n{parameter} : " in text
+
+
+@pytest.mark.parametrize("name", ["", *FUNCTIONS])
+def test_the_examples_in_the_docstrings_run(name):
+    subject = getattr(authalic, name) if name else authalic
+    test = doctest.DocTestParser().get_doctest(subject.__doc__, {}, name or "authalic", None, 0)
+    report = []
+    outcome = doctest.DocTestRunner(verbose=False).run(test, out=report.append)
+    assert outcome.attempted >= 3
+    assert outcome.failed == 0, "".join(report)
+
+
+def test_every_attribute_of_the_results_is_documented():
+    for kind in (authalic.DiskMap, authalic.Distortion, authalic.Patch):
+        for name in public_attributes(kind):
+            assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
+
+
+def test_the_errors_are_of_the_builtin_kinds():
+    assert issubclass(authalic.MeshError, ValueError)
+    assert issubclass(authalic.SolverError, RuntimeError)
+    assert authalic.MeshError.__module__ == authalic.SolverError.__module__ == "authalic"
+    assert "MeshError" in repr(authalic.MeshError("text"))
+
+
+def test_a_disk_map_has_the_attributes_of_the_contract(result):
+    assert public_attributes(result) == {
+        *("uv", "faces", "status", "iterations", "history", "distortion", "seconds")
+    }
+    assert isinstance(result.distortion, authalic.Distortion)
+    assert result.status in {"converged", "max_iterations", "stalled", "cancelled"}
+    assert type(result.iterations) is int
+    assert type(result.seconds) is float
+    assert result.seconds > 0
+
+
+def test_a_distortion_has_the_attributes_of_the_contract(result):
+    numbers = {"authalic_energy", "area_ratio_mean", "area_ratio_std"}
+    angles = {"angle_distortion_mean", "angle_distortion_p99", "angle_distortion_max"}
+    arrays = {"log2_area_ratio", "folded", "angle_distortion"}
+    assert public_attributes(result.distortion) == numbers | angles | arrays
+    assert all(type(getattr(result.distortion, name)) is float for name in numbers | angles)
+
+
+def test_a_patch_has_the_attributes_of_the_contract():
+    (patch,) = authalic.cut(*meshes.bumpy_cap())
+    arrays = {"vertices", "faces", "vertex_of", "corner_of", "face_of"}
+    topology = {"euler_characteristic", "genus", "boundary_loops", "is_disk", "is_closed"}
+    assert public_attributes(patch) == arrays | topology
+    assert type(patch.euler_characteristic) is int
+    assert type(patch.boundary_loops) is list
+    assert (patch.genus, patch.is_disk, patch.is_closed) == (0, True, False)
+
+
+def assert_array(array, shape, dtype):
+    assert array.shape == shape
+    assert array.dtype == dtype
+    assert array.flags.c_contiguous
+    assert array.flags.owndata or array.base is not None
+    assert array.flags.writeable
+
+
+def test_arrays_of_maps_are_c_ordered_float64_and_int64(result):
+    vertices, faces = meshes.bumpy_cap()
+    assert_array(result.uv, (len(vertices), 2), np.float64)
+    assert_array(result.faces, faces.shape, np.int64)
+    assert_array(result.distortion.log2_area_ratio, (len(faces),), np.float64)
+    assert_array(result.distortion.angle_distortion, (len(faces),), np.float64)
+    assert_array(result.distortion.folded, (0,), np.int64)
+
+
+def test_arrays_of_patches_are_c_ordered_float64_and_int64():
+    mesh = meshes.bumpy_cap()
+    n, m = len(mesh.vertices), len(mesh.faces)
+    (patch,) = authalic.cut(*mesh)
+    assert_array(patch.vertices, (n, 3), np.float64)
+    assert_array(patch.faces, (m, 3), np.int64)
+    assert_array(patch.vertex_of, (n,), np.int64)
+    assert_array(patch.corner_of, (m, 3), np.int64)
+    assert_array(patch.face_of, (m,), np.int64)
+    assert_array(patch.boundary_loops[0], (30,), np.int64)
+
+
+def test_the_history_is_a_structured_array_from_the_start_to_the_result(result):
+    history = result.history
+    assert history.dtype.names == ("iteration", "authalic_energy", "step", "gradient_norm", "seconds")
+    assert history.dtype["iteration"] == np.int64
+    assert all(history.dtype[name] == np.float64 for name in history.dtype.names[1:])
+    assert history["iteration"].tolist() == list(range(result.iterations + 1))
+    assert (np.diff(history["seconds"]) >= 0).all()
+    assert 0 <= history["seconds"][0] <= history["seconds"][-1] <= result.seconds
+    assert history["step"][0] == 0
+    assert (history["step"][1:] > 0).all()
+
+
+def test_the_last_energy_of_the_history_is_that_of_the_result(result):
+    assert result.history["authalic_energy"][-1] == pytest.approx(result.distortion.authalic_energy, rel=1e-9)
+
+
+def test_results_cannot_be_changed(result):
+    for subject, name in ((result, "uv"), (result, "status"), (result.distortion, "folded")):
+        with pytest.raises(AttributeError):
+            setattr(subject, name, None)
+
+
+def test_results_are_printed_in_one_line_with_figures(result):
+    text = repr(result)
+    assert text.startswith("DiskMap(421 vertices, max_iterations after 55 iterations")
+    assert "Distortion(authalic_energy=" in text
+    assert "\n" not in text
+    (patch,) = authalic.cut(*meshes.annulus())
+    assert repr(patch) == "Patch(200 vertices, 320 faces, 2 boundary loops, Euler characteristic 0)"
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("method", "newton", 'method must be "conjugate_gradient" or "fixed_point", but is "newton"'),
+        ("boundary", "free", 'boundary must be "sliding" or "arc_length", but is "free"'),
+        ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
+        ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
+        ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),
+        ("angle_weight", 0.5, "angle_weight must be 0 "),
+    ],
+)
+def test_an_option_out_of_range_is_a_plain_value_error(option, value, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        authalic.disk_map(*meshes.single_quad(), **{option: value})
+    assert type(caught.value) is ValueError
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [("method", 3), ("boundary", None), ("max_iterations", "many"), ("tolerance", "small"), ("progress", 5)],
+)
+def test_an_option_of_the_wrong_type_is_a_type_error(option, value):
+    with pytest.raises(TypeError):
+        authalic.disk_map(*meshes.grid(), **{option: value})

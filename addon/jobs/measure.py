@@ -34,8 +34,9 @@ def job(context):
 def line(figures):
     """The figures in one line."""
     parts = [
-        f"area ratio mean {figures.mean:.3f}, SD {figures.deviation:.3g}",
-        f"log2 {figures.log2_min:.2f} to {figures.log2_max:.2f}",
+        f"area ratio mean {figures.mean:.3f}",
+        f"area ratio SD {figures.deviation:.3g}",
+        f"log2 area ratio {figures.log2_min:.2f} to {figures.log2_max:.2f}",
         "1 flip" if figures.flips == 1 else f"{figures.flips} flips",
         f"angle distortion {figures.angle:.2f}",
     ]

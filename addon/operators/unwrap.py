@@ -104,10 +104,13 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
 
 def draw_options(layout, properties):
     """The options, in the redo panel and in the sidebar."""
-    for group in (("domain", "fill_holes", "iterations", "uv_layer"), _PACKING):
-        column = layout.column()
-        for name in group:
-            column.prop(properties, name)
+    column = layout.column()
+    for name in ("domain", "fill_holes", "iterations"):
+        column.prop(properties, name)
+    column.prop(properties, "uv_layer", placeholder="Active")
+    column = layout.column()
+    for name in _PACKING:
+        column.prop(properties, name)
 
 
 _PACKING = ("shape_method", "rotate", "margin_method", "margin")

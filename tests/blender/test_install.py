@@ -53,3 +53,8 @@ def test_defaults_are_declared():
         "margin_method": "SCALED",
     }
     assert all(p.name and not p.description.endswith(".") for p in properties if p.identifier != "rna_type")
+
+
+def test_sidebar_has_options_before_the_first_use():
+    options = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
+    assert options.iterations == 200 and options.fill_holes

@@ -16,7 +16,8 @@ def figures():
     line = bpy.context.window_manager.authalic_figures
     number = r"(-?[\d.]+(?:e[+-]?\d+)?)"
     pattern = (
-        rf"mean {number}, SD {number}, log2 {number} to {number}, (\d+) flips?, angle distortion {number}"
+        rf"mean {number}, area ratio SD {number}, log2 area ratio {number} to {number}, "
+        rf"(\d+) flips?, angle distortion {number}"
         r"(?:, (\d+) triangles without area)?"
     )
     keys = ("mean", "deviation", "low", "high", "flips", "angle", "left_out")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import os
 import re
@@ -75,6 +76,14 @@ def run(
     return "".join(lines)
 
 
+def show(command: Sequence[object], env: Mapping[str, str] | None = None) -> None:
+    """Runs a command in the project's root whose output is for the person to read as it comes."""
+    words = [str(word) for word in command]
+    code = subprocess.run(words, cwd=str(ROOT), env={**os.environ, **(env or {})}).returncode
+    if code != 0:
+        raise CommandFailed(words, code)
+
+
 def _kill_after_report(process: subprocess.Popen[str], report: Path) -> None:
     while process.poll() is None and not report.exists():
         time.sleep(0.5)
@@ -115,6 +124,11 @@ def content_hash(paths: Iterable[Path], *extra: str) -> str:
     for text in extra:
         digest.update(text.encode() + b"\0")
     return digest.hexdigest()
+
+
+def options_parser(doc: str | None) -> argparse.ArgumentParser:
+    """A command's parser, with the command's module documentation as its help."""
+    return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 def main(command: object) -> None:

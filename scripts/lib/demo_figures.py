@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The demo's figures: the UV layouts and the histograms of area ratios.
+
+Usage: python demo_figures.py OUT_FOLDER (after demo_scene.py has written OUT_FOLDER/data)
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+COLOURS = {
+    "Blender ABF": "#d1883a",
+    "Minimum Stretch, 10": "#6f9fc8",
+    "Minimum Stretch, 200": "#2b5f8f",
+    "Authalic": "#b3263e",
+}
+MOST_TRIANGLES_WITH_EDGES = 60_000
+RANGE = 3.0
+"""Histograms and colours go from 2^-3 to 2^3."""
+
+
+def results(out):
+    """The unwrapped meshes: {mesh: {method: arrays}}, in the order of the report."""
+    found = {}
+    for path in sorted((out / "data").glob("*.npz")):
+        with np.load(path) as stored:
+            arrays = dict(stored)
+        found.setdefault(str(arrays["mesh"]), {})[str(arrays["method"])] = arrays
+    return found
+
+
+def draw_layouts(found, path):
+    """The UV triangles of every mesh and method, coloured by their area ratio."""
+    methods = list(dict.fromkeys(name for row in found.values() for name in row))
+    size = (3.1 * len(methods), 3.3 * len(found))
+    figure, axes = plt.subplots(len(found), len(methods), figsize=size, squeeze=False, layout="constrained")
+    for row, (mesh, by_method) in zip(axes, found.items(), strict=True):
+        row[0].set_ylabel(mesh, fontsize=11)
+        for axis, method in zip(row, methods, strict=True):
+            drawn = _draw_layout(axis, by_method.get(method))
+            axis.set_title(method if row is axes[0] else "", fontsize=11)
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.35, aspect=30, ticks=[-2, -1, 0, 1, 2])
+    bar.ax.set_xticklabels(["1/4", "1/2", "1", "2", "4"])
+    bar.set_label("texture area / fair share")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def draw_histograms(found, path):
+    """How the surface spreads over the area ratios; an even map is a spike at 1."""
+    size = (4.6 * len(found), 3.6)
+    figure, axes = plt.subplots(1, len(found), figsize=size, squeeze=False, layout="constrained")
+    bins = np.linspace(-RANGE, RANGE, 91)
+    for axis, (mesh, by_method) in zip(axes[0], found.items(), strict=True):
+        for method, arrays in by_method.items():
+            _draw_histogram(axis, method, arrays["area_ratio"], bins)
+        axis.set_title(mesh, fontsize=11)
+        axis.set_xticks([-3, -2, -1, 0, 1, 2, 3], ["1/8", "1/4", "1/2", "1", "2", "4", "8"])
+        axis.set_xlabel("texture area / fair share, per triangle")
+        axis.set_yscale("log")
+        axis.spines[["top", "right"]].set_visible(False)
+    axes[0][0].set_ylabel("share of the triangles")
+    axes[0][0].legend(frameon=False, fontsize=8, loc="upper left")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def _draw_layout(axis, arrays):
+    axis.set_xticks([])
+    axis.set_yticks([])
+    axis.set_aspect("equal")
+    axis.spines[:].set_color("0.8")
+    shown = PolyCollection(np.zeros((0, 3, 2)), cmap="RdBu_r")
+    shown.set_clim(-2, 2)
+    if arrays is None:
+        axis.text(0.5, 0.5, "left out", ha="center", va="center", color="0.5", transform=axis.transAxes)
+        return shown
+    uv, ratio = arrays["uv"], arrays["area_ratio"]
+    shown = PolyCollection(uv, array=np.log2(np.maximum(ratio, 1e-12)), cmap="RdBu_r", linewidth=0)
+    shown.set_clim(-2, 2)
+    axis.add_collection(shown)
+    if len(uv) <= MOST_TRIANGLES_WITH_EDGES:
+        lines = np.concatenate([uv[:, [0, 1]], uv[:, [1, 2]], uv[:, [2, 0]]])
+        axis.add_collection(LineCollection(lines, colors="0.25", linewidths=0.08))
+    axis.autoscale_view()
+    return shown
+
+
+def _draw_histogram(axis, method, ratio, bins):
+    values = np.clip(np.log2(np.maximum(ratio, 1e-12)), bins[0], bins[-1])
+    weights = np.full(len(values), 1 / len(values))
+    label = f"{method}: SD {ratio.std():.2g}"
+    colour = COLOURS.get(method, "0.3")
+    axis.hist(values, bins, weights=weights, histtype="step", label=label, color=colour, linewidth=1.4)
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    unwrapped = results(folder)
+    draw_layouts(unwrapped, folder / "layouts.png")
+    draw_histograms(unwrapped, folder / "histogram.png")

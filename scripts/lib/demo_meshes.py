@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The meshes of the demo: built in Blender or read from files by Blender's own importers."""
+
+import heapq
+import math
+from pathlib import Path
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+READERS = {
+    ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
+    ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
+    ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
+}
+SIZE = 2.0
+"""The largest extent of every mesh in the scene."""
+
+
+def suzanne():
+    """Blender's monkey, subdivided twice, with seams where the UV map that it comes with has them."""
+    bpy.ops.mesh.primitive_monkey_add()
+    shape = bpy.context.object
+    shape.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.select_all(action="SELECT")
+    bpy.ops.uv.seams_from_islands()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return _prepared(shape, "Suzanne")
+
+
+def cut_sphere():
+    """A UV sphere with a seam along one meridian, from pole to pole."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32)
+    shape = bpy.context.object
+    mesh = shape.data
+    for edge in mesh.edges:
+        ends = [mesh.vertices[index].co for index in edge.vertices]
+        edge.use_seam = all(abs(end.x) < 1e-6 and end.y > -1e-6 for end in ends)
+    return _prepared(shape, "Sphere, one seam")
+
+
+def from_file(name):
+    """The objects of a mesh file, joined; closed pieces without seams are cut (see `open_up`)."""
+    path = Path(name)
+    if path.suffix.lower() not in READERS:
+        raise SystemExit(f"{name}: the demo reads {', '.join(READERS)} files")
+    if not path.is_file():
+        raise SystemExit(f"{name}: there is no such file")
+    bpy.ops.object.select_all(action="DESELECT")
+    READERS[path.suffix.lower()](str(path))
+    found = [shape for shape in bpy.context.selected_objects if shape.type == "MESH" and shape.data.polygons]
+    if not found:
+        raise SystemExit(f"{name}: Blender's importer found no faces in it")
+    bpy.context.view_layer.objects.active = found[0]
+    if len(found) > 1:
+        bpy.ops.object.join()
+    return _prepared(bpy.context.object, path.stem)
+
+
+def open_up(mesh):
+    """Marks a seam on each closed piece that has none: a shortest path between two far ends of it.
+
+    Returns how many pieces were cut. No method makes sense of a closed surface without a cut.
+    """
+    work = bmesh.new()
+    work.from_mesh(mesh)
+    closed = [
+        piece
+        for piece in _pieces(work)
+        if not any(e.is_boundary or e.seam for v in piece for e in v.link_edges)
+    ]
+    for piece in closed:
+        start = max(_paths_from(piece[0])[0].items(), key=lambda item: item[1])[0]
+        lengths, arrived_by = _paths_from(start)
+        vertex = max(lengths.items(), key=lambda item: item[1])[0]
+        while vertex is not start:
+            arrived_by[vertex].seam = True
+            vertex = arrived_by[vertex].other_vert(vertex)
+    work.to_mesh(mesh)
+    work.free()
+    return len(closed)
+
+
+def _prepared(shape, name):
+    shape.name = shape.data.name = name
+    mesh = shape.data
+    mesh.transform(shape.matrix_world)
+    shape.matrix_world = Matrix.Identity(4)
+    while mesh.uv_layers:
+        mesh.uv_layers.remove(mesh.uv_layers[0])
+    mesh.uv_layers.new(name="UVMap")
+    mesh.materials.clear()
+    mesh.shade_smooth()
+    _centre(mesh)
+    cuts = open_up(mesh)
+    if cuts:
+        print(f"  {name}: {cuts} closed piece(s) without a seam, cut along a shortest path between far ends")
+    return shape
+
+
+def _centre(mesh):
+    corners = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", corners)
+    low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
+    scale = SIZE / max(float((high - low).max()), 1e-30)
+    mesh.transform(Matrix.Scale(scale, 4) @ Matrix.Translation(tuple(-(low + high) / 2)))
+
+
+def _has_open_edge(vertex):
+    return any(edge.is_boundary or edge.seam for edge in vertex.link_edges)
+
+
+def _pieces(work):
+    seen, pieces = set(), []
+    for first in work.verts:
+        if first in seen or not first.link_faces:
+            continue
+        seen.add(first)
+        piece = [first]
+        for vertex in piece:  # grows while it is walked
+            fresh = [other for edge in vertex.link_edges if (other := edge.other_vert(vertex)) not in seen]
+            seen.update(fresh)
+            piece += fresh
+        pieces.append(piece)
+    return pieces
+
+
+def _paths_from(start):
+    """Dijkstra: the length of the shortest path to each vertex, and the edge by which it arrives."""
+    lengths, arrived_by = {start: 0.0}, {}
+    queue = [(0.0, start.index, start)]
+    while queue:
+        length, _, vertex = heapq.heappop(queue)
+        if length > lengths[vertex]:
+            continue
+        for edge in vertex.link_edges:
+            other, further = edge.other_vert(vertex), length + edge.calc_length()
+            if further < lengths.get(other, math.inf):
+                lengths[other], arrived_by[other] = further, edge
+                heapq.heappush(queue, (further, other.index, other))
+    return lengths, arrived_by

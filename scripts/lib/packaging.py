@@ -38,12 +38,10 @@ def build_wheel(dev: Environment, portable: bool = False, log: Path | None = Non
         environment.add(dev, "portable")
     stamp = folder / "wheel.stamp"
     wanted = content_hash(files_below(*WHEEL_SOURCES), *(PORTABLE if portable else ()))
-    found = _only_wheel(folder)
+    found = _keep_newest_wheel(folder)
     if found is None or not stamp.exists() or stamp.read_text() != wanted:
-        for old in folder.glob("authalic-*.whl"):
-            old.unlink()
         _maturin(dev, folder, PORTABLE if portable else (), log)
-        found = _only_wheel(folder)
+        found = _keep_newest_wheel(folder)
         stamp.write_text(wanted)
     if found is None:
         raise Unavailable(f"maturin wrote no wheel into {folder}")
@@ -99,8 +97,11 @@ def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path
     run([*command, "--interpreter", dev.python, *options], {"VIRTUAL_ENV": str(dev.folder)}, log)
 
 
-def _only_wheel(folder: Path) -> Path | None:
-    return next(iter(sorted(folder.glob(f"authalic-{version()}-*.whl"))), None)
+def _keep_newest_wheel(folder: Path) -> Path | None:
+    wheels = sorted(folder.glob("authalic-*.whl"), key=lambda path: path.stat().st_mtime)
+    for old in wheels[:-1]:
+        old.unlink()
+    return wheels[-1] if wheels else None
 
 
 def _lay_out_extension(folder: Path, wheel: Path) -> None:

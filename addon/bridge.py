@@ -35,7 +35,10 @@ class UnwrapSettings:
 
 @dataclass
 class Island:
-    """A mapped island: `uv` (k, 2) at the mesh corners `corners` (k,) of the surface number `surface`."""
+    """A mapped island: `uv` (k, 2) at the mesh corners `corners` (k,) of the surface number `surface`.
+
+    `turned` are the polygons whose normals point against those of the rest; they are mirrored in the map.
+    """
 
     surface: int
     polygon: int
@@ -43,6 +46,7 @@ class Island:
     uv: np.ndarray
     area: float
     uv_area: float
+    turned: np.ndarray
 
 
 @dataclass
@@ -272,8 +276,10 @@ def _map(piece, settings, progress):
         raise Cancelled("cancelled, nothing was changed")
     uv = np.array(found.uv)
     signed = triangulation.signed_areas(uv[faces])
+    turned = _turned(faces, np.asarray(found.faces))
     if signed.sum() < 0:
         uv[:, 0] *= -1
+        turned = ~turned
     real = piece.corners >= 0
     return Island(
         surface=piece.index,
@@ -282,7 +288,15 @@ def _map(piece, settings, progress):
         uv=uv[faces.ravel()[real]],
         area=float(triangulation.areas(piece.points[faces]).sum()),
         uv_area=float(np.abs(signed).sum()),
+        turned=np.unique(piece.polygons[turned]),
     )
+
+
+def _turned(faces, oriented):
+    """Which faces (m, 3) have been turned over to give all one orientation, (m,)."""
+    return ~(oriented[:, None, :] == np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)).all(
+        2
+    ).any(1)
 
 
 def _check(piece, settings):

@@ -42,6 +42,11 @@ class Surface:
         part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
         return replace(self, uv=uv, **part)
 
+    def turned_over(self, turned):
+        """The same surface with the triangles of a mask (t,) wound the other way round."""
+        flip = [np.where(turned[:, None], a[:, ::-1], a) for a in (self.triangles, self.corners)]
+        return replace(self, triangles=flip[0], corners=flip[1])
+
 
 def read(obj, *, selected_only=False, uv_layer=None):
     """The surface of an object; with `selected_only` that of its selected, visible faces."""

@@ -71,7 +71,8 @@ def job(context, settings):
         mapping.refusals[:0] = refusals
         figures = _write(chosen, mapping, settings.packing)
         seconds = time.perf_counter() - started
-        return Report(len(mapping.islands), figures, mapping.refusals, _notes(chosen), seconds)
+        notes = _notes(chosen, mapping.islands)
+        return Report(len(mapping.islands), figures, mapping.refusals, notes, seconds)
 
     return bridge.Job(work, finish)
 
@@ -108,34 +109,42 @@ def _write(chosen, mapping, settings):
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
     mapped = [_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts, strict=True)]
     figures = bridge.measure(mapped)
-    for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
+    for (obj, layer, _), (corners, uv, _) in zip(chosen, parts, strict=True):
         if len(corners):
             mesh_io.write_uv(obj.data, mesh_io.ensure_layer(obj.data, layer), corners, uv)
     return figures
 
 
 def _gather(islands, index):
-    """The corners (k,) and UVs (k, 2), as Blender will keep them, of one surface's islands."""
+    """Of one surface's islands the corners (k,), UVs (k, 2) as Blender will keep them, turned polygons."""
     own = [island for island in islands if island.surface == index]
     corners = np.concatenate([np.empty(0, int), *(island.corners for island in own)])
     uv = np.concatenate([np.empty((0, 2)), *(island.uv for island in own)]).astype(np.float32)
     if not np.isfinite(uv).all():
         raise CannotUnwrap("The packed UVs are not finite; nothing was changed")
-    return corners, uv
+    return corners, uv, np.concatenate([np.empty(0, int), *(island.turned for island in own)])
 
 
-def _mapped(surface, corners, uv):
-    """The part of a surface that was mapped, with its new UVs."""
+def _mapped(surface, corners, uv, turned):
+    """The part of a surface that was mapped, with its new UVs and one orientation."""
     values = np.full((len(surface.corner_vertex), 2), np.nan, np.float32)
     values[corners] = uv
-    return surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
+    part = surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
+    return part.turned_over(np.isin(part.polygons, turned))
 
 
-def _notes(chosen):
+def _notes(chosen, islands):
+    notes = []
+    turned = sum(len(island.turned) for island in islands)
+    if turned:
+        notes.append(f"{_count(turned, 'face')} with inconsistent normals mirrored, recalculate the normals")
     uneven = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
     if not uneven:
-        return []
-    return [f"{', '.join(uneven[:_NAMED])}: non-uniform scale, areas are those of the non-scaled mesh"]
+        return notes
+    return [
+        *notes,
+        f"{', '.join(uneven[:_NAMED])}: non-uniform scale, areas are those of the non-scaled mesh",
+    ]
 
 
 def _count(number, noun):

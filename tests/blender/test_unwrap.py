@@ -337,6 +337,19 @@ def test_undo(mode):
     assert (meshes.uv(bpy.context.object) == before).all()
 
 
+def test_inconsistent_normals_are_no_folds(capfd):
+    vertices, faces = meshes.grid()
+    faces[[3, 20]] = faces[[3, 20]][:, ::-1]
+    obj = meshes.add(vertices, faces)
+    assert unwrap() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "0 flips" in said and "2 faces with inconsistent normals" in said
+    corners, polygons, _ = meshes.triangles(obj)
+    against = meshes.uv_areas(meshes.uv(obj)[corners]) < 0
+    assert set(polygons[against]) == {3, 20}
+    assert np.abs(meshes.area_ratios(obj)).std() < 0.1
+
+
 def test_packing_options():
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     fill = []

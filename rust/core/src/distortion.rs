@@ -88,10 +88,15 @@ pub fn distortion(
     // 1. Signed areas of the image, and the scale c = A/|M| of the targets
     let folded = folded(faces, image);
     let areas = signed_areas(faces, image, &folded);
-    let scale = parallel::sum(areas.len(), |face| areas[face].abs()) / parallel::sum(targets.len(), |face| targets[face]);
+    let scale = parallel::sum(areas.len(), |face| areas[face].abs())
+        / parallel::sum(targets.len(), |face| targets[face]);
     if !(scale > 0.0 && scale.is_finite()) {
         let found = "collapsed to a line or a point".to_string();
-        return Err(Error::InvalidArray { name: "image", found, expected: "a map whose faces have area".into() });
+        return Err(Error::InvalidArray {
+            name: "image",
+            found,
+            expected: "a map whose faces have area".into(),
+        });
     }
     // 2. Area ratios and what is made of them
     let ratio = parallel::map(areas.len(), |face| areas[face] / (scale * targets[face]));
@@ -119,7 +124,11 @@ pub fn distortion(
 pub fn check_density(density: &[f64], n_faces: usize) -> Result<(), Error> {
     if density.len() != n_faces {
         let expected = format!("of shape ({n_faces},), one value per face");
-        return Err(Error::InvalidArray { name: "density", found: format!("of shape ({},)", density.len()), expected });
+        return Err(Error::InvalidArray {
+            name: "density",
+            found: format!("of shape ({},)", density.len()),
+            expected,
+        });
     }
     let bad = |face: &usize| !(density[*face] > 0.0 && density[*face].is_finite());
     match Elements::collect((0..n_faces).filter(bad)) {
@@ -185,4 +194,75 @@ fn summary(values: &[f64]) -> (f64, f64, f64) {
         false => sorted[low],
     };
     (mean, p99, sorted[last])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [Vector; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+
+    fn measured(map: &[[f64; 2]]) -> Distortion {
+        distortion(&SQUARE, &HALVES, Image::Plane(map), &[0.5, 0.5]).unwrap()
+    }
+
+    #[test]
+    fn an_affine_map_keeps_area_ratios_and_has_its_own_singular_values() {
+        // diag(6, 2): singular values 6 and 2
+        let figures = measured(&[[0.0, 0.0], [6.0, 0.0], [6.0, 2.0], [0.0, 2.0]]);
+        assert_eq!(figures.area_ratio_std, 0.0);
+        assert_eq!(figures.authalic_energy, 0.0);
+        figures.angle_distortion.iter().for_each(|ratio| assert!((ratio - 3.0).abs() < 1e-14));
+    }
+
+    #[test]
+    fn a_shear_has_the_singular_values_of_its_matrix() {
+        // [[1, 1], [0, 1]]: the ratio is the square of the golden ratio
+        let figures = measured(&[[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [1.0, 1.0]]);
+        let golden = (1.0 + 5f64.sqrt()) / 2.0;
+        figures.angle_distortion.iter().for_each(|ratio| assert!((ratio - golden * golden).abs() < 1e-13));
+    }
+
+    #[test]
+    fn a_folded_face_never_scores_like_a_good_one() {
+        let figures = measured(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 0.0]]);
+        assert_eq!(figures.folded, [1]);
+        assert_eq!(figures.log2_area_ratio[1], f64::NEG_INFINITY);
+        assert_eq!(figures.angle_distortion_max, f64::INFINITY);
+        assert_eq!(figures.area_ratio_std, 1.0);
+        assert_eq!(figures.authalic_energy, 2.0);
+    }
+
+    #[test]
+    fn a_face_within_rounding_of_a_line_is_decided_exactly() {
+        let faces = [[0, 1, 2]];
+        // the third point lies off the line through the others by less than the rounding of the products
+        let above = [[0.0, 0.0], [1e16, 1e16], [3.0, 3.0 + 4.440892098500626e-16]];
+        let below = [[0.0, 0.0], [1e16, 1e16], [3.0, 3.0 - 4.440892098500626e-16]];
+        assert!(folded_in_plane(&faces, &above).is_empty());
+        assert_eq!(folded_in_plane(&faces, &below), [0]);
+    }
+
+    #[test]
+    fn faces_of_the_sphere_are_positive_seen_from_outside() {
+        let octant = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let figures = |face| distortion(&octant, &[face], Image::Sphere(&octant), &[1.0]).unwrap();
+        assert!(figures([0, 1, 2]).folded.is_empty());
+        assert_eq!(figures([0, 2, 1]).folded, [0]);
+    }
+
+    #[test]
+    fn a_collapsed_image_is_refused() {
+        let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
+        let refused = distortion(&SQUARE, &HALVES, Image::Plane(&flat), &[0.5, 0.5]);
+        assert!(matches!(refused, Err(Error::InvalidArray { name: "image", .. })));
+    }
+
+    #[test]
+    fn the_percentile_is_interpolated() {
+        let values: Vec<f64> = (0..=100).map(f64::from).collect();
+        assert_eq!(summary(&values), (50.0, 99.0, 100.0));
+        assert!((summary(&values[..51]).1 - 49.5).abs() < 1e-12);
+    }
 }

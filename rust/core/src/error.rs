@@ -37,11 +37,7 @@ impl Elements {
     fn gather<const ARITY: usize>(mut all: impl Iterator<Item = [usize; ARITY]>) -> Option<Self> {
         let named: Vec<_> = all.by_ref().take(NAMED_ELEMENTS).collect();
         let count = named.len() + all.count();
-        (count > 0).then(|| Self {
-            first: named.concat(),
-            count,
-            arity: ARITY,
-        })
+        (count > 0).then(|| Self { first: named.concat(), count, arity: ARITY })
     }
 
     /// The elements as a phrase: `face 3`, `2 edges ((0, 4), (4, 7))`, `12 vertices (0, 1, 2, …)`.
@@ -63,11 +59,7 @@ impl Elements {
 
 impl fmt::Display for Elements {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named: Vec<String> = self
-            .first
-            .chunks(self.arity.max(1))
-            .map(|e| self.name(e))
-            .collect();
+        let named: Vec<String> = self.first.chunks(self.arity.max(1)).map(|e| self.name(e)).collect();
         write!(formatter, "{}", named.join(", "))?;
         match self.count.saturating_sub(named.len()) {
             0 => Ok(()),
@@ -296,9 +288,7 @@ pub enum Error {
     },
 
     /// A linear system could not be factored.
-    #[error(
-        "the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)"
-    )]
+    #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
     FactorizationFailed {
         /// The matrix.
         what: String,
@@ -343,24 +333,13 @@ impl Error {
 
     /// Whether the numerics failed on good input.
     pub fn is_solver_error(&self) -> bool {
-        matches!(
-            self,
-            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. }
-        )
+        matches!(self, Self::FactorizationFailed { .. } | Self::NoEmbedding { .. })
     }
 }
 
 /// The first few numbers of a list as text.
 fn list(numbers: &[usize]) -> String {
-    let named: Vec<String> = numbers
-        .iter()
-        .take(NAMED_ELEMENTS)
-        .map(usize::to_string)
-        .collect();
-    let more = if numbers.len() > NAMED_ELEMENTS {
-        ", …"
-    } else {
-        ""
-    };
+    let named: Vec<String> = numbers.iter().take(NAMED_ELEMENTS).map(usize::to_string).collect();
+    let more = if numbers.len() > NAMED_ELEMENTS { ", …" } else { "" };
     named.join(", ") + more
 }

@@ -36,9 +36,8 @@ pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> 
 
 /// Σ value(i) over `0..n`.
 pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let partial = map(n.div_ceil(CHUNK), |chunk| {
-        (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum::<f64>()
-    });
+    let partial =
+        map(n.div_ceil(CHUNK), |chunk| (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum::<f64>());
     partial.iter().sum()
 }
 
@@ -61,7 +60,11 @@ mod tests {
     fn sums_are_the_same_bits_for_any_thread_count() {
         let term = |i: usize| 1.0 / (1.0 + i as f64);
         let on = |threads| {
-            rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| sum(100_003, term))
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap()
+                .install(|| sum(100_003, term))
         };
         assert_eq!(on(1).to_bits(), on(2).to_bits());
         assert_eq!(on(1).to_bits(), on(7).to_bits());

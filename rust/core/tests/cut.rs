@@ -26,10 +26,7 @@ fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch
             }
         }
         let used: BTreeSet<u32> = patch.faces.iter().flatten().copied().collect();
-        assert!(
-            used.into_iter().eq(0..patch.vertices.len() as u32),
-            "every vertex is used"
-        );
+        assert!(used.into_iter().eq(0..patch.vertices.len() as u32), "every vertex is used");
     }
     assert_eq!(rebuilt, faces);
     let lowest: Vec<u32> = patches.iter().map(|patch| patch.corner_of[0][0]).collect();
@@ -37,8 +34,7 @@ fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch
 }
 
 fn cut_checked(test: &TestMesh, seams: &[[u32; 2]]) -> Vec<Patch> {
-    let patches =
-        cut(&test.vertices, &test.faces, seams).unwrap_or_else(|e| panic!("{}: {e}", test.name));
+    let patches = cut(&test.vertices, &test.faces, seams).unwrap_or_else(|e| panic!("{}: {e}", test.name));
     assert_round_trip(&test.vertices, &test.faces, &patches);
     patches
 }
@@ -57,11 +53,7 @@ fn ring(vertices: impl Iterator<Item = u32>) -> Vec<[u32; 2]> {
 
 fn summary(patch: &Patch) -> (i64, usize, Option<usize>) {
     let topology = &patch.topology;
-    (
-        topology.euler_characteristic,
-        topology.boundary_loops.len(),
-        topology.genus,
-    )
+    (topology.euler_characteristic, topology.boundary_loops.len(), topology.genus)
 }
 
 #[test]
@@ -69,29 +61,14 @@ fn without_seams_the_components_come_out_unchanged() {
     for test in common::all() {
         let patches = cut_checked(&test, &[]);
         assert_eq!(patches.len(), test.components, "{}", test.name);
-        let total: i64 = patches
-            .iter()
-            .map(|patch| patch.topology.euler_characteristic)
-            .sum();
+        let total: i64 = patches.iter().map(|patch| patch.topology.euler_characteristic).sum();
         assert_eq!(total, test.euler_characteristic, "{}", test.name);
-        let loops: usize = patches
-            .iter()
-            .map(|patch| patch.topology.boundary_loops.len())
-            .sum();
+        let loops: usize = patches.iter().map(|patch| patch.topology.boundary_loops.len()).sum();
         assert_eq!(loops, test.n_loops, "{}", test.name);
-        assert_eq!(
-            patches.iter().all(|patch| patch.topology.orientable),
-            test.genus.is_some()
-        );
+        assert_eq!(patches.iter().all(|patch| patch.topology.orientable), test.genus.is_some());
         if let [patch] = &patches[..] {
-            assert_eq!(
-                (&patch.vertices, &patch.faces),
-                (&test.vertices, &test.faces)
-            );
-            assert_eq!(
-                (patch.is_disk(), patch.is_closed()),
-                (test.is_disk(), test.n_loops == 0)
-            );
+            assert_eq!((&patch.vertices, &patch.faces), (&test.vertices, &test.faces));
+            assert_eq!((patch.is_disk(), patch.is_closed()), (test.is_disk(), test.n_loops == 0));
             assert_eq!(patch.topology.genus, test.genus, "{}", test.name);
         }
     }
@@ -112,21 +89,12 @@ fn a_seam_across_a_grid_parts_it() {
     let test = common::grid(6, 4);
     let across: Vec<u32> = (0..=4).map(|j| 3 * 5 + j).collect();
     let patches = cut_checked(&test, &path(&across));
-    assert_eq!(
-        patches.iter().map(summary).collect::<Vec<_>>(),
-        [(1, 1, Some(0)); 2]
-    );
+    assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(1, 1, Some(0)); 2]);
     assert_eq!([patches[0].faces.len(), patches[1].faces.len()], [24, 24]);
-    assert_eq!(
-        [patches[0].vertices.len(), patches[1].vertices.len()],
-        [20, 20]
-    );
+    assert_eq!([patches[0].vertices.len(), patches[1].vertices.len()], [20, 20]);
     // A seam that starts at the boundary and ends inside opens the grid without parting it.
     let patches = cut_checked(&test, &path(&across[..3]));
-    assert_eq!(
-        patches.iter().map(summary).collect::<Vec<_>>(),
-        [(1, 1, Some(0))]
-    );
+    assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(1, 1, Some(0))]);
     assert_eq!(patches[0].vertices.len(), test.vertices.len() + 2);
 }
 
@@ -142,10 +110,7 @@ fn a_path_of_two_edges_opens_a_sphere_and_one_edge_does_not() {
         .find(|&v| v != a && cut(&test.vertices, &test.faces, &[[b, v]]).is_ok() && v != b);
     let seams = path(&[a, b, next.unwrap()]);
     let patches = cut_checked(&test, &seams[..1]);
-    assert_eq!(
-        patches.iter().map(summary).collect::<Vec<_>>(),
-        [(2, 0, Some(0))]
-    );
+    assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(2, 0, Some(0))]);
     let patches = cut_checked(&test, &seams);
     assert!(patches.len() == 1 && patches[0].is_disk());
     assert_eq!(patches[0].topology.boundary_loops[0].len(), 4);
@@ -159,33 +124,19 @@ fn a_torus_opens_into_an_annulus_and_then_into_a_disk() {
     let tube = ring(0..9);
     for loops in [&around, &tube] {
         let patches = cut_checked(&test, loops);
-        assert_eq!(
-            patches.iter().map(summary).collect::<Vec<_>>(),
-            [(0, 2, Some(0))]
-        );
+        assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(0, 2, Some(0))]);
     }
     let patches = cut_checked(&test, &[around, tube].concat());
     assert!(patches.len() == 1 && patches[0].is_disk());
     assert_eq!(patches[0].topology.boundary_loops[0].len(), 2 * (7 + 9));
-    assert_eq!(
-        patches[0].vertex_of[..4],
-        [0; 4],
-        "four copies where the loops cross"
-    );
-    assert!(
-        TriangleMesh::new(&patches[0].vertices, &patches[0].faces)
-            .unwrap()
-            .require_disk()
-            .is_ok()
-    );
+    assert_eq!(patches[0].vertex_of[..4], [0; 4], "four copies where the loops cross");
+    assert!(TriangleMesh::new(&patches[0].vertices, &patches[0].faces).unwrap().require_disk().is_ok());
 }
 
 #[test]
 fn a_moebius_strip_cut_across_is_a_disk() {
     let test = common::moebius_strip(10, 3);
-    let [whole] = &cut_checked(&test, &[])[..] else {
-        panic!("one piece")
-    };
+    let [whole] = &cut_checked(&test, &[])[..] else { panic!("one piece") };
     assert_eq!(summary(whole), (0, 1, None));
     assert_eq!(whole.topology.boundary_loops[0].len(), 20);
     let patches = cut_checked(&test, &path(&[0, 1, 2, 3]));
@@ -193,20 +144,14 @@ fn a_moebius_strip_cut_across_is_a_disk() {
     // Along its middle it stays in one piece and becomes two-sided: the classic. Needs an even width.
     let test = common::moebius_strip(10, 2);
     let patches = cut_checked(&test, &ring((0..10).map(|i| 3 * i + 1)));
-    assert_eq!(
-        patches.iter().map(summary).collect::<Vec<_>>(),
-        [(0, 2, Some(0))]
-    );
+    assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(0, 2, Some(0))]);
 }
 
 #[test]
 fn cut_along_every_edge_each_face_is_a_patch() {
     for test in common::all() {
-        let edges: Vec<[u32; 2]> = test
-            .faces
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [a, c]])
-            .collect();
+        let edges: Vec<[u32; 2]> =
+            test.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [a, c]]).collect();
         let patches = cut_checked(&test, &edges);
         assert_eq!(patches.len(), test.faces.len());
         assert!(patches.iter().all(Patch::is_disk));
@@ -216,13 +161,7 @@ fn cut_along_every_edge_each_face_is_a_patch() {
 #[test]
 fn edges_of_three_faces_act_as_seams() {
     // Three pages on one spine.
-    let vertices = [
-        [0., 0., 0.],
-        [0., 0., 1.],
-        [1., 0., 0.],
-        [0., 1., 0.],
-        [-1., -1., 0.],
-    ];
+    let vertices = [[0., 0., 0.], [0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., -1., 0.]];
     let faces = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
     let patches = cut(&vertices, &faces, &[]).unwrap();
     assert_round_trip(&vertices, &faces, &patches);
@@ -232,13 +171,7 @@ fn edges_of_three_faces_act_as_seams() {
 
 #[test]
 fn parts_that_touch_in_a_vertex_come_apart() {
-    let vertices = [
-        [0., 0., 0.],
-        [1., 0., 0.],
-        [0., 1., 0.],
-        [-1., 0., 0.],
-        [0., -1., 0.],
-    ];
+    let vertices = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
     let faces = [[0, 1, 2], [0, 3, 4]];
     let patches = cut(&vertices, &faces, &[]).unwrap();
     assert_round_trip(&vertices, &faces, &patches);
@@ -250,11 +183,7 @@ fn parts_that_touch_in_a_vertex_come_apart() {
 fn inconsistent_winding_does_not_cut() {
     for test in common::all() {
         let mut turned = test.clone();
-        turned
-            .faces
-            .iter_mut()
-            .step_by(3)
-            .for_each(|face| face.swap(0, 2));
+        turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 2));
         let topologies: Vec<_> = cut_checked(&test, &[]).iter().map(summary).collect();
         let found: Vec<_> = cut_checked(&turned, &[]).iter().map(summary).collect();
         assert_eq!(found, topologies, "{}", test.name);
@@ -264,13 +193,7 @@ fn inconsistent_winding_does_not_cut() {
 #[test]
 fn what_an_island_may_be_refused_for_is_accepted_here() {
     // A face without area, a duplicate and a loose vertex.
-    let vertices = [
-        [0., 0., 0.],
-        [1., 0., 0.],
-        [2., 0., 0.],
-        [0., 1., 0.],
-        [9., 9., 9.],
-    ];
+    let vertices = [[0., 0., 0.], [1., 0., 0.], [2., 0., 0.], [0., 1., 0.], [9., 9., 9.]];
     let faces = [[0, 1, 2], [0, 1, 3], [3, 1, 0]];
     let patches = cut(&vertices, &faces, &[]).unwrap();
     assert_round_trip(&vertices, &faces, &patches);
@@ -279,59 +202,26 @@ fn what_an_island_may_be_refused_for_is_accepted_here() {
 
 #[test]
 fn refusals_name_the_seams() {
-    let TestMesh {
-        vertices, faces, ..
-    } = common::grid(2, 2);
-    let seams = |first: &[usize], count| Elements {
-        first: first.to_vec(),
-        count,
-        arity: 2,
-    };
+    let TestMesh { vertices, faces, .. } = common::grid(2, 2);
+    let seams = |first: &[usize], count| Elements { first: first.to_vec(), count, arity: 2 };
     let error = cut(&vertices, &faces, &[[0, 1], [0, 8], [3, 3]]).unwrap_err();
-    assert_eq!(
-        error,
-        Error::SeamNotEdge {
-            seams: seams(&[0, 8, 3, 3], 2)
-        }
-    );
-    assert!(
-        error.to_string().starts_with("2 seams ((0, 8), (3, 3))"),
-        "{error}"
-    );
+    assert_eq!(error, Error::SeamNotEdge { seams: seams(&[0, 8, 3, 3], 2) });
+    assert!(error.to_string().starts_with("2 seams ((0, 8), (3, 3))"), "{error}");
     let error = cut(&vertices, &faces, &[[0, 1], [9, 1]]).unwrap_err();
-    assert_eq!(
-        error,
-        Error::SeamOutOfRange {
-            seams: seams(&[9, 1], 1),
-            n_vertices: 9
-        }
-    );
+    assert_eq!(error, Error::SeamOutOfRange { seams: seams(&[9, 1], 1), n_vertices: 9 });
 }
 
 #[test]
 fn broken_arrays_are_refused() {
-    let TestMesh {
-        mut vertices,
-        mut faces,
-        ..
-    } = common::grid(2, 2);
+    let TestMesh { mut vertices, mut faces, .. } = common::grid(2, 2);
     assert_eq!(cut(&[], &[], &[]), Err(Error::NoVertices));
     assert_eq!(cut(&vertices, &[], &[]), Err(Error::NoFaces));
     faces[3] = [4, 1, 4];
-    assert!(matches!(
-        cut(&vertices, &faces, &[]),
-        Err(Error::RepeatedVertex { .. })
-    ));
+    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::RepeatedVertex { .. })));
     faces[3] = [4, 1, 9];
-    assert!(matches!(
-        cut(&vertices, &faces, &[]),
-        Err(Error::IndexOutOfRange { value: 9, .. })
-    ));
+    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::IndexOutOfRange { value: 9, .. })));
     vertices[2][1] = f64::INFINITY;
-    assert!(matches!(
-        cut(&vertices, &faces, &[]),
-        Err(Error::NonFinite { .. })
-    ));
+    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::NonFinite { .. })));
 }
 
 proptest! {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Arrays in and out: any real dtype and memory layout in, C-contiguous float64 and int64 out.
 
-use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use authalic::Elements;
+use numpy::{
+    PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::errors::bad_array;
 
@@ -16,12 +20,16 @@ pub fn points<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> 
 }
 
 /// Faces or seams: integers of shape (n, N) that fit a vertex index. Reals are taken where they are whole.
-pub fn indices<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<[u32; N]>> {
+pub fn indices<const N: usize>(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+    n_vertices: usize,
+) -> PyResult<Vec<[u32; N]>> {
     let found: Vec<[i64; N]> = match kind(&as_array(object, name)?)?.as_str() {
         "f" => whole(object, name)?,
         _ => rows(object, name, "int64", "iub", "integers")?,
     };
-    found.iter().enumerate().map(|(row, values)| narrow(object.py(), name, row, *values, n_vertices)).collect()
+    narrow(object.py(), name, &found, n_vertices)
 }
 
 /// Real numbers of shape (n,).
@@ -29,7 +37,9 @@ pub fn values(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<f64
     let array: PyReadonlyArrayDyn<'_, f64> = converted(object, name, "float64", "iufb", "real numbers")?;
     match array.shape() {
         [_] => Ok(array.as_slice()?.to_vec()),
-        shape => Err(bad_array(object.py(), name, shape_words(shape), "of shape (m,), one value per face".into())),
+        shape => {
+            Err(bad_array(object.py(), name, shape_words(shape), "of shape (m,), one value per face".into()))
+        }
     }
 }
 
@@ -61,7 +71,8 @@ pub fn from_index_list(py: Python<'_>, list: impl ExactSizeIterator<Item = usize
 fn as_array<'py>(object: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = object.py();
     let made = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (object,));
-    let failed = |error: PyErr| bad_array(py, name, error.value(py).to_string(), "an array of numbers".into());
+    let failed =
+        |error: PyErr| bad_array(py, name, error.value(py).to_string(), "an array of numbers".into());
     made.map_err(failed)?.cast_into::<PyUntypedArray>().map_err(Into::into)
 }
 
@@ -83,8 +94,10 @@ fn converted<'py, T: numpy::Element>(
     if array.len() > 0 && !kinds.contains(&kind(&array)?) {
         return Err(bad_array(py, name, format!("of dtype {}", array.dtype()), expected.into()));
     }
-    let contiguous = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "ascontiguousarray"), (array, dtype))?;
-    Ok(contiguous.cast_into::<PyArrayDyn<T>>()?.readonly())
+    // C order and aligned, which a view into a packed record is not
+    let required =
+        py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "require"), (array, dtype, "CA"))?;
+    Ok(required.cast_into::<PyArrayDyn<T>>()?.readonly())
 }
 
 fn rows<T: numpy::Element + Copy, const N: usize>(
@@ -94,7 +107,7 @@ fn rows<T: numpy::Element + Copy, const N: usize>(
     kinds: &str,
     expected: &str,
 ) -> PyResult<Vec<[T; N]>> {
-    // ascontiguousarray makes a scalar an array of one, so the shape is judged before
+    // the conversion makes a scalar an array of one, so the shape is judged before
     let given = as_array(object, name)?;
     let array: PyReadonlyArrayDyn<'_, T> = converted(object, name, dtype, kinds, expected)?;
     match given.shape() {
@@ -113,18 +126,31 @@ fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyRes
     }
 }
 
-fn narrow<const N: usize>(py: Python<'_>, name: &'static str, row: usize, values: [i64; N], n_vertices: usize) -> PyResult<[u32; N]> {
-    match values.iter().find(|&&value| value < 0 || value >= n_vertices as i64) {
-        None => Ok(values.map(|value| value as u32)),
-        Some(value) => {
-            let found = format!("{value} in row {row}");
-            let expected = format!("indices of the {n_vertices} vertices, 0 to {}", n_vertices as i64 - 1);
-            let raised = bad_array(py, name, found, expected);
-            raised.value(py).setattr("indices", (row,))?;
-            raised.value(py).setattr("count", 1)?;
-            Err(raised)
-        }
-    }
+/// Indices of the `n_vertices` vertices, or an error that names the rows with others.
+fn narrow<const N: usize>(
+    py: Python<'_>,
+    name: &'static str,
+    rows: &[[i64; N]],
+    n_vertices: usize,
+) -> PyResult<Vec<[u32; N]>> {
+    let outside = |value: &&i64| **value < 0 || **value >= n_vertices as i64;
+    let bad = (0..rows.len()).filter(|&row| rows[row].iter().any(|value| outside(&value)));
+    let Some(bad) = Elements::collect(bad) else {
+        return Ok(rows.iter().map(|row| row.map(|value| value as u32)).collect());
+    };
+    let value = rows[bad.first[0]].iter().find(outside).expect("the row is bad");
+    let found = match bad.count {
+        1 => format!("{value} in row {bad}"),
+        count => format!("{value} and others in {count} rows ({bad})"),
+    };
+    let expected = match n_vertices {
+        0 => "empty where there are no vertices".into(),
+        n => format!("indices of the {n} vertices, 0 to {}", n - 1),
+    };
+    let raised = bad_array(py, name, found, expected);
+    raised.value(py).setattr("indices", PyTuple::new(py, &bad.first)?)?;
+    raised.value(py).setattr("count", bad.count)?;
+    Err(raised)
 }
 
 fn shape_words(shape: &[usize]) -> String {

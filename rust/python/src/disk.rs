@@ -127,7 +127,8 @@ pub fn disk_map(
     let (map, faces) = run(py, progress, move |observer| {
         let mesh = TriangleMesh::new(&vertices, &faces)?;
         let (density, initial) = (density.as_deref(), initial.as_deref());
-        let options = DiskMapOptions { method, boundary, density, initial, max_iterations, tolerance, fill_holes };
+        let options =
+            DiskMapOptions { method, boundary, density, initial, max_iterations, tolerance, fill_holes };
         Ok((authalic::disk_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
     })?;
     // 3. The result
@@ -156,7 +157,9 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
     match boundary {
         "arc_length" => Ok(Boundary::ArcLength),
         "sliding" => Ok(Boundary::Sliding),
-        other => Err(PyValueError::new_err(format!("boundary must be \"sliding\" or \"arc_length\", but is {other:?}"))),
+        other => Err(PyValueError::new_err(format!(
+            "boundary must be \"sliding\" or \"arc_length\", but is {other:?}"
+        ))),
     }
 }
 
@@ -177,9 +180,14 @@ fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
 /// The history as a numpy structured array.
 pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
     let fields = ["iteration", "authalic_energy", "step", "gradient_norm", "seconds"];
-    let dtype: Vec<(&str, &str)> = fields.iter().map(|&name| (name, if name == "iteration" { "i8" } else { "f8" })).collect();
-    let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (records.len(), dtype))?;
-    array.set_item("iteration", PyArray1::from_iter(py, records.iter().map(|record| record.iteration as i64)))?;
+    let dtype: Vec<(&str, &str)> =
+        fields.iter().map(|&name| (name, if name == "iteration" { "i8" } else { "f8" })).collect();
+    let array =
+        py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (records.len(), dtype))?;
+    array.set_item(
+        "iteration",
+        PyArray1::from_iter(py, records.iter().map(|record| record.iteration as i64)),
+    )?;
     let column = |pick: fn(&Record) -> f64| PyArray1::from_iter(py, records.iter().map(pick));
     array.set_item("authalic_energy", column(|record| record.authalic_energy))?;
     array.set_item("step", column(|record| record.step))?;

@@ -138,7 +138,8 @@ pub fn distortion(
     let density = density.map(|density| values(density, "density")).transpose()?;
     let figures = run(py, None, move |_| {
         let soup = TriangleSoup::new(&vertices, &faces)?;
-        let targets = density.unwrap_or_else(|| authalic::mesh::geometry::face_areas(&soup.points, &soup.faces));
+        let targets =
+            density.unwrap_or_else(|| authalic::mesh::geometry::face_areas(&soup.points, &soup.faces));
         check_density(&targets, faces.len())?;
         let image = match &image {
             OwnedImage::Plane(map) => Image::Plane(map),

@@ -43,7 +43,10 @@ fn name_elements(py: Python<'_>, raised: &PyErr, error: &Error) -> PyResult<()> 
     };
     let indices = match elements.arity {
         1 => PyTuple::new(py, &elements.first)?,
-        arity => PyTuple::new(py, elements.first.chunks(arity).map(|e| PyTuple::new(py, e)).collect::<PyResult<Vec<_>>>()?)?,
+        arity => PyTuple::new(
+            py,
+            elements.first.chunks(arity).map(|e| PyTuple::new(py, e)).collect::<PyResult<Vec<_>>>()?,
+        )?,
     };
     value.setattr("indices", indices)?;
     value.setattr("count", elements.count)

@@ -5,9 +5,9 @@
 //! factorisation; the worker is left behind, sees the flag at its next report and ends.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use authalic::{Error, Observer};
@@ -59,7 +59,8 @@ pub fn run<T: Send + 'static>(
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| work(&mut remote)));
         // the caller may have gone on Ctrl-C: nobody is left to tell
-        let _ = sender.send(outcome.map_or_else(|panic| Message::Panicked(panic_text(&*panic)), Message::Done));
+        let _ =
+            sender.send(outcome.map_or_else(|panic| Message::Panicked(panic_text(&*panic)), Message::Done));
     });
     // a receiver is not Sync; the lock lets it be waited on without the GIL
     let outcome = wait(py, progress, &Mutex::new(messages), &answer);
@@ -83,7 +84,9 @@ fn wait<T: Send>(
                 let _ = answer.send(go_on(progress, fraction, &text)?);
             }
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return Err(internal("the worker thread ended without a result")),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(internal("the worker thread ended without a result"));
+            }
         }
         py.check_signals()?;
     }

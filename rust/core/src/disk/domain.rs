@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::boundary::runs_once_around;
+use super::boundary::{self, ArcBarrier};
 use super::{Boundary, Map, certificate};
 use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
@@ -32,6 +32,13 @@ impl Block {
     }
 }
 
+/// What a boundary that slides needs: its block of the preconditioner, and the barrier that keeps its arcs open.
+#[derive(Debug)]
+struct SlidingBoundary {
+    block: Block,
+    barrier: ArcBarrier,
+}
+
 /// Maps of one mesh to the unit disk.
 #[derive(Debug)]
 pub(super) struct DiskDomain<'a> {
@@ -39,7 +46,7 @@ pub(super) struct DiskDomain<'a> {
     energy: StretchEnergy<'a>,
     interior: Block,
     /// Only where the boundary slides.
-    boundary: Option<Block>,
+    boundary: Option<SlidingBoundary>,
     /// The map at which the preconditioner was set; empty where it was not.
     preconditioned_at: Map,
     /// Maps with a folded face have an infinite objective.
@@ -52,7 +59,10 @@ impl<'a> DiskDomain<'a> {
         let interior = Block::analyse(Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
             Boundary::ArcLength => None,
-            Boundary::Sliding => Some(Block::analyse(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?),
+            Boundary::Sliding => {
+                let block = Block::analyse(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
+                Some(SlidingBoundary { block, barrier: ArcBarrier::new(mesh) })
+            }
         };
         let energy = StretchEnergy::new(mesh, targets);
         Ok(Self { mesh, energy, interior, boundary, preconditioned_at: Map::new(), guarded: false })
@@ -91,7 +101,7 @@ impl<'a> DiskDomain<'a> {
         parallel::fill_with_old(&mut weights, |_, weight| scale * weight);
         self.interior.laplacian.assemble(self.mesh, &weights);
         self.interior.factor.refactor(self.interior.laplacian.matrix())?;
-        if let Some(Block { laplacian, factor }) = &mut self.boundary {
+        if let Some(SlidingBoundary { block: Block { laplacian, factor }, .. }) = &mut self.boundary {
             let cosine = |i: usize, j: usize| map[i][0] * map[j][0] + map[i][1] * map[j][1];
             laplacian.assemble_scaled(self.mesh, &weights, cosine);
             factor.refactor(laplacian.matrix())?;
@@ -106,16 +116,34 @@ impl<'a> DiskDomain<'a> {
 
     /// Vertices that slide, in the order of their angles in reduced coordinates.
     fn sliding(&self) -> &[u32] {
-        self.boundary.as_ref().map_or(&[], |block| block.laplacian.free())
+        self.boundary.as_ref().map_or(&[], |boundary| boundary.block.laplacian.free())
     }
 
-    fn objective_if_allowed(&self, map: &[[f64; 2]], value: Value) -> f64 {
-        if value.area > 0.0 && self.allows(map) { value.objective } else { f64::INFINITY }
+    /// The objective with the cost of short arcs; +∞ where the map is not allowed.
+    fn full_objective(&self, map: &[[f64; 2]], value: Value) -> f64 {
+        if value.area <= 0.0 || (self.guarded && !certificate::clearly_unfolded(self.mesh, map)) {
+            return f64::INFINITY;
+        }
+        match (&self.boundary, self.arcs(map)) {
+            (None, _) => value.objective,
+            (Some(boundary), Some(arcs)) => value.objective + boundary.barrier.value(&arcs),
+            (Some(_), None) => f64::INFINITY,
+        }
     }
 
-    fn allows(&self, map: &[[f64; 2]]) -> bool {
-        (self.boundary.is_none() || runs_once_around(&self.mesh.boundary_loops()[0], map))
-            && (!self.guarded || certificate::clearly_unfolded(self.mesh, map))
+    fn arcs(&self, map: &[[f64; 2]]) -> Option<Vec<f64>> {
+        boundary::arcs(&self.mesh.boundary_loops()[0], map)
+    }
+
+    /// Adds the slopes of the arc barrier, along the loop, to the gradient by angles, in the order of the unknowns.
+    fn add_barrier(&self, map: &[[f64; 2]], by_angle: &mut [f64]) {
+        let (Some(boundary), Some(arcs)) = (&self.boundary, self.arcs(map)) else {
+            return;
+        };
+        for (&vertex, slope) in self.mesh.boundary_loops()[0].iter().zip(boundary.barrier.slopes(&arcs)) {
+            let unknown = boundary.block.laplacian.unknown(vertex as usize);
+            by_angle[unknown.expect("boundary vertices slide")] += slope;
+        }
     }
 }
 
@@ -123,27 +151,30 @@ impl Domain for DiskDomain<'_> {
     type Map = Map;
 
     fn objective(&self, map: &Self::Map) -> f64 {
-        self.objective_if_allowed(map, self.energy.value(map))
+        self.full_objective(map, self.energy.value(map))
     }
 
     fn gradient(&self, map: &Self::Map) -> (Energies, Vec<f64>) {
         let (value, gradient) = self.energy.gradient(map);
-        let energies = Energies { objective: self.objective_if_allowed(map, value), authalic_energy: value.authalic_energy };
+        let energies =
+            Energies { objective: self.full_objective(map, value), authalic_energy: value.authalic_energy };
         let free = self.free().iter().map(|&v| v as usize);
         let along_circle = |v: &u32| {
             let ([u, w], g) = (map[*v as usize], gradient[*v as usize]);
             u * g[1] - w * g[0]
         };
-        let reduced = free.clone().map(|v| gradient[v][0]).chain(free.map(|v| gradient[v][1]));
-        (energies, reduced.chain(self.sliding().iter().map(along_circle)).collect())
+        let plane = free.clone().map(|v| gradient[v][0]).chain(free.map(|v| gradient[v][1]));
+        let mut reduced: Vec<f64> = plane.chain(self.sliding().iter().map(along_circle)).collect();
+        self.add_barrier(map, &mut reduced[2 * self.free().len()..]);
+        (energies, reduced)
     }
 
     fn precondition(&self, gradient: &[f64]) -> Vec<f64> {
         let mut h = gradient.to_vec();
         let (plane, angles) = h.split_at_mut(2 * self.free().len());
         self.interior.factor.solve(plane);
-        if let Some(block) = &self.boundary {
-            block.factor.solve(angles);
+        if let Some(boundary) = &self.boundary {
+            boundary.block.factor.solve(angles);
         }
         h
     }

@@ -9,10 +9,14 @@
 //!
 //! Cost of one iteration: one numeric Cholesky factorisation of the interior and two solves.
 
+use super::Map;
 use super::domain::DiskDomain;
 use crate::control::{History, Observer, Status};
 use crate::optimize::Domain;
 use crate::parallel;
+
+/// Halvings of a step before it is given up.
+const HALVINGS: i32 = 20;
 
 /// When [`fixed_point`] ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,11 +32,12 @@ pub(super) struct FixedPointOptions {
 /// Iterates from `start` and returns the map of lowest energy.
 pub(super) fn fixed_point(
     domain: &mut DiskDomain<'_>,
-    start: Vec<[f64; 2]>,
+    start: Map,
     options: &FixedPointOptions,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Vec<[f64; 2]>, Status) {
+) -> (Map, Status) {
+    let mut step = 0.0;
     let (mut best, mut map) = ((f64::INFINITY, start.clone()), start);
     for iteration in 0..=options.max_iterations {
         // 1. Keep the best map; M of the current one and the step it asks for
@@ -48,7 +53,7 @@ pub(super) fn fixed_point(
         let norm = parallel::dot(&gradient, &correction).max(0.0).sqrt();
         match iteration {
             0 => history.push_start(energy, norm),
-            _ => history.push(energy, 1.0, norm),
+            _ => history.push(energy, step, norm),
         }
         // 2. Enough?
         if norm <= options.tolerance || energy <= options.energy {
@@ -61,7 +66,17 @@ pub(super) fn fixed_point(
             return (best.1, Status::Cancelled);
         }
         // 3. The unit step
-        map = domain.retract(&map, &correction, -1.0);
+        match allowed_step(domain, &map, &correction) {
+            Some(next) => (step, map) = next,
+            None => return (best.1, Status::Stalled),
+        }
     }
     (best.1, Status::MaxIterations)
+}
+
+/// The unit step along −`correction`, halved while a sliding boundary would lose its order.
+fn allowed_step(domain: &DiskDomain<'_>, map: &Map, correction: &[f64]) -> Option<(f64, Map)> {
+    let steps = (0..HALVINGS).map(|halving| 0.5f64.powi(halving));
+    let mut tried = steps.map(|step| (step, domain.retract(map, correction, -step)));
+    tried.find(|(_, moved)| domain.objective(moved).is_finite())
 }

@@ -24,7 +24,8 @@ pub(super) struct Filled {
 /// # Errors
 /// As [`TriangleMesh::new`], where a fan doubles a face.
 pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled, Error> {
-    let (mut points, mut faces, mut targets) = (mesh.points().to_vec(), mesh.faces().to_vec(), targets.to_vec());
+    let (mut points, mut faces, mut targets) =
+        (mesh.points().to_vec(), mesh.faces().to_vec(), targets.to_vec());
     let scale = targets.iter().sum::<f64>() / mesh.face_areas().iter().sum::<f64>();
     let least = SMALLEST_SHARE * targets.iter().sum::<f64>() / targets.len() as f64;
     for hole in &mesh.boundary_loops()[1..] {
@@ -64,7 +65,9 @@ fn apex_of(corners: &[Vector]) -> Vector {
     }
     let candidates = directions.into_iter().map(|direction| add(centre, scaled(direction, 0.1 * length)));
     let thinnest = |apex: &Vector| {
-        edges(corners).map(|(from, to)| area([from, to, *apex]) / dot(sub(to, from), sub(to, from))).fold(f64::INFINITY, f64::min)
+        edges(corners)
+            .map(|(from, to)| area([from, to, *apex]) / dot(sub(to, from), sub(to, from)))
+            .fold(f64::INFINITY, f64::min)
     };
     candidates.max_by(|a, b| thinnest(a).total_cmp(&thinnest(b))).expect("there are candidates")
 }

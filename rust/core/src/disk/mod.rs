@@ -34,6 +34,9 @@ type Map = Vec<[f64; 2]>;
 /// Fixed-point steps before the conjugate gradients, the paper's 5.
 const FIXED_POINT_STEPS: usize = 5;
 
+/// Conjugate gradient iterations with one preconditioner, the paper's 50.
+const ROUND: usize = 50;
+
 /// How a disk map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -166,11 +169,17 @@ fn check_initial(mesh: &TriangleMesh, initial: &[[f64; 2]]) -> Result<(), Error>
     let boundary = &mesh.boundary_loops()[0];
     let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
     if let Some(vertices) = Elements::collect(boundary.iter().map(|&v| v as usize).filter(off_circle)) {
-        return Err(Error::InitialBoundary { vertices, reason: "its distance from the origin is not 1".into() });
+        return Err(Error::InitialBoundary {
+            vertices,
+            reason: "its distance from the origin is not 1".into(),
+        });
     }
     if !boundary::runs_once_around(boundary, initial) {
         let vertices = Elements::collect(boundary.iter().map(|&v| v as usize)).expect("a loop has vertices");
-        return Err(Error::InitialBoundary { vertices, reason: "it does not run once around it, counter-clockwise".into() });
+        return Err(Error::InitialBoundary {
+            vertices,
+            reason: "it does not run once around it, counter-clockwise".into(),
+        });
     }
     Ok(())
 }
@@ -218,7 +227,8 @@ impl Run<'_> {
         let (map, status) = match (self.options.initial, self.options.method) {
             (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
             (initial, method) => {
-                let start = initial.map_or_else(|| start::harmonic(self.mesh, domain), |map| Ok(map.to_vec()))?;
+                let start =
+                    initial.map_or_else(|| start::start(self.mesh, domain), |map| Ok(map.to_vec()))?;
                 let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
                 let mut phase = Phase { whole: observer, from: 0.0, to };
                 fixed_point(domain, start, &self.fixed_point_options(method), history, &mut phase)
@@ -228,9 +238,36 @@ impl Run<'_> {
             return Ok((map, status));
         }
         // 2. Conjugate gradients
-        domain.set_preconditioner(&map)?;
         let mut phase = Phase { whole: observer, from: 0.2, to: 0.8 };
-        Ok(minimize(domain, map, &self.cg_options(), history, &mut phase))
+        Ok(self.conjugate_gradients(domain, map, history, &mut phase))
+    }
+
+    /// Conjugate gradients in rounds of [`ROUND`] iterations, each with the preconditioner of the map it begins with.
+    ///
+    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows the later ones.
+    fn conjugate_gradients(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        mut map: Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let whole = self.cg_options();
+        let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
+        for done in (0..whole.max_iterations.max(1)).step_by(ROUND) {
+            let options = CgOptions { max_iterations: ROUND.min(whole.max_iterations - done), ..whole };
+            let mut round =
+                Phase { whole: observer, from: part(done), to: part(done + options.max_iterations) };
+            if domain.set_preconditioner(&map).is_err() {
+                return (map, Status::Stalled);
+            }
+            let (reached, status) = minimize(domain, map, &options, history, &mut round);
+            if status != Status::MaxIterations {
+                return (reached, status);
+            }
+            map = reached;
+        }
+        (map, Status::MaxIterations)
     }
 
     /// Conjugate gradients from an unfolded map that stay unfolded.
@@ -242,11 +279,11 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
         domain.guard();
-        if !domain.objective(&map).is_finite() || domain.set_preconditioner(&map).is_err() {
+        if !domain.objective(&map).is_finite() {
             return (map, Status::Stalled);
         }
         let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
-        minimize(domain, map, &self.cg_options(), history, &mut phase)
+        self.conjugate_gradients(domain, map, history, &mut phase)
     }
 
     fn fixed_point_options(&self, method: Method) -> FixedPointOptions {

@@ -11,9 +11,15 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{cotangents, triangle};
 use crate::parallel;
 
+/// The harmonic map, or Tutte's where slivers make the cotangents too large for the harmonic system.
+pub(super) fn start(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
+    harmonic(mesh, domain).or_else(|_| tutte(mesh, domain))
+}
+
 /// The harmonic map with an arc-length boundary.
-pub(super) fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
-    let by_face = parallel::map(mesh.n_faces(), |face| cotangents(triangle(mesh.points(), mesh.faces()[face])));
+fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
+    let by_face =
+        parallel::map(mesh.n_faces(), |face| cotangents(triangle(mesh.points(), mesh.faces()[face])));
     let weights: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
     solve(mesh, domain, &weights)
 }

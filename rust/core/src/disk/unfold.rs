@@ -110,11 +110,68 @@ fn mean_value_weights(mesh: &TriangleMesh, map: &[[f64; 2]], vertex: usize) -> V
         let [length_a, length_b] = [a, b].map(|e| e[0].hypot(e[1]).max(1e-12));
         let cross = (a[0] * b[1] - a[1] * b[0]).abs();
         let dot = a[0] * b[0] + a[1] * b[1];
-        let half_tangent = cross.max(1e-12 * length_a * length_b) / (length_a * length_b + dot).max(1e-12 * length_a * length_b);
+        let half_tangent = cross.max(1e-12 * length_a * length_b)
+            / (length_a * length_b + dot).max(1e-12 * length_a * length_b);
         weights.push((one, half_tangent / length_a));
         weights.push((two, half_tangent / length_b));
     }
     let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
     weights.iter_mut().for_each(|(_, weight)| *weight /= total);
     weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Boundary;
+    use crate::disk::domain::DiskDomain;
+    use crate::disk::start;
+
+    /// A square grid of n × n vertices.
+    fn grid(n: u32) -> TriangleMesh {
+        let vertices: Vec<[f64; 3]> = (0..n * n).map(|i| [(i % n) as f64, (i / n) as f64, 0.0]).collect();
+        let cells = (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| row * n + column));
+        let faces: Vec<[u32; 3]> =
+            cells.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]).collect();
+        TriangleMesh::new(&vertices, &faces).unwrap()
+    }
+
+    fn tutte(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
+        let mut domain = DiskDomain::new(mesh, mesh.face_areas(), Boundary::ArcLength).unwrap();
+        start::tutte(mesh, &mut domain).unwrap()
+    }
+
+    #[test]
+    fn one_vertex_outside_its_one_ring_is_brought_back_and_the_far_ones_stay() {
+        let mesh = grid(20);
+        let good = tutte(&mesh);
+        let mut folded_map = good.clone();
+        folded_map[10 * 20 + 10] = good[12 * 20 + 13];
+        assert!(!folded(&mesh, &folded_map).is_empty());
+        let mended = unfold(&mesh, &folded_map).unwrap();
+        assert!(folded(&mesh, &mended).is_empty());
+        assert_eq!(mended[2 * 20 + 2], good[2 * 20 + 2]);
+    }
+
+    #[test]
+    fn an_interior_collapsed_to_a_point_is_unfolded() {
+        let mesh = grid(12);
+        let mut map = tutte(&mesh);
+        (0..map.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| map[v] = [0.3, -0.2]);
+        let mended = unfold(&mesh, &map).unwrap();
+        assert!(folded(&mesh, &mended).is_empty());
+    }
+
+    #[test]
+    fn mean_value_weights_reproduce_an_unfolded_map() {
+        let mesh = grid(8);
+        let map = tutte(&mesh);
+        for vertex in (0..map.len()).filter(|&v| !mesh.is_boundary(v)) {
+            let weights = mean_value_weights(&mesh, &map, vertex);
+            for axis in 0..2 {
+                let average: f64 = weights.iter().map(|&(v, weight)| weight * map[v][axis]).sum();
+                assert!((average - map[vertex][axis]).abs() < 1e-12);
+            }
+        }
+    }
 }

@@ -65,11 +65,7 @@ impl Patch {
 /// # Errors
 /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex, and
 /// seams that are out of range or no edge of the mesh.
-pub fn cut(
-    vertices: &[[f64; 3]],
-    faces: &[[u32; 3]],
-    seams: &[[u32; 2]],
-) -> Result<Vec<Patch>, Error> {
+pub fn cut(vertices: &[[f64; 3]], faces: &[[u32; 3]], seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
     // 1. The arrays.
     validate::arrays(vertices, faces)?;
     check_range(vertices.len(), seams)?;
@@ -112,14 +108,8 @@ impl Patch {
 }
 
 fn check_range(n_vertices: usize, seams: &[[u32; 2]]) -> Result<(), Error> {
-    let outside = seams
-        .iter()
-        .copied()
-        .filter(|seam| seam.iter().any(|&v| v as usize >= n_vertices));
-    validate::refuse(Elements::edges(outside), |seams| Error::SeamOutOfRange {
-        seams,
-        n_vertices,
-    })
+    let outside = seams.iter().copied().filter(|seam| seam.iter().any(|&v| v as usize >= n_vertices));
+    validate::refuse(Elements::edges(outside), |seams| Error::SeamOutOfRange { seams, n_vertices })
 }
 
 /// Makes the faces along the seams strangers to each other.
@@ -132,9 +122,7 @@ fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Re
         }
         corners.for_each(|corner| opposite[corner as usize] = NO_CORNER);
     }
-    validate::refuse(Elements::edges(unknown), |seams| Error::SeamNotEdge {
-        seams,
-    })
+    validate::refuse(Elements::edges(unknown), |seams| Error::SeamNotEdge { seams })
 }
 
 /// Joins the corners at both ends of every edge between neighbours.
@@ -197,9 +185,7 @@ struct UnionFind {
 
 impl UnionFind {
     fn new(n: usize) -> Self {
-        Self {
-            parent: (0..n as u32).collect(),
-        }
+        Self { parent: (0..n as u32).collect() }
     }
 
     fn root(&mut self, mut item: u32) -> u32 {

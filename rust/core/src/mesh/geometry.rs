@@ -29,11 +29,7 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
 
 /// The cross product of `a` and `b`.
 pub fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The length of `a`.
@@ -77,18 +73,12 @@ pub fn cotangents(corners: [Vector; 3]) -> [f64; 3] {
 
 /// The area of every face, (m,).
 pub fn face_areas(points: &[Vector], faces: &[[u32; 3]]) -> Vec<f64> {
-    faces
-        .iter()
-        .map(|&face| area(triangle(points, face)))
-        .collect()
+    faces.iter().map(|&face| area(triangle(points, face))).collect()
 }
 
 /// The cotangents at the corners of every face, (m, 3).
 pub fn corner_cotangents(points: &[Vector], faces: &[[u32; 3]]) -> Vec<[f64; 3]> {
-    faces
-        .iter()
-        .map(|&face| cotangents(triangle(points, face)))
-        .collect()
+    faces.iter().map(|&face| cotangents(triangle(points, face))).collect()
 }
 
 /// The length of a closed polygon through the given points.
@@ -96,12 +86,7 @@ pub fn loop_length(points: &[Vector], vertices: &[u32]) -> f64 {
     let last = vertices.len().saturating_sub(1);
     let next = |i: usize| if i == last { 0 } else { i + 1 };
     (0..vertices.len())
-        .map(|i| {
-            distance(
-                points[vertices[i] as usize],
-                points[vertices[next(i)] as usize],
-            )
-        })
+        .map(|i| distance(points[vertices[i] as usize], points[vertices[next(i)] as usize]))
         .sum()
 }
 
@@ -116,10 +101,7 @@ pub fn normalized(vertices: &[Vector]) -> (Vec<Vector>, f64) {
     }
     // Dividing by the widest side first keeps every square within range.
     let diagonal = 2.0 * norm(half.map(|h| h / widest));
-    let points = vertices
-        .iter()
-        .map(|&v| sub(v, centre).map(|x| x / widest / diagonal))
-        .collect();
+    let points = vertices.iter().map(|&v| sub(v, centre).map(|x| x / widest / diagonal)).collect();
     (points, (widest * diagonal).min(f64::MAX))
 }
 

@@ -70,9 +70,7 @@ impl TriangleMesh {
         drop(table);
         let mut faces = faces.to_vec();
         let orientation = Orientation::propagate(&faces, &opposite);
-        validate::refuse(Elements::edges(orientation.conflict), |edges| {
-            Error::NotOrientable { edges }
-        })?;
+        validate::refuse(Elements::edges(orientation.conflict), |edges| Error::NotOrientable { edges })?;
         orientation.apply(&mut faces, &mut opposite);
         // 3. A manifold in its vertices.
         let corners = VertexCorners::new(points.len(), &faces);
@@ -81,17 +79,7 @@ impl TriangleMesh {
         let flipped = flipped_indices(&orientation);
         let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
         let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
-        Ok(Self {
-            points,
-            scale,
-            faces,
-            flipped,
-            areas,
-            opposite,
-            corners,
-            on_boundary,
-            topology,
-        })
+        Ok(Self { points, scale, faces, flipped, areas, opposite, corners, on_boundary, topology })
     }
 
     /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
@@ -177,11 +165,7 @@ impl TriangleMesh {
     /// # Errors
     /// Several components, a closed surface, handles, or several boundary loops; each with its own message.
     pub fn require_disk(&self) -> Result<(), Error> {
-        let Topology {
-            boundary_loops,
-            first_faces,
-            ..
-        } = &self.topology;
+        let Topology { boundary_loops, first_faces, .. } = &self.topology;
         let genus = self.genus();
         if first_faces.len() > 1 {
             let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
@@ -199,18 +183,11 @@ impl TriangleMesh {
 fn several_boundaries(loops: &[Vec<u32>]) -> Result<(), Error> {
     let sizes = loops.iter().map(Vec::len).collect();
     let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0] as usize));
-    validate::refuse(vertices, |vertices| Error::SeveralBoundaries {
-        vertices,
-        sizes,
-    })
+    validate::refuse(vertices, |vertices| Error::SeveralBoundaries { vertices, sizes })
 }
 
 fn flipped_indices(orientation: &Orientation) -> Vec<u32> {
-    let flipped = orientation
-        .flipped
-        .iter()
-        .enumerate()
-        .filter(|(_, flipped)| **flipped);
+    let flipped = orientation.flipped.iter().enumerate().filter(|(_, flipped)| **flipped);
     flipped.map(|(face, _)| face as u32).collect()
 }
 

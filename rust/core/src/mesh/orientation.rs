@@ -102,12 +102,7 @@ impl Orientation {
         if !self.flipped.contains(&true) {
             return;
         }
-        for (face, _) in self
-            .flipped
-            .iter()
-            .enumerate()
-            .filter(|(_, flipped)| **flipped)
-        {
+        for (face, _) in self.flipped.iter().enumerate().filter(|(_, flipped)| **flipped) {
             faces[face].swap(1, 2);
             opposite.swap(3 * face + 1, 3 * face + 2);
         }

@@ -24,8 +24,7 @@ impl TriangleSoup {
         let (points, scale) = geometry::normalized(vertices);
         validate::positive_areas(vertices, &points, scale, faces)?;
         let flipped = orientation::consistent(points.len(), faces).flipped;
-        let turned =
-            |(&[a, b, c], flip): (&[u32; 3], bool)| if flip { [a, c, b] } else { [a, b, c] };
+        let turned = |(&[a, b, c], flip): (&[u32; 3], bool)| if flip { [a, c, b] } else { [a, b, c] };
         let faces = faces.iter().zip(flipped).map(turned).collect();
         Ok(Self { points, faces })
     }

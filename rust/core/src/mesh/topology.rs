@@ -13,20 +13,12 @@ pub(crate) const NO_CORNER: u32 = u32::MAX;
 
 /// The next corner of the same face.
 pub(crate) fn next_corner(corner: u32) -> u32 {
-    if corner % 3 == 2 {
-        corner - 2
-    } else {
-        corner + 1
-    }
+    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }
 
 /// The previous corner of the same face.
 pub(crate) fn previous_corner(corner: u32) -> u32 {
-    if corner.is_multiple_of(3) {
-        corner + 2
-    } else {
-        corner - 1
-    }
+    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
 /// The vertex at a corner.
@@ -36,10 +28,7 @@ pub(crate) fn vertex_at(faces: &[[u32; 3]], corner: u32) -> u32 {
 
 /// The directed edge opposite to a corner.
 pub(crate) fn half_edge(faces: &[[u32; 3]], corner: u32) -> [u32; 2] {
-    [
-        vertex_at(faces, next_corner(corner)),
-        vertex_at(faces, previous_corner(corner)),
-    ]
+    [vertex_at(faces, next_corner(corner)), vertex_at(faces, previous_corner(corner))]
 }
 
 /// Every edge with the corners opposite to it.
@@ -53,8 +42,7 @@ pub(crate) struct EdgeTable {
 impl EdgeTable {
     /// Sorts the edges of all faces: by buckets of the lower vertex, then within each.
     pub(crate) fn new(n_vertices: usize, faces: &[[u32; 3]]) -> Self {
-        let edges =
-            || (0..3 * faces.len() as u32).map(|corner| (corner, sorted(half_edge(faces, corner))));
+        let edges = || (0..3 * faces.len() as u32).map(|corner| (corner, sorted(half_edge(faces, corner))));
         let mut start = vec![0u32; n_vertices + 1];
         for (_, [low, _]) in edges() {
             start[low as usize + 1] += 1;
@@ -89,10 +77,7 @@ impl EdgeTable {
         let [low, high] = sorted(edge);
         let bucket = self.bucket(low);
         let begin = bucket.partition_point(|entry| entry >> 32 < u64::from(high));
-        bucket[begin..]
-            .iter()
-            .take_while(move |&entry| entry >> 32 == u64::from(high))
-            .map(corner_of_entry)
+        bucket[begin..].iter().take_while(move |&entry| entry >> 32 == u64::from(high)).map(corner_of_entry)
     }
 
     /// The opposite corner of every corner: [`NO_CORNER`] unless exactly two faces share the edge.
@@ -273,11 +258,7 @@ fn trace_loops(n_vertices: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     for &[from, to] in edges {
         for (vertex, place, neighbour) in [(from, 0, to), (to, 1, from)] {
             let slots = &mut links[vertex as usize];
-            slots[if slots[place] == NONE {
-                place
-            } else {
-                1 - place
-            }] = neighbour;
+            slots[if slots[place] == NONE { place } else { 1 - place }] = neighbour;
         }
     }
     let mut visited = vec![false; n_vertices];
@@ -305,10 +286,7 @@ fn trace_loop(start: u32, links: &[[u32; 2]], visited: &mut [bool]) -> Vec<u32> 
 
 /// Puts the longest loop first and keeps the order of equally long ones.
 fn by_length(points: &[Vector], loops: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
-    let mut measured: Vec<_> = loops
-        .into_iter()
-        .map(|l| (geometry::loop_length(points, &l), l))
-        .collect();
+    let mut measured: Vec<_> = loops.into_iter().map(|l| (geometry::loop_length(points, &l), l)).collect();
     measured.sort_by(|a, b| b.0.total_cmp(&a.0));
     measured.into_iter().map(|(_, vertices)| vertices).collect()
 }

@@ -26,10 +26,7 @@ fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), Error> {
     match (n_vertices, n_faces) {
         (0, _) => Err(Error::NoVertices),
         (_, 0) => Err(Error::NoFaces),
-        (_, found) if found > MOST_FACES => Err(Error::TooManyFaces {
-            found,
-            limit: MOST_FACES,
-        }),
+        (_, found) if found > MOST_FACES => Err(Error::TooManyFaces { found, limit: MOST_FACES }),
         _ => Ok(()),
     }
 }
@@ -43,15 +40,8 @@ fn in_range(n_vertices: usize, faces: &[[u32; 3]]) -> Result<(), Error> {
     let outside = |v: &u32| *v as usize >= n_vertices;
     let bad = which(faces, |face| face.iter().any(outside));
     refuse(bad, |bad| {
-        let value = faces[bad.first[0]]
-            .into_iter()
-            .find(outside)
-            .map_or(0, i64::from);
-        Error::IndexOutOfRange {
-            faces: bad,
-            value,
-            n_vertices,
-        }
+        let value = faces[bad.first[0]].into_iter().find(outside).map_or(0, i64::from);
+        Error::IndexOutOfRange { faces: bad, value, n_vertices }
     })
 }
 
@@ -66,24 +56,14 @@ pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(),
     let mut apexes = Vec::new();
     for ([_, high], entries) in table.edges().filter(|(_, entries)| entries.len() > 1) {
         apexes.clear();
-        apexes.extend(
-            entries
-                .iter()
-                .map(corner_of_entry)
-                .map(|c| (vertex_at(faces, c), c / 3)),
-        );
+        apexes.extend(entries.iter().map(corner_of_entry).map(|c| (vertex_at(faces, c), c / 3)));
         apexes.sort_unstable();
         let same = apexes.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         // Each face is looked at once, from the edge of its two lower vertices.
-        repeated.extend(
-            same.filter(|pair| pair[1].0 > high)
-                .map(|pair| pair[1].1 as usize),
-        );
+        repeated.extend(same.filter(|pair| pair[1].0 > high).map(|pair| pair[1].1 as usize));
     }
     repeated.sort_unstable();
-    refuse(Elements::collect(repeated), |faces| Error::DuplicateFaces {
-        faces,
-    })
+    refuse(Elements::collect(repeated), |faces| Error::DuplicateFaces { faces })
 }
 
 /// Computes the areas of the faces of `points`, which are `vertices` centred and divided by `scale`.
@@ -96,16 +76,12 @@ pub(super) fn positive_areas(
     faces: &[[u32; 3]],
 ) -> Result<Vec<f64>, Error> {
     let areas = geometry::face_areas(points, faces);
-    let bad = faces
-        .iter()
-        .zip(&areas)
-        .enumerate()
-        .filter(|(_, (face, area))| {
-            // What the coordinates were rounded to, here and where the mesh came from.
-            let corners = triangle(points, **face);
-            let given = largest(triangle(vertices, **face)) / scale;
-            is_flat(corners, **area, given.max(largest(corners)))
-        });
+    let bad = faces.iter().zip(&areas).enumerate().filter(|(_, (face, area))| {
+        // What the coordinates were rounded to, here and where the mesh came from.
+        let corners = triangle(points, **face);
+        let given = largest(triangle(vertices, **face)) / scale;
+        is_flat(corners, **area, given.max(largest(corners)))
+    });
     let bad = Elements::collect(bad.map(|(face, _)| face));
     refuse(bad, |faces| Error::ZeroArea { faces })?;
     Ok(areas)
@@ -113,9 +89,7 @@ pub(super) fn positive_areas(
 
 /// Whether a triangle's height over its longest edge drowns in the rounding of its coordinates.
 fn is_flat(corners: [Vector; 3], area: f64, largest_coordinate: f64) -> bool {
-    let longest = geometry::edge_lengths(corners)
-        .into_iter()
-        .fold(0.0, f64::max);
+    let longest = geometry::edge_lengths(corners).into_iter().fold(0.0, f64::max);
     let height = 2.0 * area / longest;
     let rounding = ROUNDINGS * f64::EPSILON * largest_coordinate.max(longest);
     // Corners that all coincide have no height at all: 0 / 0.
@@ -123,29 +97,17 @@ fn is_flat(corners: [Vector; 3], area: f64, largest_coordinate: f64) -> bool {
 }
 
 fn largest(corners: [Vector; 3]) -> f64 {
-    corners
-        .as_flattened()
-        .iter()
-        .fold(0.0, |largest, x| f64::max(largest, x.abs()))
+    corners.as_flattened().iter().fold(0.0, |largest, x| f64::max(largest, x.abs()))
 }
 
 /// Refuses edges of three or more faces.
 pub(super) fn manifold_edges(table: &EdgeTable) -> Result<(), Error> {
-    let bad = table
-        .edges()
-        .filter(|(_, entries)| entries.len() > 2)
-        .map(|(edge, _)| edge);
-    refuse(Elements::edges(bad), |edges| Error::NonManifoldEdges {
-        edges,
-    })
+    let bad = table.edges().filter(|(_, entries)| entries.len() > 2).map(|(edge, _)| edge);
+    refuse(Elements::edges(bad), |edges| Error::NonManifoldEdges { edges })
 }
 
 /// Refuses vertices with several fans, then vertices without a face.
-pub(super) fn manifold_vertices(
-    corners: &VertexCorners,
-    n: usize,
-    opposite: &[u32],
-) -> Result<(), Error> {
+pub(super) fn manifold_vertices(corners: &VertexCorners, n: usize, opposite: &[u32]) -> Result<(), Error> {
     let pinched = Elements::collect((0..n).filter(|&v| !corners.is_one_fan(v, opposite)));
     refuse(pinched, |vertices| Error::NonManifoldVertices { vertices })?;
     let loose = Elements::collect((0..n).filter(|&v| corners.of(v).is_empty()));
@@ -154,19 +116,10 @@ pub(super) fn manifold_vertices(
 
 /// The indices of the items that are bad.
 fn which<T>(items: &[T], bad: impl Fn(&T) -> bool) -> Option<Elements> {
-    Elements::collect(
-        items
-            .iter()
-            .enumerate()
-            .filter(|(_, item)| bad(item))
-            .map(|(index, _)| index),
-    )
+    Elements::collect(items.iter().enumerate().filter(|(_, item)| bad(item)).map(|(index, _)| index))
 }
 
 /// An error where there are elements at fault.
-pub(super) fn refuse(
-    bad: Option<Elements>,
-    error: impl FnOnce(Elements) -> Error,
-) -> Result<(), Error> {
+pub(super) fn refuse(bad: Option<Elements>, error: impl FnOnce(Elements) -> Error) -> Result<(), Error> {
     bad.map_or(Ok(()), |elements| Err(error(elements)))
 }

@@ -99,3 +99,45 @@ fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
     };
     low.step + fraction * width
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn search(first: f64, value: fn(f64) -> f64, slope: fn(f64) -> f64) -> (Trial<()>, Option<Trial<()>>) {
+        let at = |step| Trial { step, value: value(step), slope: slope(step), data: () };
+        (at(0.0), strong_wolfe(&at(0.0), at(first), &WolfeOptions::default(), at))
+    }
+
+    #[test]
+    fn finds_a_strong_wolfe_step_from_any_first_trial() {
+        // a quartic with its first minimum at 1, and a bumpy descent
+        let cases: [(fn(f64) -> f64, fn(f64) -> f64); 2] = [
+            (|x| x.powi(4) - 4.0 * x, |x| 4.0 * x.powi(3) - 4.0),
+            (|x| 0.1 * x * x - x + 0.3 * (3.0 * x).sin(), |x| 0.2 * x - 1.0 + 0.9 * (3.0 * x).cos()),
+        ];
+        for (value, slope) in cases {
+            for first in [1e-6, 1e-2, 0.5, 1.0, 10.0, 1e6] {
+                let (start, found) = search(first, value, slope);
+                assert!(
+                    WolfeOptions::default().accepts(&start, &found.expect("a step")),
+                    "first trial {first}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn steps_that_are_not_allowed_shorten_the_bracket() {
+        // infinite from 0.3 on, still falling there
+        let (start, found) = search(8.0, |x| if x < 0.3 { -x } else { f64::INFINITY }, |_| -1.0);
+        let found = found.expect("a step that decreases");
+        assert!(found.step < 0.3 && found.value < start.value);
+    }
+
+    #[test]
+    fn gives_up_where_nothing_decreases() {
+        let (_, found) = search(1.0, |x| x, |_| -1.0);
+        assert!(found.is_none());
+    }
+}

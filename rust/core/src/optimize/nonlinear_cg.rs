@@ -7,8 +7,8 @@
 //!
 //! Cost of one iteration: two evaluations of the objective, one of its gradient, one solve with M.
 
-use super::{Domain, Energies};
 use super::line_search::{Trial, WolfeOptions, strong_wolfe};
+use super::{Domain, Energies};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
 
@@ -58,7 +58,9 @@ pub fn minimize<D: Domain>(
         if norm2.max(0.0).sqrt() <= options.tolerance {
             return (state.map, Status::Converged);
         }
-        if !observer.progress(iteration as f64 / options.max_iterations as f64, "Minimising the stretch energy") {
+        if !observer
+            .progress(iteration as f64 / options.max_iterations as f64, "Minimising the stretch energy")
+        {
             return (state.map, Status::Cancelled);
         }
         // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none

@@ -7,10 +7,12 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
-};
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
 use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
@@ -31,9 +33,18 @@ impl Cholesky {
     /// # Errors
     /// [`Error::FactorizationFailed`] where memory is short.
     pub fn analyse(upper: &CsMat<f64>) -> Result<Self, Error> {
-        let params = CholeskySymbolicParams::default();
-        let symbolic = factorize_symbolic_cholesky(pattern(upper), Side::Upper, SymmetricOrdering::Amd, params)
-            .map_err(|error| failed(format!("ordering {} unknowns: {error:?}", upper.cols())))?;
+        Self::analyse_by(upper, SupernodalThreshold::AUTO)
+    }
+
+    /// The threshold decides between columns one by one and supernodes.
+    fn analyse_by(
+        upper: &CsMat<f64>,
+        supernodal_flop_ratio_threshold: SupernodalThreshold,
+    ) -> Result<Self, Error> {
+        let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold, ..Default::default() };
+        let symbolic =
+            factorize_symbolic_cholesky(pattern(upper), Side::Upper, SymmetricOrdering::Amd, params)
+                .map_err(|error| failed(format!("ordering {} unknowns: {error:?}", upper.cols())))?;
         let values = vec![0.0; symbolic.len_val()];
         Ok(Self { symbolic, values })
     }
@@ -56,7 +67,9 @@ impl Cholesky {
                 MemStack::new(&mut memory),
                 params,
             )
-            .map_err(|error| failed(format!("a system of {} unknowns is not positive definite: {error:?}", upper.cols())))?;
+            .map_err(|error| {
+                failed(format!("a system of {} unknowns is not positive definite: {error:?}", upper.cols()))
+            })?;
         Ok(())
     }
 
@@ -78,13 +91,16 @@ impl Cholesky {
             SymbolicCholeskyRaw::Supernodal(symbolic) => {
                 let order = self.symbolic.perm().expect("ordered by approximate minimum degree").arrays().0;
                 let factor = SupernodalLltRef::new(symbolic, &self.values);
-                let mut x: Vec<[f64; K]> = order.iter().map(|&i| std::array::from_fn(|k| columns[k][i])).collect();
+                let mut x: Vec<[f64; K]> =
+                    order.iter().map(|&i| std::array::from_fn(|k| columns[k][i])).collect();
                 substitute(factor, &mut x);
                 for (&i, x) in order.iter().zip(&x) {
                     (0..K).for_each(|k| columns[k][i] = x[k]);
                 }
             }
-            SymbolicCholeskyRaw::Simplicial(_) => columns.iter_mut().for_each(|column| self.solve_simplicial(column)),
+            SymbolicCholeskyRaw::Simplicial(_) => {
+                columns.iter_mut().for_each(|column| self.solve_simplicial(column))
+            }
         }
     }
 
@@ -121,7 +137,11 @@ fn panel_column<'a>(supernode: SupernodeRef<'a, usize, f64>, column: usize) -> &
 }
 
 /// L x = b for the rows of one supernode, its part of the others subtracted.
-fn forward<const K: usize>(supernode: SupernodeRef<'_, usize, f64>, x: &mut [[f64; K]], below: &mut Vec<[f64; K]>) {
+fn forward<const K: usize>(
+    supernode: SupernodeRef<'_, usize, f64>,
+    x: &mut [[f64; K]],
+    below: &mut Vec<[f64; K]>,
+) {
     let (start, width, pattern) = (supernode.start(), supernode.val().ncols(), supernode.pattern());
     below.clear();
     below.resize(pattern.len(), [0.0; K]);
@@ -138,7 +158,11 @@ fn forward<const K: usize>(supernode: SupernodeRef<'_, usize, f64>, x: &mut [[f6
 }
 
 /// Lᵀ x = b for the rows of one supernode, all later ones known.
-fn backward<const K: usize>(supernode: SupernodeRef<'_, usize, f64>, x: &mut [[f64; K]], below: &mut Vec<[f64; K]>) {
+fn backward<const K: usize>(
+    supernode: SupernodeRef<'_, usize, f64>,
+    x: &mut [[f64; K]],
+    below: &mut Vec<[f64; K]>,
+) {
     let (start, width, pattern) = (supernode.start(), supernode.val().ncols(), supernode.pattern());
     below.clear();
     below.extend(pattern.iter().map(|&row| x[row]));
@@ -178,7 +202,8 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     let n = matrix.cols();
     let columns = rhs.len().checked_div(n).unwrap_or(0);
     let singular = |error: &dyn std::fmt::Debug| failed(format!("LU of {n} unknowns: {error:?}"));
-    let symbolic = factorize_symbolic_lu(pattern(matrix), LuSymbolicParams::default()).map_err(|error| singular(&error))?;
+    let symbolic = factorize_symbolic_lu(pattern(matrix), LuSymbolicParams::default())
+        .map_err(|error| singular(&error))?;
     let (values, params) = (SparseColMatRef::new(pattern(matrix), matrix.data()), Spec::default());
     let mut numeric = NumericLu::new();
     let mut memory = MemBuffer::new(symbolic.factorize_numeric_lu_scratch::<f64>(Par::Seq, params));
@@ -202,4 +227,105 @@ fn pattern(matrix: &CsMat<f64>) -> SymbolicSparseColMatRef<'_, usize> {
 
 fn failed(what: String) -> Error {
     Error::FactorizationFailed { what }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprs::TriMat;
+
+    /// The upper triangle of the five-point Laplacian of an n × n grid, shifted to be definite.
+    fn grid_laplacian(n: usize) -> CsMat<f64> {
+        let mut matrix = TriMat::new((n * n, n * n));
+        for i in 0..n * n {
+            matrix.add_triplet(i, i, 5.1 + (i as f64).sin());
+            if i % n + 1 < n {
+                matrix.add_triplet(i, i + 1, -1.0);
+            }
+            if i + n < n * n {
+                matrix.add_triplet(i, i + n, -1.0);
+            }
+        }
+        matrix.to_csc()
+    }
+
+    /// Largest entry of A x − b, A symmetric from its upper triangle.
+    fn residual(upper: &CsMat<f64>, x: &[f64], b: &[f64]) -> f64 {
+        let mut product = vec![0.0; x.len()];
+        for (value, (row, column)) in upper.iter() {
+            product[row] += value * x[column];
+            if row != column {
+                product[column] += value * x[row];
+            }
+        }
+        product.iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn solves_one_two_and_three_columns_by_either_factorisation() {
+        let forced =
+            [(SupernodalThreshold::FORCE_SIMPLICIAL, false), (SupernodalThreshold::FORCE_SUPERNODAL, true)];
+        for (n, (threshold, supernodal)) in [3, 30].into_iter().flat_map(|n| forced.map(|by| (n, by))) {
+            let matrix = grid_laplacian(n);
+            let mut factor = Cholesky::analyse_by(&matrix, threshold).unwrap();
+            factor.refactor(&matrix).unwrap();
+            assert_eq!(matches!(factor.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)), supernodal);
+            for columns in 1..=3 {
+                let b: Vec<f64> = (0..columns * n * n).map(|i| (0.37 * i as f64).cos()).collect();
+                let mut x = b.clone();
+                factor.solve(&mut x);
+                for (x, b) in x.chunks(n * n).zip(b.chunks(n * n)) {
+                    assert!(residual(&matrix, x, b) < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn refactoring_uses_the_new_values() {
+        let mut matrix = grid_laplacian(5);
+        let mut factor = Cholesky::analyse(&matrix).unwrap();
+        factor.refactor(&matrix).unwrap();
+        matrix.data_mut().iter_mut().for_each(|value| *value *= 2.0);
+        factor.refactor(&matrix).unwrap();
+        let b = vec![1.0; 25];
+        let mut x = b.clone();
+        factor.solve(&mut x);
+        assert!(residual(&matrix, &x, &b) < 1e-13);
+    }
+
+    #[test]
+    fn indefinite_and_singular_matrices_are_refused() {
+        let mut indefinite = TriMat::new((2, 2));
+        for (i, j, value) in [(0, 0, 1.0), (0, 1, 2.0), (1, 1, 1.0)] {
+            indefinite.add_triplet(i, j, value);
+        }
+        let indefinite: CsMat<f64> = indefinite.to_csc();
+        assert!(Cholesky::analyse(&indefinite).unwrap().refactor(&indefinite).is_err());
+        let mut singular = TriMat::new((2, 2));
+        for (i, j, value) in [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 2.0), (1, 1, 4.0)] {
+            singular.add_triplet(i, j, value);
+        }
+        assert!(solve_general(&singular.to_csc(), &mut [1.0, 1.0]).is_err());
+    }
+
+    #[test]
+    fn general_systems_are_solved() {
+        let mut matrix = TriMat::new((3, 3));
+        for (i, j, value) in [(0, 0, 2.0), (0, 2, 1.0), (1, 0, -1.0), (1, 1, 3.0), (2, 1, 4.0), (2, 2, 1.0)] {
+            matrix.add_triplet(i, j, value);
+        }
+        let mut x = [5.0, 5.0, 11.0];
+        solve_general(&matrix.to_csc(), &mut x).unwrap();
+        [1.0, 2.0, 3.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
+    }
+
+    #[test]
+    fn empty_systems_are_solved() {
+        let empty: CsMat<f64> = TriMat::new((0, 0)).to_csc();
+        let mut factor = Cholesky::analyse(&empty).unwrap();
+        factor.refactor(&empty).unwrap();
+        factor.solve(&mut []);
+        assert!(solve_general(&empty, &mut []).is_ok());
+    }
 }

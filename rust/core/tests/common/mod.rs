@@ -22,8 +22,7 @@ pub struct TestMesh {
 
 impl TestMesh {
     pub fn mesh(&self) -> TriangleMesh {
-        TriangleMesh::new(&self.vertices, &self.faces)
-            .unwrap_or_else(|e| panic!("{}: {e}", self.name))
+        TriangleMesh::new(&self.vertices, &self.faces).unwrap_or_else(|e| panic!("{}: {e}", self.name))
     }
 
     pub fn is_disk(&self) -> bool {
@@ -80,15 +79,7 @@ fn known(
     n_loops: usize,
     genus: Option<usize>,
 ) -> TestMesh {
-    TestMesh {
-        name,
-        vertices,
-        faces,
-        components: 1,
-        euler_characteristic,
-        n_loops,
-        genus,
-    }
+    TestMesh { name, vertices, faces, components: 1, euler_characteristic, n_loops, genus }
 }
 
 pub fn triangle() -> TestMesh {
@@ -106,11 +97,7 @@ pub fn grid(nu: u32, nv: u32) -> TestMesh {
 /// Rings about a centre, `6 r` vertices on ring `r`, at (x, y) in the unit disk.
 fn hexagonal_disk(rings: u32) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
     let first = |ring: u32| {
-        if ring == 0 {
-            0
-        } else {
-            1 + 3 * ring * (ring - 1)
-        }
+        if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) }
     };
     let on = |ring: u32, i: u32| first(ring) + if ring == 0 { 0 } else { i % (6 * ring) };
     let mut points = vec![[0., 0.]];
@@ -123,11 +110,7 @@ fn hexagonal_disk(rings: u32) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
             let [outer, inner] = [side * ring + k, side * (ring - 1) + k];
             faces.push([on(ring - 1, inner), on(ring, outer), on(ring, outer + 1)]);
             if k + 1 < ring {
-                faces.push([
-                    on(ring - 1, inner),
-                    on(ring, outer + 1),
-                    on(ring - 1, inner + 1),
-                ]);
+                faces.push([on(ring - 1, inner), on(ring, outer + 1), on(ring - 1, inner + 1)]);
             }
         }
     }
@@ -147,20 +130,10 @@ pub fn cap(rings: u32, opening: f64) -> TestMesh {
     let (plane, faces) = hexagonal_disk(rings);
     let lift = |[x, y]: [f64; 2]| {
         let radius = x.hypot(y);
-        let stretch = if radius > 0. {
-            (opening * radius).sin() / radius
-        } else {
-            0.
-        };
+        let stretch = if radius > 0. { (opening * radius).sin() / radius } else { 0. };
         [stretch * x, stretch * y, (opening * radius).cos()]
     };
-    known(
-        "cap",
-        (plane.into_iter().map(lift).collect(), faces),
-        1,
-        1,
-        Some(0),
-    )
+    known("cap", (plane.into_iter().map(lift).collect(), faces), 1, 1, Some(0))
 }
 
 /// A sphere cut open from pole to pole: `rows` by `columns` cells, the two sides of the cut apart.
@@ -172,27 +145,12 @@ pub fn slit_sphere(rows: u32, columns: u32) -> TestMesh {
         i => (i - 1) * (columns + 1) + j,
     };
     let at = |i: u32, j: u32| {
-        let [polar, angle] = [
-            PI * f64::from(i) / f64::from(rows),
-            TAU * f64::from(j) / f64::from(columns),
-        ];
-        [
-            polar.sin() * angle.cos(),
-            polar.sin() * angle.sin(),
-            polar.cos(),
-        ]
+        let [polar, angle] = [PI * f64::from(i) / f64::from(rows), TAU * f64::from(j) / f64::from(columns)];
+        [polar.sin() * angle.cos(), polar.sin() * angle.sin(), polar.cos()]
     };
-    let mut vertices: Vec<_> = (1..rows)
-        .flat_map(|i| (0..=columns).map(move |j| at(i, j)))
-        .collect();
+    let mut vertices: Vec<_> = (1..rows).flat_map(|i| (0..=columns).map(move |j| at(i, j))).collect();
     vertices.extend([[0., 0., 1.], [0., 0., -1.]]);
-    known(
-        "slit sphere",
-        (vertices, lattice(rows, columns, number)),
-        1,
-        1,
-        Some(0),
-    )
+    known("slit sphere", (vertices, lattice(rows, columns, number)), 1, 1, Some(0))
 }
 
 /// A 9 by 7 grid with a window of one cell and one of two by three cells: three boundary loops.
@@ -208,15 +166,10 @@ pub fn holed_grid() -> TestMesh {
 /// A flat ring of `around` by `across` cells.
 pub fn annulus(around: u32, across: u32) -> TestMesh {
     let at = |i: u32, j: u32| {
-        let [angle, radius] = [
-            TAU * f64::from(i) / f64::from(around),
-            2. - f64::from(j) / f64::from(across),
-        ];
+        let [angle, radius] = [TAU * f64::from(i) / f64::from(around), 2. - f64::from(j) / f64::from(across)];
         [radius * angle.cos(), radius * angle.sin(), 0.]
     };
-    let vertices = (0..around)
-        .flat_map(|i| (0..=across).map(move |j| at(i, j)))
-        .collect();
+    let vertices = (0..around).flat_map(|i| (0..=across).map(move |j| at(i, j))).collect();
     let faces = lattice(around, across, |i, j| i % around * (across + 1) + j);
     known("annulus", (vertices, faces), 0, 2, Some(0))
 }
@@ -227,55 +180,30 @@ pub fn moebius_strip(around: u32, across: u32) -> TestMesh {
         let angle = TAU * f64::from(i) / f64::from(around);
         let offset = f64::from(j) / f64::from(across) - 0.5;
         let radius = 1. + offset * (angle / 2.).cos();
-        [
-            radius * angle.cos(),
-            radius * angle.sin(),
-            offset * (angle / 2.).sin(),
-        ]
+        [radius * angle.cos(), radius * angle.sin(), offset * (angle / 2.).sin()]
     };
-    let vertices = (0..around)
-        .flat_map(|i| (0..=across).map(move |j| at(i, j)))
-        .collect();
+    let vertices = (0..around).flat_map(|i| (0..=across).map(move |j| at(i, j))).collect();
     let number = |i: u32, j: u32| {
-        if i == around {
-            across - j
-        } else {
-            i * (across + 1) + j
-        }
+        if i == around { across - j } else { i * (across + 1) + j }
     };
-    known(
-        "moebius strip",
-        (vertices, lattice(around, across, number)),
-        0,
-        1,
-        None,
-    )
+    known("moebius strip", (vertices, lattice(around, across, number)), 0, 1, None)
 }
 
 /// A torus of `around` by `tube` cells; vertex `i * tube + j`.
 pub fn torus(around: u32, tube: u32) -> TestMesh {
     let at = |i: u32, j: u32| {
-        let [u, v] = [
-            TAU * f64::from(i) / f64::from(around),
-            TAU * f64::from(j) / f64::from(tube),
-        ];
+        let [u, v] = [TAU * f64::from(i) / f64::from(around), TAU * f64::from(j) / f64::from(tube)];
         let radius = 2. + 0.7 * v.cos();
         [radius * u.cos(), radius * u.sin(), 0.7 * v.sin()]
     };
-    let vertices = (0..around)
-        .flat_map(|i| (0..tube).map(move |j| at(i, j)))
-        .collect();
+    let vertices = (0..around).flat_map(|i| (0..tube).map(move |j| at(i, j))).collect();
     let faces = lattice(around, tube, |i, j| i % around * tube + j % tube);
     known("torus", (vertices, faces), 0, 0, Some(1))
 }
 
 /// A torus without one face.
 pub fn punctured_torus() -> TestMesh {
-    let TestMesh {
-        vertices,
-        mut faces,
-        ..
-    } = torus(6, 8);
+    let TestMesh { vertices, mut faces, .. } = torus(6, 8);
     faces.remove(17);
     known("punctured torus", (vertices, faces), -1, 1, Some(1))
 }
@@ -292,11 +220,7 @@ pub fn icosphere(level: u32) -> TestMesh {
     let mut faces = Vec::new();
     for [a, b, c] in triples(12).filter(|&[a, b, c]| near(a, b) && near(b, c) && near(c, a)) {
         let [p, q, r] = [a, b, c].map(|v| vertices[v as usize]);
-        faces.push(if determinant(p, q, r) > 0. {
-            [a, b, c]
-        } else {
-            [a, c, b]
-        });
+        faces.push(if determinant(p, q, r) > 0. { [a, b, c] } else { [a, c, b] });
     }
     for _ in 0..level {
         faces = subdivided(&mut vertices, &faces);
@@ -308,10 +232,7 @@ pub fn icosphere(level: u32) -> TestMesh {
 
 /// An icosphere stretched along the axes.
 pub fn ellipsoid(level: u32, radii: [f64; 3]) -> TestMesh {
-    let mut mesh = TestMesh {
-        name: "ellipsoid",
-        ..icosphere(level)
-    };
+    let mut mesh = TestMesh { name: "ellipsoid", ..icosphere(level) };
     for vertex in &mut mesh.vertices {
         *vertex = [0, 1, 2].map(|axis| vertex[axis] * radii[axis]);
     }
@@ -344,10 +265,7 @@ pub fn compacted(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> (Vec<[f64; 3]>, V
         *slot = new as u32;
     }
     let kept = number.keys().map(|&v| vertices[v as usize]).collect();
-    (
-        kept,
-        faces.iter().map(|face| face.map(|v| number[&v])).collect(),
-    )
+    (kept, faces.iter().map(|face| face.map(|v| number[&v])).collect())
 }
 
 /// Splits every face into four.

@@ -95,8 +95,9 @@ def in_own_plane(corners):
 
 def boundary_loop(faces):
     """The vertices of the one boundary loop in its order, the surface on its left."""
-    directed = {(int(a), int(b)) for face in faces for a, b in zip(face, np.roll(face, -1), strict=True)}
-    after = dict(edge for edge in directed if edge[::-1] not in directed)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    unpaired = ~np.isin(edges @ [2**31, 1], edges @ [1, 2**31])
+    after = dict(edges[unpaired].tolist())
     loop = [min(after)]
     while after[loop[-1]] != loop[0]:
         loop.append(after[loop[-1]])

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Real meshes, where a data folder is there: AUTHALIC_DATA, or ../shared/data beside the repository."""
+
+import numpy as np
+import pytest
+
+import authalic
+
+from . import meshes, oracle
+
+PUBLISHED = {"chineselion_17334": 4.7e-4, "hand_53054": 3.2e-3}
+"""Bounds of E_A after 50 conjugate gradients on a fixed boundary; Liu & Yueh have 4.29e-4 and 2.88e-3."""
+
+
+def real(folder):
+    """A parameter per file; one skipped test where there are none."""
+    skip = pytest.mark.skip(reason=f"no data folder with {folder} (AUTHALIC_DATA)")
+    files = [pytest.param(path, id=path.stem) for path in meshes.real_files(folder)]
+    return pytest.mark.parametrize("path", files or [pytest.param(None, marks=skip, id="no data")])
+
+
+@real("disk")
+def test_real_disks_have_no_fold(path):
+    mesh = meshes.load(path)
+    result = authalic.disk_map(*mesh)
+    oracle.assert_disk_embedding(result)
+    targets = oracle.face_areas(mesh.vertices, result.faces)
+    energy = oracle.authalic_energy(result.uv, result.faces, targets)
+    assert result.distortion.authalic_energy == pytest.approx(energy, rel=1e-6)
+    assert result.distortion.area_ratio_std < 0.05
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_paper_is_reproduced(name):
+    path = meshes.DATA / "disk" / f"{name}.npz"
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    result = authalic.disk_map(*meshes.load(path), boundary="arc_length", max_iterations=50)
+    oracle.assert_disk_embedding(result)
+    assert result.distortion.authalic_energy <= PUBLISHED[name]
+
+
+@real("hard")
+@pytest.mark.parametrize("fill_holes", [False, True])
+def test_hard_meshes_are_refused_or_mapped_without_a_fold(path, fill_holes):
+    mesh = meshes.load(path)
+    try:
+        result = authalic.disk_map(*mesh, fill_holes=fill_holes)
+    except authalic.MeshError as error:
+        assert len(str(error)) > 30
+        return
+    assert oracle.folded(result.uv, result.faces) == []
+    assert np.hypot(*result.uv.T).max() <= 1 + 1e-12
+
+
+@pytest.mark.parametrize("name", ["mannequindevil_12977", "maze_6120"])
+def test_hard_disks_are_mapped(name):
+    path = meshes.DATA / "hard" / f"{name}.npz"
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    oracle.assert_disk_embedding(authalic.disk_map(*meshes.load(path)))
+
+
+@real("hard")
+def test_hard_meshes_are_cut_into_their_patches(path):
+    mesh = meshes.load(path)
+    patches = authalic.cut(*mesh)
+    corners = np.concatenate([patch.corner_of.ravel() for patch in patches])
+    assert np.array_equal(np.sort(corners), np.arange(mesh.faces.size))
+
+
+@real("hard")
+def test_every_patch_of_a_hard_mesh_is_refused_or_mapped_without_a_fold(path):
+    for patch in authalic.cut(*meshes.load(path)):
+        try:
+            result = authalic.disk_map(patch.vertices, patch.faces, fill_holes=True)
+        except authalic.MeshError:
+            continue
+        assert oracle.folded(result.uv, result.faces) == []
+
+
+@real("sphere")
+def test_real_closed_surfaces_are_told_to_mark_seams(path):
+    with pytest.raises(authalic.MeshError, match="seams"):
+        authalic.disk_map(*meshes.load(path))

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""How a run goes and ends: limits, restarts, progress, cancel, Ctrl-C, threads."""
+
+import json
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import authalic
+
+from . import meshes, oracle
+
+METHODS = ("conjugate_gradient", "fixed_point")
+ROUGH = meshes.DISKS["rough_cap"]
+methods = pytest.mark.parametrize("method", METHODS)
+
+
+def bumpy_square(side):
+    """A mesh of side² vertices, made fast."""
+    mesh = meshes.grid(side, side, aspect=1.0)
+    x, y, _ = mesh.vertices.T
+    return meshes.Mesh(np.stack([x, y, 0.2 * np.sin(9 * x) * np.cos(7 * y)], axis=1), mesh.faces)
+
+
+# Limits and restarts
+
+
+@methods
+@pytest.mark.parametrize("limit", [0, 1, 7])
+def test_the_limit_of_iterations_is_kept(method, limit):
+    result = authalic.disk_map(*meshes.bumpy_cap(), method=method, max_iterations=limit)
+    fixed_point_steps = 5 if method == "conjugate_gradient" else 0
+    assert result.iterations == limit + fixed_point_steps
+    assert result.status == "max_iterations"
+    oracle.assert_disk_embedding(result)
+
+
+@methods
+def test_the_limit_holds_again_for_the_descent_from_a_mended_map(method):
+    result = authalic.disk_map(*ROUGH, method=method, max_iterations=1)
+    assert result.iterations <= 2 + (5 if method == "conjugate_gradient" else 0)
+    oracle.assert_disk_embedding(result)
+
+
+def test_more_iterations_are_never_worse():
+    energies = [
+        authalic.disk_map(*ROUGH, max_iterations=limit).distortion.authalic_energy
+        for limit in (0, 1, 2, 5, 20, 80)
+    ]
+    assert energies == sorted(energies, reverse=True)
+    assert energies[-1] < energies[0] / 10
+
+
+@methods
+def test_a_huge_tolerance_is_reached_at_once(method):
+    result = authalic.disk_map(*ROUGH, method=method, tolerance=1e300)
+    assert result.status == "converged"
+    assert result.iterations <= 5
+    oracle.assert_disk_embedding(result)
+
+
+def test_the_tolerance_is_that_of_the_gradient_norm():
+    result = authalic.disk_map(*meshes.bumpy_cap(), tolerance=1e-3, max_iterations=500)
+    norms = result.history["gradient_norm"]
+    assert result.status == "converged"
+    assert norms[-1] <= 1e-3 < norms[-2]
+
+
+@pytest.mark.parametrize("boundary", ["sliding", "arc_length"])
+@methods
+def test_a_restart_continues(method, boundary):
+    options = {"method": method, "boundary": boundary}
+    first = authalic.disk_map(*ROUGH, max_iterations=10, **options)
+    second = authalic.disk_map(*ROUGH, max_iterations=20, initial=first.uv, **options)
+    oracle.assert_disk_embedding(second)
+    start = second.history["authalic_energy"][0]
+    assert start == pytest.approx(first.distortion.authalic_energy, rel=1e-9)
+    assert second.distortion.authalic_energy < 0.9 * start
+
+
+def test_a_restart_without_iterations_gives_the_same_map():
+    first = authalic.disk_map(*ROUGH, max_iterations=10)
+    again = authalic.disk_map(*ROUGH, max_iterations=0, initial=first.uv)
+    assert np.abs(again.uv - first.uv).max() < 1e-14
+    assert again.iterations == 0
+
+
+def test_folds_of_a_start_map_are_mended():
+    start = authalic.disk_map(*ROUGH).uv
+    start[[100, 200, 300]] *= -0.3
+    assert len(oracle.folded(start, ROUGH.faces)) > 5
+    for method in METHODS:
+        oracle.assert_disk_embedding(authalic.disk_map(*ROUGH, initial=start, method=method))
+
+
+BAD_STARTS = {
+    "wrong_length": (lambda uv: uv[:-1], "initial must be of shape"),
+    "not_finite": (lambda uv: np.where(np.arange(len(uv))[:, None] == 3, np.nan, uv), "NaN or infinite"),
+    "off_the_circle": (lambda uv: 1.5 * uv, "leaves the unit circle"),
+    "clockwise": (lambda uv: uv * [1, -1], "does not run once around"),
+    "collapsed": (lambda uv: 0 * uv + [1, 0], "does not run once around"),
+}
+
+
+@pytest.mark.parametrize(("spoil", "words"), BAD_STARTS.values(), ids=BAD_STARTS)
+def test_a_bad_start_map_is_refused(spoil, words):
+    uv = authalic.disk_map(*ROUGH).uv
+    with pytest.raises(authalic.MeshError, match=words) as caught:
+        authalic.disk_map(*ROUGH, initial=spoil(uv))
+    if words == "NaN or infinite":
+        assert (caught.value.indices, caught.value.count) == ((3,), 1)
+
+
+# Progress and cancel
+
+
+@methods
+@pytest.mark.parametrize("name", ["rough_cap", "tube_disk", "grid"])
+def test_progress_grows_from_0_to_1_with_messages(name, method):
+    heard = []
+
+    def listen(*report):
+        heard.append(report)
+        return True
+
+    authalic.disk_map(*meshes.DISKS[name], method=method, progress=listen)
+    fractions, messages = zip(*heard, strict=True)
+    assert len(fractions) > 10
+    assert list(fractions) == sorted(fractions)
+    assert fractions[0] >= 0
+    assert 0.5 < fractions[-1] <= 1
+    assert all(type(fraction) is float for fraction in fractions)
+    assert all(isinstance(message, str) and message for message in messages)
+
+
+def test_listening_changes_no_bit():
+    heard = authalic.disk_map(*ROUGH, progress=lambda fraction, message: True)
+    assert np.array_equal(heard.uv, authalic.disk_map(*ROUGH).uv)
+
+
+@pytest.mark.parametrize("answer", [True, 1, None, "yes", np.True_])
+def test_these_answers_go_on(answer):
+    result = authalic.disk_map(*ROUGH, progress=lambda fraction, message: answer)
+    assert result.status == "max_iterations"
+
+
+@methods
+@pytest.mark.parametrize("name", ["rough_cap", "tube_disk"])
+@pytest.mark.parametrize("last", [0, 1, 3, 6, 12, 40])
+def test_a_false_answer_cancels_and_leaves_a_sound_map(name, method, last):
+    calls = []
+
+    def progress(fraction, message):
+        calls.append(fraction)
+        return len(calls) <= last
+
+    result = authalic.disk_map(*meshes.DISKS[name], method=method, progress=progress)
+    assert result.status == "cancelled"
+    assert len(calls) == last + 1
+    assert result.iterations <= last
+    oracle.assert_disk_embedding(result)
+
+
+@pytest.mark.parametrize("answer", [False, 0, np.False_, ""])
+def test_these_answers_cancel(answer):
+    assert authalic.disk_map(*ROUGH, progress=lambda fraction, message: answer).status == "cancelled"
+
+
+@pytest.mark.parametrize("error", [KeyError("mine"), KeyboardInterrupt(), SystemExit(3)])
+def test_an_exception_of_the_progress_function_comes_through(error):
+    def progress(fraction, message):
+        raise error
+
+    with pytest.raises(type(error)) as caught:
+        authalic.disk_map(*ROUGH, progress=progress)
+    assert caught.value is error
+    assert authalic.disk_map(*ROUGH).status == "max_iterations"  # and the next run is none the worse
+
+
+def test_a_progress_function_may_run_another_map():
+    inner = []
+
+    def progress(fraction, message):
+        inner.append(authalic.disk_map(*meshes.fan()).status)
+        return len(inner) < 3
+
+    assert authalic.disk_map(*ROUGH, progress=progress).status == "cancelled"
+    assert inner == ["converged"] * 3
+
+
+# Threads and signals
+
+
+def test_other_python_threads_run_meanwhile():
+    mesh = bumpy_square(170)
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.002)
+
+    ticker = threading.Thread(target=tick)
+    ticker.start()
+    began = time.perf_counter()
+    authalic.disk_map(*mesh)
+    ended = time.perf_counter()
+    done.set()
+    ticker.join()
+    inside = [moment for moment in ticks if began + 0.05 < moment < ended - 0.05]
+    assert ended - began > 0.15, "too fast to tell"
+    assert len(inside) > 10
+
+
+def test_maps_run_side_by_side():
+    expected = authalic.disk_map(*ROUGH).uv
+    found = [None] * 4
+
+    def work(k):
+        found[k] = authalic.disk_map(*ROUGH).uv
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(found))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(uv, expected) for uv in found)
+
+
+DIGEST = """
+import hashlib, authalic
+from api.test_runs import bumpy_square
+from api import meshes
+for mesh in (bumpy_square(120), meshes.DISKS["rough_cap"]):
+    for boundary in ("sliding", "arc_length"):
+        result = authalic.disk_map(*mesh, boundary=boundary)
+        figures, energy = result.distortion, result.history["authalic_energy"]
+        for array in (result.uv, energy, figures.log2_area_ratio, figures.angle_distortion):
+            print(hashlib.sha256(array.tobytes()).hexdigest(), repr(figures.authalic_energy))
+"""
+
+
+def test_one_and_several_threads_give_the_same_bits(run_python):
+    one, two, seven = (run_python(DIGEST, RAYON_NUM_THREADS=threads) for threads in ("1", "2", "7"))
+    assert len(one.split("\n")) == 16
+    assert one == two == seven
+
+
+INTERRUPT = """
+import json, os, signal, threading, time, authalic
+from api.test_runs import bumpy_square
+mesh = bumpy_square(710)
+sent = []
+def interrupt():
+    sent.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer({delay}, interrupt).start()
+began = time.perf_counter()
+try:
+    authalic.disk_map(*mesh{options})
+    outcome = "finished"
+except KeyboardInterrupt:
+    outcome = "interrupted"
+print(json.dumps([outcome, time.perf_counter() - sent[0], time.perf_counter() - began]))
+"""
+
+
+@pytest.mark.parametrize("options", ["", ", progress=lambda fraction, message: True"])
+@pytest.mark.parametrize("delay", [0.3, 2.0])
+def test_ctrl_c_ends_a_run_on_half_a_million_vertices(run_python, delay, options):
+    """0.2 s is promised; the bound leaves room for a busy machine."""
+    outcome, latency, seconds = json.loads(run_python(INTERRUPT.format(delay=delay, options=options)))
+    print(f"Ctrl-C after {delay} s was answered after {latency:.3f} s")
+    assert outcome == "interrupted"
+    assert latency < 1.0
+    assert seconds < delay + 1.5

@@ -120,7 +120,8 @@ def content_hash(paths: Iterable[Path], *extra: str) -> str:
     """A hash of the names and contents of files, and of further strings."""
     digest = hashlib.sha256()
     for path in paths:
-        digest.update(str(path).encode() + b"\0" + path.read_bytes() + b"\0")
+        name = path.relative_to(ROOT) if ROOT in path.parents else path.name
+        digest.update(str(name).encode() + b"\0" + path.read_bytes() + b"\0")
     for text in extra:
         digest.update(text.encode() + b"\0")
     return digest.hexdigest()

@@ -15,8 +15,8 @@ READERS = {
     ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
     ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
 }
-SIZE = 2.0
-"""The largest extent of every mesh in the scene."""
+EXTENT, DIAGONAL = 2.35, 3.46
+"""The most that a mesh may measure in the scene: along an axis, and from corner to corner of its box."""
 
 
 def suzanne():
@@ -107,7 +107,8 @@ def _centre(mesh):
     corners = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.attributes["position"].data.foreach_get("vector", corners)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
-    scale = SIZE / max(float((high - low).max()), 1e-30)
+    size = high - low
+    scale = 1 / max(float(size.max()) / EXTENT, float(np.linalg.norm(size)) / DIAGONAL, 1e-30)
     mesh.transform(Matrix.Scale(scale, 4) @ Matrix.Translation(tuple(-(low + high) / 2)))
 
 

@@ -15,6 +15,7 @@ TURN = math.radians(-24)
 CHECKER_SIZE = 0.085
 HEAT_RANGE = 2.0
 """The heat map goes from 2^-2 to 2^2: a quarter to four times the fair share."""
+LEGEND_WIDTH = 2.6
 HEAT_STOPS = (
     (0.00, (0.020, 0.090, 0.330)),
     (0.25, (0.140, 0.430, 0.760)),
@@ -95,28 +96,14 @@ def label(text, column, row, size=0.2, align="CENTER", shade=0.02):
 
 
 def heat_legend(material, column, row):
-    """A bar of the heat map's colours with its meaning below."""
-    steps, width, height = 60, 2.6, 0.16
-    xs = np.linspace(-width / 2, width / 2, steps + 1)
-    points = [(x, 0, z) for x in xs for z in (-height / 2, height / 2)]
-    mesh = bpy.data.meshes.new("Legend")
-    mesh.from_pydata(points, [], [(2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1) for i in range(steps)])
-    values = (np.arange(steps) + 0.5) / steps * 2 * HEAT_RANGE - HEAT_RANGE
-    mesh.attributes.new("log2_area_ratio", "FLOAT", "FACE").data.foreach_set(
-        "value", values.astype(np.float32)
-    )
-    mesh.materials.append(material)
-    bar = bpy.data.objects.new("Legend", mesh)
+    """A bar of the heat map's colours with its meaning above and its scale below."""
+    bar = bpy.data.objects.new("Legend", _legend_mesh(LEGEND_WIDTH, 0.16, 60))
+    bar.data.materials.append(material)
     bar.location = spot(column, row)
     bpy.context.scene.collection.objects.link(bar)
-    for place_, text in (
-        (-0.5, "1/4"),
-        (-0.25, "1/2"),
-        (0, "fair share of texture"),
-        (0.25, "2"),
-        (0.5, "4"),
-    ):
-        label(text, column + place_ * width / COLUMN, row + 0.085, 0.13)
+    label("texture area / fair share", column, row - 0.09, 0.14)
+    for offset, text in ((-0.5, "1/4"), (-0.25, "1/2"), (0, "1"), (0.25, "2"), (0.5, "4")):
+        label(text, column + offset * LEGEND_WIDTH / COLUMN, row + 0.085, 0.13)
 
 
 def light_and_camera(columns, rows, pixels_per_cell):
@@ -152,6 +139,15 @@ def render(path, samples):
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True)
+
+
+def _legend_mesh(width, height, steps):
+    xs = np.linspace(-width / 2, width / 2, steps + 1)
+    points = [(x, 0, z) for x in xs for z in (-height / 2, height / 2)]
+    mesh = bpy.data.meshes.new("Legend")
+    mesh.from_pydata(points, [], [(2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1) for i in range(steps)])
+    write_ratio(mesh, ((np.arange(steps) + 0.5) / steps * 2 - 1) * HEAT_RANGE)
+    return mesh
 
 
 def _material(name):

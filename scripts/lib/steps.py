@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable
 
+import distribution
 import environment
-import packaging
 from environment import Environment
 from shell import OUT, CommandFailed, run
 
@@ -83,7 +83,7 @@ def check_python_style(log: Path) -> Count:
 
 def install_wheel(log: Path) -> Count:
     dev = environment.dev()
-    packaging.install_wheel(packaging.build_wheel(dev, log=log), dev, log)
+    distribution.install_wheel(distribution.build_wheel(dev, log=log), dev, log)
     return Count()
 
 
@@ -149,13 +149,13 @@ def count_junit(report: Path) -> Count:
 
 
 def _extension(blender: Environment, log: Path) -> Path:
-    wheel = packaging.build_wheel(environment.dev(), log=log)
-    return packaging.build_zip(wheel, blender, log)
+    wheel = distribution.build_wheel(environment.dev(), log=log)
+    return distribution.build_zip(wheel, blender, log)
 
 
 def _test_in_blender(blender: Environment, log: Path) -> Count:
     archive = _extension(blender, log)
-    variables = packaging.install_extension(archive, blender, LOGS / f"profile-{blender.name}", log)
+    variables = distribution.fresh_profile(archive, LOGS / f"profile-{blender.name}")
     return _pytest(blender, ["tests/blender"], variables, log)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Builds the wheel and the extension zip, installs both. Nothing here starts Blender's interface."""
+"""Builds the wheel and the extension zip; installs the wheel. Nothing here starts Blender."""
 
 from __future__ import annotations
 
@@ -71,19 +71,15 @@ def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> 
         stamp.write_text(wanted)
 
 
-def install_extension(
-    archive: Path, blender: Environment, profile: Path, log: Path | None = None
-) -> dict[str, str]:
-    """Installs the zip into a new, empty Blender profile; returns the variables that select the profile.
+def fresh_profile(archive: Path, profile: Path) -> dict[str, str]:
+    """Empties a folder for Blender's profile; returns the variables that select it and name the zip.
 
-    The package `authalic` that Blender then imports is the one out of the zip: the environments of
-    Blender never have it installed otherwise.
+    The extension's zip is installed into it from within Blender. The package `authalic` that Blender then
+    imports is the one out of the zip: the environments of Blender never have it installed otherwise.
     """
     shutil.rmtree(profile, ignore_errors=True)
     profile.mkdir(parents=True)
-    variables = {"BLENDER_USER_RESOURCES": str(profile), "AUTHALIC_EXTENSION_ZIP": str(archive)}
-    run([blender.python, ROOT / "scripts" / "lib" / "install_in_blender.py", archive], variables, log)
-    return variables
+    return {"BLENDER_USER_RESOURCES": str(profile), "AUTHALIC_EXTENSION_ZIP": str(archive)}
 
 
 def announce(path: Path) -> None:

@@ -41,11 +41,12 @@ def draw_layouts(found, path):
     methods = list(dict.fromkeys(name for row in found.values() for name in row))
     size = (3.1 * len(methods), 3.3 * len(found))
     figure, axes = plt.subplots(len(found), len(methods), figsize=size, squeeze=False, layout="constrained")
+    for axis, method in zip(axes[0], methods, strict=True):
+        axis.set_title(method, fontsize=12)
     for row, (mesh, by_method) in zip(axes, found.items(), strict=True):
-        row[0].set_ylabel(mesh, fontsize=11)
+        row[0].set_ylabel(mesh, fontsize=12)
         for axis, method in zip(row, methods, strict=True):
             drawn = _draw_layout(axis, by_method.get(method))
-            axis.set_title(method if row is axes[0] else "", fontsize=11)
     bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.35, aspect=30, ticks=[-2, -1, 0, 1, 2])
     bar.ax.set_xticklabels(["1/4", "1/2", "1", "2", "4"])
     bar.set_label("texture area / fair share")
@@ -65,9 +66,10 @@ def draw_histograms(found, path):
         axis.set_xticks([-3, -2, -1, 0, 1, 2, 3], ["1/8", "1/4", "1/2", "1", "2", "4", "8"])
         axis.set_xlabel("texture area / fair share, per triangle")
         axis.set_yscale("log")
+        axis.set_ylim(top=20)  # room for the legend
+        axis.legend(frameon=False, fontsize=8, loc="upper center", ncols=2)
         axis.spines[["top", "right"]].set_visible(False)
     axes[0][0].set_ylabel("share of the triangles")
-    axes[0][0].legend(frameon=False, fontsize=8, loc="upper left")
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -96,7 +98,7 @@ def _draw_layout(axis, arrays):
 def _draw_histogram(axis, method, ratio, bins):
     values = np.clip(np.log2(np.maximum(ratio, 1e-12)), bins[0], bins[-1])
     weights = np.full(len(values), 1 / len(values))
-    label = f"{method}: SD {ratio.std():.2g}"
+    label = f"{method}: SD {ratio.std():.3f}"
     colour = COLOURS.get(method, "0.3")
     axis.hist(values, bins, weights=weights, histtype="step", label=label, color=colour, linewidth=1.4)
 

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The table of disk maps, in Markdown.
+
+Usage: python bench_disk.py TARGET_FILE REPEATS [MESH ...]
+"""
+
+import os
+import platform
+import statistics
+import sys
+import time
+from pathlib import Path
+
+import bench_meshes
+import numpy as np
+from scipy.sparse import coo_matrix, diags
+from scipy.sparse.linalg import spsolve
+
+import authalic
+
+PAPER = "conjugate_gradient, arc_length, 50"
+METHODS = {
+    "fixed_point, arc_length, 50": {"method": "fixed_point", "boundary": "arc_length", "max_iterations": 50},
+    PAPER: {"method": "conjugate_gradient", "boundary": "arc_length", "max_iterations": 50},
+    "default": {},
+}
+PUBLISHED = {"chineselion_17334": 4.29e-4, "hand_53054": 2.88e-3}
+"""Authalic energies published for these models (Liu & Yueh, conjugate gradients, 50 iterations)."""
+COLUMNS = (
+    "mesh", "V", "folds of the harmonic start", "method", "E_A", "published", "SD", "folds",
+    "iterations", "status", "s", "E_A / paper's", "s / paper's",
+)  # fmt: skip
+
+
+def main(target, repeats, names):
+    """Measures every mesh with every method and prints the table as it grows."""
+    lines = [f"Disk maps, authalic {authalic.__version__}, {machine()}, median of {repeats} run(s).\n"]
+    lines += [row(COLUMNS), row("---" for _ in COLUMNS)]
+    print("\n".join(lines), flush=True)
+    for name, mesh in bench_meshes.disks(names).items():
+        for cells in measured(name, mesh, repeats):
+            lines.append(row(cells))
+            print(lines[-1], flush=True)
+    target.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def measured(name, mesh, repeats):
+    """The rows of one mesh; ratios are to the paper's method, measured in the same run."""
+    start = len(harmonic_start_folds(*mesh))
+    results = {method: timed(mesh, options, repeats) for method, options in METHODS.items()}
+    paper, paper_seconds = results[PAPER]
+    for method, (result, seconds) in results.items():
+        figures = result.distortion
+        energy = figures.authalic_energy
+        published = PUBLISHED.get(name) if method == PAPER else None
+        yield (
+            name, len(mesh[0]), start, method, f"{energy:.2e}", f"{published:.2e}" if published else "",
+            f"{figures.area_ratio_std:.4f}", len(figures.folded), result.iterations, result.status,
+            f"{seconds:.2f}", f"{energy / paper.distortion.authalic_energy:.3g}",
+            f"{seconds / paper_seconds:.2f}",
+        )  # fmt: skip
+
+
+def timed(mesh, options, repeats):
+    """The map, and the median of the seconds that the whole call takes."""
+    seconds = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        result = authalic.disk_map(*mesh, **options)
+        seconds.append(time.perf_counter() - began)
+    return result, statistics.median(seconds)
+
+
+def harmonic_start_folds(vertices, faces):
+    """The faces that fold in the harmonic map to arc length on the circle, computed by scipy."""
+    (patch,) = authalic.cut(vertices, faces)
+    loop = max(patch.boundary_loops, key=len)
+    image = np.zeros((len(patch.vertices), 2))
+    image[loop] = circle(patch.vertices[loop])
+    inner = np.setdiff1d(np.arange(len(image)), loop)
+    laplacian = cotangent_laplacian(patch.vertices, patch.faces)
+    image[inner] = spsolve(laplacian[inner][:, inner].tocsc(), -laplacian[inner][:, loop] @ image[loop])
+    a, b = (image[patch.faces[:, k]] - image[patch.faces[:, 0]] for k in (1, 2))
+    area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return np.flatnonzero(area * np.sign(np.median(area)) <= 0)
+
+
+def circle(points):
+    """Places a closed polygon's vertices on the unit circle by arc length."""
+    sides = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    angle = 2 * np.pi * (np.cumsum(sides) - sides) / sides.sum()
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def cotangent_laplacian(vertices, faces):
+    """The positive semidefinite Laplacian with cotangent weights, (n, n)."""
+    n, rows, columns, weights = len(vertices), [], [], []
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        a, b = vertices[faces[:, i]] - vertices[faces[:, k]], vertices[faces[:, j]] - vertices[faces[:, k]]
+        rows.append(faces[:, i])
+        columns.append(faces[:, j])
+        weights.append(np.einsum("ij,ij->i", a, b) / np.linalg.norm(np.cross(a, b), axis=1) / 2)
+    half = coo_matrix((np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), (n, n))
+    weight = (half + half.T).tocsr()
+    return (diags(np.asarray(weight.sum(axis=1)).ravel()) - weight).tocsr()
+
+
+def machine():
+    """What the seconds were measured on."""
+    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+
+
+def row(cells):
+    """A row of a Markdown table."""
+    return "| " + " | ".join(map(str, cells)) + " |"
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:])

@@ -120,21 +120,22 @@ pub fn distortion(
     })
 }
 
-/// Checks one target measure per face: positive and finite.
-pub fn check_density(density: &[f64], n_faces: usize) -> Result<(), Error> {
+/// Checks one target measure per face and scales the largest to 1, so that sums neither over- nor underflow.
+///
+/// # Errors
+/// [`Error::InvalidArray`] for another length, [`Error::Density`] for values that are not positive and finite.
+pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
     if density.len() != n_faces {
-        let expected = format!("of shape ({n_faces},), one value per face");
-        return Err(Error::InvalidArray {
-            name: "density",
-            found: format!("of shape ({},)", density.len()),
-            expected,
-        });
+        let (found, expected) =
+            (format!("of shape ({},)", density.len()), format!("of shape ({n_faces},), one value per face"));
+        return Err(Error::InvalidArray { name: "density", found, expected });
     }
     let bad = |face: &usize| !(density[*face] > 0.0 && density[*face].is_finite());
-    match Elements::collect((0..n_faces).filter(bad)) {
-        Some(faces) => Err(Error::Density { value: density[faces.first[0]], faces }),
-        None => Ok(()),
+    if let Some(faces) = Elements::collect((0..n_faces).filter(bad)) {
+        return Err(Error::Density { value: density[faces.first[0]], faces });
     }
+    let largest = density.iter().copied().fold(0.0, f64::max);
+    Ok(density.iter().map(|value| value / largest).collect())
 }
 
 fn folded(faces: &[[u32; 3]], image: Image<'_>) -> Vec<usize> {

@@ -30,5 +30,5 @@ pub mod sparse;
 
 pub use control::{History, Observer, Record, Silent, Status};
 pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};
-pub use distortion::{Distortion, Image, check_density, distortion, folded_in_plane};
+pub use distortion::{Distortion, Image, distortion, folded_in_plane, normalized_density};
 pub use error::{Elements, Error};

@@ -4,40 +4,73 @@
 //! Every output element is written by one closure call, and every sum is taken over chunks of a fixed length
 //! whose partial sums are added in order, so 1 and 64 threads agree bit for bit.
 
+use std::sync::{Arc, Mutex};
+
+use rayon::ThreadPool;
 use rayon::prelude::*;
 
 /// Elements per task: long enough to hide the scheduling, short enough to keep two cores busy.
 const CHUNK: usize = 4096;
 
+/// The threads of one process, with its id: a forked child inherits the pool but none of its threads.
+static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// The threads of this process; `None` where they cannot be had right now. The results are the same without them.
+fn threads() -> Option<Arc<ThreadPool>> {
+    // a fork may have copied the lock while it was held, so nobody may wait for it
+    let mut pool = POOL.try_lock().ok()?;
+    let process = std::process::id();
+    if pool.as_ref().is_none_or(|(owner, _)| *owner != process) {
+        // the parent's threads do not exist here, so nobody must be told to stop them
+        std::mem::forget(pool.take());
+        let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
+        *pool = Some((process, Arc::new(threads)));
+    }
+    pool.as_ref().map(|(_, threads)| threads.clone())
+}
+
+/// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are several.
+fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
+    let on_these_threads = |out: &mut [T]| {
+        out.par_chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part));
+    };
+    let is_one_task = out.len() <= length;
+    if !is_one_task && rayon::current_thread_index().is_some() {
+        return on_these_threads(out);
+    }
+    match if is_one_task { None } else { threads() } {
+        Some(pool) => pool.install(|| on_these_threads(out)),
+        None => out.chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part)),
+    }
+}
+
 /// Writes `value(i)` into every `out[i]`.
-pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync) {
-    out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, part)| {
-        for (k, element) in part.iter_mut().enumerate() {
-            *element = value(chunk * CHUNK + k);
-        }
+pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync + Send) {
+    for_each_chunk(out, CHUNK, |first, part| {
+        part.iter_mut().enumerate().for_each(|(k, element)| *element = value(first + k));
     });
 }
 
 /// Replaces every `out[i]` by `value(i, out[i])`.
-pub(crate) fn fill_with_old(out: &mut [f64], value: impl Fn(usize, f64) -> f64 + Sync) {
-    out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, part)| {
-        for (k, element) in part.iter_mut().enumerate() {
-            *element = value(chunk * CHUNK + k, *element);
-        }
+pub(crate) fn fill_with_old(out: &mut [f64], value: impl Fn(usize, f64) -> f64 + Sync + Send) {
+    for_each_chunk(out, CHUNK, |first, part| {
+        part.iter_mut().enumerate().for_each(|(k, element)| *element = value(first + k, *element));
     });
 }
 
 /// The values `value(0), …, value(n − 1)`.
-pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     let mut out = vec![T::default(); n];
     fill(&mut out, value);
     out
 }
 
 /// Σ value(i) over `0..n`.
-pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let partial =
-        map(n.div_ceil(CHUNK), |chunk| (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum::<f64>());
+pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    let mut partial = vec![0.0; n.div_ceil(CHUNK)];
+    for_each_chunk(&mut partial, 1, |chunk, part| {
+        part[0] = (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum();
+    });
     partial.iter().sum()
 }
 
@@ -49,7 +82,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Whether `holds(i)` for all `i` in `0..n`.
 pub(crate) fn all(n: usize, holds: impl Fn(usize) -> bool + Sync + Send) -> bool {
-    (0..n).into_par_iter().with_min_len(CHUNK).all(holds)
+    sum(n, |i| if holds(i) { 0.0 } else { 1.0 }) == 0.0
 }
 
 #[cfg(test)]

@@ -57,7 +57,10 @@ fn the_gradient_is_that_of_central_differences() {
                         energy.value(&map).objective
                     };
                     let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
-                    assert!((gradient[v][axis] - difference).abs() < 1e-5 * scale, "{profile:?} vertex {v}");
+                    assert!(
+                        (gradient[v][axis] - difference).abs() < 1e-5 * scale + 1e-9,
+                        "{profile:?} vertex {v}"
+                    );
                 }
             }
         }
@@ -130,7 +133,7 @@ fn the_objective_ignores_scale_rotation_and_translation() {
                 [fx + gx, fy + gy, torque + x * gy - y * gx, pressure + x * gx + y * gy]
             });
         let scale = gradient.iter().flatten().map(|g| g.abs()).sum::<f64>();
-        sums.iter().for_each(|sum| assert!(sum.abs() < 1e-12 * scale));
+        sums.iter().for_each(|sum| assert!(sum.abs() < 1e-12 * scale + 1e-12));
     }
 }
 

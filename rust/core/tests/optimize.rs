@@ -58,9 +58,9 @@ fn run(domain: &Quadratic, max_iterations: usize, tolerance: f64) -> (Vec<f64>, 
 fn conjugate_gradients_solve_a_quadratic() {
     for preconditioned in [false, true] {
         let domain = Quadratic { n: 30, preconditioned };
-        let (x, status, history) = run(&domain, 200, 1e-10);
+        let (x, status, history) = run(&domain, 200, 1e-7);
         assert_eq!(status, Status::Converged);
-        domain.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-8));
+        domain.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-6));
         let energies: Vec<f64> = history.records().iter().map(|record| record.authalic_energy).collect();
         assert!(energies.windows(2).all(|pair| pair[1] <= pair[0]), "the energy never rises");
     }

@@ -69,7 +69,8 @@ impl DiskMap {
 /// initial : (n, 2) real array, optional
 ///     A start map whose boundary runs once around the unit circle. Default: harmonic, then five fixed-point steps.
 /// max_iterations : int, optional
-///     Default 50, as in the paper's tables; the five fixed-point steps come on top.
+///     Default 50, as in the paper's tables. The five fixed-point steps of the conjugate gradients and the descent that follows where
+///     folds were mended come on top.
 /// tolerance : float, optional
 ///     Converged when √(gᵀM⁻¹g), the gradient_norm of the history, falls below it. Default 1e-8.
 /// fill_holes : bool

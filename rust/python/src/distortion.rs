@@ -2,7 +2,7 @@
 //! Bindings of `authalic::distortion`.
 
 use authalic::mesh::TriangleSoup;
-use authalic::{Image, check_density};
+use authalic::{Image, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -138,9 +138,10 @@ pub fn distortion(
     let density = density.map(|density| values(density, "density")).transpose()?;
     let figures = run(py, None, move |_| {
         let soup = TriangleSoup::new(&vertices, &faces)?;
-        let targets =
-            density.unwrap_or_else(|| authalic::mesh::geometry::face_areas(&soup.points, &soup.faces));
-        check_density(&targets, faces.len())?;
+        let targets = match density {
+            Some(density) => normalized_density(&density, faces.len())?,
+            None => authalic::mesh::geometry::face_areas(&soup.points, &soup.faces),
+        };
         let image = match &image {
             OwnedImage::Plane(map) => Image::Plane(map),
             OwnedImage::Sphere(map) => Image::Sphere(map),

@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use authalic::{Error, Observer};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::errors::{SolverError, to_python};
@@ -51,6 +52,9 @@ pub fn run<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&mut dyn Observer) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
+    if let Some(progress) = progress.filter(|progress| !progress.is_callable()) {
+        return Err(PyTypeError::new_err(format!("progress must be callable, but is {}", progress.repr()?)));
+    }
     let (sender, messages) = channel();
     let (answer, answers) = channel();
     let cancelled = Arc::new(AtomicBool::new(false));

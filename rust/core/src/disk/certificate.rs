@@ -9,6 +9,9 @@ use crate::distortion::folded_in_plane;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
+/// A face below this part of its target is as good as folded: single precision, in which UVs are stored, may fold it.
+const SMALLEST_RATIO: f64 = 1e-3;
+
 /// Faces whose exact orientation in `map` is not positive.
 pub(super) fn folded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Vec<usize> {
     folded_in_plane(mesh.faces(), map)
@@ -17,6 +20,12 @@ pub(super) fn folded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Vec<usize> {
 /// Whether `map` is a bijection onto its image: no folded face, boundary once around.
 pub(super) fn is_bijective(mesh: &TriangleMesh, map: &[[f64; 2]]) -> bool {
     runs_once_around(&mesh.boundary_loops()[0], map) && folded(mesh, map).is_empty()
+}
+
+/// Whether some face is left with less than [`SMALLEST_RATIO`] of its target area.
+pub(super) fn nearly_folded(areas: &[f64], targets: &[f64]) -> bool {
+    let scale = areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
+    !parallel::all(areas.len(), |face| areas[face] >= SMALLEST_RATIO * scale * targets[face])
 }
 
 /// Whether every face is positive by more than its rounding error; never true for a folded face.

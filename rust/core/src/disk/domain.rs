@@ -87,6 +87,7 @@ impl<'a> DiskDomain<'a> {
     /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.
     pub(super) fn guard(&mut self) {
         self.guarded = true;
+        self.preconditioned_at.clear();
         self.energy = self.energy.with_profile(Profile::Barrier);
     }
 
@@ -108,6 +109,11 @@ impl<'a> DiskDomain<'a> {
         }
         self.preconditioned_at = map.to_vec();
         Ok(())
+    }
+
+    /// Whether some face of `map` is nearly folded.
+    pub(super) fn nearly_folds(&self, map: &[[f64; 2]]) -> bool {
+        certificate::nearly_folded(&self.energy.areas(map), self.energy.targets())
     }
 
     fn free(&self) -> &[u32] {

@@ -19,7 +19,7 @@ mod unfold;
 use std::borrow::Cow;
 
 use crate::control::{History, Observer, Phase, Status};
-use crate::distortion::{Distortion, Image, check_density, distortion};
+use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::optimize::Domain as _;
@@ -70,7 +70,8 @@ pub struct DiskMapOptions<'a> {
     pub density: Option<&'a [f64]>,
     /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic map where `None`.
     pub initial: Option<&'a [[f64; 2]]>,
-    /// Iterations at the most; 50 where `None`, as in the paper's tables.
+    /// Iterations at the most; 50 where `None`, as in the paper's tables. The five fixed-point steps of the conjugate
+    /// gradients and the descent that follows where folds were mended come on top.
     pub max_iterations: Option<usize>,
     /// Converged when √(gᵀM⁻¹g) falls below this; 10⁻⁸ where `None`.
     pub tolerance: Option<f64>,
@@ -118,7 +119,10 @@ pub fn disk_map(
     // 1. Refuse what is no disk before any work
     options.check(mesh)?;
     // 2. Targets; holes filled virtually
-    let given: Cow<'_, [f64]> = options.density.map_or_else(|| mesh.face_areas().into(), Cow::from);
+    let given: Cow<'_, [f64]> = match options.density {
+        Some(density) => normalized_density(density, mesh.n_faces())?.into(),
+        None => mesh.face_areas().into(),
+    };
     let filled = match mesh.boundary_loops().len() {
         1 => None,
         _ => Some(holes::fill_holes(mesh, &given)?),
@@ -137,9 +141,6 @@ impl DiskMapOptions<'_> {
         match mesh.require_disk() {
             Err(Error::SeveralBoundaries { .. }) if self.fill_holes => {}
             verdict => verdict?,
-        }
-        if let Some(density) = self.density {
-            check_density(density, mesh.n_faces())?;
         }
         if let Some(initial) = self.initial {
             check_initial(mesh, initial)?;
@@ -198,21 +199,46 @@ impl Run<'_> {
         let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
         let (map, status) = self.as_published(&mut domain, history, observer)?;
-        if certificate::is_bijective(self.mesh, &map) {
+        let bijective = certificate::is_bijective(self.mesh, &map);
+        if bijective && (status == Status::Cancelled || !domain.nearly_folds(&map)) {
             return Ok((map, status));
         }
-        // 2. Unfold what folded; where that fails, Tutte's embedding
-        let unfolded = match unfold::unfold(self.mesh, &map) {
-            Some(map) => map,
-            None => start::tutte(self.mesh, &mut domain)?,
-        };
-        if let Some(folded) = Elements::collect(certificate::folded(self.mesh, &unfolded)) {
-            return Err(Error::NoEmbedding { folded });
+        // 2. Unfold what folded, then a descent that keeps every face open
+        domain.guard();
+        let mended = if bijective { Some(map) } else { unfold::unfold(self.mesh, &map) };
+        let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
+        let mended = mended.map(|map| self.descend(&mut domain, map, status, history, &mut phase));
+        // 3. Where that fails or leaves a face as good as folded, the same descent from Tutte's embedding
+        match mended {
+            Some((map, status)) if status == Status::Cancelled || !domain.nearly_folds(&map) => {
+                Ok((map, status))
+            }
+            mended => {
+                let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+                self.descend_from_tutte(&mut domain, mended, status, history, &mut phase)
+            }
         }
-        // 3. A descent that never leaves it
-        match status {
-            Status::Cancelled => Ok((unfolded, status)),
-            _ => Ok(self.descend_guarded(&mut domain, unfolded, history, observer)),
+    }
+
+    /// Tutte's embedding and the guarded descent from it, or `mended` where that is the better map.
+    fn descend_from_tutte(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        mended: Option<(Map, Status)>,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let tutte = start::tutte(self.mesh, domain)?;
+        match (Elements::collect(certificate::folded(self.mesh, &tutte)), mended) {
+            (Some(folded), None) => Err(Error::NoEmbedding { folded }),
+            (Some(_), Some(mended)) => Ok(mended),
+            (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
+            (None, Some(mended)) => {
+                let other = self.descend(domain, tutte, status, history, observer);
+                let prefer_other = domain.objective(&other.0) < domain.objective(&mended.0);
+                Ok(if prefer_other { other } else { mended })
+            }
         }
     }
 
@@ -242,9 +268,10 @@ impl Run<'_> {
         Ok(self.conjugate_gradients(domain, map, history, &mut phase))
     }
 
-    /// Conjugate gradients in rounds of [`ROUND`] iterations, each with the preconditioner of the map it begins with.
+    /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the map it begins with.
     ///
-    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows the later ones.
+    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows later ones, and a round that
+    /// stalls may go on with a new one.
     fn conjugate_gradients(
         &self,
         domain: &mut DiskDomain<'_>,
@@ -254,7 +281,8 @@ impl Run<'_> {
     ) -> (Map, Status) {
         let whole = self.cg_options();
         let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
-        for done in (0..whole.max_iterations.max(1)).step_by(ROUND) {
+        let (begun, mut done) = (history.iterations(), 0);
+        loop {
             let options = CgOptions { max_iterations: ROUND.min(whole.max_iterations - done), ..whole };
             let mut round =
                 Phase { whole: observer, from: part(done), to: part(done + options.max_iterations) };
@@ -262,28 +290,29 @@ impl Run<'_> {
                 return (map, Status::Stalled);
             }
             let (reached, status) = minimize(domain, map, &options, history, &mut round);
-            if status != Status::MaxIterations {
-                return (reached, status);
+            let advanced = history.iterations() - begun > done;
+            done = history.iterations() - begun;
+            match status {
+                Status::MaxIterations if done < whole.max_iterations => map = reached,
+                Status::Stalled if advanced => map = reached,
+                status => return (reached, status),
             }
-            map = reached;
         }
-        (map, Status::MaxIterations)
     }
 
-    /// Conjugate gradients from an unfolded map that stay unfolded.
-    fn descend_guarded(
+    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the map.
+    fn descend(
         &self,
         domain: &mut DiskDomain<'_>,
         map: Map,
+        status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
-        domain.guard();
-        if !domain.objective(&map).is_finite() {
-            return (map, Status::Stalled);
+        if status == Status::Cancelled || !domain.objective(&map).is_finite() {
+            return (map, if status == Status::Cancelled { status } else { Status::Stalled });
         }
-        let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
-        self.conjugate_gradients(domain, map, history, &mut phase)
+        self.conjugate_gradients(domain, map, history, observer)
     }
 
     fn fixed_point_options(&self, method: Method) -> FixedPointOptions {

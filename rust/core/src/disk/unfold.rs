@@ -168,10 +168,10 @@ mod tests {
         let map = tutte(&mesh);
         for vertex in (0..map.len()).filter(|&v| !mesh.is_boundary(v)) {
             let weights = mean_value_weights(&mesh, &map, vertex);
-            for axis in 0..2 {
-                let average: f64 = weights.iter().map(|&(v, weight)| weight * map[v][axis]).sum();
-                assert!((average - map[vertex][axis]).abs() < 1e-12);
-            }
+            let average = weights.iter().fold([0.0; 2], |sum, &(v, weight)| {
+                [sum[0] + weight * map[v][0], sum[1] + weight * map[v][1]]
+            });
+            assert!((average[0] - map[vertex][0]).hypot(average[1] - map[vertex][1]) < 1e-12);
         }
     }
 }

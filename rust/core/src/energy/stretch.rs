@@ -49,6 +49,14 @@ impl Profile {
         }
     }
 
+    /// Its second derivative over that of the papers' energy, ψ''(ρ)/2.
+    pub fn stiffness(self, ratio: f64) -> f64 {
+        match self {
+            Self::Stretch => 1.0,
+            Self::Barrier => 0.5 * (1.0 + ratio.powi(-3)),
+        }
+    }
+
     /// Its derivative ψ'(ρ).
     pub fn slope(self, ratio: f64) -> f64 {
         match self {
@@ -91,6 +99,11 @@ impl<'a> StretchEnergy<'a> {
         Self { profile, ..self }
     }
 
+    /// The target areas, one per face.
+    pub fn targets(&self) -> &[f64] {
+        self.targets
+    }
+
     /// The energies and the area of the image of `map`.
     pub fn value(&self, map: &[[f64; 2]]) -> Value {
         self.value_of_areas(&self.areas(map))
@@ -110,13 +123,17 @@ impl<'a> StretchEnergy<'a> {
     }
 
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
+    ///
+    /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, so that steps stay in proportion to the faces that are
+    /// nearly folded.
     pub fn laplacian_weights(&self, map: &[[f64; 2]]) -> Vec<f64> {
         let scale = self.area(map) / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {
             let (face, k) = (corner / 3, corner % 3);
-            let [i, j, k] = [k + 1, k + 2, k].map(|c| map[self.mesh.faces()[face][c % 3] as usize]);
+            let (corners, target) = (self.corners(map, face), scale * self.targets[face]);
+            let [i, j, k] = [(k + 1) % 3, (k + 2) % 3, k].map(|c| corners[c]);
             let dot = (i[0] - k[0]) * (j[0] - k[0]) + (i[1] - k[1]) * (j[1] - k[1]);
-            dot / (4.0 * scale * self.targets[face])
+            self.profile.stiffness(0.5 * doubled_area(corners) / target) * dot / (4.0 * target)
         })
     }
 

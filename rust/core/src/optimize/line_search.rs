@@ -48,7 +48,9 @@ impl WolfeOptions {
     }
 
     fn decreases<T>(&self, start: &Trial<T>, trial: &Trial<T>) -> bool {
-        trial.value <= start.value + self.decrease * trial.step * start.slope
+        // a decrease below the rounding of the value itself cannot be seen and is not asked for
+        let rounding = 8.0 * f64::EPSILON * start.value.abs();
+        trial.value <= start.value + self.decrease * trial.step * start.slope + rounding
     }
 }
 
@@ -104,7 +106,9 @@ fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
 mod tests {
     use super::*;
 
-    fn search(first: f64, value: fn(f64) -> f64, slope: fn(f64) -> f64) -> (Trial<()>, Option<Trial<()>>) {
+    type Function = fn(f64) -> f64;
+
+    fn search(first: f64, value: Function, slope: Function) -> (Trial<()>, Option<Trial<()>>) {
         let at = |step| Trial { step, value: value(step), slope: slope(step), data: () };
         (at(0.0), strong_wolfe(&at(0.0), at(first), &WolfeOptions::default(), at))
     }
@@ -112,7 +116,7 @@ mod tests {
     #[test]
     fn finds_a_strong_wolfe_step_from_any_first_trial() {
         // a quartic with its first minimum at 1, and a bumpy descent
-        let cases: [(fn(f64) -> f64, fn(f64) -> f64); 2] = [
+        let cases: [(Function, Function); 2] = [
             (|x| x.powi(4) - 4.0 * x, |x| 4.0 * x.powi(3) - 4.0),
             (|x| 0.1 * x * x - x + 0.3 * (3.0 * x).sin(), |x| 0.2 * x - 1.0 + 0.9 * (3.0 * x).cos()),
         ];

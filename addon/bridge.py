@@ -30,7 +30,7 @@ class UnwrapSettings:
 
     domain: str = "AUTO"
     fill_holes: bool = True
-    iterations: int = 200
+    iterations: int = 100
 
 
 @dataclass

@@ -40,7 +40,7 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         description="Most iterations of the solver. More share the areas out more evenly, fewer are faster",
         min=1,
         soft_max=1000,
-        default=200,
+        default=100,
     )
     uv_layer: StringProperty(
         name="UV Map",

@@ -57,4 +57,4 @@ def test_defaults_are_declared():
 
 def test_sidebar_has_options_before_the_first_use():
     options = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
-    assert options.iterations == 200 and options.fill_holes
+    assert options.iterations == 100 and options.fill_holes

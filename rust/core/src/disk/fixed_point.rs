@@ -25,8 +25,6 @@ pub(super) struct FixedPointOptions {
     pub max_iterations: usize,
     /// Converged when √(gᵀM⁻¹g) falls below this.
     pub tolerance: f64,
-    /// Enough when E_A falls below this.
-    pub energy: f64,
 }
 
 /// Iterates from `start` and returns the map of lowest energy.
@@ -56,7 +54,7 @@ pub(super) fn fixed_point(
             _ => history.push(energy, step, norm),
         }
         // 2. Enough?
-        if norm <= options.tolerance || energy <= options.energy {
+        if norm <= options.tolerance {
             return (best.1, Status::Converged);
         }
         if iteration == options.max_iterations {

@@ -321,7 +321,7 @@ impl Run<'_> {
             Method::FixedPoint => options.max_iterations,
             Method::ConjugateGradient => FIXED_POINT_STEPS,
         };
-        FixedPointOptions { max_iterations, tolerance: options.tolerance, energy: 0.0 }
+        FixedPointOptions { max_iterations, tolerance: options.tolerance }
     }
 
     fn cg_options(&self) -> CgOptions {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Quality figures of a map: area ratios, authalic energy, folds, angle distortion.
 //!
-//! All are signed: the image area of a folded face is negative, its log₂ area ratio −∞ and its angle distortion +∞, so it never
-//! scores like a good one. Target areas are rescaled so that their sum is the image's area A = Σ|a_τ|; then
-//! E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)). Which faces are folded is decided by exact
-//! predicates.
+//! All are signed: the image area of a folded face is negative, its log₂ area ratio −∞ and its angle
+//! distortion +∞, so it never scores like a good one. Target areas are rescaled so that their sum is the
+//! image's area A = Σ|a_τ|; then E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)).
+//! Which faces are folded is decided by exact predicates.
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
@@ -40,7 +40,8 @@ pub struct Distortion {
 pub enum Image<'a> {
     /// (n, 2) positions; a face is positive where it runs counter-clockwise.
     Plane(&'a [[f64; 2]]),
-    /// (n, 3) positions around the origin; a face is positive where it is seen counter-clockwise from outside.
+    /// (n, 3) positions around the origin; a face is positive where it is seen counter-clockwise from
+    /// outside.
     Sphere(&'a [[f64; 3]]),
 }
 
@@ -123,7 +124,8 @@ pub fn distortion(
 /// Checks one target measure per face and scales the largest to 1, so that sums neither over- nor underflow.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] for another length, [`Error::Density`] for values that are not positive and finite.
+/// [`Error::InvalidArray`] for another length, [`Error::Density`] for values that are not positive and
+/// finite.
 pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
     if density.len() != n_faces {
         let (found, expected) =

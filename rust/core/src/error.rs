@@ -15,7 +15,7 @@ pub const NAMED_ELEMENTS: usize = 8;
 /// Offending elements: the indices of the first few and the count of all.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Elements {
-    /// The indices of the first [`NAMED_ELEMENTS`] elements, in the order found: `arity` numbers for each.
+    /// The indices of the first `NAMED_ELEMENTS` elements, in the order found: `arity` numbers for each.
     pub first: Vec<usize>,
     /// How many elements offend in all.
     pub count: usize,

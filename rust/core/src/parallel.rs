@@ -15,7 +15,8 @@ const CHUNK: usize = 4096;
 /// The threads of one process, with its id: a forked child inherits the pool but none of its threads.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// The threads of this process; `None` where they cannot be had right now. The results are the same without them.
+/// The threads of this process; `None` where they cannot be had right now. The results are the same without
+/// them.
 fn threads() -> Option<Arc<ThreadPool>> {
     // a fork may have copied the lock while it was held, so nobody may wait for it
     let mut pool = POOL.try_lock().ok()?;
@@ -29,7 +30,8 @@ fn threads() -> Option<Arc<ThreadPool>> {
     pool.as_ref().map(|(_, threads)| threads.clone())
 }
 
-/// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are several.
+/// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
+/// several.
 fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
     let on_these_threads = |out: &mut [T]| {
         out.par_chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part));

@@ -72,7 +72,8 @@ fn the_energy_is_half_the_quadratic_form_of_the_cotangent_laplacian() {
     for mesh in flat_disks() {
         let (map, targets) = (some_map(&mesh), some_targets(&mesh));
         let value = StretchEnergy::new(&mesh, &targets).value(&map);
-        // ½ Σ ω |f_i − f_j|² with ω = cot θ |f(τ)| / (2|τ|), targets rescaled to the image's area: equation (2.1c)
+        // ½ Σ ω |f_i − f_j|² with ω = cot θ |f(τ)| / (2|τ|), targets rescaled to the image's area: equation
+        // (2.1c)
         let scale = value.area / targets.iter().sum::<f64>();
         let mut stretch = 0.0;
         for (face, target) in mesh.faces().iter().zip(&targets) {

@@ -23,7 +23,8 @@ pub struct DiskMap {
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start first.
+    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start
+    /// first.
     history: Py<PyAny>,
     /// The figures of the map.
     distortion: Py<Distortion>,
@@ -47,9 +48,9 @@ impl DiskMap {
 
 /// Maps a disk to the unit disk so that areas are kept.
 ///
-/// The papers' methods (Liu & Yueh 2023): a harmonic start with an arc-length boundary, fixed-point steps (equation 2.5) and, by
-/// default, preconditioned nonlinear conjugate gradients (Algorithm 3.1). Folds that they leave are unfolded: the
-/// result has none, decided by exact predicates.
+/// The papers' methods (Liu & Yueh 2023): a harmonic start with an arc-length boundary, fixed-point steps
+/// (equation 2.5) and, by default, preconditioned nonlinear conjugate gradients (Algorithm 3.1). Folds that
+/// they leave are unfolded: the result has none, decided by exact predicates.
 ///
 /// Parameters
 /// ----------
@@ -60,16 +61,18 @@ impl DiskMap {
 /// method : {"conjugate_gradient", "fixed_point"}
 ///     The optimiser.
 /// boundary : {"sliding", "arc_length"}
-///     Whether boundary vertices slide along the circle in their order, or stay at arcs proportional to the edge
+///     Whether boundary vertices slide along the circle in their order, or stay at arcs proportional to the
+/// edge
 ///     lengths as in the papers.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
 ///     Weight of the angles against the areas; only 0 (authalic) until a method that trades them lands.
 /// initial : (n, 2) real array, optional
-///     A start map whose boundary runs once around the unit circle. Default: harmonic, then five fixed-point steps.
-/// max_iterations : int, optional
-///     Default 50, as in the paper's tables. The five fixed-point steps of the conjugate gradients and the descent that follows where
+///     A start map whose boundary runs once around the unit circle. Default: harmonic, then five
+/// fixed-point steps. max_iterations : int, optional
+///     Default 50, as in the paper's tables. The five fixed-point steps of the conjugate gradients and the
+/// descent that follows where
 ///     folds were mended come on top.
 /// tolerance : float, optional
 ///     Converged when √(gᵀM⁻¹g), the gradient_norm of the history, falls below it. Default 1e-8.

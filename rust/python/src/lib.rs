@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Python bindings of the crate `authalic`: the module `authalic._native`, re-exported by the package `authalic`.
+//! Python bindings of the crate `authalic`: the module `authalic._native`, re-exported by the package
+//! `authalic`.
 
 mod arrays;
 mod disk;

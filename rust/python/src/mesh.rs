@@ -66,9 +66,10 @@ impl Patch {
 
 /// Cuts a mesh along seams into its patches (islands).
 ///
-/// Corners of neighbouring faces become one vertex wherever the faces meet in an edge that is no seam. Edges of three or more faces
-/// act as seams, parts that only touch in a vertex come apart. A seam that does not separate still opens the
-/// surface; a single edge inside the surface opens nothing, because both sides keep both of its ends.
+/// Corners of neighbouring faces become one vertex wherever the faces meet in an edge that is no seam.
+/// Edges of three or more faces act as seams, parts that only touch in a vertex come apart. A seam that
+/// does not separate still opens the surface; a single edge inside the surface opens nothing, because both
+/// sides keep both of its ends.
 ///
 /// Parameters
 /// ----------

@@ -28,8 +28,8 @@ enum Message<T> {
 /// The worker's end of the line.
 struct Remote<T> {
     cancelled: Arc<AtomicBool>,
-    /// Only where the caller gave a progress function: each report waits for its answer, so that where a run is
-    /// cancelled does not depend on timing.
+    /// Only where the caller gave a progress function: each report waits for its answer, so that where a
+    /// run is cancelled does not depend on timing.
     line: Option<(Sender<Message<T>>, Receiver<bool>)>,
 }
 

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{norm, sub};
 
-/// Places the boundary loop on the unit circle, counter-clockwise, arcs proportional to the edge lengths; the loop's smallest
-/// vertex goes to (1, 0). Interior vertices go to the origin.
+/// Places the boundary loop on the unit circle, counter-clockwise, arcs proportional to the edge lengths;
+/// the loop's smallest vertex goes to (1, 0). Interior vertices go to the origin.
 pub(super) fn arc_length(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
     let boundary = &mesh.boundary_loops()[0];
     let mut map = vec![[0.0; 2]; mesh.n_vertices()];
@@ -28,8 +28,8 @@ pub(super) fn edge_lengths(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
     (0..boundary.len()).map(|k| norm(sub(point(k + 1), point(k)))).collect()
 }
 
-/// The arc from each vertex of the loop to the next, or `None` where the loop does not run once around the circle,
-/// counter-clockwise, without turning back.
+/// The arc from each vertex of the loop to the next, or `None` where the loop does not run once around the
+/// circle, counter-clockwise, without turning back.
 pub(super) fn arcs(boundary: &[u32], map: &[[f64; 2]]) -> Option<Vec<f64>> {
     let arc = |k: usize| {
         let [from, to] = [boundary[k], boundary[(k + 1) % boundary.len()]].map(|v| map[v as usize]);
@@ -48,9 +48,10 @@ pub(super) fn runs_once_around(boundary: &[u32], map: &[[f64; 2]]) -> bool {
 
 /// Keeps the arcs of a sliding boundary from closing.
 ///
-/// The stretch energy lets a face lose all its area at the bounded cost |τ|, so an arc could shrink to nothing and lock the descent. An
-/// arc t times as long as its share of the boundary's length costs that share times (t₀/t − 1)² where t < t₀ and nothing
-/// elsewhere: the energy is the papers' until an arc is fifty times too short.
+/// The stretch energy lets a face lose all its area at the bounded cost |τ|, so an arc could shrink to
+/// nothing and lock the descent. An arc t times as long as its share of the boundary's length costs that
+/// share times (t₀/t − 1)² where t < t₀ and nothing elsewhere: the energy is the papers' until an arc is
+/// fifty times too short.
 #[derive(Debug)]
 pub(super) struct ArcBarrier {
     shares: Vec<f64>,

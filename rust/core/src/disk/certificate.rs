@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Whether a map to the disk is one-to-one, decided exactly.
 //!
-//! A map of a disk whose boundary runs once around a convex curve and whose faces all have positive orientation is a
-//! bijection.
+//! A map of a disk whose boundary runs once around a convex curve and whose faces all have positive
+//! orientation is a bijection.
 
 use super::boundary::runs_once_around;
 use crate::distortion::folded_in_plane;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
-/// A face below this part of its target is as good as folded: single precision, in which UVs are stored, may fold it.
+/// A face below this part of its target is as good as folded: single precision, in which UVs are stored,
+/// may fold it.
 const SMALLEST_RATIO: f64 = 1e-3;
 
 /// Faces whose exact orientation in `map` is not positive.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Maps to the unit disk as a [`Domain`]: interior vertices in the plane, boundary vertices held or sliding on the circle.
+//! Maps to the unit disk as a [`Domain`]: interior vertices in the plane, boundary vertices held or sliding
+//! on the circle.
 //!
-//! Reduced coordinates: first coordinates of the interior vertices, then their second ones, then, where the boundary
-//! slides, one angle per boundary vertex. The preconditioner is the block diagonal of the frozen quadratic form
-//! E_S ≈ fᵀ(I₂ ⊗ L_S(f⁰))f: the paper's M = I₂ ⊗ [L_S(f⁰)]_II twice over one factor, and the boundary block
-//! projected on the tangents of the circle.
+//! Reduced coordinates: first coordinates of the interior vertices, then their second ones, then, where the
+//! boundary slides, one angle per boundary vertex. The preconditioner is the block diagonal of the frozen
+//! quadratic form E_S ≈ fᵀ(I₂ ⊗ L_S(f⁰))f: the paper's M = I₂ ⊗ [L_S(f⁰)]_II twice over one factor, and the
+//! boundary block projected on the tangents of the circle.
 
 use std::f64::consts::PI;
 
@@ -32,7 +33,8 @@ impl Block {
     }
 }
 
-/// What a boundary that slides needs: its block of the preconditioner, and the barrier that keeps its arcs open.
+/// What a boundary that slides needs: its block of the preconditioner, and the barrier that keeps its arcs
+/// open.
 #[derive(Debug)]
 struct SlidingBoundary {
     block: Block,
@@ -141,7 +143,8 @@ impl<'a> DiskDomain<'a> {
         boundary::arcs(&self.mesh.boundary_loops()[0], map)
     }
 
-    /// Adds the slopes of the arc barrier, along the loop, to the gradient by angles, in the order of the unknowns.
+    /// Adds the slopes of the arc barrier, along the loop, to the gradient by angles, in the order of the
+    /// unknowns.
     fn add_barrier(&self, map: &[[f64; 2]], by_angle: &mut [f64]) {
         let (Some(boundary), Some(arcs)) = (&self.boundary, self.arcs(map)) else {
             return;

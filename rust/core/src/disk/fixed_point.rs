@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The fixed-point iteration of stretch energy minimisation on the disk.
 //!
-//! Liu & Yueh (2023), equation (2.5): [L_S(f⁽ᵏ⁾)]_II f_I⁽ᵏ⁺¹⁾ = −[L_S(f⁽ᵏ⁾)]_IB b. Subtracting the same product with f⁽ᵏ⁾ gives the
-//! form used here: f⁽ᵏ⁺¹⁾ = f⁽ᵏ⁾ − M_k⁻¹ ∇E(f⁽ᵏ⁾) with M_k = 2 I₂ ⊗ L_S(f⁽ᵏ⁾), the unit step along the direction that the conjugate
-//! gradients begin with, so both share one domain.
+//! Liu & Yueh (2023), equation (2.5): [L_S(f⁽ᵏ⁾)]_II f_I⁽ᵏ⁺¹⁾ = −[L_S(f⁽ᵏ⁾)]_IB b. Subtracting the same
+//! product with f⁽ᵏ⁾ gives the form used here: f⁽ᵏ⁺¹⁾ = f⁽ᵏ⁾ − M_k⁻¹ ∇E(f⁽ᵏ⁾) with M_k = 2 I₂ ⊗ L_S(f⁽ᵏ⁾),
+//! the unit step along the direction that the conjugate gradients begin with, so both share one domain.
 //!
 //! The energy may rise from one iteration to the next; the map with the lowest is returned.
 //!

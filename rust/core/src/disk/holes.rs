@@ -2,8 +2,8 @@
 //! Virtual filling of extra boundary loops, so that a surface with holes maps like a disk.
 //!
 //! Every loop but the longest is closed by a fan to one new vertex. The fan exists only inside the solver: it
-//! keeps the hole open in the map at about the size it has on the surface, and its vertex and faces are dropped
-//! from the result.
+//! keeps the hole open in the map at about the size it has on the surface, and its vertex and faces are
+//! dropped from the result.
 
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
@@ -53,7 +53,8 @@ fn loop_normal(corners: &[Vector]) -> Vector {
     edges(corners).fold([0.0; 3], |sum, (from, to)| add(sum, area_vector([centre, from, to])))
 }
 
-/// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle is fattest.
+/// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
+/// is fattest.
 fn apex_of(corners: &[Vector]) -> Vector {
     let (centre, normal) = (centroid(corners), loop_normal(corners));
     let length: f64 = edges(corners).map(|(from, to)| norm(sub(to, from))).sum();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Area-preserving maps of disks to the unit disk.
 //!
-//! [`disk_map`] is the entry. The papers' methods (Liu & Yueh 2023) start from a harmonic map with an arc-length boundary, take
-//! fixed-point steps and, by default, conjugate gradients. They cannot promise an unfolded map, so every result is checked by
-//! exact predicates; folds are unfolded, and where that fails the run is repeated from Tutte's embedding without ever leaving it.
+//! [`disk_map`] is the entry. The papers' methods (Liu & Yueh 2023) start from a harmonic map with an
+//! arc-length boundary, take fixed-point steps and, by default, conjugate gradients. They cannot promise an
+//! unfolded map, so every result is checked by exact predicates; folds are unfolded, and where that fails
+//! the run is repeated from Tutte's embedding without ever leaving it.
 //!
-//! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost: about 5
-//! sparse Cholesky factorisations of the interior vertices and one solve per iteration.
+//! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost:
+//! about 5 sparse Cholesky factorisations of the interior vertices and one solve per iteration.
 
 mod boundary;
 mod certificate;
@@ -54,7 +55,8 @@ pub enum Method {
 pub enum Boundary {
     /// Held on the circle at arcs proportional to the edge lengths, as in the papers.
     ArcLength,
-    /// Free to slide along the circle in their order, which lets the faces at the boundary keep their areas too.
+    /// Free to slide along the circle in their order, which lets the faces at the boundary keep their areas
+    /// too.
     #[default]
     Sliding,
 }
@@ -68,10 +70,11 @@ pub struct DiskMapOptions<'a> {
     pub boundary: Boundary,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic map where `None`.
+    /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic
+    /// map where `None`.
     pub initial: Option<&'a [[f64; 2]]>,
-    /// Iterations at the most; 50 where `None`, as in the paper's tables. The five fixed-point steps of the conjugate
-    /// gradients and the descent that follows where folds were mended come on top.
+    /// Iterations at the most; 50 where `None`, as in the paper's tables. The five fixed-point steps of the
+    /// conjugate gradients and the descent that follows where folds were mended come on top.
     pub max_iterations: Option<usize>,
     /// Converged when √(gᵀM⁻¹g) falls below this; 10⁻⁸ where `None`.
     pub tolerance: Option<f64>,
@@ -268,10 +271,11 @@ impl Run<'_> {
         Ok(self.conjugate_gradients(domain, map, history, &mut phase))
     }
 
-    /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the map it begins with.
+    /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the
+    /// map it begins with.
     ///
-    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows later ones, and a round that
-    /// stalls may go on with a new one.
+    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows later ones, and a
+    /// round that stalls may go on with a new one.
     fn conjugate_gradients(
         &self,
         domain: &mut DiskDomain<'_>,
@@ -300,7 +304,8 @@ impl Run<'_> {
         }
     }
 
-    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the map.
+    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the
+    /// map.
     fn descend(
         &self,
         domain: &mut DiskDomain<'_>,

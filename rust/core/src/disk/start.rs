@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Start maps with a prescribed boundary: harmonic and Tutte.
 //!
-//! Both solve L_II f_I = −L_IB b once: with the cotangent weights of the surface (the papers' start, L_S(id)) or with
-//! uniform ones. Tutte's map to a convex boundary is an embedding for every disk (Tutte 1963; Floater 2003).
+//! Both solve L_II f_I = −L_IB b once: with the cotangent weights of the surface (the papers' start,
+//! L_S(id)) or with uniform ones. Tutte's map to a convex boundary is an embedding for every disk (Tutte
+//! 1963; Floater 2003).
 
 use super::domain::DiskDomain;
 use super::{Map, boundary};

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Unfolds the few folded faces that an unguarded method leaves.
 //!
-//! The disk counterpart of the bijectivity correction of Sutti & Yueh (2024), section 6.2. Around every vertex i the
-//! mean-value weights (6.3b) of the image,
+//! The disk counterpart of the bijectivity correction of Sutti & Yueh (2024), section 6.2. Around every
+//! vertex i the mean-value weights (6.3b) of the image,
 //!
 //! ```text
 //! ω_ij = Σ tan(φ_i / 2) / ‖h_i − h_j‖     over the faces ijk with angle φ_i at h_i,
 //! ```
 //!
-//! are positive and reproduce h_i exactly where its one-ring is unfolded (Floater 2003). Solving Σ_j ω_ij (h̃_i − h̃_j) = 0 with
-//! the rest held therefore moves only what is folded. Freed are the vertices within a few rings of the folded
-//! faces, more where that does not suffice; with the whole interior free the map is a convex combination map
-//! into a convex boundary, which is an embedding.
+//! are positive and reproduce h_i exactly where its one-ring is unfolded (Floater 2003). Solving Σ_j ω_ij
+//! (h̃_i − h̃_j) = 0 with the rest held therefore moves only what is folded. Freed are the vertices within
+//! a few rings of the folded faces, more where that does not suffice; with the whole interior free the map
+//! is a convex combination map into a convex boundary, which is an embedding.
 //!
 //! Cost: one sparse LU of the freed vertices per attempt.
 
@@ -21,11 +21,12 @@ use super::certificate::folded;
 use crate::mesh::TriangleMesh;
 use crate::sparse::solve_general;
 
-/// Passes with the same vertices free, each with the weights of the map before it; the first nearly always suffices.
+/// Passes with the same vertices free, each with the weights of the map before it; the first nearly always
+/// suffices.
 const PASSES: usize = 3;
 
-/// Returns `map` with its folded faces unfolded and its boundary kept, or `None` where even the whole interior does not
-/// suffice in double precision.
+/// Returns `map` with its folded faces unfolded and its boundary kept, or `None` where even the whole
+/// interior does not suffice in double precision.
 pub(super) fn unfold(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let folds = folded(mesh, map);
     let n_interior = (0..mesh.n_vertices()).filter(|&v| !mesh.is_boundary(v)).count();

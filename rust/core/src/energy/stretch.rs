@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stretch energy of a planar map, its gradient and its Laplacian L_S(f).
 //!
-//! Liu & Yueh (2023), equations (2.1), (2.2) and (5.2). With a_τ the signed area of the image of face τ and |τ| its
-//! target area,
+//! Liu & Yueh (2023), equations (2.1), (2.2) and (5.2). With a_τ the signed area of the image of face τ and
+//! |τ| its target area,
 //!
 //! ```text
 //! E_S(f) = Σ a_τ² / |τ| = ½ fᵀ (I₂ ⊗ L_S(f)) f,      ∇E_S = 2 (I₂ ⊗ L_S(f)) f,
 //! ```
 //!
-//! and the edge ij of face ijk has the weight (f_i − f_k)·(f_j − f_k) / (4|τ|) in L_S(f). The area A = Σ a_τ depends on
-//! the boundary only. With targets rescaled so that |M| = A, the authalic energy is
+//! and the edge ij of face ijk has the weight (f_i − f_k)·(f_j − f_k) / (4|τ|) in L_S(f). The area A = Σ
+//! a_τ depends on the boundary only. With targets rescaled so that |M| = A, the authalic energy is
 //!
 //! ```text
 //! E_A(f) = E_S(f) − A = Σ (a_τ − |τ|)² / |τ| ≥ 0.
 //! ```
 //!
-//! What is minimised is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to the unit disk's area. For a fixed boundary A is
-//! constant and this is the papers' stretch energy up to constants; for a sliding one the factor removes the
-//! false minimum A → 0. The residual form is used because E_S − A cancels: near the minimum E_S ≈ π and E_A ≈ 10⁻⁶.
+//! What is minimised is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to
+//! the unit disk's area. For a fixed boundary A is constant and this is the papers' stretch energy up to
+//! constants; for a sliding one the factor removes the false minimum A → 0. The residual form is used
+//! because E_S − A cancels: near the minimum E_S ≈ π and E_A ≈ 10⁻⁶.
 //!
-//! A descent that must not fold uses [`Profile::Barrier`] instead of (ρ − 1)² for the area ratio ρ = a_τ/|τ|: the same minimum and
-//! the same curvature there, but infinite as ρ → 0.
+//! A descent that must not fold uses [`Profile::Barrier`] instead of (ρ − 1)² for the area ratio ρ =
+//! a_τ/|τ|: the same minimum and the same curvature there, but infinite as ρ → 0.
 //!
 //! Cost: one pass over the faces, one gather over the corners of each vertex.
 
@@ -111,7 +112,8 @@ impl<'a> StretchEnergy<'a> {
 
     /// The value at `map` and the gradient of the objective by every vertex.
     ///
-    /// With c = A/|M| and ρ = a_τ/(c|τ|) the derivative by a_τ is π/A (ψ'(ρ_τ) − Σ a ψ'(ρ)/A); ∇a_τ carries it to the vertices.
+    /// With c = A/|M| and ρ = a_τ/(c|τ|) the derivative by a_τ is π/A (ψ'(ρ_τ) − Σ a ψ'(ρ)/A); ∇a_τ carries
+    /// it to the vertices.
     pub fn gradient(&self, map: &[[f64; 2]]) -> (Value, Vec<[f64; 2]>) {
         let areas = self.areas(map);
         let value = self.value_of_areas(&areas);
@@ -124,8 +126,8 @@ impl<'a> StretchEnergy<'a> {
 
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
     ///
-    /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, so that steps stay in proportion to the faces that are
-    /// nearly folded.
+    /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, so that steps stay in
+    /// proportion to the faces that are nearly folded.
     pub fn laplacian_weights(&self, map: &[[f64; 2]]) -> Vec<f64> {
         let scale = self.area(map) / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {
@@ -163,7 +165,8 @@ impl<'a> StretchEnergy<'a> {
         self.mesh.faces()[face].map(|vertex| map[vertex as usize])
     }
 
-    /// Σ over the faces of each vertex of `by_area` times ∂a_τ/∂f_v, a quarter turn of half the opposite edge.
+    /// Σ over the faces of each vertex of `by_area` times ∂a_τ/∂f_v, a quarter turn of half the opposite
+    /// edge.
     fn gather(&self, map: &[[f64; 2]], by_area: &[f64]) -> Vec<[f64; 2]> {
         parallel::map(map.len(), |vertex| {
             let mut sum = [0.0; 2];

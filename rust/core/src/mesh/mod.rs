@@ -130,7 +130,8 @@ impl TriangleMesh {
         self.corners.of(vertex)
     }
 
-    /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest vertex.
+    /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest
+    /// vertex.
     pub fn boundary_loops(&self) -> &[Vec<u32>] {
         &self.topology.boundary_loops
     }

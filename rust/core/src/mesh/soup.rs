@@ -18,7 +18,8 @@ impl TriangleSoup {
     /// Validates vertices (n, 3) and faces (m, 3); faces may touch, cross or repeat in any way.
     ///
     /// # Errors
-    /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex, faces without area.
+    /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex,
+    /// faces without area.
     pub fn new(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<Self, Error> {
         validate::arrays(vertices, faces)?;
         let (points, scale) = geometry::normalized(vertices);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A line search for the strong Wolfe conditions.
 //!
-//! Nocedal & Wright (2006), Algorithms 3.5 and 3.6: bracket an interval that holds an acceptable step, then shrink it
-//! by safeguarded interpolation. Conditions (4.1) of Liu & Yueh (2023): for 0 < c₁ < c₂ < ½,
+//! Nocedal & Wright (2006), Algorithms 3.5 and 3.6: bracket an interval that holds an acceptable step, then
+//! shrink it by safeguarded interpolation. Conditions (4.1) of Liu & Yueh (2023): for 0 < c₁ < c₂ < ½,
 //!
 //! ```text
 //! φ(α) ≤ φ(0) + c₁ α φ'(0),      |φ'(α)| ≤ c₂ |φ'(0)|.
@@ -56,8 +56,9 @@ impl WolfeOptions {
 
 /// Finds a step that satisfies the strong Wolfe conditions.
 ///
-/// `start` is the trial at α = 0 with negative slope, `first` the first trial at α > 0, and `evaluate` computes others.
-/// Returns the accepted trial; where none is found, the best one that at least decreases enough, or `None`.
+/// `start` is the trial at α = 0 with negative slope, `first` the first trial at α > 0, and `evaluate`
+/// computes others. Returns the accepted trial; where none is found, the best one that at least decreases
+/// enough, or `None`.
 pub fn strong_wolfe<T: Clone>(
     start: &Trial<T>,
     first: Trial<T>,
@@ -91,7 +92,8 @@ pub fn strong_wolfe<T: Clone>(
     (low.step > 0.0).then_some(low)
 }
 
-/// The minimiser of the quadratic through φ(low), φ'(low), φ(high), kept off both ends by a tenth of the bracket.
+/// The minimiser of the quadratic through φ(low), φ'(low), φ(high), kept off both ends by a tenth of the
+/// bracket.
 fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
     let width = high.step - low.step;
     let bend = high.value - low.value - low.slope * width;

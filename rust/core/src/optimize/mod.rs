@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Optimisers over maps. They know a map only through its [`Domain`], so the disk and every later domain share them.
+//! Optimisers over maps. They know a map only through its [`Domain`], so the disk and every later domain
+//! share them.
 
 pub mod line_search;
 pub mod nonlinear_cg;
@@ -15,8 +16,8 @@ pub struct Energies {
 
 /// A space of maps with an energy: what an optimiser needs to know of it.
 ///
-/// Directions, gradients and preconditioned gradients are vectors in reduced coordinates (one number per degree of
-/// freedom), in which the domain's retraction starts as a straight line.
+/// Directions, gradients and preconditioned gradients are vectors in reduced coordinates (one number per
+/// degree of freedom), in which the domain's retraction starts as a straight line.
 pub trait Domain {
     /// A map.
     type Map: Clone;

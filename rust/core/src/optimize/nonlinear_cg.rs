@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Preconditioned nonlinear conjugate gradients.
 //!
-//! Liu & Yueh (2023), Algorithm 3.1: the direction (3.4) with the Fletcher–Reeves β in the metric of M⁻¹, the step of the
-//! quadratic model (3.3), and, where that step violates the strong Wolfe conditions (4.1) that the proof of
-//! convergence needs, a line search that satisfies them (0 < c₁ < c₂ < ½).
+//! Liu & Yueh (2023), Algorithm 3.1: the direction (3.4) with the Fletcher–Reeves β in the metric of M⁻¹,
+//! the step of the quadratic model (3.3), and, where that step violates the strong Wolfe conditions (4.1)
+//! that the proof of convergence needs, a line search that satisfies them (0 < c₁ < c₂ < ½).
 //!
 //! Cost of one iteration: two evaluations of the objective, one of its gradient, one solve with M.
 
@@ -86,7 +86,8 @@ fn descent(h: &[f64]) -> Vec<f64> {
     parallel::map(h.len(), |i| -h[i])
 }
 
-/// The step (3.3) from φ(0), φ'(0) and φ at the last step, accepted under the strong Wolfe conditions or searched for.
+/// The step (3.3) from φ(0), φ'(0) and φ at the last step, accepted under the strong Wolfe conditions or
+/// searched for.
 fn line_step<D: Domain>(
     domain: &D,
     state: &State<D::Map>,

@@ -2,8 +2,8 @@
 //! Sparse factorisations. The only file that names the library behind them.
 //!
 //! A mesh's matrices share one pattern, so [`Cholesky::analyse`] orders and analyses it once and
-//! [`Cholesky::refactor`] only computes numbers. Both run on one thread: the dense blocks of surface meshes are too
-//! small for the library's own threads to pay.
+//! [`Cholesky::refactor`] only computes numbers. Both run on one thread: the dense blocks of surface meshes
+//! are too small for the library's own threads to pay.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -28,7 +28,8 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Orders and analyses the pattern of a symmetric matrix given by its upper triangle; nothing is factored yet.
+    /// Orders and analyses the pattern of a symmetric matrix given by its upper triangle; nothing is
+    /// factored yet.
     ///
     /// # Errors
     /// [`Error::FactorizationFailed`] where memory is short.
@@ -73,7 +74,8 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Solves `A x = b` in place for the columns of `rhs`, each as long as the matrix and stored one after another.
+    /// Solves `A x = b` in place for the columns of `rhs`, each as long as the matrix and stored one after
+    /// another.
     pub fn solve(&self, rhs: &mut [f64]) {
         let n = self.symbolic.nrows();
         let mut columns = rhs.chunks_mut(n.max(1));
@@ -115,8 +117,8 @@ impl Cholesky {
 
 /// L⁻ᵀ L⁻¹ x in place for K interleaved right-hand sides.
 ///
-/// The supernodes of a surface mesh are a few columns wide: plain loops over their panels take half the time of one dense kernel
-/// call per supernode.
+/// The supernodes of a surface mesh are a few columns wide: plain loops over their panels take half the
+/// time of one dense kernel call per supernode.
 fn substitute<const K: usize>(factor: SupernodalLltRef<'_, usize, f64>, x: &mut [[f64; K]]) {
     let n_supernodes = factor.symbolic().n_supernodes();
     let mut below = Vec::new();
@@ -194,7 +196,8 @@ fn inner_products<const K: usize>(column: &[f64], x: &[[f64; K]]) -> [f64; K] {
     std::array::from_fn(|k| (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]))
 }
 
-/// Solves `A x = b` in place for a general square matrix by LU with column ordering; `rhs` as in [`Cholesky::solve`].
+/// Solves `A x = b` in place for a general square matrix by LU with column ordering; `rhs` as in
+/// [`Cholesky::solve`].
 ///
 /// # Errors
 /// [`Error::FactorizationFailed`] where the matrix is singular to working precision.

@@ -2,8 +2,9 @@
 //! Assembly of weighted graph Laplacians of a mesh, restricted to its free vertices.
 //!
 //! The sparsity pattern of `L_II` is the mesh's edges and never changes, so it is computed once and only the
-//! values are written again. A weight belongs to a corner: `weight[c]` is what the face of corner `c` adds to the
-//! edge opposite `c`. Every entry gathers its own corners in a fixed order, in parallel, without atomics.
+//! values are written again. A weight belongs to a corner: `weight[c]` is what the face of corner `c` adds
+//! to the edge opposite `c`. Every entry gathers its own corners in a fixed order, in parallel, without
+//! atomics.
 
 use sprs::{CsMat, CsMatI};
 
@@ -54,8 +55,8 @@ impl Laplacian {
         &self.matrix
     }
 
-    /// Writes the values from one weight per corner (of the edge opposite it); `entry(i, j)` scales the entry of
-    /// the mesh vertices i, j, so that a caller can project onto tangents.
+    /// Writes the values from one weight per corner (of the edge opposite it); `entry(i, j)` scales the
+    /// entry of the mesh vertices i, j, so that a caller can project onto tangents.
     pub fn assemble_scaled(
         &mut self,
         mesh: &TriangleMesh,
@@ -75,7 +76,8 @@ impl Laplacian {
         });
     }
 
-    /// (L f)_I for a planar map f of all vertices: the first coordinates of the free vertices, then the second.
+    /// (L f)_I for a planar map f of all vertices: the first coordinates of the free vertices, then the
+    /// second.
     pub fn residual(&self, mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]]) -> Vec<f64> {
         let by_vertex = parallel::map(self.free.len(), |i| apply(mesh, weights, map, self.free[i] as usize));
         by_vertex.iter().map(|value| value[0]).chain(by_vertex.iter().map(|value| value[1])).collect()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sysconfig
 from pathlib import Path
@@ -90,7 +91,10 @@ def announce(path: Path) -> None:
 def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path | None) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     command = [dev.python, "-m", "maturin", "build", "--release", "--locked", "--out", folder]
-    run([*command, "--interpreter", dev.python, *options], {"VIRTUAL_ENV": str(dev.folder)}, log)
+    # maturin finds zig through the `python3` that is first on PATH.
+    path = os.pathsep.join([str(dev.python.parent), os.environ.get("PATH", "")])
+    variables = {"VIRTUAL_ENV": str(dev.folder), "PATH": path}
+    run([*command, "--interpreter", dev.python, *options], variables, log)
 
 
 def _keep_newest_wheel(folder: Path) -> Path | None:

@@ -1,52 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only module that talks to the native library: plain data in, plain data out, no bpy.
 
-`unwrap` and `measure` are ordinary functions on numpy arrays. A `Job` runs such a call on a thread of its
-own, so that a window stays alive, and hands the result back on the main thread.
+`unwrap`, `folds` and `measure` are ordinary functions on numpy arrays.
 """
 
-import re
-import threading
 from dataclasses import dataclass, field
 
 import numpy as np
 
 import authalic
 
-from . import triangulation
+from . import messages, triangulation
+from .job import Cancelled
 
 # What face attributes show for a face that is folded over, and the limit for all others: shading
 # cannot deal with infinities.
 LOG2_LIMIT = 20.0
 
 
-class Cancelled(Exception):
-    """The job was cancelled; nothing was written."""
-
-
 @dataclass
 class UnwrapSettings:
     """How islands are mapped; the solver stops earlier where it has converged."""
 
-    domain: str = "AUTO"
     fill_holes: bool = True
     iterations: int = 100
 
 
 @dataclass
 class Island:
-    """A mapped island: `uv` (k, 2) at the mesh corners `corners` (k,) of the surface number `surface`.
+    """A disk map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3) of surface `surface`.
 
-    `turned` are the polygons whose normals point against those of the rest; they are mirrored in the map.
+    The UVs of the mesh corners `corners` (k,) are those of the points `corner_point` (k,). `turned` are the
+    polygons whose normals point against those of the rest; they are mirrored in the map. `uneven` is the
+    standard deviation of the area ratios where the solver could not go on to make them even, else None.
     """
 
+    name: str
     surface: int
     polygon: int
+    points: np.ndarray
+    faces: np.ndarray
     corners: np.ndarray
+    corner_point: np.ndarray
     uv: np.ndarray
-    area: float
-    uv_area: float
     turned: np.ndarray
+    uneven: float | None = None
 
 
 @dataclass
@@ -85,63 +83,6 @@ class Measurement:
     log2: list[np.ndarray]
 
 
-class Job:
-    """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
-
-    `work` must not touch bpy; `progress(fraction, message)` is False once the job is cancelled.
-    """
-
-    def __init__(self, work, finish=lambda result: result):
-        self._work, self._finish = work, finish
-        self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
-        self._cancel = threading.Event()
-        self._state = (0.0, "")
-        self._result = self._error = None
-
-    def start(self):
-        self._thread.start()
-        return self
-
-    def poll(self):
-        """(running, fraction, message)."""
-        return (self._thread.is_alive(), *self._state)
-
-    def cancel(self):
-        """Asks the computation to stop; `apply` will raise `Cancelled` and change nothing."""
-        self._cancel.set()
-
-    def apply(self):
-        """Waits for the end of the computation and hands its result to `finish`."""
-        self._thread.join()
-        if self._cancel.is_set():
-            raise Cancelled("cancelled, nothing was changed")
-        if self._error is not None:
-            raise self._error
-        return self._finish(self._result)
-
-    def execute(self):
-        """The whole job at once, for scripts; Ctrl-C cancels it."""
-        self.start()
-        try:
-            while self._thread.is_alive():
-                self._thread.join(0.05)
-        except BaseException:
-            self.cancel()
-            self._thread.join()
-            raise
-        return self.apply()
-
-    def _run(self):
-        try:
-            self._result = self._work(self._report)
-        except BaseException as error:  # raised again by apply, on the caller's thread
-            self._error = error
-
-    def _report(self, fraction, message):
-        self._state = (fraction, message)
-        return not self._cancel.is_set()
-
-
 def _keep_going(_fraction, _message):
     return True
 
@@ -163,21 +104,33 @@ def unwrap(surfaces, settings, progress=_keep_going):
         try:
             result.islands.append(_map(piece, settings, step))
         except (_Unsuitable, authalic.MeshError, authalic.SolverError) as error:
-            result.refusals.append(Refusal(piece.name, piece.polygon, piece.in_mesh_terms(str(error))))
+            reason = messages.in_mesh_terms(str(error), piece.polygons, piece.vertices)
+            result.refusals.append(Refusal(piece.name, piece.polygon, reason))
         done += share
     return result
+
+
+def folds(island):
+    """Whether a face of an island is folded over, exactly, in UVs of single precision as Blender has them."""
+    try:
+        figures = authalic.distortion(island.points, island.faces, island.uv.astype(np.float32).astype(float))
+    except authalic.MeshError:  # the whole island has shrunk to a line or a point
+        return True
+    return len(figures.folded) > 0
 
 
 def measure(surfaces):
     """Figures of the UVs of `surfaces`, all on one scale; None where no triangle has an area."""
     points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
-    image = np.concatenate([surface.uv[surface.corners] for surface in surfaces]).astype(float)
+    image = np.concatenate([surface.uv[surface.corners] for surface in surfaces])
     good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
     points, image = points[good], image[good]
-    if not triangulation.signed_areas(image).any():
+    if not triangulation.signed_areas(image.astype(float)).any():
         return None
-    corners = np.arange(3 * len(points)).reshape(-1, 3)
-    figures = authalic.distortion(points.reshape(-1, 3), corners, image.reshape(-1, 2))
+    # With the UV islands in one piece the library turns faces of inconsistent normals by itself.
+    first, faces = triangulation.welded(_vertices(surfaces)[good], image)
+    corner_points, corner_image = points.reshape(-1, 3)[first], image.reshape(-1, 2)[first]
+    figures = authalic.distortion(corner_points, faces, corner_image.astype(float))
     log2 = np.clip(figures.log2_area_ratio, -LOG2_LIMIT, LOG2_LIMIT)
     log2[figures.folded] = -LOG2_LIMIT
     unfolded = np.ones(len(log2), bool)
@@ -217,21 +170,6 @@ class _Piece:
     def polygon(self):
         return int(self.polygons[0])
 
-    def in_mesh_terms(self, message):
-        """The message with the indices of the mesh in place of those of the patch."""
-        numbers = {
-            "face": self.polygons,
-            "faces": self.polygons,
-            "vertex": self.vertices,
-            "vertices": self.vertices,
-        }
-
-        def translate(match):
-            own = numbers[match[1]]
-            return match[1] + re.sub(r"\d+", lambda digits: str(own[int(digits[0])]), match[2])
-
-        return re.sub(r"\b(faces|face|vertices|vertex)( \([\d, …]+\)| \d+)", translate, message)
-
 
 def _pieces(surfaces, index, result):
     """The islands of a surface; one that cannot be cut at all is refused as a whole."""
@@ -241,11 +179,14 @@ def _pieces(surfaces, index, result):
     faces, points = faces.reshape(-1, 3), mesh.positions[used]
     number = np.full(len(mesh.positions), -1)
     number[used] = np.arange(len(used))
+    # The centre of a divided polygon is no vertex of the mesh.
+    vertices = np.where(used < len(surface.positions), used, -1)
     try:
         # An island with a bad coordinate is refused by itself when its turn comes.
         patches = authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=number[surface.seams])
     except authalic.MeshError as error:
-        result.refusals.append(Refusal(surface.name, None, str(error)))
+        reason = messages.in_mesh_terms(str(error), mesh.polygons, vertices)
+        result.refusals.append(Refusal(surface.name, None, reason))
         return
     for patch in patches:
         corners = mesh.corners.ravel()[np.asarray(patch.corner_of).ravel()]
@@ -256,13 +197,13 @@ def _pieces(surfaces, index, result):
             points=points[patch.vertex_of],
             corners=corners,
             polygons=mesh.polygons[patch.face_of],
-            vertices=used[patch.vertex_of],
+            vertices=vertices[patch.vertex_of],
             pinned=bool(surface.pinned is not None and surface.pinned[corners[corners >= 0]].any()),
         )
 
 
 def _map(piece, settings, progress):
-    """The disk map of one island, counter-clockwise as the mesh is wound."""
+    """The disk map of one island, counter-clockwise as most of its faces are wound."""
     _check(piece, settings)
     faces = np.asarray(piece.patch.faces)
     found = authalic.disk_map(
@@ -274,21 +215,18 @@ def _map(piece, settings, progress):
     )
     if found.status == "cancelled":
         raise Cancelled("cancelled, nothing was changed")
-    uv = np.array(found.uv)
-    signed = triangulation.signed_areas(uv[faces])
-    turned = _turned(faces, np.asarray(found.faces))
-    if signed.sum() < 0:
-        uv[:, 0] *= -1
-        turned = ~turned
     real = piece.corners >= 0
     return Island(
+        name=piece.name,
         surface=piece.index,
         polygon=piece.polygon,
+        points=piece.points,
+        faces=faces,
         corners=piece.corners[real],
-        uv=uv[faces.ravel()[real]],
-        area=float(triangulation.areas(piece.points[faces]).sum()),
-        uv_area=float(np.abs(signed).sum()),
-        turned=np.unique(piece.polygons[turned]),
+        corner_point=faces.ravel()[real],
+        uv=np.array(found.uv),
+        turned=np.unique(piece.polygons[_turned(faces, np.asarray(found.faces))]),
+        uneven=float(found.distortion.area_ratio_std) if found.status == "stalled" else None,
     )
 
 
@@ -320,6 +258,12 @@ def _check(piece, settings):
 def _sub_progress(progress, start, share):
     """A part of the whole as a progress callback of its own."""
     return lambda fraction, message: progress(start + share * fraction, message)
+
+
+def _vertices(surfaces):
+    """The vertices of the triangles of all surfaces, (t, 3), numbered on from one surface to the next."""
+    starts = np.cumsum([0, *(len(surface.positions) for surface in surfaces)])
+    return np.concatenate([s.triangles + start for s, start in zip(surfaces, starts[:-1], strict=True)])
 
 
 def _per_polygon(surfaces, good, points, log2, unfolded):

@@ -42,11 +42,6 @@ class Surface:
         part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
         return replace(self, uv=uv, **part)
 
-    def turned_over(self, turned):
-        """The same surface with the triangles of a mask (t,) wound the other way round."""
-        flip = [np.where(turned[:, None], a[:, ::-1], a) for a in (self.triangles, self.corners)]
-        return replace(self, triangles=flip[0], corners=flip[1])
-
 
 def read(obj, *, selected_only=False, uv_layer=None):
     """The surface of an object; with `selected_only` that of its selected, visible faces."""
@@ -102,6 +97,12 @@ def layer_name(mesh, wanted):
     return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"
 
 
+def is_taken(obj, layer):
+    """Whether something else has the name, so that Blender would add the UV layer under another one."""
+    mesh = obj.data
+    return layer not in mesh.uv_layers and (layer in mesh.attributes or layer in obj.vertex_groups)
+
+
 def has_room_for(mesh, layer):
     """Whether the UV layer is there or can be added."""
     return layer in mesh.uv_layers or len(mesh.uv_layers) < MAX_UV_LAYERS
@@ -116,21 +117,21 @@ def ensure_layer(mesh, layer):
 
 
 def write_face_attribute(mesh, name, values):
-    """Writes a float (p,) for each polygon into the face attribute `name`."""
-    if mesh.is_editmode:
-        edit = bmesh.from_edit_mesh(mesh)
-        layer = edit.faces.layers.float.get(name) or edit.faces.layers.float.new(name)
-        for face, value in zip(edit.faces, values.tolist(), strict=True):
-            face[layer] = value
-        bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
-        return
+    """Writes a float (p,) for each polygon into the face attribute `name`, replacing one of another kind."""
     attribute = mesh.attributes.get(name)
     if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
         mesh.attributes.remove(attribute)
         attribute = None
     attribute = attribute or mesh.attributes.new(name, "FLOAT", "FACE")
-    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
-    mesh.update()
+    if not mesh.is_editmode:
+        attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+        mesh.update()
+        return
+    edit = bmesh.from_edit_mesh(mesh)
+    layer = edit.faces.layers.float[name]
+    for face, value in zip(edit.faces, values.tolist(), strict=True):
+        face[layer] = value
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
 def has_uniform_scale(obj):

@@ -32,6 +32,19 @@ def signed_areas(triangles):
     return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
+def welded(vertices, uv):
+    """Triangles of vertices (t, 3) with float32 UVs (t, 3, 2), joined where both agree.
+
+    Returns which corners, counted through, come first at each point (n,), and triangles (t, 3) of points.
+    """
+    # Adding 0 makes one of the two zeros.
+    places = (np.ascontiguousarray(uv, np.float32) + np.float32(0)).view(np.uint64).ravel()
+    place = np.unique(places, return_inverse=True)[1].ravel()
+    key = vertices.ravel().astype(np.int64) * (place.max(initial=0) + 1) + place
+    _, first, points = np.unique(key, return_index=True, return_inverse=True)
+    return first, points.reshape(-1, 3)
+
+
 def has_area(triangles):
     """Which triangles (t, 3, 3) have an area beyond the rounding of their coordinates, (t,)."""
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)

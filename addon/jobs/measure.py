@@ -2,6 +2,7 @@
 """The measurement of a context's objects: figures of their active UV layers and a face attribute."""
 
 from .. import bridge, mesh_io
+from ..job import Job
 from . import targets
 from .targets import NothingToDo
 
@@ -9,7 +10,7 @@ ATTRIBUTE = "authalic_log2_area_ratio"
 
 
 def job(context):
-    """A `bridge.Job` that measures the active UV layers; its `apply` writes the attribute, returns figures.
+    """A `Job` that measures the active UV layers; its `apply` writes the attribute, returns figures.
 
     Raises `NothingToDo` where no object has faces and UVs.
     """
@@ -28,7 +29,7 @@ def job(context):
             mesh_io.write_face_attribute(obj.data, ATTRIBUTE, values)
         return figures
 
-    return bridge.Job(lambda progress: bridge.measure(surfaces), finish)
+    return Job(lambda progress: bridge.measure(surfaces), finish)
 
 
 def line(figures):

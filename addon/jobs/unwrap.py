@@ -8,10 +8,12 @@ import numpy as np
 
 from .. import bridge, mesh_io
 from .. import islands as shapes
+from ..job import Job
 from ..packing import PackSettings, pack
 from . import targets
 
 _NAMED = 3
+_FOLDS = "its faces would fold over in UV precision; cut its long or thin parts open by seams"
 
 
 class CannotUnwrap(Exception):
@@ -47,7 +49,7 @@ class Report:
 
 
 def job(context, settings):
-    """A `bridge.Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
+    """A `Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
 
     Raises `targets.NothingToDo` or `CannotUnwrap` before anything is computed.
     """
@@ -71,10 +73,10 @@ def job(context, settings):
         mapping.refusals[:0] = refusals
         figures = _write(chosen, mapping, settings.packing)
         seconds = time.perf_counter() - started
-        notes = _notes(chosen, mapping.islands)
+        notes = _notes(chosen, mapping.islands, figures)
         return Report(len(mapping.islands), figures, mapping.refusals, notes, seconds)
 
-    return bridge.Job(work, finish)
+    return Job(work, finish)
 
 
 def describe(refusals):
@@ -86,6 +88,11 @@ def describe(refusals):
 
 def _layer(obj, wanted):
     layer = mesh_io.layer_name(obj.data, wanted)
+    if mesh_io.is_taken(obj, layer):
+        raise CannotUnwrap(
+            f'{obj.name} has an attribute or a vertex group "{layer}", which is no UV map; '
+            "name another UV map or rename that"
+        )
     if not mesh_io.has_room_for(obj.data, layer):
         raise CannotUnwrap(
             f'{obj.name} has {mesh_io.MAX_UV_LAYERS} UV maps, no room for "{layer}"; '
@@ -102,49 +109,70 @@ def _why_nothing(selected_only, refusals):
 
 def _write(chosen, mapping, settings):
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
-    if not mapping.islands:
-        raise CannotUnwrap(f"No island could be unwrapped: {describe(mapping.refusals)}")
-    shapes.scale_to_one_density(mapping.islands)
-    pack(mapping.islands, settings)
+    _place(mapping, settings)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
     mapped = [_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts, strict=True)]
     figures = bridge.measure(mapped)
-    for (obj, layer, _), (corners, uv, _) in zip(chosen, parts, strict=True):
+    if figures is None:
+        raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
+    for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
         if len(corners):
             mesh_io.write_uv(obj.data, mesh_io.ensure_layer(obj.data, layer), corners, uv)
     return figures
 
 
+def _place(mapping, settings):
+    """Packs the islands, without those that would fold over where they come to lie: these are refused."""
+    while mapping.islands:
+        shapes.scale_to_one_density(mapping.islands)
+        pack(mapping.islands, settings)
+        if not all(np.isfinite(island.uv).all() for island in mapping.islands):
+            raise CannotUnwrap("The packed UVs are not finite; nothing was changed")
+        sound = [island for island in mapping.islands if not bridge.folds(island)]
+        if len(sound) == len(mapping.islands):
+            return
+        kept = {id(island) for island in sound}
+        folded = [island for island in mapping.islands if id(island) not in kept]
+        mapping.refusals += [bridge.Refusal(part.name, part.polygon, _FOLDS) for part in folded]
+        mapping.islands = sound
+    raise CannotUnwrap(f"No island could be unwrapped: {describe(mapping.refusals)}")
+
+
 def _gather(islands, index):
-    """Of one surface's islands the corners (k,), UVs (k, 2) as Blender will keep them, turned polygons."""
+    """Of one surface's islands the corners (k,) and their UVs (k, 2) as Blender will keep them."""
     own = [island for island in islands if island.surface == index]
     corners = np.concatenate([np.empty(0, int), *(island.corners for island in own)])
-    uv = np.concatenate([np.empty((0, 2)), *(island.uv for island in own)]).astype(np.float32)
-    if not np.isfinite(uv).all():
-        raise CannotUnwrap("The packed UVs are not finite; nothing was changed")
-    return corners, uv, np.concatenate([np.empty(0, int), *(island.turned for island in own)])
+    uv = np.concatenate([np.empty((0, 2)), *(island.uv[island.corner_point] for island in own)])
+    return corners, uv.astype(np.float32)
 
 
-def _mapped(surface, corners, uv, turned):
-    """The part of a surface that was mapped, with its new UVs and one orientation."""
+def _mapped(surface, corners, uv):
+    """The part of a surface that was mapped, with its new UVs."""
     values = np.full((len(surface.corner_vertex), 2), np.nan, np.float32)
     values[corners] = uv
-    part = surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
-    return part.turned_over(np.isin(part.polygons, turned))
+    return surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
 
 
-def _notes(chosen, islands):
-    notes = []
+def _notes(chosen, islands, figures):
+    """What was written but may not be what was wanted."""
+    notes = [
+        f"{island.name} at face {island.polygon}: uneven, area ratio SD {island.uneven:.3g}; "
+        "cut its long parts open by seams"
+        for island in islands
+        if island.uneven is not None
+    ]
+    if len(notes) > _NAMED:
+        notes[_NAMED:] = [f"and {len(notes) - _NAMED} more uneven"]
     turned = sum(len(island.turned) for island in islands)
     if turned:
         notes.append(f"{_count(turned, 'face')} with inconsistent normals mirrored, recalculate the normals")
-    uneven = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
-    if not uneven:
-        return notes
-    return [
-        *notes,
-        f"{', '.join(uneven[:_NAMED])}: non-uniform scale, areas are those of the non-scaled mesh",
-    ]
+    if figures.flips:  # of no triangle of the solver's: those were checked
+        notes.append("the flips are where Blender divides polygons in other ways; triangulate them")
+    scaled = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
+    if scaled:
+        named = ", ".join(scaled[:_NAMED])
+        notes.append(f"{named}: non-uniform scale, areas are those of the non-scaled mesh")
+    return notes
 
 
 def _count(number, noun):

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import bridge, packing
+from ..job import Cancelled
 from ..jobs import targets, unwrap
 from . import poll
 
@@ -25,7 +26,7 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         name="Domain",
         description="The shape that islands are mapped onto",
         items=(
-            ("AUTO", "Automatic", "Choose the shape that suits the island: a disk where it has a boundary"),
+            ("AUTO", "Automatic", "The shape that suits an island, which has to have a boundary: a disk"),
             ("DISK", "Disk", "Map every island onto a disk"),
         ),
         default="AUTO",
@@ -48,16 +49,6 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         default="",
         search=_layer_names,
         search_options={"SUGGESTION"},
-    )
-    rotate: BoolProperty(name="Rotate", description="Rotate islands upright to improve layout", default=True)
-    shape_method: EnumProperty(
-        name="Shape Method",
-        description="How closely the packer follows the outlines of the islands",
-        items=(
-            ("CONVEX", "Boundary Shape (Convex)", "Uses the boundaries of the islands"),
-            ("AABB", "Bounding Box", "Uses the bounding boxes, much faster with hundreds of islands"),
-        ),
-        default="CONVEX",
     )
     margin_method: EnumProperty(
         name="Margin Method",
@@ -83,7 +74,7 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
             return {"CANCELLED"}
-        except (unwrap.CannotUnwrap, bridge.Cancelled) as problem:
+        except (unwrap.CannotUnwrap, Cancelled) as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
         self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, f"Unwrapped {report}")
@@ -97,8 +88,8 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
     def _settings(self):
         return unwrap.Settings(
             uv_layer=self.uv_layer,
-            mapping=bridge.UnwrapSettings(self.domain, self.fill_holes, self.iterations),
-            packing=packing.PackSettings(self.rotate, self.margin_method, self.margin, self.shape_method),
+            mapping=bridge.UnwrapSettings(self.fill_holes, self.iterations),
+            packing=packing.PackSettings(self.margin_method, self.margin),
         )
 
 
@@ -113,7 +104,7 @@ def draw_options(layout, properties):
         column.prop(properties, name)
 
 
-_PACKING = ("shape_method", "rotate", "margin_method", "margin")
+_PACKING = ("margin_method", "margin")
 
 
 def register():

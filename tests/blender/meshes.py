@@ -184,3 +184,21 @@ def together(*parts):
         faces += [[int(v) + start for v in polygon] for polygon in polygons]
         start += len(points)
     return np.array(vertices), faces
+
+
+def tube(rings, around, closed=True, step=0.8):
+    """A long tube of quads, open at its first ring and closed by a fan (or open too) at its last one."""
+    angle = 2 * np.pi * np.arange(around) / around
+    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    vertices = np.concatenate([ring + [0, 0, step * i] for i in range(rings)])
+    side = [(j, (j + 1) % around) for j in range(around)]
+    faces = [
+        [around * i + a, around * i + b, around * (i + 1) + b, around * (i + 1) + a]
+        for i in range(rings - 1)
+        for a, b in side
+    ]
+    if closed:
+        last = around * (rings - 1)
+        faces += [[last + a, last + b, len(vertices)] for a, b in side]
+        vertices = np.concatenate([vertices, [(0, 0, step * rings)]])
+    return vertices, faces

@@ -41,15 +41,11 @@ def test_uninstall_and_install_again(extension):
 
 def test_defaults_are_declared():
     properties = bpy.ops.authalic.unwrap.get_rna_type().properties
-    found = {
-        key: properties[key].default
-        for key in ("domain", "fill_holes", "uv_layer", "rotate", "margin_method")
-    }
+    found = {key: properties[key].default for key in ("domain", "fill_holes", "uv_layer", "margin_method")}
     assert found == {
         "domain": "AUTO",
         "fill_holes": True,
         "uv_layer": "",
-        "rotate": True,
         "margin_method": "SCALED",
     }
     assert all(p.name and not p.description.endswith(".") for p in properties if p.identifier != "rna_type")

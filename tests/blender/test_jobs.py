@@ -4,6 +4,7 @@
 import importlib
 import threading
 import time
+import types
 
 import bpy
 import conftest
@@ -45,7 +46,7 @@ def test_cancelled_job_writes_nothing():
     time.sleep(0.1)
     started = time.perf_counter()
     job.cancel()
-    with pytest.raises(bridge.Cancelled):
+    with pytest.raises(part("job").Cancelled):
         job.apply()
     assert time.perf_counter() - started < 2
     assert [layer.name for layer in obj.data.uv_layers] == ["Old"]
@@ -71,7 +72,7 @@ def test_job_works_on_another_thread_and_finishes_on_this_one():
         threads.append(threading.current_thread())
         return result + 1
 
-    job = part("bridge").Job(work, finish)
+    job = part("job").Job(work, finish)
     assert job.execute() == 2
     assert threads[0] is not threads[1] is threading.current_thread()
     assert job.poll() == (False, 0.5, "half")
@@ -82,7 +83,7 @@ def test_job_raises_what_the_work_raised():
         raise ValueError("why")
 
     with pytest.raises(ValueError, match="why"):
-        part("bridge").Job(work).execute()
+        part("job").Job(work).execute()
 
 
 def test_failing_packer_changes_nothing(monkeypatch):
@@ -109,31 +110,95 @@ def test_not_finite_results_are_not_written(monkeypatch):
     assert not obj.data.uv_layers
 
 
-def test_outline_encloses_and_similarity_is_found():
-    shapes, rng = part("islands"), np.random.default_rng(3)
-    points = rng.normal(size=(500, 2)) * [3, 1]
-    outline = shapes.outline(points)
-    ends = np.roll(outline, -1, axis=0)
-    for start, end in zip(outline, ends, strict=True):
-        side, gap = end - start, points - start
-        assert (side[0] * gap[:, 1] - side[1] * gap[:, 0] > -1e-9).all()
-    factor, offset = 0.3 * np.exp(2j), 4 - 1j
-    found = shapes.similarity(outline, shapes.moved(outline, factor, offset))
-    assert found == (pytest.approx(factor), pytest.approx(offset))
+def test_unmeasurable_results_are_not_written(monkeypatch):
+    obj = meshes.add_grid()
+    monkeypatch.setattr(part("bridge"), "measure", lambda surfaces: None)
+    with pytest.raises(RuntimeError, match="nothing was changed"):
+        bpy.ops.authalic.unwrap(uv_layer="New")
+    assert not obj.data.uv_layers
 
 
-def test_upright_turns_a_square_and_leaves_a_disk():
-    shapes, corners = part("islands"), np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
-    tilted = shapes.moved(corners, np.exp(0.4j), 0)
-    turned = shapes.moved(tilted, shapes.upright(tilted), 0)
-    np.testing.assert_allclose(np.ptp(turned, axis=0), 2)
-    angle = np.linspace(0, 2 * np.pi, 100)
-    assert shapes.upright(shapes.outline(np.stack([np.cos(angle), np.sin(angle)], axis=1))) == 1
+def test_island_that_folds_when_packed_is_left_out_and_the_rest_fills_the_square(monkeypatch):
+    obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
+    obj.data.uv_layers.new(name="UVMap")
+    before, unwrap = meshes.uv(obj), part("jobs.unwrap")
+    pack = unwrap.pack
+
+    def spoil(islands, settings):
+        pack(islands, settings)
+        if len(islands) > 1:  # one point of the second crosses over to the far side
+            inner = np.linalg.norm(islands[1].uv - islands[1].uv.mean(axis=0), axis=1).argmin()
+            islands[1].uv[inner] += 2 * np.ptp(islands[1].uv, axis=0)
+
+    monkeypatch.setattr(unwrap, "pack", spoil)
+    report = unwrap.job(bpy.context, unwrap.Settings()).execute()
+    assert report.islands == 1 and report.figures.flips == 0
+    assert [str(refusal) for refusal in report.refusals] == [
+        "Mesh at face 36: its faces would fold over in UV precision; cut its long or thin parts open by seams"
+    ]
+    after = meshes.uv(obj)
+    assert (after[144:] == before[144:]).all()
+    assert np.ptp(after[:144], axis=0).min() > 0.95
 
 
-def test_messages_name_the_faces_of_the_mesh():
+def test_stalled_island_is_named(monkeypatch, capfd):
+    meshes.add_grid()
     bridge = part("bridge")
-    piece = bridge._Piece("", 0, None, None, None, np.array([70, 80, 90]), np.array([5, 6, 7]), False)
-    assert piece.in_mesh_terms("no area in face 1: dissolve") == "no area in face 80: dissolve"
-    assert piece.in_mesh_terms("2 faces (0, 2) repeat") == "2 faces (70, 90) repeat"
-    assert piece.in_mesh_terms("9 vertices (0, 1, 2, …) loose") == "9 vertices (5, 6, 7, …) loose"
+    map_ = bridge._map
+
+    def stalled(*arguments):
+        island = map_(*arguments)
+        island.uneven = 6.0
+        return island
+
+    monkeypatch.setattr(bridge, "_map", stalled)
+    assert bpy.ops.authalic.unwrap() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Warning: Unwrapped 1 island" in said
+    assert "Grid at face 0: uneven, area ratio SD 6; cut its long parts open by seams" in said
+
+
+@pytest.mark.parametrize("method", ["SCALED", "ADD", "FRACTION"])
+def test_packing_is_quick_and_keeps_margins(method):
+    packing, shapes = part("packing"), part("islands")
+    angle = np.linspace(0, 2 * np.pi, 100)
+    disk = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    sizes = np.random.default_rng(4).uniform(0.02, 0.2, 30)
+    islands = [types.SimpleNamespace(uv=size * disk) for size in sizes]
+    started = time.perf_counter()
+    packing.pack(islands, packing.PackSettings(method, 0.01))
+    assert time.perf_counter() - started < 1
+    radius = np.array([np.ptp(island.uv, axis=0).mean() / 2 for island in islands])
+    np.testing.assert_allclose(radius / sizes, (radius / sizes)[0], rtol=1e-9)
+    boxes = np.array([shapes.box(island.uv) for island in islands])
+    assert boxes.min() >= 0 and boxes.max() <= 1
+    low, high = boxes[:, 0], boxes[:, 2]
+    gaps = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
+    gap = gaps[~np.eye(30, dtype=bool)].min()
+    assert gap > 0.0199 if method == "FRACTION" else gap > 1e-3
+
+
+def test_boxes_enclose():
+    points = np.random.default_rng(3).normal(size=(500, 2)) * [3, 1]
+    box = part("islands").box(points)
+    assert (box[0] == points.min(axis=0)).all() and (box[2] == points.max(axis=0)).all()
+
+
+def test_messages_name_the_elements_of_the_mesh():
+    polygons, vertices = np.array([70, 80, 90, 90]), np.array([5, 6, 7, -1])
+    expected = {
+        "no area in face 1: dissolve": "no area in face 80: dissolve",
+        "left over: 2 faces (0, 2); remesh": "left over: triangles of faces (70, 90); remesh",
+        "in 2 faces (2, 3): dissolve": "in face 90: dissolve",
+        "no area in 12 faces (0, 2, 3, 1, …)": "no area in triangles of faces (70, 90, 80, …)",
+        "left over: 3 faces (1, 4, 5)": "left over: face 80",
+        "left over: face 4": "left over: faces of a filled hole",
+        "at 9 vertices (0, 1, 2, …): repair": "at 9 vertices (5, 6, 7, …): repair",
+        "at 3 vertices (0, 1, 3): repair": "at vertices (5, 6): repair",
+        "at vertex 3: repair": "at vertices that were filled in: repair",
+        "at edge (1, 2): cut": "at edge (6, 7): cut",
+        "at 3 edges ((0, 1), (1, 2), (2, 3))": "at edges ((5, 6), (6, 7))",
+        "the mesh has 20 faces, more than 3": "the mesh has 20 faces, more than 3",
+    }
+    translate = part("messages").in_mesh_terms
+    assert {message: translate(message, polygons, vertices) for message in expected} == expected

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.measure against formulas of its own in numpy."""
 
+import importlib
 import re
 
 import bpy
+import conftest
 import meshes
 import numpy as np
 import pytest
@@ -123,3 +125,45 @@ def test_uvs_in_one_point_and_no_uvs():
     with pytest.raises(RuntimeError, match="all UVs lie in one point"):
         bpy.ops.authalic.measure()
     assert ATTRIBUTE not in obj.data.attributes
+
+
+@pytest.mark.parametrize("reverse", [1, 3])
+def test_unwrap_and_measure_agree_where_normals_differ(reverse):
+    vertices, faces = meshes.grid()
+    faces[::reverse] = faces[::reverse, ::-1]
+    meshes.add(vertices, faces)
+    unwrap = importlib.import_module(f"{conftest.MODULE}.jobs.unwrap")
+    measure = importlib.import_module(f"{conftest.MODULE}.jobs.measure")
+    report = unwrap.job(bpy.context, unwrap.Settings()).execute()
+    again = measure.job(bpy.context).execute()
+    assert again.flips == 0 and measure.line(report.figures) == measure.line(again)
+    for name in ("triangles", "mean", "deviation", "log2_min", "log2_max", "angle"):
+        assert getattr(report.figures, name) == getattr(again, name)
+
+
+def test_mirrored_island_counts_as_flipped():
+    obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(n=4, offset=(4, 0, 0))))
+    bpy.ops.authalic.unwrap()
+    uv = meshes.uv(obj)
+    uv[144:, 0] = 1 - uv[144:, 0]
+    meshes.set_uv(obj, uv)
+    bpy.ops.authalic.measure()
+    assert figures()["flips"] == 2 * 16
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+@pytest.mark.parametrize(
+    ("kind", "domain"), [("FLOAT_COLOR", "POINT"), ("INT", "FACE"), ("FLOAT", "EDGE"), ("FLOAT2", "POINT")]
+)
+def test_attribute_of_another_kind_is_replaced(mode, kind, domain):
+    obj = stretched_grid()
+    bpy.ops.authalic.measure()
+    expected = attribute(obj)
+    obj.data.attributes.remove(obj.data.attributes[ATTRIBUTE])
+    obj.data.attributes.new(ATTRIBUTE, kind, domain)
+    bpy.ops.object.mode_set(mode=mode)
+    assert bpy.ops.authalic.measure() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    found = obj.data.attributes[ATTRIBUTE]
+    assert (found.domain, found.data_type) == ("FACE", "FLOAT")
+    np.testing.assert_array_equal(attribute(obj), expected)

@@ -354,7 +354,7 @@ def test_packing_options():
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     fill = []
     for options in ({"margin": 0.0}, {"margin": 0.1}, {"margin": 0.1, "margin_method": "FRACTION"}):
-        assert unwrap(shape_method="AABB", rotate=False, **options) == {"FINISHED"}
+        assert unwrap(**options) == {"FINISHED"}
         corners, _, _ = meshes.triangles(obj)
         fill.append(meshes.uv_areas(meshes.uv(obj)[corners]).sum())
     assert fill[0] > fill[1] and fill[0] > fill[2]
@@ -366,3 +366,60 @@ def test_non_uniform_scale_is_said(capfd):
     bpy.context.view_layer.update()
     assert unwrap() == {"FINISHED"}
     assert "non-uniform scale" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("taken", ["attribute", "vertex group"])
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_layer_name_that_is_taken_is_refused(taken, mode):
+    obj = meshes.add_grid()
+    obj.data.uv_layers.new(name="Old")
+    before = meshes.uv(obj)
+    if taken == "attribute":
+        obj.data.attributes.new("Taken", "FLOAT", "POINT")
+    else:
+        obj.vertex_groups.new(name="Taken")
+    bpy.ops.object.mode_set(mode=mode)
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match='Grid has an attribute or a vertex group "Taken"'):
+            unwrap(uv_layer="Taken")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert [layer.name for layer in obj.data.uv_layers] == ["Old"]
+    assert (meshes.uv(obj) == before).all()
+
+
+@pytest.mark.parametrize(("rings", "around"), [(20, 8), (40, 8), (50, 8), (60, 8), (100, 6)])
+@pytest.mark.parametrize("closed", [True, False])
+def test_long_tubes_have_no_flips_or_are_refused(rings, around, closed, capfd):
+    obj = meshes.add(*meshes.tube(rings, around, closed), "Tube")
+    try:
+        unwrap()
+    except RuntimeError as refusal:
+        assert "seams" in str(refusal) or "remesh" in str(refusal)
+        assert "Traceback" not in str(refusal) and not obj.data.uv_layers
+        return
+    said = capfd.readouterr().out
+    flips = int(np.count_nonzero(meshes.area_ratios(obj) <= 0))
+    assert flips == 0 and "0 flips" in said
+    if meshes.area_ratios(obj).std() > 1:
+        assert "Warning" in said and "Tube at face 0: uneven" in said
+
+
+def test_good_island_beside_one_that_cannot_be_mapped():
+    for rings in (39, 41, 60):
+        parts = meshes.tube(rings, 3, False), meshes.grid(offset=(9, 0, 0))
+        obj = meshes.add(*meshes.together(*parts))
+        assert unwrap() == {"FINISHED"}
+        corners, polygons, _ = meshes.triangles(obj)
+        grid = polygons >= 3 * (rings - 1)
+        assert (meshes.uv_areas(meshes.uv(obj)[corners[grid]]) > 0).all()
+
+
+def test_vertices_where_the_mesh_pinches_are_those_of_the_mesh():
+    # Three triangles at one edge; the vertices before them have no faces.
+    vertices = [(9, 9, 9), (8, 8, 8), (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1)]
+    obj = meshes.add(vertices, [[2, 3, 4], [3, 2, 5], [2, 3, 6]])
+    before = len(obj.data.uv_layers)
+    try:
+        unwrap()
+    except RuntimeError as refusal:
+        assert "(2, 3)" in str(refusal) and len(obj.data.uv_layers) == before

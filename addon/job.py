@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A computation on a thread of its own, so that a window stays alive, and its end on the main thread."""
+
+import threading
+
+
+class Cancelled(Exception):
+    """The job was cancelled; nothing was written."""
+
+
+class Job:
+    """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
+
+    `work` must not touch bpy; `progress(fraction, message)` is False once the job is cancelled.
+    """
+
+    def __init__(self, work, finish=lambda result: result):
+        self._work, self._finish = work, finish
+        self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
+        self._cancel = threading.Event()
+        self._state = (0.0, "")
+        self._result = self._error = None
+
+    def start(self):
+        self._thread.start()
+        return self
+
+    def poll(self):
+        """(running, fraction, message)."""
+        return (self._thread.is_alive(), *self._state)
+
+    def cancel(self):
+        """Asks the computation to stop; `apply` will raise `Cancelled` and change nothing."""
+        self._cancel.set()
+
+    def apply(self):
+        """Waits for the end of the computation and hands its result to `finish`."""
+        self._thread.join()
+        if self._cancel.is_set():
+            raise Cancelled("cancelled, nothing was changed")
+        if self._error is not None:
+            raise self._error
+        return self._finish(self._result)
+
+    def execute(self):
+        """The whole job at once, for scripts; Ctrl-C cancels it."""
+        self.start()
+        try:
+            while self._thread.is_alive():
+                self._thread.join(0.05)
+        except BaseException:
+            self.cancel()
+            self._thread.join()
+            raise
+        return self.apply()
+
+    def _run(self):
+        try:
+            self._result = self._work(self._report)
+        except BaseException as error:  # raised again by apply, on the caller's thread
+            self._error = error
+
+    def _report(self, fraction, message):
+        self._state = (fraction, message)
+        return not self._cancel.is_set()

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The native library's messages with the numbers of Blender's mesh. Plain logic, no bpy."""
+
+import re
+
+# "face 3", "12 vertices (0, 1, 2, …)", "edge (3, 4)", "2 edges ((0, 4), (4, 7))".
+_ELEMENTS = re.compile(r"\b(\d+ )?(faces?|vertex|vertices|edges?)( \((?:[\d, …]|\(\d+, \d+\))+\)| \d+\b)")
+_ONE = {"faces": "face", "vertices": "vertex", "edges": "edge"}
+_MANY = {"face": "triangles of faces", "vertex": "vertices", "edge": "edges"}
+
+
+def in_mesh_terms(message, polygons, vertices):
+    """The message with polygons (m,) and vertices (n,) of the mesh in place of a patch's faces and vertices.
+
+    Numbers beyond the arrays, or that they answer with -1, are of filled holes and divided polygons, which
+    the mesh does not have: they are left out.
+    """
+
+    def translate(match):
+        count, noun, listing = match[1] or "", _ONE.get(match[2], match[2]), match[3]
+        own = polygons if noun == "face" else vertices
+        found = re.findall(r"\d+, \d+" if noun == "edge" else r"\d+", listing)
+        names = list(dict.fromkeys(filter(None, (_name(item, own) for item in found))))
+        rest = ["…"] if "…" in listing else []
+        if not names:
+            return "faces of a filled hole" if noun == "face" else f"{_MANY[noun]} that were filled in"
+        if len(names) == 1 and not rest:
+            return f"{noun} {names[0]}"
+        # Triangles are counted, not polygons.
+        count = count if noun != "face" and len(names) == len(found) else ""
+        return f"{count}{_MANY[noun]} ({', '.join(names + rest)})"
+
+    return _ELEMENTS.sub(translate, message)
+
+
+def _name(item, own):
+    """The name of one element, "3" or "3, 4" for an edge; empty if the mesh does not have it."""
+    numbers = [int(digits) for digits in item.split(", ")]
+    if any(number >= len(own) or own[number] < 0 for number in numbers):
+        return ""
+    named = ", ".join(str(own[number]) for number in numbers)
+    return f"({named})" if len(numbers) > 1 else named

@@ -208,3 +208,32 @@ def test_a_fold_on_the_sphere_is_found(ball):
 def test_an_inward_sphere_is_folded_everywhere(ball):
     mesh, image = ball
     assert len(authalic.distortion(*mesh, -image).folded) == len(mesh.faces)
+
+
+def test_an_image_that_is_not_finite_is_refused_by_vertex():
+    vertices, faces = meshes.grid()
+    for bad in (np.nan, np.inf):
+        image = vertices[:, :2].copy()
+        image[[3, 5]] = bad
+        with pytest.raises(authalic.MeshError, match="image is NaN or infinite") as caught:
+            authalic.distortion(vertices, faces, image)
+        assert caught.value.indices == (3, 5)
+
+
+@pytest.mark.parametrize("scale", [1e-100, 1e100])
+def test_the_ratios_of_an_image_do_not_depend_on_its_scale(scale):
+    vertices, faces = meshes.grid()
+    image = vertices[:, :2] * [1, 2] + 0.01 * np.sin(9 * vertices[:, :2])
+    plain, scaled = (authalic.distortion(vertices, faces, image * s) for s in (1, scale))
+    assert np.allclose(plain.log2_area_ratio, scaled.log2_area_ratio, rtol=0, atol=1e-12)
+    assert np.allclose(plain.angle_distortion, scaled.angle_distortion, rtol=1e-12, atol=0)
+    assert scaled.authalic_energy == pytest.approx(plain.authalic_energy * scale**2, rel=1e-9)
+
+
+def test_a_density_that_leaves_no_digits_is_refused():
+    vertices, faces = meshes.grid()
+    density = np.ones(len(faces))
+    density[7] = 1e-13
+    with pytest.raises(authalic.MeshError, match="at least 1e-12 of the largest") as caught:
+        authalic.disk_map(vertices, faces, density=density)
+    assert caught.value.indices == (7,)

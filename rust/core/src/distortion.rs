@@ -12,6 +12,9 @@ use crate::error::{Elements, Error};
 use crate::mesh::geometry::{Vector, area, distance, dot, sub, triangle};
 use crate::parallel;
 
+/// The least density allowed, beside the largest.
+const SMALLEST_DENSITY: f64 = 1e-12;
+
 /// The figures of one map. Per-face arrays have one entry per face, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distortion {
@@ -45,22 +48,48 @@ pub enum Image<'a> {
     Sphere(&'a [[f64; 3]]),
 }
 
-impl Image<'_> {
-    fn corners(&self, face: [u32; 3]) -> [Vector; 3] {
-        match self {
-            Self::Plane(map) => face.map(|v| [map[v as usize][0], map[v as usize][1], 0.0]),
-            Self::Sphere(map) => triangle(map, face),
+/// An image scaled by a power of two to coordinates of size 1: exact, and safe from over- and underflow.
+#[derive(Clone, Copy)]
+struct Scaled<'a> {
+    image: Image<'a>,
+    factor: f64,
+}
+
+impl<'a> Scaled<'a> {
+    /// Refuses coordinates that are not finite.
+    fn new(image: Image<'a>) -> Result<Self, Error> {
+        let coordinates: &[f64] = match image {
+            Image::Plane(map) => map.as_flattened(),
+            Image::Sphere(map) => map.as_flattened(),
+        };
+        let width = if matches!(image, Image::Plane(_)) { 2 } else { 3 };
+        let not_finite =
+            coordinates.chunks(width).enumerate().filter(|(_, row)| !row.iter().all(|x| x.is_finite()));
+        if let Some(vertices) = Elements::collect(not_finite.map(|(vertex, _)| vertex)) {
+            return Err(Error::MapNonFinite { name: "image", vertices });
         }
+        let largest = coordinates.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0) } else { 0.0 };
+        Ok(Self { image, factor: (-exponent).exp2() })
+    }
+
+    fn corners(&self, face: [u32; 3]) -> [Vector; 3] {
+        let corners = match self.image {
+            Image::Plane(map) => face.map(|v| [map[v as usize][0], map[v as usize][1], 0.0]),
+            Image::Sphere(map) => triangle(map, face),
+        };
+        corners.map(|corner| corner.map(|x| x * self.factor))
     }
 
     fn is_folded(&self, face: [u32; 3]) -> bool {
-        match self {
-            Self::Plane(map) => {
-                let [a, b, c] = face.map(|v| map[v as usize]).map(|[x, y]| Coord { x, y });
+        let corners = self.corners(face);
+        match self.image {
+            Image::Plane(_) => {
+                let [a, b, c] = corners.map(|[x, y, _]| Coord { x, y });
                 orient2d(a, b, c) <= 0.0
             }
-            Self::Sphere(map) => {
-                let [a, b, c] = triangle(map, face).map(|[x, y, z]| Coord3D { x, y, z });
+            Image::Sphere(_) => {
+                let [a, b, c] = corners.map(|[x, y, z]| Coord3D { x, y, z });
                 // positive where the origin lies below the plane through a, b, c
                 orient3d(a, b, c, Coord3D { x: 0.0, y: 0.0, z: 0.0 }) <= 0.0
             }
@@ -68,9 +97,9 @@ impl Image<'_> {
     }
 }
 
-/// Faces whose exact orientation in the plane is not positive, ascending.
+/// Faces whose exact orientation in the plane is not positive, ascending. Coordinates must be finite and moderate.
 pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
-    folded(faces, Image::Plane(map))
+    folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
 /// Measures a map of the surface `points`, `faces` with one positive target area per face.
@@ -79,7 +108,8 @@ pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
 /// [`TriangleMesh`](crate::mesh::TriangleMesh), or validate first.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] where the whole image has no area.
+/// [`Error::MapNonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image has no
+/// area.
 pub fn distortion(
     points: &[Vector],
     faces: &[[u32; 3]],
@@ -87,6 +117,7 @@ pub fn distortion(
     targets: &[f64],
 ) -> Result<Distortion, Error> {
     // 1. Signed areas of the image, and the scale c = A/|M| of the targets
+    let image = Scaled::new(image)?;
     let folded = folded(faces, image);
     let areas = signed_areas(faces, image, &folded);
     let scale = parallel::sum(areas.len(), |face| areas[face].abs())
@@ -105,6 +136,7 @@ pub fn distortion(
     let mean = parallel::sum(ratio.len(), |face| ratio[face]) / count;
     let variance = parallel::sum(ratio.len(), |face| (ratio[face] - mean).powi(2)) / count;
     let energy = parallel::sum(ratio.len(), |face| scale * targets[face] * (ratio[face] - 1.0).powi(2));
+    let energy = energy / image.factor / image.factor;
     // 3. Singular values of the linear map of each face
     let angle = angle_distortion(points, faces, image, &folded);
     let (angle_mean, angle_p99, angle_max) = summary(&angle);
@@ -132,21 +164,23 @@ pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, E
             (format!("of shape ({},)", density.len()), format!("of shape ({n_faces},), one value per face"));
         return Err(Error::InvalidArray { name: "density", found, expected });
     }
-    let bad = |face: &usize| !(density[*face] > 0.0 && density[*face].is_finite());
-    if let Some(faces) = Elements::collect((0..n_faces).filter(bad)) {
+    let finite = density.iter().copied().filter(|value| value.is_finite());
+    let largest = finite.fold(0.0, f64::max);
+    // a target far below the others leaves no digits for the energy
+    let good = |value: f64| value.is_finite() && value > 0.0 && value >= SMALLEST_DENSITY * largest;
+    if let Some(faces) = Elements::collect((0..n_faces).filter(|&face| !good(density[face]))) {
         return Err(Error::Density { value: density[faces.first[0]], faces });
     }
-    let largest = density.iter().copied().fold(0.0, f64::max);
     Ok(density.iter().map(|value| value / largest).collect())
 }
 
-fn folded(faces: &[[u32; 3]], image: Image<'_>) -> Vec<usize> {
+fn folded(faces: &[[u32; 3]], image: Scaled<'_>) -> Vec<usize> {
     let is_folded = parallel::map(faces.len(), |face| image.is_folded(faces[face]));
     (0..faces.len()).filter(|&face| is_folded[face]).collect()
 }
 
 /// Flat image areas with the exact sign; an area whose rounded sign differs is one of rounding size anyway.
-fn signed_areas(faces: &[[u32; 3]], image: Image<'_>, folded: &[usize]) -> Vec<f64> {
+fn signed_areas(faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
     let mut areas = parallel::map(faces.len(), |face| area(image.corners(faces[face])));
     for &face in folded {
         areas[face] = -areas[face];
@@ -154,7 +188,7 @@ fn signed_areas(faces: &[[u32; 3]], image: Image<'_>, folded: &[usize]) -> Vec<f
     areas
 }
 
-fn angle_distortion(points: &[Vector], faces: &[[u32; 3]], image: Image<'_>, folded: &[usize]) -> Vec<f64> {
+fn angle_distortion(points: &[Vector], faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
     let mut ratios = parallel::map(faces.len(), |face| {
         singular_value_ratio(triangle(points, faces[face]), image.corners(faces[face]))
     });

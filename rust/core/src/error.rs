@@ -80,7 +80,7 @@ fn plural(noun: &str) -> String {
 #[non_exhaustive]
 pub enum Error {
     /// The vertex array is empty.
-    #[error("the mesh has no vertices")]
+    #[error("the mesh has no vertices: it needs at least three")]
     NoVertices,
 
     /// The face array is empty.
@@ -107,7 +107,7 @@ pub enum Error {
 
     /// A face names a vertex that does not exist.
     #[error(
-        "{} out of range: {value} is not one of the {n_vertices} vertices (indices start at 0)",
+        "{} out of range: {value} is not one of the {n_vertices} vertices; indices start at 0, so subtract 1 if yours start at 1",
         .faces.named("face")
     )]
     IndexOutOfRange {
@@ -186,10 +186,7 @@ pub enum Error {
     },
 
     /// A disk was asked for and the surface has no boundary.
-    #[error(
-        "the surface is closed (genus {genus}), a disk needs a boundary: \
-         mark seams and cut it, or use a sphere map for genus 0"
-    )]
+    #[error("the surface is closed (genus {genus}), a disk needs a boundary: mark seams and cut it open")]
     ClosedSurface {
         /// The number of handles.
         genus: usize,
@@ -233,8 +230,11 @@ pub enum Error {
         seams: Elements,
     },
 
-    /// A density is zero, negative, NaN or infinite.
-    #[error("density must be positive and finite, but is {value} at {}", .faces.named("face"))]
+    /// A density is zero, negative, NaN, infinite, or too small beside the others.
+    #[error(
+        "density must be positive, finite and at least 1e-12 of the largest, but is {value} at {}: raise it there",
+        .faces.named("face")
+    )]
     Density {
         /// The faces with such a density.
         faces: Elements,
@@ -242,27 +242,22 @@ pub enum Error {
         value: f64,
     },
 
-    /// An initial map has NaN or infinite coordinates.
-    #[error("the initial map is NaN or infinite at {}", .vertices.named("vertex"))]
-    InitialNonFinite {
+    /// A map given has NaN or infinite coordinates.
+    #[error("{name} is NaN or infinite at {}: give finite positions for all vertices", .vertices.named("vertex"))]
+    MapNonFinite {
+        /// The argument.
+        name: &'static str,
         /// The vertices with such a coordinate.
         vertices: Elements,
     },
 
     /// An initial map does not put the boundary onto the unit circle.
-    #[error("the initial map leaves the unit circle at boundary {}: {reason}", .vertices.named("vertex"))]
+    #[error("the initial map is no start at boundary {}: {reason}", .vertices.named("vertex"))]
     InitialBoundary {
         /// The boundary vertices at fault.
         vertices: Elements,
         /// What is wrong with them.
         reason: String,
-    },
-
-    /// An initial map folds faces over.
-    #[error("the initial map folds {}: start from a map without folds, or leave initial out", .faces.named("face"))]
-    InitialFolded {
-        /// The folded faces.
-        faces: Elements,
     },
 
     /// An array has the wrong shape or content.
@@ -295,7 +290,10 @@ pub enum Error {
     },
 
     /// No map without folded faces was found.
-    #[error("no map without folds was found, left over: {}; remesh the thinnest parts", .folded.named("face"))]
+    #[error(
+        "no map without folds was found in double precision, left over: {}; cut the long thin parts there open by seams",
+        .folded.named("face")
+    )]
     NoEmbedding {
         /// The faces that stayed folded.
         folded: Elements,
@@ -310,15 +308,14 @@ impl Error {
             | Self::NonManifoldVertices { vertices }
             | Self::UnreferencedVertices { vertices }
             | Self::SeveralBoundaries { vertices, .. }
-            | Self::InitialNonFinite { vertices }
+            | Self::MapNonFinite { vertices, .. }
             | Self::InitialBoundary { vertices, .. } => Some(vertices),
             Self::IndexOutOfRange { faces, .. }
             | Self::RepeatedVertex { faces }
             | Self::DuplicateFaces { faces }
             | Self::ZeroArea { faces }
             | Self::SeveralComponents { faces }
-            | Self::Density { faces, .. }
-            | Self::InitialFolded { faces } => Some(faces),
+            | Self::Density { faces, .. } => Some(faces),
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
             Self::NoEmbedding { folded } => Some(folded),

@@ -171,7 +171,7 @@ fn a_start_map_off_the_circle_is_refused() {
         refusal(&|map| map.iter_mut().for_each(|uv| uv[0] = -uv[0])),
         Error::InitialBoundary { .. }
     ));
-    assert!(matches!(refusal(&|map| map[0][0] = f64::NAN), Error::InitialNonFinite { .. }));
+    assert!(matches!(refusal(&|map| map[0][0] = f64::NAN), Error::MapNonFinite { .. }));
     assert!(matches!(refusal(&|map| map.truncate(3)), Error::InvalidArray { .. }));
 }
 

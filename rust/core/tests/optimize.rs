@@ -2,7 +2,7 @@
 //! The optimisers on a domain whose minimum is known: they are generic, so any domain will do.
 
 use authalic::optimize::nonlinear_cg::{CgOptions, minimize};
-use authalic::optimize::{Domain, Energies};
+use authalic::optimize::{Domain, Energies, Stopping};
 use authalic::{History, Silent, Status};
 
 /// ½ xᵀ A x − bᵀ x with A = tridiag(−1, 2 + i, −1), preconditioned by its diagonal or not at all.
@@ -48,7 +48,7 @@ impl Domain for Quadratic {
 }
 
 fn run(domain: &Quadratic, max_iterations: usize, tolerance: f64) -> (Vec<f64>, Status, History) {
-    let options = CgOptions { max_iterations, tolerance, ..CgOptions::default() };
+    let options = CgOptions { stopping: Stopping { max_iterations, tolerance }, ..CgOptions::default() };
     let mut history = History::start();
     let (x, status) = minimize(domain, vec![0.0; domain.n], &options, &mut history, &mut Silent);
     (x, status, history)

@@ -27,7 +27,7 @@ pub fn indices<const N: usize>(
 ) -> PyResult<Vec<[u32; N]>> {
     let found: Vec<[i64; N]> = match kind(&as_array(object, name)?)?.as_str() {
         "f" => whole(object, name)?,
-        _ => rows(object, name, "int64", "iub", "integers")?,
+        _ => rows(object, name, "int64", "iu", "integers")?,
     };
     narrow(object.py(), name, &found, n_vertices)
 }

@@ -32,6 +32,20 @@ pub struct DiskMap {
     seconds: f64,
 }
 
+impl DiskMap {
+    fn new(py: Python<'_>, map: &authalic::DiskMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+        Ok(Self {
+            uv: from_points(py, &map.uv),
+            faces: from_indices(py, faces),
+            status: map.status.as_str(),
+            iterations: map.history.iterations(),
+            history: history(py, map.history.records())?,
+            distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+            seconds: map.seconds,
+        })
+    }
+}
+
 #[pymethods]
 impl DiskMap {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -62,18 +76,17 @@ impl DiskMap {
 ///     The optimiser.
 /// boundary : {"sliding", "arc_length"}
 ///     Whether boundary vertices slide along the circle in their order, or stay at arcs proportional to the
-/// edge
-///     lengths as in the papers.
+///     edge lengths as in the papers.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
 ///     Weight of the angles against the areas; only 0 (authalic) until a method that trades them lands.
 /// initial : (n, 2) real array, optional
-///     A start map whose boundary runs once around the unit circle. Default: harmonic, then five
-/// fixed-point steps. max_iterations : int, optional
-///     Default 50, as in the paper's tables. The five fixed-point steps of the conjugate gradients and the
-/// descent that follows where
-///     folds were mended come on top.
+///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop.
+///     Default: harmonic, then five fixed-point steps.
+/// max_iterations : int, optional
+///     Default 50, as in the paper's tables. On top come up to five fixed-point steps before the conjugate
+///     gradients, and where folds were mended the descent from there, which may take as many again, twice.
 /// tolerance : float, optional
 ///     Converged when √(gᵀM⁻¹g), the gradient_norm of the history, falls below it. Default 1e-8.
 /// fill_holes : bool
@@ -136,15 +149,7 @@ pub fn disk_map(
         Ok((authalic::disk_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
     })?;
     // 3. The result
-    Ok(DiskMap {
-        uv: from_points(py, &map.uv),
-        faces: from_indices(py, &faces),
-        status: map.status.as_str(),
-        iterations: map.history.iterations(),
-        history: history(py, map.history.records())?,
-        distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
-        seconds: map.seconds,
-    })
+    DiskMap::new(py, &map, &faces)
 }
 
 fn parse_method(method: &str) -> PyResult<Method> {

@@ -101,7 +101,8 @@ impl OwnedImage {
 ///     Positions on the surface, any unit.
 /// faces : (m, 3) integer array
 ///     Triangles; they need not form a manifold. Faces turned against the rest of their component are
-/// turned back. image : (n, 2) or (n, 3) real array
+///     turned back.
+/// image : (n, 2) or (n, 3) real array
 ///     The map: into the plane (a face is positive counter-clockwise), or onto a sphere around the origin
 ///     (positive counter-clockwise from outside).
 /// density : (m,) real array, optional

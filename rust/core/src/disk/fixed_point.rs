@@ -12,56 +12,40 @@
 use super::Map;
 use super::domain::DiskDomain;
 use crate::control::{History, Observer, Status};
-use crate::optimize::Domain;
+use crate::optimize::{Domain, Stopping};
 use crate::parallel;
 
 /// Halvings of a step before it is given up.
 const HALVINGS: i32 = 20;
 
-/// When [`fixed_point`] ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FixedPointOptions {
-    /// Iterations at the most.
-    pub max_iterations: usize,
-    /// Converged when √(gᵀM⁻¹g) falls below this.
-    pub tolerance: f64,
-}
-
 /// Iterates from `start` and returns the map of lowest energy.
 pub(super) fn fixed_point(
     domain: &mut DiskDomain<'_>,
     start: Map,
-    options: &FixedPointOptions,
+    stopping: &Stopping,
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (Map, Status) {
     let mut step = 0.0;
     let (mut best, mut map) = ((f64::INFINITY, start.clone()), start);
-    for iteration in 0..=options.max_iterations {
+    for done in 0.. {
         // 1. Keep the best map; M of the current one and the step it asks for
         let (energies, gradient) = domain.gradient(&map);
-        let energy = energies.authalic_energy;
-        if energy < best.0 {
-            best = (energy, map.clone());
+        if energies.authalic_energy < best.0 {
+            best = (energies.authalic_energy, map.clone());
         }
         if domain.set_preconditioner(&map).is_err() {
             return (best.1, Status::Stalled);
         }
         let correction = domain.precondition(&gradient);
         let norm = parallel::dot(&gradient, &correction).max(0.0).sqrt();
-        match iteration {
-            0 => history.push_start(energy, norm),
-            _ => history.push(energy, step, norm),
+        match done {
+            0 => history.push_start(energies.authalic_energy, norm),
+            _ => history.push(energies.authalic_energy, step, norm),
         }
         // 2. Enough?
-        if norm <= options.tolerance {
-            return (best.1, Status::Converged);
-        }
-        if iteration == options.max_iterations {
-            break;
-        }
-        if !observer.progress(iteration as f64 / options.max_iterations as f64, "Fixed-point iteration") {
-            return (best.1, Status::Cancelled);
+        if let Some(status) = stopping.verdict(done, norm, "Fixed-point iteration", observer) {
+            return (best.1, status);
         }
         // 3. The unit step
         match allowed_step(domain, &map, &correction) {
@@ -69,7 +53,7 @@ pub(super) fn fixed_point(
             None => return (best.1, Status::Stalled),
         }
     }
-    (best.1, Status::MaxIterations)
+    unreachable!("the stopping rule ends the loop")
 }
 
 /// The unit step along −`correction`, halved while a sliding boundary would lose its order.

@@ -14,29 +14,21 @@ mod certificate;
 mod domain;
 mod fixed_point;
 mod holes;
+mod run;
 mod start;
 mod unfold;
 
 use std::borrow::Cow;
 
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::optimize::Domain as _;
-use crate::optimize::nonlinear_cg::{CgOptions, minimize};
 
-use domain::DiskDomain;
-use fixed_point::{FixedPointOptions, fixed_point};
+use run::Run;
 
 /// A map of the vertices into the plane.
 type Map = Vec<[f64; 2]>;
-
-/// Fixed-point steps before the conjugate gradients, the paper's 5.
-const FIXED_POINT_STEPS: usize = 5;
-
-/// Conjugate gradient iterations with one preconditioner, the paper's 50.
-const ROUND: usize = 50;
 
 /// How a disk map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -132,7 +124,11 @@ pub fn disk_map(
     };
     let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
     // 3. Minimise the stretch energy, unfold what folded
-    let (mut uv, status) = Run { mesh: surface, targets, options }.solve(&mut history, observer)?;
+    let (mut uv, status) = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() }
+        .solve(&mut history, observer)?;
+    if status != Status::Cancelled {
+        observer.progress(1.0, "Done");
+    }
     // 4. Figures of the faces given
     uv.truncate(mesh.n_vertices());
     let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
@@ -168,173 +164,19 @@ fn check_initial(mesh: &TriangleMesh, initial: &[[f64; 2]]) -> Result<(), Error>
     }
     let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
-        return Err(Error::InitialNonFinite { vertices });
+        return Err(Error::MapNonFinite { name: "initial", vertices });
     }
     let boundary = &mesh.boundary_loops()[0];
     let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
     if let Some(vertices) = Elements::collect(boundary.iter().map(|&v| v as usize).filter(off_circle)) {
-        return Err(Error::InitialBoundary {
-            vertices,
-            reason: "its distance from the origin is not 1".into(),
-        });
+        return Err(Error::InitialBoundary { vertices, reason: "it must lie on the unit circle".into() });
     }
     if !boundary::runs_once_around(boundary, initial) {
         let vertices = Elements::collect(boundary.iter().map(|&v| v as usize)).expect("a loop has vertices");
         return Err(Error::InitialBoundary {
             vertices,
-            reason: "it does not run once around it, counter-clockwise".into(),
+            reason: "it must run once around the unit circle, counter-clockwise (mirror the map if it runs clockwise)".into(),
         });
     }
     Ok(())
-}
-
-/// One computation on a surface with one boundary loop.
-#[derive(Clone, Copy)]
-struct Run<'a> {
-    mesh: &'a TriangleMesh,
-    targets: &'a [f64],
-    options: &'a DiskMapOptions<'a>,
-}
-
-impl Run<'_> {
-    /// The papers' method, then whatever it takes to have no folded face.
-    fn solve(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
-        let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
-        // 1. The method as published
-        let (map, status) = self.as_published(&mut domain, history, observer)?;
-        let bijective = certificate::is_bijective(self.mesh, &map);
-        if bijective && (status == Status::Cancelled || !domain.nearly_folds(&map)) {
-            return Ok((map, status));
-        }
-        // 2. Unfold what folded, then a descent that keeps every face open
-        domain.guard();
-        let mended = if bijective { Some(map) } else { unfold::unfold(self.mesh, &map) };
-        let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
-        let mended = mended.map(|map| self.descend(&mut domain, map, status, history, &mut phase));
-        // 3. Where that fails or leaves a face as good as folded, the same descent from Tutte's embedding
-        match mended {
-            Some((map, status)) if status == Status::Cancelled || !domain.nearly_folds(&map) => {
-                Ok((map, status))
-            }
-            mended => {
-                let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-                self.descend_from_tutte(&mut domain, mended, status, history, &mut phase)
-            }
-        }
-    }
-
-    /// Tutte's embedding and the guarded descent from it, or `mended` where that is the better map.
-    fn descend_from_tutte(
-        &self,
-        domain: &mut DiskDomain<'_>,
-        mended: Option<(Map, Status)>,
-        status: Status,
-        history: &mut History,
-        observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
-        let tutte = start::tutte(self.mesh, domain)?;
-        match (Elements::collect(certificate::folded(self.mesh, &tutte)), mended) {
-            (Some(folded), None) => Err(Error::NoEmbedding { folded }),
-            (Some(_), Some(mended)) => Ok(mended),
-            (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
-            (None, Some(mended)) => {
-                let other = self.descend(domain, tutte, status, history, observer);
-                let prefer_other = domain.objective(&other.0) < domain.objective(&mended.0);
-                Ok(if prefer_other { other } else { mended })
-            }
-        }
-    }
-
-    /// Harmonic start, fixed-point steps, conjugate gradients; may fold.
-    fn as_published(
-        &self,
-        domain: &mut DiskDomain<'_>,
-        history: &mut History,
-        observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
-        // 1. The start map, fixed-point steps from it
-        let (map, status) = match (self.options.initial, self.options.method) {
-            (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
-            (initial, method) => {
-                let start =
-                    initial.map_or_else(|| start::start(self.mesh, domain), |map| Ok(map.to_vec()))?;
-                let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
-                let mut phase = Phase { whole: observer, from: 0.0, to };
-                fixed_point(domain, start, &self.fixed_point_options(method), history, &mut phase)
-            }
-        };
-        if self.options.method == Method::FixedPoint || status == Status::Cancelled {
-            return Ok((map, status));
-        }
-        // 2. Conjugate gradients
-        let mut phase = Phase { whole: observer, from: 0.2, to: 0.8 };
-        Ok(self.conjugate_gradients(domain, map, history, &mut phase))
-    }
-
-    /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the
-    /// map it begins with.
-    ///
-    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows later ones, and a
-    /// round that stalls may go on with a new one.
-    fn conjugate_gradients(
-        &self,
-        domain: &mut DiskDomain<'_>,
-        mut map: Map,
-        history: &mut History,
-        observer: &mut dyn Observer,
-    ) -> (Map, Status) {
-        let whole = self.cg_options();
-        let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
-        let (begun, mut done) = (history.iterations(), 0);
-        loop {
-            let options = CgOptions { max_iterations: ROUND.min(whole.max_iterations - done), ..whole };
-            let mut round =
-                Phase { whole: observer, from: part(done), to: part(done + options.max_iterations) };
-            if domain.set_preconditioner(&map).is_err() {
-                return (map, Status::Stalled);
-            }
-            let (reached, status) = minimize(domain, map, &options, history, &mut round);
-            let advanced = history.iterations() - begun > done;
-            done = history.iterations() - begun;
-            match status {
-                Status::MaxIterations if done < whole.max_iterations => map = reached,
-                Status::Stalled if advanced => map = reached,
-                status => return (reached, status),
-            }
-        }
-    }
-
-    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the
-    /// map.
-    fn descend(
-        &self,
-        domain: &mut DiskDomain<'_>,
-        map: Map,
-        status: Status,
-        history: &mut History,
-        observer: &mut dyn Observer,
-    ) -> (Map, Status) {
-        if status == Status::Cancelled || !domain.objective(&map).is_finite() {
-            return (map, if status == Status::Cancelled { status } else { Status::Stalled });
-        }
-        self.conjugate_gradients(domain, map, history, observer)
-    }
-
-    fn fixed_point_options(&self, method: Method) -> FixedPointOptions {
-        let options = self.cg_options();
-        let max_iterations = match method {
-            Method::FixedPoint => options.max_iterations,
-            Method::ConjugateGradient => FIXED_POINT_STEPS,
-        };
-        FixedPointOptions { max_iterations, tolerance: options.tolerance }
-    }
-
-    fn cg_options(&self) -> CgOptions {
-        let default = CgOptions::default();
-        CgOptions {
-            max_iterations: self.options.max_iterations.unwrap_or(default.max_iterations),
-            tolerance: self.options.tolerance.unwrap_or(default.tolerance),
-            ..default
-        }
-    }
 }

@@ -5,6 +5,45 @@
 pub mod line_search;
 pub mod nonlinear_cg;
 
+use crate::control::{Observer, Status};
+
+/// When an optimiser ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stopping {
+    /// Iterations at the most; the paper's 50.
+    pub max_iterations: usize,
+    /// Converged when √(gᵀM⁻¹g) falls below this. 10⁻⁸ is beyond what 50 iterations reach, so that it stops
+    /// only runs that have nothing left to do.
+    pub tolerance: f64,
+}
+
+impl Default for Stopping {
+    fn default() -> Self {
+        Self { max_iterations: 50, tolerance: 1e-8 }
+    }
+}
+
+impl Stopping {
+    /// Reports progress after `done` iterations; the status with which to end, if any.
+    pub(crate) fn verdict(
+        &self,
+        done: usize,
+        gradient_norm: f64,
+        message: &str,
+        observer: &mut dyn Observer,
+    ) -> Option<Status> {
+        if gradient_norm <= self.tolerance {
+            Some(Status::Converged)
+        } else if done >= self.max_iterations {
+            Some(Status::MaxIterations)
+        } else if observer.progress(done as f64 / self.max_iterations as f64, message) {
+            None
+        } else {
+            Some(Status::Cancelled)
+        }
+    }
+}
+
 /// The energies of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {

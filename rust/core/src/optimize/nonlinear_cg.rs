@@ -5,29 +5,21 @@
 //! the step of the quadratic model (3.3), and, where that step violates the strong Wolfe conditions (4.1)
 //! that the proof of convergence needs, a line search that satisfies them (0 < c₁ < c₂ < ½).
 //!
-//! Cost of one iteration: two evaluations of the objective, one of its gradient, one solve with M.
+//! Cost of one iteration: one evaluation of the objective (the model's), one of its gradient for every step tried, nearly always a
+//! single one, and one solve with M.
 
 use super::line_search::{Trial, WolfeOptions, strong_wolfe};
-use super::{Domain, Energies};
+use super::{Domain, Energies, Stopping};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
 
 /// Options of [`minimize`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CgOptions {
-    /// Iterations at the most; the paper's 50.
-    pub max_iterations: usize,
-    /// Converged when √(gᵀM⁻¹g) falls below this. 10⁻⁸ is beyond what 50 iterations reach, so that it stops
-    /// only runs that have nothing left to do.
-    pub tolerance: f64,
+    /// When to end.
+    pub stopping: Stopping,
     /// The strong Wolfe conditions.
     pub wolfe: WolfeOptions,
-}
-
-impl Default for CgOptions {
-    fn default() -> Self {
-        Self { max_iterations: 50, tolerance: 1e-8, wolfe: WolfeOptions::default() }
-    }
 }
 
 /// A map on the way with all that the next iteration needs of it.
@@ -38,7 +30,7 @@ struct State<M> {
     gradient: Vec<f64>,
 }
 
-/// Lowers the domain's objective from `start` and returns the last map, the best one found, with the status.
+/// Lowers the domain's objective from `start` and returns the last map, which has the lowest objective, with the status.
 pub fn minimize<D: Domain>(
     domain: &D,
     start: D::Map,
@@ -54,14 +46,11 @@ pub fn minimize<D: Domain>(
     let mut direction = descent(&h);
     let mut step = 1.0;
     history.push_start(state.energies.authalic_energy, norm2.max(0.0).sqrt());
-    for iteration in 0..options.max_iterations {
-        if norm2.max(0.0).sqrt() <= options.tolerance {
-            return (state.map, Status::Converged);
-        }
-        if !observer
-            .progress(iteration as f64 / options.max_iterations as f64, "Minimising the stretch energy")
+    for done in 0.. {
+        let norm = norm2.max(0.0).sqrt();
+        if let Some(status) = options.stopping.verdict(done, norm, "Minimising the stretch energy", observer)
         {
-            return (state.map, Status::Cancelled);
+            return (state.map, status);
         }
         // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none
         let found = line_step(domain, &state, &direction, step, &options.wolfe).or_else(|| {
@@ -79,7 +68,7 @@ pub fn minimize<D: Domain>(
         parallel::fill_with_old(&mut direction, |i, p| beta * p - h[i]);
         history.push(state.energies.authalic_energy, step, norm2.max(0.0).sqrt());
     }
-    (state.map, Status::MaxIterations)
+    unreachable!("the stopping rule ends the loop")
 }
 
 fn descent(h: &[f64]) -> Vec<f64> {

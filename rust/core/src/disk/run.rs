@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One computation from start map to a map without folds.
+//!
+//! First the papers' method as published, which may fold; then, only where it did or nearly did, unfolding and a descent
+//! behind a barrier; last of all the same descent from Tutte's embedding.
+
+use super::domain::DiskDomain;
+use super::fixed_point::fixed_point;
+use super::{DiskMapOptions, Map, Method, certificate, start, unfold};
+use crate::control::{History, Observer, Phase, Status};
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::optimize::nonlinear_cg::{CgOptions, minimize};
+use crate::optimize::{Domain as _, Stopping};
+
+/// Fixed-point steps before the conjugate gradients, the paper's 5.
+const FIXED_POINT_STEPS: usize = 5;
+
+/// Conjugate gradient iterations with one preconditioner, the paper's 50.
+const ROUND: usize = 50;
+
+/// One computation on a surface with one boundary loop.
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub targets: &'a [f64],
+    pub options: &'a DiskMapOptions<'a>,
+    /// Faces from here on fill holes; no message may name them.
+    pub n_given_faces: usize,
+}
+
+impl Run<'_> {
+    /// The papers' method, then whatever it takes to have no folded face.
+    pub(super) fn solve(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
+        // 1. The method as published
+        let (map, status) = self.as_published(&mut domain, history, observer)?;
+        let bijective = certificate::is_bijective(self.mesh, &map);
+        if bijective && (status == Status::Cancelled || !domain.nearly_folds(&map)) {
+            return Ok((map, status));
+        }
+        // 2. Unfold what folded, then a descent that keeps every face open
+        domain.guard();
+        let mended = if bijective { Some(map) } else { unfold::unfold(self.mesh, &map) };
+        let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
+        let mended = mended.map(|map| self.descend(&mut domain, map, status, history, &mut phase));
+        // 3. Where that fails or leaves a face as good as folded, the same descent from Tutte's embedding
+        match mended {
+            Some((map, status)) if status == Status::Cancelled || !domain.nearly_folds(&map) => {
+                Ok((map, status))
+            }
+            mended => {
+                let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+                self.descend_from_tutte(&mut domain, mended, status, history, &mut phase)
+            }
+        }
+    }
+
+    /// Tutte's embedding and the guarded descent from it, or `mended` where that is the better map.
+    fn descend_from_tutte(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        mended: Option<(Map, Status)>,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let tutte = start::tutte(self.mesh, domain)?;
+        let folded = certificate::folded(self.mesh, &tutte);
+        match (Elements::collect(folded.into_iter().map(|face| self.given_face(face))), mended) {
+            (Some(folded), None) => Err(Error::NoEmbedding { folded }),
+            (Some(_), Some(mended)) => Ok(mended),
+            (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
+            (None, Some(mended)) => {
+                let other = self.descend(domain, tutte, status, history, observer);
+                let prefer_other = domain.objective(&other.0) < domain.objective(&mended.0);
+                Ok(if prefer_other { other } else { mended })
+            }
+        }
+    }
+
+    /// Harmonic start, fixed-point steps, conjugate gradients; may fold.
+    fn as_published(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        // 1. The start map, fixed-point steps from it
+        let (map, status) = match (self.options.initial, self.options.method) {
+            (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
+            (initial, method) => {
+                let start =
+                    initial.map_or_else(|| start::start(self.mesh, domain), |map| Ok(map.to_vec()))?;
+                let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
+                let mut phase = Phase { whole: observer, from: 0.0, to };
+                fixed_point(domain, start, &self.fixed_point_stopping(), history, &mut phase)
+            }
+        };
+        if self.options.method == Method::FixedPoint || status == Status::Cancelled {
+            return Ok((map, status));
+        }
+        // 2. Conjugate gradients
+        let mut phase = Phase { whole: observer, from: 0.2, to: 0.8 };
+        Ok(self.conjugate_gradients(domain, map, history, &mut phase))
+    }
+
+    /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the
+    /// map it begins with.
+    ///
+    /// The first round is the paper's Algorithm 3.1; a preconditioner from far away slows later ones, and a
+    /// round that stalls may go on with a new one.
+    fn conjugate_gradients(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        mut map: Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let whole = self.stopping();
+        let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
+        let (begun, mut done) = (history.iterations(), 0);
+        loop {
+            let budget = ROUND.min(whole.max_iterations - done);
+            let options =
+                CgOptions { stopping: Stopping { max_iterations: budget, ..whole }, ..CgOptions::default() };
+            let mut round = Phase { whole: observer, from: part(done), to: part(done + budget) };
+            if domain.set_preconditioner(&map).is_err() {
+                return (map, Status::Stalled);
+            }
+            let (reached, status) = minimize(domain, map, &options, history, &mut round);
+            let advanced = history.iterations() - begun > done;
+            done = history.iterations() - begun;
+            match status {
+                Status::MaxIterations if done < whole.max_iterations => map = reached,
+                Status::Stalled if advanced => map = reached,
+                status => return (reached, status),
+            }
+        }
+    }
+
+    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the
+    /// map.
+    fn descend(
+        &self,
+        domain: &mut DiskDomain<'_>,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        if status == Status::Cancelled || !domain.objective(&map).is_finite() {
+            return (map, if status == Status::Cancelled { status } else { Status::Stalled });
+        }
+        self.conjugate_gradients(domain, map, history, observer)
+    }
+
+    /// The face itself, or for one that fills a hole the given face at its edge of the hole.
+    fn given_face(&self, face: usize) -> usize {
+        // the third corner of a fan's face is its apex, which faces the edge
+        let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);
+        if face < self.n_given_faces { face } else { beside() }
+    }
+
+    fn stopping(&self) -> Stopping {
+        let default = Stopping::default();
+        Stopping {
+            max_iterations: self.options.max_iterations.unwrap_or(default.max_iterations),
+            tolerance: self.options.tolerance.unwrap_or(default.tolerance),
+        }
+    }
+
+    /// The paper's few steps before conjugate gradients, all of them where the fixed point is the method.
+    fn fixed_point_stopping(&self) -> Stopping {
+        let whole = self.stopping();
+        match self.options.method {
+            Method::FixedPoint => whole,
+            Method::ConjugateGradient => {
+                Stopping { max_iterations: whole.max_iterations.min(FIXED_POINT_STEPS), ..whole }
+            }
+        }
+    }
+}

@@ -15,8 +15,8 @@ READERS = {
     ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
     ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
 }
-EXTENT, DIAGONAL = 2.35, 3.46
-"""The most that a mesh may measure in the scene: along an axis, and from corner to corner of its box."""
+EXTENT, HEIGHT, DIAGONAL = 2.35, 2.1, 3.46
+"""The most that a mesh may measure in the scene: along an axis, upwards, and across its bounding box."""
 
 
 def suzanne():
@@ -108,7 +108,8 @@ def _centre(mesh):
     mesh.attributes["position"].data.foreach_get("vector", corners)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
-    scale = 1 / max(float(size.max()) / EXTENT, float(np.linalg.norm(size)) / DIAGONAL, 1e-30)
+    excess = size.max() / EXTENT, size[2] / HEIGHT, np.linalg.norm(size) / DIAGONAL
+    scale = 1 / max(*map(float, excess), 1e-30)
     mesh.transform(Matrix.Scale(scale, 4) @ Matrix.Translation(tuple(-(low + high) / 2)))
 
 

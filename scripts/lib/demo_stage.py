@@ -9,7 +9,7 @@ import math
 import bpy
 import numpy as np
 
-COLUMN, ROW = 2.6, 2.5
+COLUMN, ROW = 2.75, 2.5
 TURN = math.radians(-24)
 """Every mesh is turned a little, so that its form shows."""
 CHECKER_SIZE = 0.085

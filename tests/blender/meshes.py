@@ -189,8 +189,8 @@ def together(*parts):
 def tube(rings, around, closed=True, step=0.8):
     """A long tube of quads, open at its first ring and closed by a fan (or open too) at its last one."""
     angle = 2 * np.pi * np.arange(around) / around
-    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    vertices = np.concatenate([ring + [0, 0, step * i] for i in range(rings)])
+    height = np.repeat(step * np.arange(rings), around)
+    vertices = np.column_stack([np.tile(np.cos(angle), rings), np.tile(np.sin(angle), rings), height])
     side = [(j, (j + 1) % around) for j in range(around)]
     faces = [
         [around * i + a, around * i + b, around * (i + 1) + b, around * (i + 1) + a]

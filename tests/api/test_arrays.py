@@ -203,7 +203,7 @@ def test_densities_that_are_not_positive_are_refused_by_face(value):
         lambda: authalic.disk_map(VERTICES, FACES, density=density),
         lambda: authalic.distortion(VERTICES, FACES, VERTICES[:, :2], density=density),
     ):
-        with pytest.raises(authalic.MeshError, match="density must be positive, finite and at least") as caught:
+        with pytest.raises(authalic.MeshError, match="density must be positive, finite") as caught:
             call()
         assert (caught.value.indices, caught.value.count) == ((4, 17), 2)
 

@@ -4,9 +4,10 @@
 import multiprocessing
 import sys
 
-import authalic
 import numpy as np
 import pytest
+
+import authalic
 
 from . import meshes
 

@@ -124,7 +124,7 @@ def light_and_camera(columns, rows, pixels_per_cell):
     _sun("Fill", (math.radians(70), 0, math.radians(50)), 0.7, 90)
     _ground(scene, background=0.42, ambient=0.55)
     scene.render.resolution_x = round(width / COLUMN * pixels_per_cell)
-    scene.render.resolution_y = round(height / ROW * pixels_per_cell)
+    scene.render.resolution_y = round(height / COLUMN * pixels_per_cell)
 
 
 def render(path, samples):

@@ -9,8 +9,7 @@ use super::domain::DiskDomain;
 use super::{Map, boundary};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{cotangents, triangle};
-use crate::parallel;
+use crate::mesh::geometry::corner_cotangents;
 
 /// The harmonic map, or Tutte's where slivers make the cotangents too large for the harmonic system.
 pub(super) fn start(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
@@ -19,8 +18,7 @@ pub(super) fn start(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<
 
 /// The harmonic map with an arc-length boundary.
 fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
-    let by_face =
-        parallel::map(mesh.n_faces(), |face| cotangents(triangle(mesh.points(), mesh.faces()[face])));
+    let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let weights: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
     solve(mesh, domain, &weights)
 }

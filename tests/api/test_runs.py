@@ -251,6 +251,8 @@ def test_one_and_several_threads_give_the_same_bits(run_python):
 INTERRUPT = """
 import json, os, signal, threading, time, authalic
 from api.test_runs import bumpy_square
+# a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
+signal.signal(signal.SIGINT, signal.default_int_handler)
 mesh = bumpy_square(710)
 sent = []
 def interrupt():

@@ -102,6 +102,12 @@ pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
+/// Faces whose exact orientation around the origin is not positive, ascending: those that an outward oriented map onto
+/// the sphere folds. Coordinates must be finite and moderate.
+pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
+    folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
+}
+
 /// Measures a map of the surface `points`, `faces` with one positive target area per face.
 ///
 /// The lengths must agree, the indices be in range, the faces have area and one orientation: call it on a

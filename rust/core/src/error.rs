@@ -178,7 +178,7 @@ pub enum Error {
         vertices: Elements,
     },
 
-    /// A disk was asked for and the mesh falls into several pieces.
+    /// One surface was asked for and the mesh falls into several pieces.
     #[error("the mesh is {} separate pieces, first faces {faces}: map each piece by itself (cut returns them)", .faces.count)]
     SeveralComponents {
         /// The lowest face of each component.
@@ -186,7 +186,10 @@ pub enum Error {
     },
 
     /// A disk was asked for and the surface has no boundary.
-    #[error("the surface is closed (genus {genus}), a disk needs a boundary: mark seams and cut it open")]
+    #[error(
+        "the surface is closed (genus {genus}), a disk needs a boundary: mark seams and cut it open{}",
+        if *genus == 0 { ", or map it to the sphere by sphere_map" } else { "" }
+    )]
     ClosedSurface {
         /// The number of handles.
         genus: usize,
@@ -197,6 +200,32 @@ pub enum Error {
         "the surface has genus {genus} (handles like a torus), a disk has none: cut each handle open by seams"
     )]
     HasHandles {
+        /// The number of handles.
+        genus: usize,
+    },
+
+    /// A sphere was asked for and the surface has a boundary.
+    #[error(
+        "the surface has {}, at {}; a sphere has none: close the holes, or map the surface by disk_map",
+        match sizes.len() {
+            1 => format!("a boundary loop of {} edges", sizes[0]),
+            loops => format!("{loops} boundary loops of {} edges", list(sizes)),
+        },
+        .vertices.named("vertex")
+    )]
+    OpenSurface {
+        /// A vertex of each loop, the longest loop first.
+        vertices: Elements,
+        /// The edge counts of the same loops.
+        sizes: Vec<usize>,
+    },
+
+    /// A sphere was asked for and the surface has handles.
+    #[error(
+        "the surface has genus {genus} (handles like a torus), a sphere has none: \
+         cut each handle open by seams and map what is left by disk_map"
+    )]
+    SphereHasHandles {
         /// The number of handles.
         genus: usize,
     },
@@ -282,6 +311,15 @@ pub enum Error {
         expected: String,
     },
 
+    /// An initial map is no start on the sphere.
+    #[error("the initial map is no start at {}: {reason}", .vertices.named("vertex"))]
+    InitialSphere {
+        /// The vertices at fault.
+        vertices: Elements,
+        /// What is wrong with them.
+        reason: &'static str,
+    },
+
     /// A linear system could not be factored.
     #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
     FactorizationFailed {
@@ -308,6 +346,8 @@ impl Error {
             | Self::NonManifoldVertices { vertices }
             | Self::UnreferencedVertices { vertices }
             | Self::SeveralBoundaries { vertices, .. }
+            | Self::OpenSurface { vertices, .. }
+            | Self::InitialSphere { vertices, .. }
             | Self::MapNonFinite { vertices, .. }
             | Self::InitialBoundary { vertices, .. } => Some(vertices),
             Self::IndexOutOfRange { faces, .. }

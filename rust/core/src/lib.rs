@@ -27,8 +27,12 @@ pub mod mesh;
 pub mod optimize;
 mod parallel;
 pub mod sparse;
+mod sphere;
 
 pub use control::{History, Observer, Record, Silent, Status};
 pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};
-pub use distortion::{Distortion, Image, distortion, folded_in_plane, normalized_density};
+pub use distortion::{
+    Distortion, Image, distortion, folded_in_plane, folded_on_sphere, normalized_density,
+};
 pub use error::{Elements, Error};
+pub use sphere::{SphereMap, SphereMapOptions, SphereMethod, sphere_map};

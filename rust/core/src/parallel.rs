@@ -54,7 +54,7 @@ pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync + S
 }
 
 /// Replaces every `out[i]` by `value(i, out[i])`.
-pub(crate) fn fill_with_old(out: &mut [f64], value: impl Fn(usize, f64) -> f64 + Sync + Send) {
+pub(crate) fn fill_with_old<T: Copy + Send>(out: &mut [T], value: impl Fn(usize, T) -> T + Sync + Send) {
     for_each_chunk(out, CHUNK, |first, part| {
         part.iter_mut().enumerate().for_each(|(k, element)| *element = value(first + k, *element));
     });

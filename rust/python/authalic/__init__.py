@@ -14,10 +14,13 @@ from ._native import (
     MeshError,
     Patch,
     SolverError,
+    SphereMap,
     __version__,
     cut,
     disk_map,
     distortion,
+    sphere_map,
+    stretch_hessian,
 )
 
 __all__ = [
@@ -26,8 +29,11 @@ __all__ = [
     "MeshError",
     "Patch",
     "SolverError",
+    "SphereMap",
     "__version__",
     "cut",
     "disk_map",
     "distortion",
+    "sphere_map",
+    "stretch_hessian",
 ]

@@ -13,10 +13,13 @@ __all__ = [
     "MeshError",
     "Patch",
     "SolverError",
+    "SphereMap",
     "__version__",
     "cut",
     "disk_map",
     "distortion",
+    "sphere_map",
+    "stretch_hessian",
 ]
 
 _Reals: TypeAlias = NDArray[np.float64]
@@ -95,6 +98,23 @@ class DiskMap:
     @property
     def seconds(self) -> float: ...
 
+@final
+class SphereMap:
+    @property
+    def positions(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def status(self) -> _Status: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def history(self) -> NDArray[np.void]: ...
+    @property
+    def distortion(self) -> Distortion: ...
+    @property
+    def seconds(self) -> float: ...
+
 def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
 def distortion(
     vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
@@ -113,3 +133,20 @@ def disk_map(
     fill_holes: bool = False,
     progress: _Progress | None = None,
 ) -> DiskMap: ...
+def sphere_map(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    *,
+    method: Literal["gradient_descent", "fixed_point"] = "gradient_descent",
+    line_search: Literal["interpolation", "bounded"] = "interpolation",
+    density: ArrayLike | None = None,
+    angle_weight: float = 0.0,
+    initial: ArrayLike | None = None,
+    max_iterations: int | None = None,
+    tolerance: float | None = None,
+    unfold: bool = True,
+    progress: _Progress | None = None,
+) -> SphereMap: ...
+def stretch_hessian(
+    vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
+) -> tuple[_Reals, _Indices, _Indices]: ...

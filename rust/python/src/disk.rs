@@ -2,14 +2,14 @@
 //! Bindings of `authalic::disk_map`.
 
 use authalic::mesh::TriangleMesh;
-use authalic::{Boundary, DiskMapOptions, Method, Record};
-use numpy::{PyArray1, PyArray2};
+use authalic::{Boundary, DiskMapOptions, Method};
+use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
-use pyo3::intern;
 use pyo3::prelude::*;
 
 use crate::arrays::{from_indices, from_points, indices, points, values};
 use crate::distortion::Distortion;
+use crate::options::{check_angle_weight, history, parse_iterations};
 use crate::run::run;
 
 /// A one-to-one map of a disk to the unit disk.
@@ -170,37 +170,4 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
             "boundary must be \"sliding\" or \"arc_length\", but is {other:?}"
         ))),
     }
-}
-
-fn check_angle_weight(angle_weight: f64) -> PyResult<()> {
-    match angle_weight == 0.0 {
-        true => Ok(()),
-        false => Err(PyValueError::new_err(format!(
-            "angle_weight must be 0 for the methods \"conjugate_gradient\" and \"fixed_point\", but is {angle_weight}"
-        ))),
-    }
-}
-
-fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
-    usize::try_from(max_iterations)
-        .map_err(|_| PyValueError::new_err(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
-}
-
-/// The history as a numpy structured array.
-pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
-    let fields = ["iteration", "authalic_energy", "step", "gradient_norm", "seconds"];
-    let dtype: Vec<(&str, &str)> =
-        fields.iter().map(|&name| (name, if name == "iteration" { "i8" } else { "f8" })).collect();
-    let array =
-        py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (records.len(), dtype))?;
-    array.set_item(
-        "iteration",
-        PyArray1::from_iter(py, records.iter().map(|record| record.iteration as i64)),
-    )?;
-    let column = |pick: fn(&Record) -> f64| PyArray1::from_iter(py, records.iter().map(pick));
-    array.set_item("authalic_energy", column(|record| record.authalic_energy))?;
-    array.set_item("step", column(|record| record.step))?;
-    array.set_item("gradient_norm", column(|record| record.gradient_norm))?;
-    array.set_item("seconds", column(|record| record.seconds))?;
-    Ok(array.unbind())
 }

@@ -6,8 +6,11 @@ mod arrays;
 mod disk;
 mod distortion;
 mod errors;
+mod hessian;
 mod mesh;
+mod options;
 mod run;
+mod sphere;
 
 use pyo3::prelude::*;
 
@@ -19,7 +22,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mesh::Patch>()?;
     module.add_class::<distortion::Distortion>()?;
     module.add_class::<disk::DiskMap>()?;
+    module.add_class::<sphere::SphereMap>()?;
     module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
-    module.add_function(wrap_pyfunction!(disk::disk_map, module)?)
+    module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
+    module.add_function(wrap_pyfunction!(sphere::sphere_map, module)?)?;
+    module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)
 }

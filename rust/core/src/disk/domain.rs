@@ -178,7 +178,7 @@ impl Domain for DiskDomain<'_> {
         (energies, reduced)
     }
 
-    fn precondition(&self, gradient: &[f64]) -> Vec<f64> {
+    fn precondition(&self, _map: &Map, gradient: &[f64]) -> Vec<f64> {
         let mut h = gradient.to_vec();
         let (plane, angles) = h.split_at_mut(2 * self.free().len());
         self.interior.factor.solve(plane);

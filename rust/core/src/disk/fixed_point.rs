@@ -37,7 +37,7 @@ pub(super) fn fixed_point(
         if domain.set_preconditioner(&map).is_err() {
             return (best.1, Status::Stalled);
         }
-        let correction = domain.precondition(&gradient);
+        let correction = domain.precondition(&map, &gradient);
         let norm = parallel::dot(&gradient, &correction).max(0.0).sqrt();
         match done {
             0 => history.push_start(energies.authalic_energy, norm),

@@ -81,9 +81,10 @@ pub struct StretchEnergy<'a> {
 pub struct Value {
     /// E_A of the map, targets rescaled to its area.
     pub authalic_energy: f64,
-    /// Signed area A of the image.
+    /// Area A of the image, signed in the plane.
     pub area: f64,
-    /// Σ |τ| ψ(ρ)·π/A, what the optimisers minimise: E_A·π/A for the papers' profile.
+    /// What the optimisers minimise: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
+    /// Σ |τ| ψ(ρ) + A, which is their normalised energy E_A + A.
     pub objective: f64,
 }
 

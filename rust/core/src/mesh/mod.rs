@@ -166,25 +166,45 @@ impl TriangleMesh {
     /// # Errors
     /// Several components, a closed surface, handles, or several boundary loops; each with its own message.
     pub fn require_disk(&self) -> Result<(), Error> {
-        let Topology { boundary_loops, first_faces, .. } = &self.topology;
-        let genus = self.genus();
-        if first_faces.len() > 1 {
-            let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
-            return validate::refuse(faces, |faces| Error::SeveralComponents { faces });
-        }
-        match (boundary_loops.len(), genus) {
+        self.require_one_component()?;
+        let (loops, genus) = (&self.topology.boundary_loops, self.genus());
+        match (loops.len(), genus) {
             (0, _) => Err(Error::ClosedSurface { genus }),
             (1, 0) => Ok(()),
-            (_, 0) => several_boundaries(boundary_loops),
+            (_, 0) => {
+                let (vertices, sizes) = described(loops);
+                validate::refuse(vertices, |vertices| Error::SeveralBoundaries { vertices, sizes })
+            }
             _ => Err(Error::HasHandles { genus }),
         }
     }
+
+    /// Refuses anything but a topological sphere.
+    ///
+    /// # Errors
+    /// Several components, boundaries, or handles; each with its own message.
+    pub fn require_sphere(&self) -> Result<(), Error> {
+        self.require_one_component()?;
+        let (vertices, sizes) = described(&self.topology.boundary_loops);
+        validate::refuse(vertices, |vertices| Error::OpenSurface { vertices, sizes })?;
+        match self.genus() {
+            0 => Ok(()),
+            genus => Err(Error::SphereHasHandles { genus }),
+        }
+    }
+
+    fn require_one_component(&self) -> Result<(), Error> {
+        let first_faces = &self.topology.first_faces;
+        let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
+        let several = faces.filter(|_| first_faces.len() > 1);
+        validate::refuse(several, |faces| Error::SeveralComponents { faces })
+    }
 }
 
-fn several_boundaries(loops: &[Vec<u32>]) -> Result<(), Error> {
-    let sizes = loops.iter().map(Vec::len).collect();
+/// A vertex of each loop, and the edge counts of the loops.
+fn described(loops: &[Vec<u32>]) -> (Option<Elements>, Vec<usize>) {
     let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0] as usize));
-    validate::refuse(vertices, |vertices| Error::SeveralBoundaries { vertices, sizes })
+    (vertices, loops.iter().map(Vec::len).collect())
 }
 
 fn flipped_indices(orientation: &Orientation) -> Vec<u32> {

@@ -2,6 +2,9 @@
 //! Optimisers over maps. They know a map only through its [`Domain`], so the disk and every later domain
 //! share them.
 
+mod bounded;
+pub mod gradient_descent;
+mod interpolation;
 pub mod line_search;
 pub mod nonlinear_cg;
 
@@ -55,8 +58,9 @@ pub struct Energies {
 
 /// A space of maps with an energy: what an optimiser needs to know of it.
 ///
-/// Directions, gradients and preconditioned gradients are vectors in reduced coordinates (one number per
-/// degree of freedom), in which the domain's retraction starts as a straight line.
+/// Directions, gradients and preconditioned gradients are vectors in coordinates of the domain, in which its
+/// retraction starts as a straight line: one number per degree of freedom on the disk, three per vertex,
+/// tangent to the sphere, on the sphere.
 pub trait Domain {
     /// A map.
     type Map: Clone;
@@ -67,8 +71,8 @@ pub trait Domain {
     /// The energies at `map` and the gradient of the objective in reduced coordinates.
     fn gradient(&self, map: &Self::Map) -> (Energies, Vec<f64>);
 
-    /// M⁻¹ `gradient`, M symmetric positive definite.
-    fn precondition(&self, gradient: &[f64]) -> Vec<f64>;
+    /// M⁻¹ `gradient` at `map`, M symmetric positive definite.
+    fn precondition(&self, map: &Self::Map, gradient: &[f64]) -> Vec<f64>;
 
     /// The map reached from `map` along `direction` after `step`.
     fn retract(&self, map: &Self::Map, direction: &[f64], step: f64) -> Self::Map;

@@ -41,7 +41,7 @@ pub fn minimize<D: Domain>(
     // 1. Gradient g, preconditioned gradient h = M⁻¹g, direction p = −h
     let (energies, gradient) = domain.gradient(&start);
     let mut state = State { map: start, energies, gradient };
-    let mut h = domain.precondition(&state.gradient);
+    let mut h = domain.precondition(&state.map, &state.gradient);
     let mut norm2 = parallel::dot(&state.gradient, &h);
     let mut direction = descent(&h);
     let mut step = 1.0;
@@ -62,7 +62,7 @@ pub fn minimize<D: Domain>(
         };
         (step, state) = (trial.step, trial.data.expect("an accepted trial has its state"));
         // 3. Fletcher–Reeves in the metric of M⁻¹: β = hᵀg / λ
-        h = domain.precondition(&state.gradient);
+        h = domain.precondition(&state.map, &state.gradient);
         let last_norm2 = std::mem::replace(&mut norm2, parallel::dot(&state.gradient, &h));
         let beta = norm2 / last_norm2;
         parallel::fill_with_old(&mut direction, |i, p| beta * p - h[i]);

@@ -15,7 +15,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Conj, Mat, MatMut, Par, Side, Spec};
 use sprs::CsMat;
 
 use crate::Error;
@@ -219,6 +219,17 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     match rhs.iter().all(|x| x.is_finite()) {
         true => Ok(()),
         false => Err(failed(format!("LU of {n} unknowns: the matrix is singular"))),
+    }
+}
+
+/// A unit eigenvector of the largest eigenvalue of a symmetric matrix given by rows; a unit vector where the
+/// matrix has none that is finite.
+pub(crate) fn top_eigenvector<const N: usize>(symmetric: &[[f64; N]; N]) -> [f64; N] {
+    let matrix = Mat::from_fn(N, N, |i, j| symmetric[i][j]);
+    match matrix.self_adjoint_eigen(Side::Lower) {
+        // ascending eigenvalues
+        Ok(eigen) => std::array::from_fn(|i| eigen.U()[(i, N - 1)]),
+        Err(_) => std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 }),
     }
 }
 

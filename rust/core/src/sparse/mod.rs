@@ -4,5 +4,6 @@
 mod factor;
 mod laplacian;
 
+pub(crate) use factor::top_eigenvector;
 pub use factor::{Cholesky, solve_general};
 pub use laplacian::Laplacian;

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Maps onto the unit sphere as a [`Domain`]: the power manifold (S²)ⁿ.
+//!
+//! Sutti & Yueh (2024), sections 4 and 5: directions are tangent, (x, y, z) of vertex 0, then of vertex 1,
+//! and so on; the Riemannian gradient is the Euclidean one projected to the tangent planes (5.1), and the
+//! retraction normalises f + ξ row by row (4.3). The paper's descent has no preconditioner; the guarded one
+//! has I₃ ⊗ L_S(f⁰), projected to the tangent planes.
+
+use super::Map;
+use crate::energy::SpatialStretchEnergy;
+use crate::energy::stretch::{Profile, Value};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, cross, dot, norm, scaled, sub, triangle};
+use crate::optimize::{Domain, Energies};
+use crate::parallel;
+use crate::sparse::{Cholesky, Laplacian};
+
+/// Part of the mean diagonal that is added to L_S(f⁰), which takes constants to zero.
+const SHIFT: f64 = 1e-6;
+
+/// Maps of one mesh onto the unit sphere.
+#[derive(Debug)]
+pub(super) struct SphereDomain<'a> {
+    mesh: &'a TriangleMesh,
+    energy: SpatialStretchEnergy<'a>,
+    /// Only in a guarded descent.
+    preconditioner: Option<(Laplacian, Cholesky)>,
+    /// Maps with a folded face have an infinite objective.
+    guarded: bool,
+}
+
+impl<'a> SphereDomain<'a> {
+    pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
+        let energy = SpatialStretchEnergy::new(mesh, targets);
+        Self { mesh, energy, preconditioner: None, guarded: false }
+    }
+
+    pub(super) fn mesh(&self) -> &'a TriangleMesh {
+        self.mesh
+    }
+
+    pub(super) fn energy(&self) -> &SpatialStretchEnergy<'a> {
+        &self.energy
+    }
+
+    /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.
+    pub(super) fn guard(&mut self) {
+        self.guarded = true;
+        self.energy = self.energy.with_profile(Profile::Barrier);
+    }
+
+    /// Sets M = 2 I₃ ⊗ L_S(f) at f = `map`, made definite by a small shift.
+    ///
+    /// # Errors
+    /// [`Error::FactorizationFailed`] where the weights are too far apart.
+    pub(super) fn set_preconditioner(&mut self, map: &[Vector]) -> Result<(), Error> {
+        let mut weights = self.energy.laplacian_weights(map);
+        parallel::fill_with_old(&mut weights, |_, weight| 2.0 * weight);
+        let (mut laplacian, mut factor) = match self.preconditioner.take() {
+            Some(block) => block,
+            None => {
+                let laplacian = Laplacian::new(self.mesh, |_| true);
+                let factor = Cholesky::analyse(laplacian.matrix())?;
+                (laplacian, factor)
+            }
+        };
+        laplacian.assemble(self.mesh, &weights);
+        laplacian.shift_diagonal(SHIFT);
+        factor.refactor(laplacian.matrix())?;
+        self.preconditioner = Some((laplacian, factor));
+        Ok(())
+    }
+
+    fn full_objective(&self, map: &[Vector], value: Value) -> f64 {
+        match self.guarded && !clearly_unfolded(self.mesh, map) {
+            true => f64::INFINITY,
+            false => value.objective,
+        }
+    }
+}
+
+impl Domain for SphereDomain<'_> {
+    type Map = Map;
+
+    fn objective(&self, map: &Map) -> f64 {
+        self.full_objective(map, self.energy.value(map))
+    }
+
+    fn gradient(&self, map: &Map) -> (Energies, Vec<f64>) {
+        let (value, mut gradient) = self.energy.gradient(map);
+        parallel::fill_with_old(&mut gradient, |vertex, g| tangent(map[vertex], g));
+        let energies =
+            Energies { objective: self.full_objective(map, value), authalic_energy: value.authalic_energy };
+        (energies, gradient.into_flattened())
+    }
+
+    fn precondition(&self, map: &Map, gradient: &[f64]) -> Vec<f64> {
+        let Some((_, factor)) = &self.preconditioner else {
+            return gradient.to_vec();
+        };
+        let n = map.len();
+        let mut columns = parallel::map(3 * n, |i| gradient[3 * (i % n) + i / n]);
+        factor.solve(&mut columns);
+        let column = |v: usize| std::array::from_fn(|axis| columns[axis * n + v]);
+        parallel::map(n, |vertex| tangent(map[vertex], column(vertex))).into_flattened()
+    }
+
+    fn retract(&self, map: &Map, direction: &[f64], step: f64) -> Map {
+        parallel::map(map.len(), |vertex| {
+            let moved: Vector =
+                std::array::from_fn(|axis| map[vertex][axis] + step * direction[3 * vertex + axis]);
+            scaled(moved, 1.0 / norm(moved))
+        })
+    }
+}
+
+/// The projection (4.1) of `z` to the tangent plane at `x`.
+fn tangent(x: Vector, z: Vector) -> Vector {
+    sub(z, scaled(x, dot(x, z)))
+}
+
+/// Whether every face is positive around the origin by more than its rounding error; never true for a folded
+/// face.
+fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector]) -> bool {
+    parallel::all(mesh.n_faces(), |face| {
+        let [a, b, c] = triangle(map, mesh.faces()[face]);
+        let (p, q) = (sub(b, a), sub(c, a));
+        let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+        let size = a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1);
+        // rounding of the differences, of the products and of their sum, generously
+        dot(a, cross(p, q)) > 2e-15 * size
+    })
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The fixed-point iteration of stretch energy minimisation on the sphere.
+//!
+//! Yueh, Lin, Lin & Yau (2019) as restated by Sutti & Yueh (2024), Algorithm 2: hemisphere by hemisphere, in
+//! the stereographic chart of the one whose turn it is, the vertices |h_i| < r solve
+//!
+//! ```text
+//! [L_S(f)]_II h_I = −[L_S(f)]_IB h_B,
+//! ```
+//!
+//! and the whole chart is divided by the median modulus. The iteration ends when E_S falls by no more than ε.
+//!
+//! Two things differ from the paper. Its inversions mirror the map each time; here the chart changes, which
+//! is the same and keeps the orientation. And its median counts vertices, which on a mesh with more vertices
+//! on one hemisphere pushes area across the equator after every step; here it counts target area, which an
+//! area-preserving map does halve. On meshes of even density the two agree.
+//!
+//! Cost of one iteration: one Cholesky analysis and factorisation of about 0.6 n vertices.
+
+use std::f64::consts::PI;
+
+use super::Map;
+use super::domain::SphereDomain;
+use super::stereographic::{Chart, weighted_median};
+use crate::control::{History, Observer, Status};
+use crate::error::Error;
+use crate::optimize::Domain;
+use crate::parallel;
+use crate::sparse::{Cholesky, Laplacian};
+
+/// r of the algorithm: modulus up to which a chart's vertices are solved for.
+const RADIUS: f64 = 1.2;
+
+/// When the iteration ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FixedPointStopping {
+    /// Iterations at the most.
+    pub max_iterations: usize,
+    /// ε: ends when E_S, targets rescaled to 4π, falls by no more than this; −∞ goes on whatever happens, and the
+    /// last map is returned instead of the best.
+    pub tolerance: f64,
+}
+
+/// Iterates from `start`; `weights` are the vertices' shares of the target area.
+pub(super) fn fixed_point(
+    domain: &SphereDomain<'_>,
+    weights: &[f64],
+    start: Map,
+    stopping: &FixedPointStopping,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Map, Status) {
+    let stretch = |map: &Map| domain.energy().stretch_energy(map, 4.0 * PI);
+    let (mut map, mut chart) = (start, Chart::North);
+    let mut energy = stretch(&map);
+    record(domain, &map, history, true);
+    for done in 0.. {
+        // 1. Enough?
+        if done >= stopping.max_iterations {
+            return (map, Status::MaxIterations);
+        }
+        if !observer.progress(done as f64 / stopping.max_iterations as f64, "Fixed-point iteration") {
+            return (map, Status::Cancelled);
+        }
+        // 2. The other hemisphere's chart, solved and rescaled
+        chart = chart.inverted();
+        let Ok(moved) = iterate(domain, weights, &map, chart) else {
+            return (map, Status::Stalled);
+        };
+        // 3. δ = E_S(g) − E_S(f)
+        let delta = energy - stretch(&moved);
+        if stopping.tolerance > f64::NEG_INFINITY && (delta <= 0.0 || delta.is_nan()) {
+            return (map, Status::Converged);
+        }
+        (map, energy) = (moved, energy - delta);
+        record(domain, &map, history, false);
+        if delta <= stopping.tolerance {
+            return (map, Status::Converged);
+        }
+    }
+    unreachable!("the stopping rule ends the loop")
+}
+
+/// One step of the iteration in one chart.
+fn iterate(domain: &SphereDomain<'_>, weights: &[f64], map: &Map, chart: Chart) -> Result<Map, Error> {
+    let (mesh, by_corner) = (domain.mesh(), domain.energy().laplacian_weights(map));
+    let mut plane = chart.project_all(map);
+    let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
+    // 1. Solve for the vertices inside
+    let mut laplacian = Laplacian::new(mesh, |vertex| modulus(plane[vertex]) < RADIUS);
+    laplacian.assemble(mesh, &by_corner);
+    let mut factor = Cholesky::analyse(laplacian.matrix())?;
+    factor.refactor(laplacian.matrix())?;
+    let mut correction = laplacian.residual(mesh, &by_corner, &plane);
+    factor.solve(&mut correction);
+    let n = laplacian.free().len();
+    for (i, &vertex) in laplacian.free().iter().enumerate() {
+        plane[vertex as usize][0] -= correction[i];
+        plane[vertex as usize][1] -= correction[n + i];
+    }
+    // 2. Divide by the median modulus
+    let scale = weighted_median(&parallel::map(plane.len(), |v| modulus(plane[v])), weights);
+    parallel::fill_with_old(&mut plane, |_, z| [z[0] / scale, z[1] / scale]);
+    // 3. Back to the sphere; a vertex at the pole itself stays there
+    let lifted = chart.lift_all(&plane);
+    Ok(parallel::map(map.len(), |v| if lifted[v].iter().all(|x| x.is_finite()) { lifted[v] } else { map[v] }))
+}
+
+fn record(domain: &SphereDomain<'_>, map: &Map, history: &mut History, is_start: bool) {
+    let (energies, gradient) = domain.gradient(map);
+    let norm = parallel::dot(&gradient, &gradient).sqrt();
+    match is_start {
+        true => history.push_start(energies.authalic_energy, norm),
+        false => history.push(energies.authalic_energy, 1.0, norm),
+    }
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Start maps onto the sphere: conformal by Laplacian linearisation, and Tutte's.
+//!
+//! Angenent, Haker, Tannenbaum & Kikinis (1999), as used by Sutti & Yueh (2024), section 6.3: one face is
+//! removed, its corners are held at a triangle in the plane, all others are harmonic, and the inverse
+//! stereographic projection takes the plane to the sphere. Such a map is unique up to a Möbius
+//! transformation, and the raw one puts nearly all of the surface next to one point: the one taken here has
+//! the centroid of the surface's measure at the sphere's centre.
+//!
+//! With uniform weights in place of the cotangents the plane map is Tutte's embedding, which is taken where
+//! the conformal one folds.
+//!
+//! Cost: one sparse Cholesky factorisation of all vertices but three.
+
+use super::stereographic::{Chart, weighted_median};
+use super::{Map, unfold};
+use crate::distortion::folded_on_sphere;
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{
+    Vector, add, corner_cotangents, cross, distance, dot, norm, scaled, sub, triangle,
+};
+use crate::parallel;
+use crate::sparse::{Cholesky, Laplacian};
+
+/// Newton steps of the centring; three or four are the rule.
+const CENTRING_STEPS: usize = 50;
+
+/// The centroid is at the centre when it is nearer than this.
+const CENTRED: f64 = 1e-9;
+
+/// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
+/// Tutte's.
+///
+/// # Errors
+/// [`Error::NoEmbedding`] where both fold in double precision.
+pub(super) fn start(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
+    // 1. The conformal map
+    let conformal = conformal(mesh, weights);
+    if let Ok(Some(map)) = conformal.map(|map| unfold::unfold(mesh, &map)) {
+        return Ok(map);
+    }
+    // 2. Tutte's, where that folds beyond mending
+    let tutte = tutte(mesh, weights)?;
+    unfold::unfold(mesh, &tutte).ok_or_else(|| {
+        let folded = Elements::collect(folded_on_sphere(mesh.faces(), &tutte));
+        Error::NoEmbedding { folded: folded.expect("what cannot be unfolded is folded") }
+    })
+}
+
+/// The spherical conformal map, centred; it may fold where cotangents are negative.
+///
+/// # Errors
+/// [`Error::FactorizationFailed`] where slivers make the cotangents too large.
+pub(super) fn conformal(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
+    let by_face = corner_cotangents(mesh.points(), mesh.faces());
+    let cotangents: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
+    from_plane(mesh, weights, &cotangents)
+}
+
+/// Tutte's map lifted to the sphere, centred.
+///
+/// # Errors
+/// [`Error::FactorizationFailed`], for want of memory only.
+pub(super) fn tutte(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
+    from_plane(mesh, weights, &vec![0.5; 3 * mesh.n_faces()])
+}
+
+/// The harmonic map to the plane for one weight per corner, lifted and centred.
+fn from_plane(mesh: &TriangleMesh, weights: &[f64], by_corner: &[f64]) -> Result<Map, Error> {
+    let removed = roundest_face(mesh);
+    let mut plane = harmonic(mesh, removed, by_corner)?;
+    normalise(&mut plane, weights);
+    Ok(centred(Chart::South.lift_all(&plane), weights))
+}
+
+/// The face nearest to an equilateral triangle; the lowest of several.
+fn roundest_face(mesh: &TriangleMesh) -> usize {
+    let roundness = |face: usize| {
+        let [a, b, c] = triangle(mesh.points(), mesh.faces()[face]);
+        let squares = [sub(b, a), sub(c, b), sub(a, c)].map(|edge| dot(edge, edge));
+        mesh.face_areas()[face] / squares.iter().sum::<f64>()
+    };
+    let values = parallel::map(mesh.n_faces(), roundness);
+    // max_by takes the last of equals, so from the back
+    (0..values.len()).rev().max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("a mesh has faces")
+}
+
+/// Solves L_II h_I = −L_IB h_B with the corners of the removed face held.
+///
+/// The held triangle has that face's shape and is run through clockwise, so that all other faces run
+/// counter-clockwise inside it.
+fn harmonic(mesh: &TriangleMesh, removed: usize, by_corner: &[f64]) -> Result<Vec<[f64; 2]>, Error> {
+    let held = mesh.faces()[removed];
+    let mut plane = vec![[0.0; 2]; mesh.n_vertices()];
+    for (vertex, place) in held.into_iter().zip(mirrored_triangle(triangle(mesh.points(), held))) {
+        plane[vertex as usize] = place;
+    }
+    let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&(vertex as u32)));
+    laplacian.assemble(mesh, by_corner);
+    let mut factor = Cholesky::analyse(laplacian.matrix())?;
+    factor.refactor(laplacian.matrix())?;
+    let mut correction = laplacian.residual(mesh, by_corner, &plane);
+    factor.solve(&mut correction);
+    let n = laplacian.free().len();
+    for (i, &vertex) in laplacian.free().iter().enumerate() {
+        plane[vertex as usize][0] -= correction[i];
+        plane[vertex as usize][1] -= correction[n + i];
+    }
+    Ok(plane)
+}
+
+/// A triangle of space laid into the plane clockwise, its centroid at the origin, of size 1.
+fn mirrored_triangle([a, b, c]: [Vector; 3]) -> [[f64; 2]; 3] {
+    let length = distance(a, b);
+    let along = scaled(sub(b, a), 1.0 / length);
+    let corners = [[0.0, 0.0], [length, 0.0], [dot(sub(c, a), along), -norm(cross(along, sub(c, a)))]];
+    let centroid = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
+    corners.map(|corner| [0, 1].map(|axis| (corner[axis] - centroid[axis]) / length))
+}
+
+/// Moves the median of the measure to the origin and scales its median modulus to 1.
+fn normalise(plane: &mut [[f64; 2]], weights: &[f64]) {
+    let medians = [0, 1].map(|axis| {
+        let values: Vec<f64> = plane.iter().map(|z| z[axis]).collect();
+        weighted_median(&values, weights)
+    });
+    plane.iter_mut().for_each(|z| *z = [z[0] - medians[0], z[1] - medians[1]]);
+    let moduli: Vec<f64> = plane.iter().map(|z| z[0].hypot(z[1])).collect();
+    let scale = weighted_median(&moduli, weights);
+    if scale > 0.0 {
+        plane.iter_mut().for_each(|z| *z = [z[0] / scale, z[1] / scale]);
+    }
+}
+
+/// Moves the centroid of the measure to the centre by Möbius transformations of the sphere.
+///
+/// Newton's method: the boost towards −b moves x by −(b − (b·x) x) to first order, so the b that brings the
+/// centroid c to the centre solves (I − Σ w x xᵀ) b = c.
+fn centred(mut map: Map, weights: &[f64]) -> Map {
+    let total: f64 = weights.iter().sum();
+    for _ in 0..CENTRING_STEPS {
+        let moment = |value: &(dyn Fn(Vector) -> f64 + Sync)| {
+            parallel::sum(map.len(), |v| weights[v] / total * value(map[v]))
+        };
+        let centroid: Vector = std::array::from_fn(|axis| moment(&|x| x[axis]));
+        if norm(centroid) < CENTRED {
+            break;
+        }
+        let jacobian: [Vector; 3] = std::array::from_fn(|row| {
+            std::array::from_fn(|column| f64::from(u8::from(row == column)) - moment(&|x| x[row] * x[column]))
+        });
+        let Some(shift) = solve_three(jacobian, centroid) else { break };
+        // a full step of more than half the radius is shortened: the ball ends at 1
+        let shift = scaled(shift, 0.5 * (1.0f64).min(0.9 / norm(shift)));
+        map = parallel::map(map.len(), |v| boosted(map[v], shift));
+    }
+    map
+}
+
+/// The Möbius transformation of the unit ball that takes `a` to the centre, at a point of the sphere.
+fn boosted(x: Vector, a: Vector) -> Vector {
+    let offset = sub(x, a);
+    let moved = sub(scaled(offset, (1.0 - dot(a, a)) / dot(offset, offset)), a);
+    scaled(moved, 1.0 / norm(moved))
+}
+
+/// Cramer's rule; `None` where the three rows lie in a plane.
+fn solve_three([a, b, c]: [Vector; 3], rhs: Vector) -> Option<Vector> {
+    let determinant = dot(a, cross(b, c));
+    let sum = add(
+        add(scaled(cross(b, c), rhs[0]), scaled(cross(c, a), rhs[1])),
+        scaled(cross(a, b), rhs[2]),
+    );
+    let solution = scaled(sum, 1.0 / determinant);
+    solution.iter().all(|x| x.is_finite()).then_some(solution)
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Unfolds the few folded faces that an unguarded method leaves on the sphere.
+//!
+//! The bijectivity correction of Sutti & Yueh (2024), section 6.2, see [`mean_value`]: in the chart of either
+//! hemisphere the vertices |h_i| < r are replaced by mean-value combinations of their one-rings. The
+//! correction moves only what is folded, so only the vertices within a few rings of the folded faces are
+//! freed, more where that does not suffice, up to the whole hemisphere as in the paper.
+//!
+//! Cost: one sparse LU of the freed vertices per attempt and hemisphere.
+
+use super::Map;
+use super::stereographic::Chart;
+use crate::distortion::folded_on_sphere;
+use crate::energy::mean_value::{self, correct};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::Vector;
+
+/// Modulus up to which a chart's vertices may be freed, a little beyond its hemisphere; the paper's r.
+const RADIUS: f64 = 1.2;
+
+/// Passes over both hemispheres with the same rings, each with the weights of the map before it.
+const PASSES: usize = 3;
+
+/// Rings at the most: by then everything is free on any surface that is not a thread.
+const MOST_RINGS: usize = 4096;
+
+/// Returns `map` with its folded faces unfolded, or `None` where even whole hemispheres do not suffice.
+pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector]) -> Option<Map> {
+    let mut map = map.to_vec();
+    let mut folded = folded_on_sphere(mesh.faces(), &map);
+    let mut rings = 2;
+    while !folded.is_empty() && rings <= MOST_RINGS {
+        for _ in 0..PASSES {
+            // 1. Both hemispheres, freed around what is folded
+            let mut mended = map.clone();
+            for chart in [Chart::North, Chart::South] {
+                mend(mesh, &mut mended, chart, rings);
+            }
+            // 2. Keep what has become better
+            let left = folded_on_sphere(mesh.faces(), &mended);
+            if left.len() >= folded.len() {
+                break;
+            }
+            (map, folded) = (mended, left);
+            if folded.is_empty() {
+                return Some(map);
+            }
+        }
+        // 3. Once more with twice the rings
+        rings *= 2;
+    }
+    folded.is_empty().then_some(map)
+}
+
+/// One correction in one chart; leaves the map as it is where the system is singular.
+fn mend(mesh: &TriangleMesh, map: &mut Map, chart: Chart, rings: usize) {
+    let folded = folded_on_sphere(mesh.faces(), map);
+    let mut plane = chart.project_all(map);
+    let modulus = |vertex: usize| plane[vertex][0].hypot(plane[vertex][1]);
+    let free = mean_value::free_within(mesh, &folded, rings, |vertex| modulus(vertex) < RADIUS);
+    if free.is_empty() || correct(mesh, &mut plane, &free).is_none() {
+        return;
+    }
+    for vertex in free {
+        map[vertex as usize] = chart.lift(plane[vertex as usize]);
+    }
+}

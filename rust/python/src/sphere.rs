@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::sphere_map`.
+
+use authalic::mesh::TriangleMesh;
+use authalic::optimize::gradient_descent::LineSearch;
+use authalic::{SphereMapOptions, SphereMethod};
+use numpy::PyArray2;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{from_indices, from_points, indices, points, values};
+use crate::distortion::Distortion;
+use crate::options::{check_angle_weight, history, parse_iterations};
+use crate::run::run;
+
+/// A one-to-one map of a closed surface to the unit sphere.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct SphereMap {
+    /// (n, 3) float64: the image of each vertex, unit rows; faces are seen counter-clockwise from outside.
+    positions: Py<PyArray2<f64>>,
+    /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
+    faces: Py<PyArray2<i64>>,
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says.
+    status: &'static str,
+    /// Iterations done, fixed-point steps included.
+    iterations: usize,
+    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start
+    /// first.
+    history: Py<PyAny>,
+    /// The figures of the map.
+    distortion: Py<Distortion>,
+    /// Wall time of the call.
+    seconds: f64,
+}
+
+impl SphereMap {
+    fn new(py: Python<'_>, map: &authalic::SphereMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+        Ok(Self {
+            positions: from_points(py, &map.positions),
+            faces: from_indices(py, faces),
+            status: map.status.as_str(),
+            iterations: map.history.iterations(),
+            history: history(py, map.history.records())?,
+            distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+            seconds: map.seconds,
+        })
+    }
+}
+
+#[pymethods]
+impl SphereMap {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "SphereMap({} vertices, {} after {} iterations, {:.2} s, {})",
+            self.positions.bind(py).len()?,
+            self.status,
+            self.iterations,
+            self.seconds,
+            self.distortion.bind(py).repr()?,
+        ))
+    }
+}
+
+/// Maps a closed surface of genus 0 onto the unit sphere so that areas are kept.
+///
+/// The papers' methods (Sutti & Yueh 2024): a spherical conformal start, the fixed-point iteration of the
+/// stretch energy (Algorithm 2) and, by default, Riemannian gradient descent after it (Algorithm 1). Folds
+/// that they leave are unfolded: the result has none, decided by exact predicates.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     Positions, any unit.
+/// faces : (m, 3) integer array
+///     Triangles of a connected orientable manifold without boundary and without handles.
+/// method : {"gradient_descent", "fixed_point"}
+///     The optimiser.
+/// line_search : {"interpolation", "bounded"}
+///     How gradient descent finds the length of its steps: sufficient decrease by safeguarded quadratic and
+///     cubic interpolation, or Brent's minimiser on a bounded interval, which takes longer and gives no more.
+/// density : (m,) real array, optional
+///     Positive target measure of each face, on any scale. Default: the face areas.
+/// angle_weight : float
+///     Weight of the angles against the areas; only 0 (authalic) until a method that trades them lands.
+/// initial : (n, 3) real array, optional
+///     A start map, outward oriented, no row zero; rows are normalised. Default: the spherical conformal map,
+///     and for gradient descent up to ten fixed-point steps from it.
+/// max_iterations : int, optional
+///     Default 100, as in the paper's tables. The fixed-point steps before gradient descent, and the descent
+///     that follows where folds were mended, come on top. 0 with "fixed_point" returns the start map.
+/// tolerance : float, optional
+///     Gradient descent has converged when the norm of the Riemannian gradient, gradient_norm of the history,
+///     falls below it; default 1e-8. For "fixed_point" it is the ε of Algorithm 2, which ends when the
+///     stretch energy falls by no more; default 1e-6. -inf lets it run through rises to max_iterations and
+///     returns the last map instead of the best.
+/// unfold : bool
+///     Unfold what the method folds. Default True; False shows what the method does by itself.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between iterations; False cancels and returns the best map so far.
+///
+/// Returns
+/// -------
+/// SphereMap
+///     Without `initial`, of all rotated copies the one that lies over the surface best.
+///
+/// Raises
+/// ------
+/// MeshError
+///     The input is no sphere or an array does not fit; nothing was computed.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     Every start folds in double precision.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> points = [[3, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]
+/// >>> upper, lower = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2]], [[1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+/// >>> result = authalic.sphere_map(points, upper + lower)
+/// >>> result.positions.shape, len(result.distortion.folded)
+/// ((6, 3), 0)
+#[pyfunction]
+#[pyo3(signature = (vertices, faces, *, method="gradient_descent", line_search="interpolation", density=None,
+                    angle_weight=0.0, initial=None, max_iterations=None, tolerance=None, unfold=true, progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn sphere_map(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    method: &str,
+    line_search: &str,
+    density: Option<&Bound<'_, PyAny>>,
+    angle_weight: f64,
+    initial: Option<&Bound<'_, PyAny>>,
+    max_iterations: Option<i64>,
+    tolerance: Option<f64>,
+    unfold: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<SphereMap> {
+    // 1. Arguments to plain data
+    let (method, line_search) = (parse_method(method)?, parse_line_search(line_search)?);
+    check_angle_weight(angle_weight)?;
+    let max_iterations = max_iterations.map(parse_iterations).transpose()?;
+    let vertices = points::<3>(vertices, "vertices")?;
+    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let density = density.map(|density| values(density, "density")).transpose()?;
+    let initial = initial.map(|initial| points::<3>(initial, "initial")).transpose()?;
+    // 2. The run
+    let (map, faces) = run(py, progress, move |observer| {
+        let mesh = TriangleMesh::new(&vertices, &faces)?;
+        let (density, initial) = (density.as_deref(), initial.as_deref());
+        let options =
+            SphereMapOptions { method, line_search, density, initial, max_iterations, tolerance, unfold };
+        Ok((authalic::sphere_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
+    })?;
+    // 3. The result
+    SphereMap::new(py, &map, &faces)
+}
+
+fn parse_method(method: &str) -> PyResult<SphereMethod> {
+    match method {
+        "fixed_point" => Ok(SphereMethod::FixedPoint),
+        "gradient_descent" => Ok(SphereMethod::GradientDescent),
+        other => Err(PyValueError::new_err(format!(
+            "method must be \"gradient_descent\" or \"fixed_point\", but is {other:?}"
+        ))),
+    }
+}
+
+fn parse_line_search(line_search: &str) -> PyResult<LineSearch> {
+    match line_search {
+        "interpolation" => Ok(LineSearch::Interpolation),
+        "bounded" => Ok(LineSearch::Bounded),
+        other => Err(PyValueError::new_err(format!(
+            "line_search must be \"interpolation\" or \"bounded\", but is {other:?}"
+        ))),
+    }
+}

@@ -35,7 +35,7 @@ impl Domain for Quadratic {
         (Energies { objective, authalic_energy: objective }, gradient)
     }
 
-    fn precondition(&self, gradient: &[f64]) -> Vec<f64> {
+    fn precondition(&self, _map: &Self::Map, gradient: &[f64]) -> Vec<f64> {
         let scale = |i| {
             if self.preconditioned { Self::diagonal(i) } else { 1.0 }
         };

@@ -9,7 +9,7 @@
 //! Cost: one sparse LU of the freed vertices per attempt.
 
 use super::certificate::folded;
-use crate::energy::mean_value::{self, correct};
+use crate::energy::mean_value::{self, Weights, correct};
 use crate::mesh::TriangleMesh;
 
 /// Passes with the same vertices free, each with the weights of the map before it; the first nearly always
@@ -41,7 +41,7 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Option<Vec<[f64; 
 fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[u32]) -> Option<Vec<[f64; 2]>> {
     let mut map = map.to_vec();
     for _ in 0..PASSES {
-        correct(mesh, &mut map, free)?;
+        correct(mesh, &mut map, free, Weights::MeanValue)?;
         if folded(mesh, &map).is_empty() {
             return Some(map);
         }

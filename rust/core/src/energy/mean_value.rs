@@ -11,6 +11,9 @@
 //! are positive and reproduce h_i exactly where its one-ring is unfolded (Floater 2003). Solving Σ_j ω_ij
 //! (h̃_i − h̃_j) = 0 with the rest held therefore moves only what is folded.
 //!
+//! Where a part has collapsed, its image says nothing any more and these weights are arbitrary. Weights of 1
+//! (Tutte 1963) unfold it inside a boundary that is near to convex.
+//!
 //! Cost: one sparse LU of the freed vertices per correction.
 
 use sprs::TriMat;
@@ -37,8 +40,22 @@ pub(crate) fn free_within(
     (0..mesh.n_vertices() as u32).filter(|&v| reached[v as usize] && is_free(v as usize)).collect()
 }
 
+/// The weights of a correction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weights {
+    /// (6.3b), of the image as it is.
+    MeanValue,
+    /// 1, whatever the image is.
+    Uniform,
+}
+
 /// Solves (6.2) for the free vertices of a planar `map` in place; `None` where the system is singular.
-pub(crate) fn correct(mesh: &TriangleMesh, map: &mut [[f64; 2]], free: &[u32]) -> Option<()> {
+pub(crate) fn correct(
+    mesh: &TriangleMesh,
+    map: &mut [[f64; 2]],
+    free: &[u32],
+    weights: Weights,
+) -> Option<()> {
     let n = free.len();
     let mut unknown = vec![usize::MAX; mesh.n_vertices()];
     for (i, &vertex) in free.iter().enumerate() {
@@ -47,7 +64,11 @@ pub(crate) fn correct(mesh: &TriangleMesh, map: &mut [[f64; 2]], free: &[u32]) -
     let mut matrix = TriMat::new((n, n));
     let mut rhs = vec![0.0; 2 * n];
     for (i, &vertex) in free.iter().enumerate() {
-        for (neighbour, weight) in mean_value_weights(mesh, map, vertex as usize) {
+        let one_ring = match weights {
+            Weights::MeanValue => mean_value_weights(mesh, map, vertex as usize),
+            Weights::Uniform => uniform_weights(mesh, vertex as usize),
+        };
+        for (neighbour, weight) in one_ring {
             matrix.add_triplet(i, i, weight);
             match unknown[neighbour] {
                 usize::MAX => {
@@ -63,6 +84,17 @@ pub(crate) fn correct(mesh: &TriangleMesh, map: &mut [[f64; 2]], free: &[u32]) -
         map[vertex as usize] = [rhs[i], rhs[n + i]];
     }
     Some(())
+}
+
+/// Equal weights of the one-ring of `vertex` that sum to 1; a neighbour appears once per shared face.
+fn uniform_weights(mesh: &TriangleMesh, vertex: usize) -> Vec<(usize, f64)> {
+    let corners = mesh.vertex_corners(vertex);
+    let weight = 0.5 / corners.len() as f64;
+    let others = corners.iter().flat_map(|&corner| {
+        let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
+        [1, 2].map(|step| face[(k + step) % 3] as usize)
+    });
+    others.map(|other| (other, weight)).collect()
 }
 
 /// The weights (6.3b) of the one-ring of `vertex`, scaled to sum 1; a neighbour appears once per shared face.
@@ -96,9 +128,9 @@ mod tests {
         let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
         let mesh = TriangleMesh::new(&vertices, &faces).unwrap();
         let map: Vec<[f64; 2]> = vertices.iter().map(|p| [p[0], p[1]]).collect();
-        let average = mean_value_weights(&mesh, &map, 0).iter().fold([0.0; 2], |sum, &(v, weight)| {
-            [sum[0] + weight * map[v][0], sum[1] + weight * map[v][1]]
-        });
+        let average = mean_value_weights(&mesh, &map, 0)
+            .iter()
+            .fold([0.0; 2], |sum, &(v, weight)| [sum[0] + weight * map[v][0], sum[1] + weight * map[v][1]]);
         assert!((average[0] - 0.1).hypot(average[1] - 0.2) < 1e-14);
     }
 

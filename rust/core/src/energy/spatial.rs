@@ -59,7 +59,8 @@ impl<'a> SpatialStretchEnergy<'a> {
     /// E_S with the targets rescaled to a sum of `total`, as the fixed-point iteration watches it.
     pub fn stretch_energy(&self, map: &[Vector], total: f64) -> f64 {
         let areas = self.areas(map);
-        self.total_target / total * parallel::sum(areas.len(), |face| areas[face].powi(2) / self.targets[face])
+        self.total_target / total
+            * parallel::sum(areas.len(), |face| areas[face].powi(2) / self.targets[face])
     }
 
     /// The value at `map` and the gradient of the objective by every vertex, (n, 3).

@@ -99,7 +99,8 @@ mod tests {
     #[test]
     fn backtracks_until_the_decrease_suffices() {
         for (first, barrier) in [(1e3, f64::INFINITY), (1e3, 0.7), (1e-3, f64::INFINITY)] {
-            let value = |x: f64| if x < barrier { (x - 0.5).powi(2) + 0.1 * (5.0 * x).sin() } else { f64::NAN };
+            let value =
+                |x: f64| if x < barrier { (x - 0.5).powi(2) + 0.1 * (5.0 * x).sin() } else { f64::NAN };
             let start = at(value, 0.0, -0.5);
             let found = backtrack(&start, first, |step| at(value, step, 0.0)).expect("a step");
             assert!(found.value < start.value && found.step <= first);

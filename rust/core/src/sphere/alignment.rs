@@ -75,7 +75,8 @@ mod tests {
         for turn in [unit, [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.6, 0.0, 0.8]] {
             let rotation = rotation_of(turn);
             let turned: Vec<Vector> = points.iter().map(|&x| rotate(rotation, x)).collect();
-            let shifted: Vec<Vector> = points.iter().map(|x| [3.0 * x[0] + 1.0, 3.0 * x[1], 3.0 * x[2] - 7.0]).collect();
+            let shifted: Vec<Vector> =
+                points.iter().map(|x| [3.0 * x[0] + 1.0, 3.0 * x[1], 3.0 * x[2] - 7.0]).collect();
             let back = aligned(&turned, &shifted, &weights);
             for (a, b) in back.iter().zip(&points) {
                 assert!(crate::mesh::geometry::distance(*a, *b) < 1e-12);

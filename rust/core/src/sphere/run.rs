@@ -44,53 +44,62 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
         let mut domain = SphereDomain::new(self.mesh, self.targets);
-        // 1. The method as published
+        // 1. Start map and fixed-point steps
         let start = self.start()?;
-        let mut phase = Phase { whole: observer, from: 0.0, to: 0.9 };
-        let (map, status) = self.as_published(&domain, start.clone(), history, &mut phase);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
+        // 2. The correction that the paper makes here; where it fails, the start is the last map without folds
+        let corrected = if self.options.unfold { unfold::unfold(self.mesh, &stepped) } else { None };
+        let map = corrected.clone().unwrap_or(stepped);
+        // 3. Gradient descent
+        let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
+        let (map, status) = self.gradient_descent(&domain, map, status, history, &mut phase);
         if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
-        // 2. Unfold what folded; where that fails, the start is the map without folds
-        let unfolded = unfold::unfold(self.mesh, &map).or_else(|| unfold::unfold(self.mesh, &start));
-        let unfolded = match unfolded {
+        // 4. The correction again, and a descent from there that keeps every face open
+        let unfolded = match unfold::unfold(self.mesh, &map).or(corrected) {
             Some(map) => map,
-            None => start::start(self.mesh, self.weights)?,
+            None if self.options.initial.is_none() => start,
+            None => unfold::unfold(self.mesh, &start).map_or_else(|| self.conformal(), Ok)?,
         };
-        // 3. A descent from there that keeps every face open
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         domain.guard();
         Ok(self.guarded_descent(&mut domain, unfolded, status, history, &mut phase))
     }
 
-    /// Start map, fixed-point steps, gradient descent; may fold.
-    fn as_published(
+    /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.
+    fn fixed_point(
         &self,
         domain: &SphereDomain<'_>,
-        start: Map,
+        start: &Map,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
-        // 1. Fixed-point steps, all of the run where they are the method
-        let only = self.options.method == SphereMethod::FixedPoint;
-        let (mut map, mut status) = (start, Status::MaxIterations);
-        if only || self.options.initial.is_none() {
-            let mut phase = Phase { whole: observer, from: 0.0, to: if only { 1.0 } else { 0.4 } };
-            let stopping = self.fixed_point_stopping();
-            (map, status) = fixed_point(domain, self.weights, map, &stopping, history, &mut phase);
+        match (self.options.method, self.options.initial) {
+            (SphereMethod::GradientDescent, Some(_)) => (start.clone(), Status::MaxIterations),
+            _ => {
+                let stopping = self.fixed_point_stopping();
+                fixed_point(domain, self.weights, start.clone(), &stopping, history, observer)
+            }
         }
-        if only || status == Status::Cancelled {
+    }
+
+    /// Gradient descent where that is the method and nobody has asked to stop.
+    fn gradient_descent(
+        &self,
+        domain: &SphereDomain<'_>,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        if self.options.method == SphereMethod::FixedPoint || status == Status::Cancelled {
             return (map, status);
         }
-        // 2. The correction that the paper makes between the two
-        if self.options.unfold {
-            map = unfold::unfold(self.mesh, &map).unwrap_or(map);
-        }
-        // 3. Gradient descent
-        let mut phase = Phase { whole: observer, from: 0.4, to: 1.0 };
-        let options =
-            DescentOptions { stopping: self.stopping(), line_search: self.options.line_search };
-        minimize(domain, map, &options, history, &mut phase)
+        let line_search = self.options.line_search;
+        let options = DescentOptions { stopping: self.stopping(), line_search };
+        minimize(domain, map, &options, history, observer)
     }
 
     /// A descent from a map without folds that keeps every face open, preconditioned anew every few
@@ -132,8 +141,13 @@ impl Run<'_> {
     fn start(&self) -> Result<Map, Error> {
         match self.options.initial {
             Some(initial) => Ok(initial.iter().filter_map(|&x| normalized(x)).collect()),
-            None => start::start(self.mesh, self.weights),
+            None => self.conformal(),
         }
+    }
+
+    /// A start map without folds.
+    fn conformal(&self) -> Result<Map, Error> {
+        start::start(self.mesh, self.weights)
     }
 
     fn folded(&self, map: &Map) -> Vec<usize> {

@@ -168,10 +168,7 @@ fn boosted(x: Vector, a: Vector) -> Vector {
 /// Cramer's rule; `None` where the three rows lie in a plane.
 fn solve_three([a, b, c]: [Vector; 3], rhs: Vector) -> Option<Vector> {
     let determinant = dot(a, cross(b, c));
-    let sum = add(
-        add(scaled(cross(b, c), rhs[0]), scaled(cross(c, a), rhs[1])),
-        scaled(cross(a, b), rhs[2]),
-    );
+    let sum = add(add(scaled(cross(b, c), rhs[0]), scaled(cross(c, a), rhs[1])), scaled(cross(a, b), rhs[2]));
     let solution = scaled(sum, 1.0 / determinant);
     solution.iter().all(|x| x.is_finite()).then_some(solution)
 }

@@ -85,7 +85,8 @@ mod tests {
 
     #[test]
     fn projecting_what_was_lifted_gives_it_back() {
-        for (chart, z) in [Chart::North, Chart::South].into_iter().flat_map(|c| points().map(move |z| (c, z))) {
+        for (chart, z) in [Chart::North, Chart::South].into_iter().flat_map(|c| points().map(move |z| (c, z)))
+        {
             let point = chart.lift(z);
             assert!((norm(point) - 1.0).abs() < 1e-14);
             let back = chart.project(point);

@@ -11,7 +11,7 @@
 use super::Map;
 use super::stereographic::Chart;
 use crate::distortion::folded_on_sphere;
-use crate::energy::mean_value::{self, correct};
+use crate::energy::mean_value::{self, Weights, correct};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::Vector;
 
@@ -30,20 +30,16 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector]) -> Option<Map> {
     let mut folded = folded_on_sphere(mesh.faces(), &map);
     let mut rings = 2;
     while !folded.is_empty() && rings <= MOST_RINGS {
-        for _ in 0..PASSES {
-            // 1. Both hemispheres, freed around what is folded
-            let mut mended = map.clone();
-            for chart in [Chart::North, Chart::South] {
-                mend(mesh, &mut mended, chart, rings);
-            }
-            // 2. Keep what has become better
-            let left = folded_on_sphere(mesh.faces(), &mended);
-            if left.len() >= folded.len() {
-                break;
-            }
-            (map, folded) = (mended, left);
-            if folded.is_empty() {
-                return Some(map);
+        // 1. Free a few rings around what is folded, in both hemispheres; once more with the new weights
+        // 2. Where that gains nothing, by uniform weights
+        for weights in [Weights::MeanValue, Weights::Uniform] {
+            for _ in 0..PASSES {
+                let mended = mend(mesh, &map, rings, weights);
+                let left = folded_on_sphere(mesh.faces(), &mended);
+                if left.len() >= folded.len() {
+                    break;
+                }
+                (map, folded) = (mended, left);
             }
         }
         // 3. Once more with twice the rings
@@ -52,16 +48,17 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector]) -> Option<Map> {
     folded.is_empty().then_some(map)
 }
 
-/// One correction in one chart; leaves the map as it is where the system is singular.
-fn mend(mesh: &TriangleMesh, map: &mut Map, chart: Chart, rings: usize) {
-    let folded = folded_on_sphere(mesh.faces(), map);
-    let mut plane = chart.project_all(map);
-    let modulus = |vertex: usize| plane[vertex][0].hypot(plane[vertex][1]);
-    let free = mean_value::free_within(mesh, &folded, rings, |vertex| modulus(vertex) < RADIUS);
-    if free.is_empty() || correct(mesh, &mut plane, &free).is_none() {
-        return;
+/// One correction in each hemisphere's chart; leaves out one whose system is singular.
+fn mend(mesh: &TriangleMesh, map: &[Vector], rings: usize, weights: Weights) -> Map {
+    let mut map = map.to_vec();
+    for chart in [Chart::North, Chart::South] {
+        let folded = folded_on_sphere(mesh.faces(), &map);
+        let mut plane = chart.project_all(&map);
+        let modulus = |vertex: usize| plane[vertex][0].hypot(plane[vertex][1]);
+        let free = mean_value::free_within(mesh, &folded, rings, |vertex| modulus(vertex) < RADIUS);
+        if !free.is_empty() && correct(mesh, &mut plane, &free, weights).is_some() {
+            free.iter().for_each(|&vertex| map[vertex as usize] = chart.lift(plane[vertex as usize]));
+        }
     }
-    for vertex in free {
-        map[vertex as usize] = chart.lift(plane[vertex as usize]);
-    }
+    map
 }

@@ -5,6 +5,7 @@
 //! area. [`cut()`] opens any set of triangles along seams into [`Patch`]es that can become meshes.
 
 mod cut;
+pub(crate) mod decimation;
 pub mod geometry;
 pub mod orientation;
 mod soup;

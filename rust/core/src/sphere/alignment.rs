@@ -7,18 +7,22 @@
 //! eigenvalue of a symmetric 4 × 4 matrix.
 
 use super::Map;
-use crate::mesh::geometry::Vector;
+use crate::distortion::folded_on_sphere;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, dot, norm, scaled};
 use crate::parallel;
 use crate::sparse::top_eigenvector;
 
-/// `map` rotated over `points`, with one weight per vertex.
-pub(super) fn aligned(map: &[Vector], points: &[Vector], weights: &[f64]) -> Map {
-    let rotation = best_rotation(map, points, weights);
-    parallel::map(map.len(), |vertex| {
+/// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
+/// folds a sliver.
+pub(super) fn aligned(mesh: &TriangleMesh, map: Map, weights: &[f64]) -> Map {
+    let rotation = best_rotation(&map, mesh.points(), weights);
+    let turned = parallel::map(map.len(), |vertex| {
         let turned = rotate(rotation, map[vertex]);
-        let length = crate::mesh::geometry::norm(turned);
-        turned.map(|x| x / length)
-    })
+        scaled(turned, 1.0 / norm(turned))
+    });
+    let folds = |map: &Map| folded_on_sphere(mesh.faces(), map).len();
+    if folds(&turned) > folds(&map) { map } else { turned }
 }
 
 /// The rotation R, by rows, that maximises Σ w_i (R f_i)·(v_i − c).
@@ -54,12 +58,13 @@ fn rotation_of([w, x, y, z]: [f64; 4]) -> [Vector; 3] {
 }
 
 fn rotate(rotation: [Vector; 3], x: Vector) -> Vector {
-    rotation.map(|row| crate::mesh::geometry::dot(row, x))
+    rotation.map(|row| dot(row, x))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::geometry::distance;
 
     #[test]
     fn a_rotated_map_is_turned_back() {
@@ -77,9 +82,9 @@ mod tests {
             let turned: Vec<Vector> = points.iter().map(|&x| rotate(rotation, x)).collect();
             let shifted: Vec<Vector> =
                 points.iter().map(|x| [3.0 * x[0] + 1.0, 3.0 * x[1], 3.0 * x[2] - 7.0]).collect();
-            let back = aligned(&turned, &shifted, &weights);
-            for (a, b) in back.iter().zip(&points) {
-                assert!(crate::mesh::geometry::distance(*a, *b) < 1e-12);
+            let back = best_rotation(&turned, &shifted, &weights);
+            for (&moved, &point) in turned.iter().zip(&points) {
+                assert!(distance(rotate(back, moved), point) < 1e-12);
             }
         }
     }

@@ -13,6 +13,7 @@
 mod alignment;
 mod domain;
 mod fixed_point;
+mod progressive;
 mod run;
 mod start;
 mod stereographic;
@@ -137,7 +138,7 @@ pub fn sphere_map(
     }
     // 4. Of all rotated copies the one that lies over the surface; figures
     let positions = match options.initial {
-        None => alignment::aligned(&map, mesh.points(), &weights),
+        None => alignment::aligned(mesh, map, &weights),
         Some(_) => map,
     };
     let distortion = distortion(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;

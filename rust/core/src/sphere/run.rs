@@ -6,6 +6,7 @@
 
 use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
+use super::progressive::progressive;
 use super::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
@@ -58,14 +59,20 @@ impl Run<'_> {
             return Ok((map, status));
         }
         // 4. The correction again, and a descent from there that keeps every face open
-        let unfolded = match unfold::unfold(self.mesh, &map).or(corrected) {
+        domain.guard();
+        let unfolded = [unfold::unfold(self.mesh, &map), corrected, Some(start)];
+        let unfolded = match self.best_unfolded(&domain, unfolded.into_iter().flatten()) {
             Some(map) => map,
-            None if self.options.initial.is_none() => start,
-            None => unfold::unfold(self.mesh, &start).map_or_else(|| self.conformal(), Ok)?,
+            None => progressive(self.mesh, self.targets).map_or_else(|| self.conformal(), Ok)?,
         };
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-        domain.guard();
         Ok(self.guarded_descent(&mut domain, unfolded, status, history, &mut phase))
+    }
+
+    /// Of several maps the one with the lowest guarded objective; `None` where all are folded.
+    fn best_unfolded(&self, domain: &SphereDomain<'_>, maps: impl Iterator<Item = Map>) -> Option<Map> {
+        let valued = maps.map(|map| (domain.objective(&map), map)).filter(|(value, _)| value.is_finite());
+        valued.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, map)| map)
     }
 
     /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.
@@ -125,8 +132,8 @@ impl Run<'_> {
             let part = |done: usize| done as f64 / whole.max_iterations as f64;
             let mut phase = Phase { whole: observer, from: part(done), to: part(done + budget) };
             let stopping = Stopping { max_iterations: budget, ..whole };
-            let options = DescentOptions { stopping, ..DescentOptions::default() };
             let begun = history.iterations();
+            let options = DescentOptions { stopping, ..DescentOptions::default() };
             (map, status) = minimize(domain, map, &options, history, &mut phase);
             done += budget;
             let advanced = history.iterations() > begun;
@@ -147,7 +154,7 @@ impl Run<'_> {
 
     /// A start map without folds.
     fn conformal(&self) -> Result<Map, Error> {
-        start::start(self.mesh, self.weights)
+        start::start(self.mesh, self.targets, self.weights)
     }
 
     fn folded(&self, map: &Map) -> Vec<usize> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Start maps onto the sphere: conformal by Laplacian linearisation, and Tutte's.
+//! Start maps onto the sphere: conformal by Laplacian linearisation, or progressive.
 //!
 //! Angenent, Haker, Tannenbaum & Kikinis (1999), as used by Sutti & Yueh (2024), section 6.3: one face is
 //! removed, its corners are held at a triangle in the plane, all others are harmonic, and the inverse
@@ -7,14 +7,18 @@
 //! transformation, and the raw one puts nearly all of the surface next to one point: the one taken here has
 //! the centroid of the surface's measure at the sphere's centre.
 //!
-//! With uniform weights in place of the cotangents the plane map is Tutte's embedding, which is taken where
-//! the conformal one folds.
+//! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts beyond
+//! double precision, which cannot; then the [progressive](super::progressive) map is taken.
 //!
 //! Cost: one sparse Cholesky factorisation of all vertices but three.
 
+use std::f64::consts::PI;
+
+use super::progressive::progressive;
 use super::stereographic::{Chart, weighted_median};
 use super::{Map, unfold};
 use crate::distortion::folded_on_sphere;
+use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{
@@ -29,47 +33,49 @@ const CENTRING_STEPS: usize = 50;
 /// The centroid is at the centre when it is nearer than this.
 const CENTRED: f64 = 1e-9;
 
+/// A conformal face below this part of its target has collapsed for all that a descent can see.
+const COLLAPSED: f64 = 1e-9;
+
 /// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
-/// Tutte's.
+/// the progressive one where parts of that have collapsed.
 ///
 /// # Errors
 /// [`Error::NoEmbedding`] where both fold in double precision.
-pub(super) fn start(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
-    // 1. The conformal map
+pub(super) fn start(mesh: &TriangleMesh, targets: &[f64], weights: &[f64]) -> Result<Map, Error> {
+    // 1. The conformal map, where it is of use
     let conformal = conformal(mesh, weights);
-    if let Ok(Some(map)) = conformal.map(|map| unfold::unfold(mesh, &map)) {
+    let mended = conformal.as_ref().ok().and_then(|map| unfold::unfold(mesh, map));
+    if let Some(map) = mended.as_ref().filter(|map| !has_collapsed(mesh, targets, map)) {
+        return Ok(map.clone());
+    }
+    // 2. The progressive one, without any folds wherever there is one
+    if let Some(map) = progressive(mesh, targets) {
         return Ok(map);
     }
-    // 2. Tutte's, where that folds beyond mending
-    let tutte = tutte(mesh, weights)?;
-    unfold::unfold(mesh, &tutte).ok_or_else(|| {
-        let folded = Elements::collect(folded_on_sphere(mesh.faces(), &tutte));
-        Error::NoEmbedding { folded: folded.expect("what cannot be unfolded is folded") }
+    // 3. Any map without folds
+    mended.ok_or_else(|| match conformal {
+        Ok(map) => Error::NoEmbedding {
+            folded: Elements::collect(folded_on_sphere(mesh.faces(), &map)).expect("it could not be mended"),
+        },
+        Err(error) => error,
     })
+}
+
+/// Whether some face has next to nothing of its target area.
+fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
+    let energy = SpatialStretchEnergy::new(mesh, targets);
+    let (areas, least) = (energy.areas(map), COLLAPSED * 4.0 * PI / targets.iter().sum::<f64>());
+    !parallel::all(areas.len(), |face| areas[face] > least * targets[face])
 }
 
 /// The spherical conformal map, centred; it may fold where cotangents are negative.
 ///
 /// # Errors
 /// [`Error::FactorizationFailed`] where slivers make the cotangents too large.
-pub(super) fn conformal(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
+fn conformal(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
-    let cotangents: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
-    from_plane(mesh, weights, &cotangents)
-}
-
-/// Tutte's map lifted to the sphere, centred.
-///
-/// # Errors
-/// [`Error::FactorizationFailed`], for want of memory only.
-pub(super) fn tutte(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
-    from_plane(mesh, weights, &vec![0.5; 3 * mesh.n_faces()])
-}
-
-/// The harmonic map to the plane for one weight per corner, lifted and centred.
-fn from_plane(mesh: &TriangleMesh, weights: &[f64], by_corner: &[f64]) -> Result<Map, Error> {
-    let removed = roundest_face(mesh);
-    let mut plane = harmonic(mesh, removed, by_corner)?;
+    let by_corner: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
+    let mut plane = harmonic(mesh, roundest_face(mesh), &by_corner)?;
     normalise(&mut plane, weights);
     Ok(centred(Chart::South.lift_all(&plane), weights))
 }

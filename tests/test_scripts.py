@@ -1,13 +1,22 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """The parts of scripts/ that can go wrong without anyone noticing."""
 
+import re
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.sparse import diags_array
+
+import authalic
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
+import bench_meshes
+import bench_report
+import bench_tables
+import bench_tables_stability
 import pythons
 import steps
 from shell import ROOT, CommandFailed, Unavailable, run, version
@@ -73,3 +82,51 @@ def test_a_command_that_hangs_after_its_report_is_killed(monkeypatch, tmp_path):
 
 def test_the_changelog_has_an_entry_for_the_version():
     assert f"\n## {version()} " in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def tiny_meshes(monkeypatch):
+    """For the benches one small disk and one small closed mesh, whatever data there is."""
+    vertices, faces = bench_meshes.built_spheres(level=2)["ellipsoid (built)"]
+    cap = authalic.cut(vertices, faces[np.all(vertices[faces][:, :, 2] > 0, axis=1)])[0]
+    monkeypatch.setattr(bench_meshes, "disks", lambda: {"cap": (cap.vertices, cap.faces)})
+    monkeypatch.setattr(bench_meshes, "spheres", lambda: {"ellipsoid": (vertices, faces)})
+    brain = {"V_white": vertices, "V_pial": 2 * vertices, "V_sphere": 100 * vertices, "F": faces}
+    monkeypatch.setattr(bench_meshes, "brains", lambda: {"ellipsoid, radius 100": brain})
+
+
+def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
+    for part in bench_tables.PARTS:
+        target = tmp_path / part / "tables.md"
+        bench_tables.main([str(target), "--parts", part])
+        text = target.read_text(encoding="utf-8")
+        assert re.search(r"(?m)^\| (cap|ellipsoid)", text) and "Error" not in text, text
+        for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
+            assert (target.parent / picture).stat().st_size > 0, picture
+
+
+def test_an_error_of_the_package_is_a_row_of_the_table():
+    outcome = bench_report.Runs()(authalic.disk_map, "tetrahedron", bench_meshes.icosphere(0))
+    assert outcome.result is None and outcome.error.startswith("MeshError: ")
+
+
+def test_the_built_sphere_is_closed_and_seen_counter_clockwise():
+    vertices, faces = bench_meshes.icosphere(2)
+    (patch,) = authalic.cut(vertices, faces)
+    assert patch.genus == 0 and patch.is_closed and len(faces) == 320
+    assert len(authalic.distortion(vertices, faces, vertices).folded) == 0
+
+
+def test_the_smallest_eigenvalue_is_found_in_a_cluster_and_below_zero():
+    values = np.concatenate([[-2.5], np.linspace(-1e-9, 1e-9, 300), np.linspace(1, 40, 300)])
+    assert np.isclose(bench_tables_stability.smallest_eigenvalue(diags_array(values).tocsc()), -2.5)
+    nonnegative = diags_array(values[1:]).tocsc()
+    assert abs(bench_tables_stability.smallest_eigenvalue(nonnegative)) < 1e-8
+
+
+def test_noise_has_its_deviation_and_lies_along_the_normals():
+    vertices, faces = bench_meshes.icosphere(4)
+    smooth, noisy = bench_tables_stability.with_noise(7 * vertices, faces, 1e-3)
+    amount = np.einsum("ij,ij->i", noisy - smooth, vertices)
+    assert np.isclose(amount.std(), 1e-3, rtol=0.05)
+    assert np.allclose(np.linalg.norm(noisy - smooth, axis=1), np.abs(amount), rtol=1e-2, atol=1e-9)

@@ -4,15 +4,13 @@
 Usage: python bench_disk.py TARGET_FILE REPEATS [MESH ...]
 """
 
-import os
-import platform
-import statistics
 import sys
-import time
 from pathlib import Path
 
 import bench_meshes
+import bench_published
 import numpy as np
+from bench_report import machine, row, scientific, timed
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import spsolve
 
@@ -24,8 +22,8 @@ METHODS = {
     PAPER: {"method": "conjugate_gradient", "boundary": "arc_length", "max_iterations": 50},
     "default": {},
 }
-PUBLISHED = {"chineselion_17334": 4.29e-4, "hand_53054": 2.88e-3}
-"""Authalic energies published for these models (Liu & Yueh, conjugate gradients, 50 iterations)."""
+PUBLISHED_METHODS = {PAPER: "conjugate_gradient", "fixed_point, arc_length, 50": "fixed_point"}
+"""Those of Table 1."""
 COLUMNS = (
     "mesh", "V", "folds of the harmonic start", "method", "E_A", "published", "SD", "folds",
     "iterations", "status", "s", "E_A / paper's", "s / paper's",
@@ -47,28 +45,20 @@ def main(target, repeats, names):
 def measured(name, mesh, repeats):
     """The rows of one mesh; ratios are to the paper's method, measured in the same run."""
     start = len(harmonic_start_folds(*mesh))
-    results = {method: timed(mesh, options, repeats) for method, options in METHODS.items()}
+    results = {
+        method: timed(authalic.disk_map, mesh, options, repeats) for method, options in METHODS.items()
+    }
     paper, paper_seconds = results[PAPER]
     for method, (result, seconds) in results.items():
         figures = result.distortion
         energy = figures.authalic_energy
-        published = PUBLISHED.get(name) if method == PAPER else None
+        published = bench_published.DISKS.get((name, PUBLISHED_METHODS.get(method)), bench_published.NONE)
         yield (
-            name, len(mesh[0]), start, method, f"{energy:.2e}", f"{published:.2e}" if published else "",
+            name, len(mesh[0]), start, method, f"{energy:.2e}", scientific(published.energy),
             f"{figures.area_ratio_std:.4f}", len(figures.folded), result.iterations, result.status,
             f"{seconds:.2f}", f"{energy / paper.distortion.authalic_energy:.3g}",
             f"{seconds / paper_seconds:.2f}",
         )  # fmt: skip
-
-
-def timed(mesh, options, repeats):
-    """The map, and the median of the seconds that the whole call takes."""
-    seconds = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        result = authalic.disk_map(*mesh, **options)
-        seconds.append(time.perf_counter() - began)
-    return result, statistics.median(seconds)
 
 
 def harmonic_start_folds(vertices, faces):
@@ -103,16 +93,6 @@ def cotangent_laplacian(vertices, faces):
     half = coo_matrix((np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), (n, n))
     weight = (half + half.T).tocsr()
     return (diags(np.asarray(weight.sum(axis=1)).ravel()) - weight).tocsr()
-
-
-def machine():
-    """What the seconds were measured on."""
-    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
-
-
-def row(cells):
-    """A row of a Markdown table."""
-    return "| " + " | ".join(map(str, cells)) + " |"
 
 
 if __name__ == "__main__":

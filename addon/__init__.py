@@ -2,10 +2,10 @@
 """Authalic: UVs in which every face has its fair share of the texture."""
 
 from . import ui
-from .operators import measure, unwrap
+from .operators import measure, sphere_shape_key, unwrap
 
 # In this order; unregistered in the reverse one.
-_MODULES = (unwrap, measure, ui)
+_MODULES = (unwrap, sphere_shape_key, measure, ui)
 
 
 def register():

@@ -1,86 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only module that talks to the native library: plain data in, plain data out, no bpy.
 
-`unwrap`, `folds` and `measure` are ordinary functions on numpy arrays.
+`unwrap`, `folds`, `measure` and `sphere_shape` are ordinary functions on numpy arrays.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 import authalic
 
-from . import messages, triangulation
+from . import domains, messages, polygons, projection, spherical, triangulation
+from .domains import Unsuitable
 from .job import Cancelled
+from .results import Island, Mapping, Measurement, Refusal, SphereShape, UnwrapSettings
 
-# What face attributes show for a face that is folded over, and the limit for all others: shading
-# cannot deal with infinities.
-LOG2_LIMIT = 20.0
+__all__ = (
+    "Island",
+    "Mapping",
+    "Measurement",
+    "Refusal",
+    "SphereShape",
+    "Unsuitable",
+    "UnwrapSettings",
+    "folds",
+    "measure",
+    "sphere_shape",
+    "unwrap",
+)
 
-
-@dataclass
-class UnwrapSettings:
-    """How islands are mapped; the solver stops earlier where it has converged."""
-
-    fill_holes: bool = True
-    iterations: int = 100
-
-
-@dataclass
-class Island:
-    """A disk map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3) of surface `surface`.
-
-    The UVs of the mesh corners `corners` (k,) are those of the points `corner_point` (k,). `turned` are the
-    polygons whose normals point against those of the rest; they are mirrored in the map. `uneven` is the
-    standard deviation of the area ratios where the solver could not go on to make them even, else None.
-    """
-
-    name: str
-    surface: int
-    polygon: int
-    points: np.ndarray
-    faces: np.ndarray
-    corners: np.ndarray
-    corner_point: np.ndarray
-    uv: np.ndarray
-    turned: np.ndarray
-    uneven: float | None = None
-
-
-@dataclass
-class Refusal:
-    """An island, or with `polygon` None a whole object, that was left as it was."""
-
-    name: str
-    polygon: int | None
-    reason: str
-
-    def __str__(self):
-        where = "" if self.polygon is None else f" at face {self.polygon}"
-        return f"{self.name}{where}: {self.reason}"
-
-
-@dataclass
-class Mapping:
-    """What `unwrap` found."""
-
-    islands: list[Island] = field(default_factory=list)
-    refusals: list[Refusal] = field(default_factory=list)
-
-
-@dataclass
-class Measurement:
-    """Area ratio figures over the triangles of all surfaces; `log2` has an array (polygons,) for each."""
-
-    triangles: int
-    mean: float
-    deviation: float
-    log2_min: float
-    log2_max: float
-    flips: int
-    angle: float
-    without_area: int
-    log2: list[np.ndarray]
+_CANCELLED = "cancelled, nothing was changed"
 
 
 def _keep_going(_fraction, _message):
@@ -88,7 +37,7 @@ def _keep_going(_fraction, _message):
 
 
 def unwrap(surfaces, settings, progress=_keep_going):
-    """Maps every island of every surface (`mesh_io.Surface`) onto a disk of its own.
+    """Maps every island of every surface (`mesh_io.Surface`) to UVs of its own, by a disk or by a sphere.
 
     Raises `Cancelled` when `progress` returns False. Islands that cannot be mapped are refused, not raised.
     """
@@ -99,11 +48,11 @@ def unwrap(surfaces, settings, progress=_keep_going):
     for piece in pieces:
         share = len(piece.patch.faces)
         if progress(done / total, f"island {len(result.islands) + 1} of {len(pieces)}") is False:
-            raise Cancelled("cancelled, nothing was changed")
+            raise Cancelled(_CANCELLED)
         step = _sub_progress(progress, done / total, share / total)
         try:
             result.islands.append(_map(piece, settings, step))
-        except (_Unsuitable, authalic.MeshError, authalic.SolverError) as error:
+        except (Unsuitable, authalic.MeshError, authalic.SolverError) as error:
             reason = messages.in_mesh_terms(str(error), piece.polygons, piece.vertices)
             result.refusals.append(Refusal(piece.name, piece.polygon, reason))
         done += share
@@ -131,11 +80,12 @@ def measure(surfaces):
     first, faces = triangulation.welded(_vertices(surfaces)[good], image)
     corner_points, corner_image = points.reshape(-1, 3)[first], image.reshape(-1, 2)[first]
     figures = authalic.distortion(corner_points, faces, corner_image.astype(float))
-    log2 = np.clip(figures.log2_area_ratio, -LOG2_LIMIT, LOG2_LIMIT)
-    log2[figures.folded] = -LOG2_LIMIT
+    log2 = np.clip(figures.log2_area_ratio, -polygons.LOG2_LIMIT, polygons.LOG2_LIMIT)
+    log2[figures.folded] = -polygons.LOG2_LIMIT
     unfolded = np.ones(len(log2), bool)
     unfolded[figures.folded] = False
     angles = figures.angle_distortion[unfolded]
+    spread = [_spread(good, values) for values in (log2, triangulation.areas(points), ~unfolded)]
     return Measurement(
         triangles=len(log2),
         mean=float(figures.area_ratio_mean),
@@ -145,12 +95,51 @@ def measure(surfaces):
         flips=len(figures.folded),
         angle=float(angles.mean()) if len(angles) else float("inf"),
         without_area=int(np.count_nonzero(~good)),
-        log2=_per_polygon(surfaces, good, points, log2, unfolded),
+        log2=polygons.log2_area_ratios(surfaces, *spread),
     )
 
 
-class _Unsuitable(Exception):
-    """An island that no disk map exists for, in the words of an artist."""
+def sphere_shape(surface, iterations=100, progress=_keep_going):
+    """The vertices of a closed mesh (`mesh_io.Surface`) on the sphere of its area, about its area's centre.
+
+    Raises `Unsuitable`, in the words of an artist, where there is no such map; `Cancelled` when `progress`
+    returns False.
+    """
+    mesh = triangulation.sound(surface)
+    vertices = np.append(np.arange(len(surface.positions)), np.full(len(mesh.positions), -1))
+    try:
+        used, patches = _whole(mesh)
+        domains.check_closed_mesh(used, len(surface.positions), patches)
+        found, positions, turned = _sphere_map(mesh.positions, mesh.triangles, iterations, progress)
+    except (authalic.MeshError, authalic.SolverError) as error:
+        raise Unsuitable(messages.in_mesh_terms(str(error), mesh.polygons, vertices)) from error
+    centre = spherical.centroid(mesh.positions, mesh.triangles)
+    radius = spherical.radius(mesh.positions, mesh.triangles)
+    written = (centre + radius * positions).astype(np.float32)
+    faces = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+    if spherical.volume(mesh.positions, faces) < 0:
+        faces = faces[:, ::-1]
+    figures = authalic.distortion(mesh.positions, faces, written - centre)
+    if len(figures.folded):
+        raise Unsuitable(
+            f"{messages.count(len(figures.folded), 'triangle')} would fold over in the precision of "
+            "coordinates; remesh its thin parts"
+        )
+    return SphereShape(
+        positions=written[: len(surface.positions)],
+        radius=float(radius),
+        deviation=float(figures.area_ratio_std),
+        flips=len(figures.folded),
+        uneven=_uneven(found),
+    )
+
+
+def _whole(mesh):
+    """The vertices (u,) that have triangles, and the pieces that these make up."""
+    used, faces = np.unique(mesh.triangles, return_inverse=True)
+    # A bad coordinate is for the solver to name.
+    points = np.nan_to_num(mesh.positions[used], posinf=0, neginf=0)
+    return used, authalic.cut(points, faces.reshape(-1, 3))
 
 
 @dataclass
@@ -203,8 +192,14 @@ def _pieces(surfaces, index, result):
 
 
 def _map(piece, settings, progress):
-    """The disk map of one island, counter-clockwise as most of its faces are wound."""
-    _check(piece, settings)
+    """The UVs of one island, counter-clockwise as most of its faces are wound."""
+    if piece.pinned:
+        raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
+    to = _by_disk if domains.choose(piece.patch, settings) == "DISK" else _by_sphere
+    return to(piece, settings, progress)
+
+
+def _by_disk(piece, settings, progress):
     faces = np.asarray(piece.patch.faces)
     found = authalic.disk_map(
         piece.points,
@@ -214,45 +209,64 @@ def _map(piece, settings, progress):
         progress=progress,
     )
     if found.status == "cancelled":
-        raise Cancelled("cancelled, nothing was changed")
+        raise Cancelled(_CANCELLED)
+    turned = spherical.turned(faces, np.asarray(found.faces))
+    return _island(piece, found, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+
+
+def _by_sphere(piece, settings, progress):
+    faces = np.asarray(piece.patch.faces)
+    found, positions, turned = _sphere_map(piece.points, faces, settings.iterations, progress)
+    try:
+        uv = projection.project(
+            positions,
+            np.where(turned[:, None], faces[:, ::-1], faces),
+            polygons=piece.polygons,
+            areas=triangulation.areas(piece.points[faces]),
+            movable=piece.vertices >= 0,
+            layout=settings.layout,
+            axis=settings.pole_axis,
+            seam=settings.seam_direction,
+        )
+    except projection.CannotProject as problem:
+        raise Unsuitable(
+            f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; "
+            "try another Layout or Pole Axis, subdivide the mesh or mark seams"
+        ) from problem
+    uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
+    first, corner_point = triangulation.welded(faces, uv)
+    return _island(piece, found, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
+
+
+def _sphere_map(points, faces, iterations, progress):
+    """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
+    found = authalic.sphere_map(points, faces, max_iterations=iterations, progress=progress)
+    if found.status == "cancelled":
+        raise Cancelled(_CANCELLED)
+    oriented = np.asarray(found.faces)
+    positions = spherical.over_surface(points, oriented, np.array(found.positions))
+    return found, positions, spherical.turned(faces, oriented)
+
+
+def _island(piece, found, uv, faces, turned, points):
+    """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
     real = piece.corners >= 0
     return Island(
         name=piece.name,
         surface=piece.index,
         polygon=piece.polygon,
-        points=piece.points,
+        points=piece.points[points],
         faces=faces,
         corners=piece.corners[real],
         corner_point=faces.ravel()[real],
-        uv=np.array(found.uv),
-        turned=np.unique(piece.polygons[_turned(faces, np.asarray(found.faces))]),
-        uneven=float(found.distortion.area_ratio_std) if found.status == "stalled" else None,
+        uv=uv,
+        turned=np.unique(piece.polygons[turned]),
+        uneven=_uneven(found),
     )
 
 
-def _turned(faces, oriented):
-    """Which faces (m, 3) have been turned over to give all one orientation, (m,)."""
-    return ~(oriented[:, None, :] == np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)).all(
-        2
-    ).any(1)
-
-
-def _check(piece, settings):
-    """Says what an artist can do where the island is no disk, before the solver does in its own words."""
-    patch = piece.patch
-    if piece.pinned:
-        raise _Unsuitable("has pinned UVs, which would have to move; unpin them first")
-    if patch.is_closed:
-        raise _Unsuitable("is closed; mark seams to cut it open")
-    if patch.genus is None:
-        raise _Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
-    if patch.genus > 0:
-        holes = "a handle" if patch.genus == 1 else f"{patch.genus} handles"
-        raise _Unsuitable(f"has {holes}, like a torus; mark seams to cut it open")
-    if len(patch.boundary_loops) > 1 and not settings.fill_holes:
-        raise _Unsuitable(
-            f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them"
-        )
+def _uneven(found):
+    return float(found.distortion.area_ratio_std) if found.status == "stalled" else None
 
 
 def _sub_progress(progress, start, share):
@@ -266,28 +280,8 @@ def _vertices(surfaces):
     return np.concatenate([s.triangles + start for s, start in zip(surfaces, starts[:-1], strict=True)])
 
 
-def _per_polygon(surfaces, good, points, log2, unfolded):
-    """log2 of each polygon's own area ratio: the mean over its triangles, weighted by their areas."""
-    ratios = np.zeros(len(good))
-    ratios[good] = np.exp2(log2)
-    weights = np.zeros(len(good))
-    weights[good] = triangulation.areas(points)
-    folded = np.zeros(len(good), bool)
-    folded[good] = ~unfolded
-    result, start = [], 0
-    for surface in surfaces:
-        part = slice(start, start + len(surface.triangles))
-        result.append(_polygon_log2(surface, ratios[part], weights[part], folded[part]))
-        start = part.stop
+def _spread(good, values):
+    """Values of some triangles as values of all, 0 for the others."""
+    result = np.zeros(len(good), values.dtype)
+    result[good] = values
     return result
-
-
-def _polygon_log2(surface, ratios, weights, folded):
-    def total(values):
-        return np.bincount(surface.polygons, values, surface.polygon_count)
-
-    area = total(weights)
-    mean = np.divide(total(ratios * weights), area, out=np.ones(surface.polygon_count), where=area > 0)
-    log2 = np.clip(np.log2(mean), -LOG2_LIMIT, LOG2_LIMIT)
-    log2[surface.polygons[folded]] = -LOG2_LIMIT
-    return log2

@@ -5,6 +5,8 @@ import re
 
 # "face 3", "12 vertices (0, 1, 2, …)", "edge (3, 4)", "2 edges ((0, 4), (4, 7))".
 _ELEMENTS = re.compile(r"\b(\d+ )?(faces?|vertex|vertices|edges?)( \((?:[\d, …]|\(\d+, \d+\))+\)| \d+\b)")
+_NAMED = 3
+_PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
 _ONE = {"faces": "face", "vertices": "vertex", "edges": "edge"}
 _MANY = {"face": "triangles of faces", "vertex": "vertices", "edge": "edges"}
 
@@ -40,3 +42,20 @@ def _name(item, own):
         return ""
     named = ", ".join(str(own[number]) for number in numbers)
     return f"({named})" if len(numbers) > 1 else named
+
+
+def count(number, noun):
+    """ "1 island", "2 islands"."""
+    return f"{number} {noun if number == 1 else _PLURALS.get(noun, noun + 's')}"
+
+
+def numbers(elements):
+    """ "3, 4, 7, …": the first few of some elements (k,)."""
+    return ", ".join(str(int(element)) for element in elements[:_NAMED]) + (", …" * (len(elements) > _NAMED))
+
+
+def listed(items):
+    """The first few of some messages in one line, and how many there are."""
+    named = "; ".join(str(item) for item in items[:_NAMED])
+    more = len(items) - _NAMED
+    return f"{named}; and {more} more" if more > 0 else named

@@ -2,8 +2,8 @@
 """Blender's own packer, on the bounding boxes of islands in a passing scene of their own.
 
 Nothing of the user's is selected, entered or moved, so there is nothing to restore; and an island of a
-million faces packs as fast as one of ten. All islands are disks: following their outlines would gain next
-to nothing, turning them nothing, and either takes Blender's packer seconds for a few islands.
+million faces packs as fast as one of ten. Islands are disks, rectangles and squares: following their outlines
+would gain next to nothing, turning them little, and either takes Blender's packer seconds for a few islands.
 """
 
 from contextlib import contextmanager
@@ -17,7 +17,7 @@ from . import islands as shapes
 
 @dataclass
 class PackSettings:
-    """The options of Blender's Pack Islands that matter for disks."""
+    """The options of Blender's Pack Islands that matter here."""
 
     margin_method: str = "SCALED"
     margin: float = 0.001

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels of the 3D view and the UV editor, and the entries in the UV menus."""
+"""The sidebar panels of the 3D view and the UV editor, and the entries in the UV and shape key menus."""
 
 import bpy
 
-from .operators.unwrap import draw_options
+from .operators import sphere_shape_key, unwrap
 
 
 class _Panel:
@@ -22,7 +22,7 @@ class _UnwrapPanel(_Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         # What the button was used with last, and will be used with next.
-        draw_options(layout, context.window_manager.operator_properties_last("authalic.unwrap"))
+        unwrap.draw_options(layout, context.window_manager.operator_properties_last("authalic.unwrap"))
 
 
 class _MeasurePanel(_Panel):
@@ -45,6 +45,20 @@ class AUTHALIC_PT_measure_view3d(_MeasurePanel, bpy.types.Panel):
     bl_space_type = "VIEW_3D"
 
 
+class AUTHALIC_PT_sphere_shape_key_view3d(_Panel, bpy.types.Panel):
+    bl_label = "Sphere Shape Key"
+    bl_space_type = "VIEW_3D"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        options = context.window_manager.operator_properties_last("authalic.sphere_shape_key")
+        sphere_shape_key.draw_options(layout, options)
+
+
 class AUTHALIC_PT_unwrap_image(_UnwrapPanel, bpy.types.Panel):
     bl_space_type = "IMAGE_EDITOR"
 
@@ -53,13 +67,19 @@ class AUTHALIC_PT_measure_image(_MeasurePanel, bpy.types.Panel):
     bl_space_type = "IMAGE_EDITOR"
 
 
-def _draw_menu(self, _context):
+def _draw_uv_menu(self, _context):
     self.layout.separator()
     self.layout.operator("authalic.unwrap")
 
 
+def _draw_shape_key_menu(self, _context):
+    self.layout.separator()
+    self.layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
+
+
 _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
+    AUTHALIC_PT_sphere_shape_key_view3d,
     AUTHALIC_PT_measure_view3d,
     AUTHALIC_PT_unwrap_image,
     AUTHALIC_PT_measure_image,
@@ -70,10 +90,12 @@ def register():
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     # Serves the UV editor's menu and the 3D view's.
-    bpy.types.IMAGE_MT_uvs_unwrap.append(_draw_menu)
+    bpy.types.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
+    bpy.types.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
 def unregister():
-    bpy.types.IMAGE_MT_uvs_unwrap.remove(_draw_menu)
+    bpy.types.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
+    bpy.types.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import bridge, mesh_io
+from .. import bridge, mesh_io, messages
 from .. import islands as shapes
 from ..job import Job
 from ..packing import PackSettings, pack
@@ -40,11 +40,14 @@ class Report:
     seconds: float
 
     def __str__(self):
-        parts = [f"{_count(self.islands, 'island')}"]
+        parts = [messages.count(self.islands, "island")]
         if self.figures is not None:
-            parts += [f"area ratio SD {self.figures.deviation:.3g}", _count(self.figures.flips, "flip")]
+            parts += [
+                f"area ratio SD {self.figures.deviation:.3g}",
+                messages.count(self.figures.flips, "flip"),
+            ]
         line = ", ".join([*parts, f"{self.seconds:.2f} s"])
-        left = [f"left as it was: {describe(self.refusals)}"] if self.refusals else []
+        left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
 
 
@@ -79,13 +82,6 @@ def job(context, settings):
     return Job(work, finish)
 
 
-def describe(refusals):
-    """The first few refusals, and how many there are."""
-    named = "; ".join(str(refusal) for refusal in refusals[:_NAMED])
-    more = len(refusals) - _NAMED
-    return f"{named}; and {more} more" if more > 0 else named
-
-
 def _layer(obj, wanted):
     layer = mesh_io.layer_name(obj.data, wanted)
     if mesh_io.is_taken(obj, layer):
@@ -103,7 +99,7 @@ def _layer(obj, wanted):
 
 def _why_nothing(selected_only, refusals):
     if refusals:
-        return describe(refusals)
+        return messages.listed(refusals)
     return "No faces are selected" if selected_only else "The selected objects have no faces"
 
 
@@ -135,7 +131,7 @@ def _place(mapping, settings):
         folded = [island for island in mapping.islands if id(island) not in kept]
         mapping.refusals += [bridge.Refusal(part.name, part.polygon, _FOLDS) for part in folded]
         mapping.islands = sound
-    raise CannotUnwrap(f"No island could be unwrapped: {describe(mapping.refusals)}")
+    raise CannotUnwrap(f"No island could be unwrapped: {messages.listed(mapping.refusals)}")
 
 
 def _gather(islands, index):
@@ -165,7 +161,9 @@ def _notes(chosen, islands, figures):
         notes[_NAMED:] = [f"and {len(notes) - _NAMED} more uneven"]
     turned = sum(len(island.turned) for island in islands)
     if turned:
-        notes.append(f"{_count(turned, 'face')} with inconsistent normals mirrored, recalculate the normals")
+        notes.append(
+            f"{messages.count(turned, 'face')} with inconsistent normals mirrored, recalculate the normals"
+        )
     if figures.flips:  # of no triangle of the solver's: those were checked
         notes.append("the flips are where Blender divides polygons in other ways; triangulate them")
     scaled = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
@@ -173,7 +171,3 @@ def _notes(chosen, islands, figures):
         named = ", ".join(scaled[:_NAMED])
         notes.append(f"{named}: non-uniform scale, areas are those of the non-scaled mesh")
     return notes
-
-
-def _count(number, noun):
-    return f"{number} {noun}" + ("" if number == 1 else "s")

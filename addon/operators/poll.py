@@ -11,3 +11,11 @@ def has_meshes(operator, context):
         operator.poll_message_set("Select at least one mesh object")
         return False
     return True
+
+
+def has_meshes_in_object_mode(operator, context):
+    """Object mode with a mesh to work on; else tells the user what is missing."""
+    if context.mode != "OBJECT":
+        operator.poll_message_set("Only in Object Mode")
+        return False
+    return has_meshes(operator, context)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.unwrap: UVs with equal areas for every selected island."""
 
+import math
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
@@ -26,8 +28,17 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         name="Domain",
         description="The shape that islands are mapped onto",
         items=(
-            ("AUTO", "Automatic", "The shape that suits an island, which has to have a boundary: a disk"),
-            ("DISK", "Disk", "Map every island onto a disk"),
+            (
+                "AUTO",
+                "Automatic",
+                "A disk for islands with a boundary, a sphere for closed ones without handles",
+            ),
+            ("DISK", "Disk", "Map every island onto a disk. It needs a boundary: seams, or an open mesh"),
+            (
+                "SPHERE",
+                "Sphere",
+                "Map every island onto a sphere. It must be closed, without seams or handles",
+            ),
         ),
         default="AUTO",
     )
@@ -42,6 +53,44 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         min=1,
         soft_max=1000,
         default=100,
+    )
+    sphere_layout: EnumProperty(
+        name="Layout",
+        description="How the sphere of a closed island is laid flat. Areas are kept by both",
+        items=(
+            (
+                "LAMBERT",
+                "Lambert Cylindrical",
+                "A rectangle as long as the equator. Faces at the poles have half of their share, those at "
+                "the seam stand out to the right",
+            ),
+            (
+                "OCTAHEDRAL",
+                "Octahedral",
+                "A square with the upper pole in the middle and the lower pole in its corners. Every face "
+                "has its share, those at the seam stand out a little",
+            ),
+        ),
+        default="LAMBERT",
+    )
+    pole_axis: EnumProperty(
+        name="Pole Axis",
+        description="The object's own axis that the poles of a closed island lie on",
+        items=(
+            ("X", "X", "Poles at the left and the right, seam at the back"),
+            ("Y", "Y", "Poles at the front and the back, seam below"),
+            ("Z", "Z", "Poles at the top and the bottom, seam at the back"),
+        ),
+        default="Z",
+    )
+    seam_direction: FloatProperty(
+        name="Seam Direction",
+        description="How far the seam of a closed island is turned about the pole axis. 0 is at the back "
+        "(+Y), or below (-Z) with the poles on Y",
+        subtype="ANGLE",
+        soft_min=-math.pi,
+        soft_max=math.pi,
+        default=0.0,
     )
     uv_layer: StringProperty(
         name="UV Map",
@@ -88,7 +137,14 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
     def _settings(self):
         return unwrap.Settings(
             uv_layer=self.uv_layer,
-            mapping=bridge.UnwrapSettings(self.fill_holes, self.iterations),
+            mapping=bridge.UnwrapSettings(
+                fill_holes=self.fill_holes,
+                iterations=self.iterations,
+                domain=self.domain,
+                layout=self.sphere_layout,
+                pole_axis=self.pole_axis,
+                seam_direction=self.seam_direction,
+            ),
             packing=packing.PackSettings(self.margin_method, self.margin),
         )
 
@@ -96,14 +152,23 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
 def draw_options(layout, properties):
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
-    for name in ("domain", "fill_holes", "iterations"):
-        column.prop(properties, name)
+    column.prop(properties, "domain")
+    row = column.row()
+    row.active = properties.domain != "SPHERE"
+    row.prop(properties, "fill_holes")
+    column.prop(properties, "iterations")
     column.prop(properties, "uv_layer", placeholder="Active")
+    layout.label(text="Closed Islands")
+    column = layout.column()
+    column.active = properties.domain != "DISK"
+    for name in _SPHERE:
+        column.prop(properties, name)
     column = layout.column()
     for name in _PACKING:
         column.prop(properties, name)
 
 
+_SPHERE = ("sphere_layout", "pole_axis", "seam_direction")
 _PACKING = ("margin_method", "margin")
 
 

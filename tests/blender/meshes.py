@@ -43,11 +43,7 @@ def add_grid(name="Grid", **options):
 
 def suzanne(levels=2):
     bpy.ops.mesh.primitive_monkey_add()
-    obj = bpy.context.object
-    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
-    modifier.levels = levels
-    bpy.ops.object.modifier_apply(modifier=modifier.name)
-    return obj
+    return subdivided(bpy.context.object, levels)
 
 
 def seam_sphere():
@@ -58,6 +54,59 @@ def seam_sphere():
     meridian = (np.abs(position[:, 1]) < 1e-5) & (position[:, 0] > -1e-5)
     for edge in obj.data.edges:
         edge.use_seam = all(meridian[vertex] for vertex in edge.vertices)
+    return obj
+
+
+def icosphere(subdivisions=4, radius=1.0):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions, radius=radius)
+    return bpy.context.object
+
+
+def uv_sphere(segments=32, ring_count=16):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=ring_count)
+    return bpy.context.object
+
+
+def cube_sphere(levels=3):
+    """A cube of quads, subdivided to nearly a sphere."""
+    bpy.ops.mesh.primitive_cube_add()
+    return subdivided(bpy.context.object, levels)
+
+
+def subdivided(obj, levels):
+    if levels:
+        modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+        modifier.levels = levels
+        bpy.ops.object.modifier_apply(modifier=modifier.name)
+    return obj
+
+
+def closed_suzanne(levels=1):
+    """Suzanne's head without her eyes, their sockets closed by n-gons."""
+    bpy.ops.mesh.primitive_monkey_add()
+    obj = bpy.context.object
+    mesh = bmesh.new()
+    mesh.from_mesh(obj.data)
+    head = max(mesh.verts, key=lambda vertex: abs(vertex.co.x))  # the tip of an ear
+    found, border = {head}, [head]
+    while border:
+        border = [edge.other_vert(vertex) for vertex in border for edge in vertex.link_edges]
+        border = list(set(border) - found)
+        found.update(border)
+    bmesh.ops.delete(mesh, geom=[vertex for vertex in mesh.verts if vertex not in found], context="VERTS")
+    bmesh.ops.holes_fill(mesh, edges=[edge for edge in mesh.edges if edge.is_boundary])
+    mesh.to_mesh(obj.data)
+    mesh.free()
+    return subdivided(obj, levels)
+
+
+def bumpy(obj, size=0.3):
+    """The object with smooth bumps all over."""
+    position = np.array([vertex.co for vertex in obj.data.vertices])
+    waves = np.sin(3 * position[:, 0]) * np.cos(4 * position[:, 1] + 1) + np.sin(5 * position[:, 2])
+    position *= 1 + size * waves[:, None]
+    obj.data.vertices.foreach_set("co", position.astype(np.float32).ravel())
+    obj.data.update()
     return obj
 
 
@@ -174,6 +223,19 @@ def moebius(n=12, offset=(0, 0, 0)):
     vertices = np.stack([radius * np.cos(angle), radius * np.sin(angle), width * np.sin(angle / 2)], axis=1)
     faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(n - 1)]
     return vertices + offset, np.array([*faces, [2 * n - 2, 1, 0, 2 * n - 1]])
+
+
+def ring(offset=(0, 0, 0), n=4):
+    """A closed ring of n x n quads, a torus."""
+    angle = np.arange(n) * 2 * np.pi / n
+    around, across = (a.ravel() for a in np.meshgrid(angle, angle, indexing="ij"))
+    radius = 1 + 0.4 * np.cos(across)
+    vertices = np.stack([radius * np.cos(around), radius * np.sin(around), 0.4 * np.sin(across)], axis=1)
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    further, inner = (i + 1) % n, (j + 1) % n
+    return vertices + offset, np.stack(
+        [n * i + j, n * further + j, n * further + inner, n * i + inner], axis=1
+    )
 
 
 def together(*parts):

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which shape an island is mapped onto, or why none, in the words of an artist. Plain logic, no bpy."""
+
+import numpy as np
+
+from . import messages
+
+
+class Unsuitable(Exception):
+    """A surface that no map of the wanted kind exists for, and what to do about it."""
+
+
+def choose(patch, settings):
+    """ "DISK" or "SPHERE", by the topology of an island (`authalic.Patch`) and the `UnwrapSettings`."""
+    if patch.genus is None:
+        raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
+    if settings.domain == "SPHERE" and not patch.is_closed:
+        raise Unsuitable(
+            "has a boundary, which a sphere has not; clear its seams, fill its holes or set Domain to "
+            "Automatic"
+        )
+    if settings.domain == "DISK" and patch.is_closed:
+        other = "; or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
+        raise Unsuitable(f"is closed; mark seams to cut it open{other}")
+    if patch.genus > 0:
+        closed = "is closed and " if patch.is_closed else ""
+        raise Unsuitable(f"{closed}has {handles(patch)}, like a torus; mark seams to cut it open")
+    if patch.is_closed:
+        return "SPHERE"
+    if len(patch.boundary_loops) > 1 and not settings.fill_holes:
+        raise Unsuitable(
+            f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them"
+        )
+    return "DISK"
+
+
+def handles(patch):
+    return "a handle" if patch.genus == 1 else f"{patch.genus} handles"
+
+
+def check_closed_mesh(used, count, patches):
+    """Raises `Unsuitable` unless a mesh is one closed surface without handles.
+
+    `used` (u,) are the vertices that have faces, of the mesh's `count` and of centres beyond these; `patches`
+    are the pieces that the mesh is cut into without seams.
+    """
+    loose = np.setdiff1d(np.arange(count), used)
+    if len(loose):
+        raise Unsuitable(
+            f"has {messages.count(len(loose), 'loose vertex')} without a face ({messages.numbers(loose)}); "
+            "delete loose geometry"
+        )
+    _check_pieces(len(used), patches)
+    patch = patches[0]
+    if patch.genus is None:
+        raise Unsuitable("is one-sided, like a Klein bottle, and has no map onto a sphere; remesh it")
+    if not patch.is_closed:
+        holes = messages.count(len(patch.boundary_loops), "open boundary")
+        raise Unsuitable(f"has {holes}, which a sphere has not; fill the holes first")
+    if patch.genus > 0:
+        raise Unsuitable(
+            f"has {handles(patch)}, like a torus, which a sphere has not; close it up or remesh it"
+        )
+
+
+def _check_pieces(used, patches):
+    if sum(len(patch.vertex_of) for patch in patches) > used:
+        raise Unsuitable(
+            "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "
+            "faces (Select > All by Trait > Non Manifold shows them)"
+        )
+    if len(patches) > 1:
+        raise Unsuitable(
+            f"consists of {len(patches)} pieces, a sphere is one; separate it by loose parts, or join them "
+            "by a remesh"
+        )

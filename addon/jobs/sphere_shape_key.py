@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sphere shape keys of a context's objects: the one path of the operator and of scripts."""
+
+import time
+from dataclasses import dataclass
+
+from .. import bridge, messages, shape_keys
+from ..job import Cancelled, Job
+from . import targets
+
+NAME = "Authalic Sphere"
+
+
+class CannotMap(Exception):
+    """No object could get a shape key; nothing was changed."""
+
+
+@dataclass
+class Settings:
+    """All options."""
+
+    iterations: int = 100
+
+
+@dataclass
+class Report:
+    """What was done: (object name, `bridge.SphereShape`) for each key, and what was left as it was."""
+
+    shapes: list
+    refusals: list
+    notes: list
+    seconds: float
+
+    def __str__(self):
+        done = "; ".join(f"{NAME} on {name}: {_figures(shape)}" for name, shape in self.shapes)
+        left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
+        return "; ".join([f"{done}, {self.seconds:.2f} s", *left, *self.notes])
+
+
+def job(context, settings):
+    """A `Job` for the selected meshes; its `apply` writes the shape keys and returns a `Report`.
+
+    Raises `targets.NothingToDo` or `CannotMap` before anything is computed.
+    """
+    started = time.perf_counter()
+    objects, refusals = targets.editable(context)
+    chosen = []
+    for obj in objects:
+        reason = _why_not(obj)
+        if reason is None:
+            chosen.append((obj, shape_keys.read(obj)))
+        else:
+            refusals.append(bridge.Refusal(obj.name, None, reason))
+    if not chosen:
+        raise CannotMap(messages.listed(refusals)) if refusals else targets.NothingToDo("No mesh is selected")
+
+    def work(progress):
+        return _shapes([surface for _, surface in chosen], settings, progress)
+
+    def finish(found):
+        done = [
+            (obj, shape)
+            for (obj, _), shape in zip(chosen, found, strict=True)
+            if not isinstance(shape, bridge.Refusal)
+        ]
+        refusals.extend(shape for shape in found if isinstance(shape, bridge.Refusal))
+        if not done:
+            raise CannotMap(messages.listed(refusals))
+        for obj, shape in done:
+            shape_keys.write(obj, NAME, shape.positions)
+        named = [(obj.name, shape) for obj, shape in done]
+        return Report(named, refusals, _notes(done), time.perf_counter() - started)
+
+    return Job(work, finish)
+
+
+def _why_not(obj):
+    if len(obj.data.polygons) == 0:
+        return "has no faces"
+    return shape_keys.why_not(obj.data, NAME)
+
+
+def _shapes(surfaces, settings, progress):
+    """A `bridge.SphereShape` for each surface, or the `Refusal` that says why there is none."""
+    found, total, before = [], sum(len(surface.triangles) for surface in surfaces), 0
+    for surface in surfaces:
+        start, share = before / total, len(surface.triangles) / total
+        if progress(start, surface.name) is False:
+            raise Cancelled("cancelled, nothing was changed")
+        found.append(_shape(surface, settings, _part(progress, start, share)))
+        before += len(surface.triangles)
+    return found
+
+
+def _shape(surface, settings, progress):
+    try:
+        return bridge.sphere_shape(surface, settings.iterations, progress)
+    except bridge.Unsuitable as reason:
+        return bridge.Refusal(surface.name, None, str(reason))
+
+
+def _part(progress, start, share):
+    return lambda fraction, message: progress(start + share * fraction, message)
+
+
+def _figures(shape):
+    flips = messages.count(shape.flips, "flip")
+    return f"area ratio SD {shape.deviation:.3g}, {flips}, radius {shape.radius:.3g}"
+
+
+def _notes(done):
+    """What was written but may not be what was wanted."""
+    notes = [
+        f"{obj.name}: uneven, the solver could not go on; its limbs may be too long or too thin"
+        for obj, shape in done
+        if shape.uneven is not None
+    ]
+    shared = [
+        f"{obj.name} shares its mesh, all {obj.data.users} users have the key"
+        for obj, _ in done
+        if obj.data.users > 1
+    ]
+    return [*notes, *shared]

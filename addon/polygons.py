@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures of triangles as figures of the polygons they are parts of. Plain numpy, no bpy."""
+
+import numpy as np
+
+# What face attributes show for a face that is folded over, and the limit for all others: shading
+# cannot deal with infinities.
+LOG2_LIMIT = 20.0
+
+
+def log2_area_ratios(surfaces, log2, areas, folded):
+    """log2 of each polygon's own area ratio, for each surface (polygons,), from those of all triangles (t,).
+
+    The mean over its triangles, weighted by their areas, which are 0 for triangles that do not count.
+    """
+    ends = np.cumsum([len(surface.triangles) for surface in surfaces])[:-1]
+    parts = zip(surfaces, *(np.split(values, ends) for values in (np.exp2(log2), areas, folded)), strict=True)
+    return [_of_surface(*part) for part in parts]
+
+
+def _of_surface(surface, ratios, weights, folded):
+    def total(values):
+        return np.bincount(surface.polygons, values, surface.polygon_count)
+
+    area = total(weights)
+    mean = np.divide(total(ratios * weights), area, out=np.ones(surface.polygon_count), where=area > 0)
+    log2 = np.clip(np.log2(mean), -LOG2_LIMIT, LOG2_LIMIT)
+    log2[surface.polygons[folded]] = -LOG2_LIMIT
+    return log2

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evens out what straight edges do to areas where a layout has creases. Plain numpy, no bpy.
+
+Levenberg-Marquardt steps on the authalic energy, sum of (area - wanted)^2 / wanted over the faces, in the
+places of the vertices. Each step is solved roughly by conjugate gradients with a diagonal preconditioner:
+what creases do is local. Where a step would fold a face over, it is halved.
+"""
+
+import numpy as np
+
+from . import triangulation
+from .untangle import folded
+
+_STEPS = 2
+_ITERATIONS = 20
+_DAMPING = 1e-2
+_HALVINGS = 20
+
+
+def relax(chart, areas, movable):
+    """Moves places of a `layouts.Chart` so that its faces' areas come closer to `areas` (m,).
+
+    Vertices that are not in the mask `movable` (n,) stay. Folded faces may unfold; no other one folds over.
+    """
+    for _ in range(_STEPS):
+        _move(chart, _step(chart, areas, movable))
+
+
+def _move(chart, step):
+    """Moves the places by a step (n, 2), less far where faces would fold over that do not."""
+    start, sound = chart.places, np.ones(len(chart.faces), bool)
+    sound[folded(chart.uv())] = False
+    length = np.ones((len(start), 1))
+    for halving in range(_HALVINGS):
+        chart.places = start + length * step
+        bad = folded(chart.uv())
+        bad = bad[sound[bad]]
+        if len(bad) == 0:
+            return
+        length[np.unique(chart.faces[bad])] *= 0.5 if halving < _HALVINGS // 2 else 0.0
+    chart.places = start
+
+
+def _step(chart, areas, movable):
+    """The movement (n, 2) of the places by one damped Gauss-Newton step."""
+    uv, faces, count = chart.uv(), chart.faces, len(chart.places)
+    gradient = _area_gradients(uv) * (chart.moves.signs * movable[faces])[..., None]
+    flat = faces.ravel()
+
+    def gathered(values):
+        """Values (m, 3, 2) at corners, summed up at the vertices."""
+        return np.stack([np.bincount(flat, values[..., axis].ravel(), count) for axis in (0, 1)], axis=1)
+
+    diagonal = gathered(gradient**2 / areas[:, None, None]).sum(axis=1, keepdims=True) / 2
+    diagonal[diagonal <= 0] = 1
+
+    def product(step):
+        change = (gradient * step[faces]).sum(axis=(1, 2))
+        return gathered(gradient * (change / areas)[:, None, None]) + _DAMPING * diagonal * step
+
+    residual = (areas - triangulation.signed_areas(uv)) / areas
+    return _conjugate_gradients(product, gathered(gradient * residual[:, None, None]), diagonal)
+
+
+def _area_gradients(uv):
+    """How the areas of triangles (m, 3, 2) change with their corners, (m, 3, 2)."""
+    across = np.roll(uv, -1, axis=1) - np.roll(uv, -2, axis=1)
+    return np.stack([across[..., 1], -across[..., 0]], axis=-1) / 2
+
+
+def _conjugate_gradients(product, right, diagonal):
+    """Some iterations towards the solution x of product(x) = right."""
+    solution, residual = np.zeros_like(right), right
+    towards = residual / diagonal
+    direction, norm = towards, (residual * towards).sum()
+    for _ in range(_ITERATIONS):
+        if norm <= 0:
+            break
+        image = product(direction)
+        length = norm / (direction * image).sum()
+        solution, residual = solution + length * direction, residual - length * image
+        towards = residual / diagonal
+        previous, norm = norm, (residual * towards).sum()
+        direction = towards + norm / previous * direction
+    return solution

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shape keys of meshes that are not in edit mode, as numpy arrays."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from . import mesh_io
+
+
+def read(obj):
+    """The surface of an object in the coordinates of its mesh, or of its first shape key."""
+    surface, mesh = mesh_io.read(obj), obj.data
+    if mesh.shape_keys is None:
+        positions = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", positions)
+    else:
+        positions = _coordinates(mesh.shape_keys.reference_key)
+    return replace(surface, positions=positions.reshape(-1, 3).astype(float))
+
+
+def why_not(mesh, name):
+    """Why a mesh cannot have a relative shape key of this name, or None."""
+    keys = mesh.shape_keys
+    if keys is not None and not keys.use_relative:
+        return "its shape keys are absolute; turn on Relative in its shape keys"
+    if keys is not None and keys.reference_key.name == name:
+        return f'its first shape key, of which all others are changes, is called "{name}"; rename that'
+    return None
+
+
+def write(obj, name, positions):
+    """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0, and selects it.
+
+    A mesh without shape keys gets its first one too. All other shape keys stay as they are, bit for bit.
+    """
+    if obj.data.shape_keys is None:
+        obj.shape_key_add(name="Basis", from_mix=False)
+    keys = obj.data.shape_keys
+    key = keys.key_blocks.get(name) or obj.shape_key_add(name=name, from_mix=False)
+    key.points.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
+    key.relative_key = keys.reference_key
+    key.value = 0.0  # Blender 5 starts with 1
+    obj.active_shape_key_index = keys.key_blocks.find(name)
+    obj.data.update()
+
+
+def _coordinates(key):
+    values = np.empty(3 * len(key.points), np.float32)
+    key.points.foreach_get("co", values)
+    return values

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Maps onto the sphere beside the surfaces they are of. Plain numpy, no bpy."""
+
+import numpy as np
+
+from . import triangulation
+
+
+def centroid(points, faces):
+    """The centre (3,) of the area of a surface."""
+    weights = triangulation.areas(points[faces])
+    return weights @ points[faces].mean(axis=1) / weights.sum()
+
+
+def radius(points, faces):
+    """That of the sphere with a surface's area."""
+    return np.sqrt(triangulation.areas(points[faces]).sum() / (4 * np.pi))
+
+
+def volume(points, faces):
+    """The signed volume inside a closed surface: negative where its faces look inwards."""
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    return np.einsum("ij,ij", a, np.cross(b, c)) / 6
+
+
+def over_surface(points, faces, positions):
+    """A map `positions` (n, 3), outward-oriented by a closed surface's `faces` (m, 3), laid over the surface.
+
+    On a surface whose faces look inwards such a map is turned inside out: it is mirrored, so that faces look
+    inwards on the sphere as well.
+    """
+    points = points - centroid(points, faces)
+    if volume(points, faces) >= 0:
+        return positions
+    positions = -positions
+    corner = np.repeat(triangulation.areas(points[faces]), 3)
+    weights = np.bincount(faces.ravel(), corner, len(points))
+    u, _, vt = np.linalg.svd((weights[:, None] * positions).T @ points)
+    u[:, -1] *= np.sign(np.linalg.det(u @ vt))
+    return positions @ (u @ vt)
+
+
+def turned(faces, oriented):
+    """Which faces (m, 3) are turned over in `oriented` (m, 3), which is one orientation for all, (m,)."""
+    turns = np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)
+    return ~(oriented[:, None, :] == turns).all(axis=2).any(axis=1)

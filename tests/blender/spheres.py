@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangulated spheres as arrays, and what is computed on them by spherical trigonometry."""
+
+from fractions import Fraction
+
+import numpy as np
+
+
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def icosphere(subdivisions, turned=None):
+    """Vertices (n, 3) and triangles (m, 3) of an icosahedron with its faces divided in four; maybe turned."""
+    golden = (1 + 5**0.5) / 2
+    corners = np.array([(0, a, b * golden) for a in (-1, 1) for b in (-1, 1)])
+    vertices = unit(np.concatenate([np.roll(corners, k, axis=1) for k in range(3)]))
+    near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 1.1
+    faces = [(i, j, k) for i in range(12) for j in range(12) for k in range(12) if i < j and i < k and j != k]
+    faces = np.array([face for face in faces if near[face[0], face[1]] and near[face[1], face[2]]])
+    faces = faces[near[faces[:, 0], faces[:, 2]]]
+    faces = faces[np.linalg.det(vertices[faces]) > 0]
+    for _ in range(subdivisions):
+        vertices, faces = _divided(vertices, faces)
+    return (vertices if turned is None else vertices @ rotation(turned).T), faces
+
+
+def _divided(vertices, faces):
+    edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    unique, index = np.unique(edges, axis=0, return_inverse=True)
+    ab, bc, ca = (len(vertices) + index.reshape(-1, 3)).T
+    a, b, c = faces.T
+    parts = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+    middles = unit(vertices[unique].mean(axis=1))
+    return np.concatenate([vertices, middles]), np.concatenate([np.stack(part, axis=1) for part in parts])
+
+
+def rotation(seed):
+    """Some rotation (3, 3)."""
+    matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return matrix * np.linalg.det(matrix)
+
+
+def uneven(vertices, strength=0.4):
+    """Points of the sphere pulled towards one side, smoothly and without a fold."""
+    return unit(vertices + strength * np.array([0.3, 0.5, 0.8]))
+
+
+def areas(triangles):
+    """The areas (t,) of triangles (t, 3, 3) of great arcs, by the theorem of L'Huilier."""
+    a, b, c = (
+        2 * np.arcsin(np.linalg.norm(triangles[:, i] - triangles[:, j], axis=1) / 2)
+        for i, j in ((1, 2), (2, 0), (0, 1))
+    )
+    s = (a + b + c) / 2
+    product = np.tan(s / 2) * np.tan((s - a) / 2) * np.tan((s - b) / 2) * np.tan((s - c) / 2)
+    return 4 * np.arctan(np.sqrt(np.maximum(product, 0)))
+
+
+def exactly_folded(uv):
+    """Faces of images (m, 3, 2) in single precision that are not counter-clockwise, in exact arithmetic."""
+    found = []
+    for face, triangle in enumerate(np.asarray(uv, np.float32)):
+        (ax, ay), (bx, by), (cx, cy) = [[Fraction(float(x)) for x in corner] for corner in triangle]
+        if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) <= 0:
+            found.append(face)
+    return found

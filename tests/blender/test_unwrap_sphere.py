@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.unwrap of closed islands: by the sphere, laid flat in either layout."""
+
+import importlib
+import os
+import re
+from pathlib import Path
+
+import bpy
+import conftest
+import meshes
+import numpy as np
+import pytest
+import spheres
+
+LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
+DATA = Path(os.environ.get("AUTHALIC_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
+CLOSED = {
+    "icosphere": lambda: meshes.icosphere(4),
+    "bumpy icosphere": lambda: meshes.bumpy(meshes.icosphere(5)),
+    "UV sphere": meshes.uv_sphere,
+    "bumpy UV sphere": lambda: meshes.bumpy(meshes.uv_sphere(24, 12), 0.2),
+    "cube sphere": lambda: meshes.cube_sphere(3),
+    "cube": lambda: meshes.cube_sphere(0),
+    "Suzanne": lambda: meshes.closed_suzanne(1),
+}
+
+
+def unwrap(**options):
+    return bpy.ops.authalic.unwrap(**options)
+
+
+def assert_sound(obj, deviation):
+    """UVs in the unit square, exactly without flips, with areas as even as the layout allows."""
+    uv, (corners, _, _) = meshes.uv(obj), meshes.triangles(obj)
+    assert np.isfinite(uv).all() and uv.min() >= 0 and uv.max() <= 1
+    assert spheres.exactly_folded(uv[corners]) == []
+    ratios = meshes.area_ratios(obj)
+    assert ratios.std() <= deviation
+    return ratios
+
+
+def assert_no_overlap(obj, resolution=700):
+    """No pixel's middle lies in two triangles of the UVs."""
+    corners, _, _ = meshes.triangles(obj)
+    found = np.zeros((resolution, resolution), int)
+    for triangle in meshes.uv(obj)[corners].astype(float) * resolution - 0.5:
+        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
+        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+        inside = np.ones(x.shape, bool)
+        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
+        found[y[inside], x[inside]] += 1
+    assert found.max() == 1
+
+
+@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_closed_meshes(name, layout, capfd):
+    obj = CLOSED[name]()
+    assert unwrap(sphere_layout=layout) == {"FINISHED"}
+    ratios = assert_sound(obj, deviation=2 if name == "cube" else 0.3)
+    said = capfd.readouterr().out
+    assert "Unwrapped 1 island" in said and "0 flips" in said
+    assert float(re.search(r"SD ([\d.]+),", said)[1]) == pytest.approx(ratios.std(), rel=0.01)
+    assert_no_overlap(obj)
+
+
+@pytest.mark.parametrize("domain", ["AUTO", "SPHERE"])
+def test_domain(domain):
+    obj = meshes.icosphere(3)
+    assert unwrap(domain=domain) == {"FINISHED"}
+    assert_sound(obj, 0.2)
+
+
+def test_even_as_the_sphere_but_for_the_poles():
+    obj = meshes.bumpy(meshes.icosphere(6))
+    unwrap()
+    ratios = meshes.area_ratios(obj)
+    polar = np.isclose(meshes.uv(obj)[meshes.triangles(obj)[0]][..., 1], 1, atol=0.2).any(axis=1)
+    assert np.percentile(ratios, 1) > 0.9 and np.percentile(ratios, 99) < 1.1
+    assert ratios[~polar].std() < 0.05
+
+
+def aspect(obj):
+    """Width over height of the UVs."""
+    size = np.ptp(meshes.uv(obj), axis=0)
+    return size[0] / size[1]
+
+
+def test_lambert_has_its_true_aspect_and_fills_the_width():
+    obj = meshes.icosphere(5)
+    unwrap()
+    # The faces at the seam stand out on the right, at the poles by up to a sixth or a fifth of a turn.
+    assert np.pi - 0.01 < aspect(obj) < np.pi * (1 + 1 / 5 + 0.05)
+    assert np.ptp(meshes.uv(obj)[:, 0]) > 0.99
+
+
+def test_octahedral_is_a_square():
+    obj = meshes.icosphere(5)
+    unwrap(sphere_layout="OCTAHEDRAL")
+    assert aspect(obj) == pytest.approx(1, abs=0.05)
+    corners, _, _ = meshes.triangles(obj)
+    assert meshes.uv_areas(meshes.uv(obj)[corners]).sum() > 0.9
+
+
+def corner_positions(obj):
+    return np.array([obj.data.vertices[loop.vertex_index].co for loop in obj.data.loops])
+
+
+@pytest.mark.parametrize("axis", ["X", "Y", "Z"])
+def test_pole_axis(axis):
+    obj = meshes.icosphere(5)
+    unwrap(pole_axis=axis)
+    height = corner_positions(obj)[:, "XYZ".index(axis)]
+    v = meshes.uv(obj)[:, 1].astype(float)
+    v = 2 * (v - v.min()) / np.ptp(v) - 1
+    assert np.abs(v - height).max() < 0.1
+
+
+@pytest.mark.parametrize(("turned", "back"), [(0.0, (0, 1)), (np.pi / 2, (-1, 0)), (np.pi, (0, -1))])
+def test_seam_direction(turned, back):
+    obj = meshes.icosphere(5)
+    unwrap(seam_direction=turned)
+    uv, position = meshes.uv(obj), corner_positions(obj)
+    low = np.abs(position[:, 2]) < 0.5
+    left = low & (uv[:, 0] < 0.02)
+    assert left.sum() > 4
+    assert (spheres.unit(position[left][:, :2]) @ back > 0.95).all()
+    # Seen from outside, the texture is not mirrored: a bit farther right is a bit farther to the left
+    # about the pole axis.
+    quarter = low & (np.abs(uv[:, 0] / np.ptp(uv[:, 0]) - 0.24) < 0.02)
+    assert (spheres.unit(position[quarter][:, :2]) @ (-back[1], back[0]) > 0.9).all()
+
+
+def test_default_seam_is_at_the_back():
+    obj = meshes.uv_sphere()
+    unwrap()
+    left = meshes.uv(obj)[:, 0] < 1e-4
+    position = corner_positions(obj)[left]
+    assert left.any() and (position[np.abs(position[:, 2]) < 0.99][:, 1] > 0).all()
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_corners_of_a_polygon_keep_together(layout):
+    obj = meshes.bumpy(meshes.cube_sphere(3), 0.2)
+    unwrap(sphere_layout=layout)
+    uv = meshes.uv(obj).reshape(-1, 4, 2)
+    assert np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2).max() < 0.25
+
+
+def test_inside_out_mesh_has_no_flips():
+    obj = meshes.bumpy(meshes.icosphere(4))
+    obj.data.flip_normals()
+    assert unwrap() == {"FINISHED"}
+    assert_sound(obj, 0.2)
+    position, v = corner_positions(obj), meshes.uv(obj)[:, 1]
+    assert np.corrcoef(spheres.unit(position)[:, 2], v)[0, 1] > 0.8
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_inconsistent_normals(layout, capfd):
+    obj = meshes.icosphere(4)
+    for index in (5, 50):
+        obj.data.polygons[index].flip()
+    assert unwrap(sphere_layout=layout) == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "0 flips" in said and "2 faces with inconsistent normals" in said
+    corners, polygons, _ = meshes.triangles(obj)
+    assert set(polygons[meshes.uv_areas(meshes.uv(obj)[corners]) < 0]) == {5, 50}
+
+
+def test_open_and_closed_islands_share_one_density():
+    sphere = meshes.icosphere(4)
+    grid = meshes.add_grid(n=12, offset=(4, 0, 0))
+    obj = meshes.join(sphere, grid)
+    assert unwrap(sphere_layout="OCTAHEDRAL") == {"FINISHED"}
+    assert_sound(obj, 0.1)
+    corners, _, points = meshes.triangles(obj)
+    image, area = meshes.uv_areas(meshes.uv(obj)[corners]), meshes.surface_areas(points)
+    sphere = points[..., 0].max(axis=1) < 2
+    assert image[sphere].sum() / area[sphere].sum() == pytest.approx(
+        image[~sphere].sum() / area[~sphere].sum(), rel=1e-3
+    )
+
+
+def two_parts():
+    """A grid (36 quads) and an icosphere."""
+    sphere = spheres.icosphere(2)
+    return meshes.add(*meshes.together(meshes.grid(), (sphere[0] + [4, 0, 0], sphere[1])), "Mixed")
+
+
+def test_disk_leaves_closed_islands(capfd):
+    obj = two_parts()
+    assert unwrap(domain="DISK") == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Unwrapped 1 island" in said
+    assert "Mixed at face 36: is closed; mark seams to cut it open; or set Domain to" in said
+    assert (meshes.uv(obj)[144:] == 0).all() or len(np.unique(meshes.uv(obj)[144:], axis=0)) < 5
+
+
+def test_sphere_leaves_open_islands(capfd):
+    obj = two_parts()
+    obj.data.uv_layers.new(name="UVMap")
+    before = meshes.uv(obj)
+    assert unwrap(domain="SPHERE") == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Unwrapped 1 island" in said
+    assert "Mixed at face 0: has a boundary, which a sphere has not; clear its seams" in said
+    assert (meshes.uv(obj)[:144] == before[:144]).all()
+
+
+def test_sphere_cut_open_by_seams_goes_to_the_disk_or_is_refused():
+    obj = meshes.seam_sphere()
+    assert unwrap() == {"FINISHED"}
+    assert aspect(obj) == pytest.approx(1, abs=0.02)
+    with pytest.raises(RuntimeError, match="has a boundary, which a sphere has not; clear its seams"):
+        unwrap(domain="SPHERE")
+
+
+def test_handles_have_their_own_message():
+    meshes.torus()
+    for domain in ("AUTO", "SPHERE"):
+        with pytest.raises(RuntimeError, match="is closed and has a handle, like a torus; mark seams"):
+            unwrap(domain=domain)
+    with pytest.raises(RuntimeError, match="is closed; mark seams to cut it open\n"):
+        unwrap(domain="DISK")
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_mesh_too_coarse_is_refused_and_left_alone(layout):
+    obj = meshes.add(*meshes.tetrahedron())
+    with pytest.raises(
+        RuntimeError, match=r"Mesh at face 0: \d triangles? would fold.*another Layout or Pole"
+    ):
+        unwrap(uv_layer="New", sphere_layout=layout)
+    assert len(obj.data.uv_layers) == 0
+
+
+def test_edit_mode_gives_the_same():
+    obj = meshes.bumpy(meshes.uv_sphere(16, 8), 0.2)
+    unwrap(uv_layer="A")
+    meshes.edit(obj)
+    meshes.select_faces(obj, lambda index: True)
+    assert unwrap(uv_layer="B") == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert (meshes.uv(obj, "A") == meshes.uv(obj, "B")).all()
+
+
+def test_world_scale_and_place_do_not_matter():
+    obj = meshes.bumpy(meshes.icosphere(3))
+    unwrap(uv_layer="A")
+    obj.scale, obj.location, obj.rotation_euler = (100, 100, 100), (5, 6, 7), (1, 2, 3)
+    bpy.context.view_layer.update()
+    unwrap(uv_layer="B")
+    np.testing.assert_allclose(meshes.uv(obj, "A"), meshes.uv(obj, "B"), atol=1e-3)
+
+
+def test_undo():
+    obj = meshes.icosphere(3)
+    obj.data.uv_layers.active.name = "UVMap"
+    bpy.ops.ed.undo_push(message="Start")
+    before = meshes.uv(obj)
+    bpy.ops.authalic.unwrap("EXEC_DEFAULT", True)
+    assert (meshes.uv(obj) != before).any()
+    bpy.ops.ed.undo()
+    assert (meshes.uv(bpy.context.object) == before).all()
+
+
+def test_cancelling():
+    meshes.icosphere(4)
+    obj = bpy.context.object
+    before = meshes.uv(obj)
+    unwrap_job = importlib.import_module(f"{conftest.MODULE}.jobs.unwrap")
+    job = unwrap_job.job(bpy.context, unwrap_job.Settings()).start()
+    job.cancel()
+    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.job").Cancelled):
+        job.apply()
+    assert (meshes.uv(obj) == before).all()
+
+
+def real_meshes():
+    names = sorted(path.stem for path in (DATA / "sphere").glob("*.npz"))
+    return names or [pytest.param("", marks=pytest.mark.skip(reason="no folder of real meshes"))]
+
+
+@pytest.mark.parametrize("name", real_meshes())
+def test_real_meshes(name):
+    with np.load(DATA / "sphere" / f"{name}.npz") as file:
+        vertices, faces = file["V"], file["F"]
+    bridge, mesh_io = (importlib.import_module(f"{conftest.MODULE}.{part}") for part in ("bridge", "mesh_io"))
+    surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
+    for layout in LAYOUTS:
+        found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
+        assert not found.refusals
+        assert not bridge.folds(found.islands[0])
+        image = found.islands[0].uv[found.islands[0].faces]
+        ratios = meshes.uv_areas(image) / meshes.surface_areas(
+            found.islands[0].points[found.islands[0].faces]
+        )
+        assert (ratios > 0).all() and ratios.std() / ratios.mean() < 0.1

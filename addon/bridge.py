@@ -243,6 +243,9 @@ def _sphere_map(points, faces, iterations, progress):
     found = authalic.sphere_map(points, faces, max_iterations=iterations, progress=progress)
     if found.status == "cancelled":
         raise Cancelled(_CANCELLED)
+    if found.status == "stalled":  # which on coarse meshes may come out worse than the start
+        start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
+        found = min(found, start, key=lambda result: result.distortion.authalic_energy)
     oriented = np.asarray(found.faces)
     positions = spherical.over_surface(points, oriented, np.array(found.positions))
     return found, positions, spherical.turned(faces, oriented)

@@ -53,8 +53,7 @@ class Lambert:
 
     singular = np.array([[0.0, 0, 1], [0, 0, -1]])
     scale = 1.0  # areas in the plane as parts of those on the sphere
-    creased = False
-    most_ends = 1  # singular corners of one face: the length of an edge from pole to pole is not defined
+    cones = False
 
     @staticmethod
     def places(points):
@@ -93,8 +92,7 @@ class Octahedral:
 
     singular = np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
     scale = 1 / np.pi
-    creased = True  # where the signs of coordinates change
-    most_ends = 2
+    cones = True  # singular points are the tips of cones, no poles
 
     @staticmethod
     def places(points):
@@ -162,132 +160,3 @@ def _meridian_crossings(start, end, middle):
     crossed = between & (meeting @ middle > 0) & (meeting[:, 2] < 0)
     total = np.abs(side) + np.abs(other)
     return crossed, np.where(crossed, np.abs(side) / np.where(total > 0, total, 1), -1.0)
-
-
-@dataclass
-class Chart:
-    """A mesh in a layout: the image of a corner is `moves` (m, 3) of the place (n, 2) of its vertex.
-
-    At a pole of Lambert's projection, for corners `polar[1]` of faces `polar[0]`, it is in the middle of the
-    other corners of its polygon, which `polar[2]` counts. `closed` (m,) is False where a face winds about a
-    singular point.
-    """
-
-    layout: type
-    faces: np.ndarray
-    places: np.ndarray
-    moves: Movements
-    polar: tuple
-    closed: np.ndarray
-
-    def uv(self):
-        """The images (m, 3, 2) of all corners."""
-        uv = self.moves.of(self.places[self.faces])
-        self.follow(uv)
-        return uv
-
-    def follow(self, uv):
-        """Puts the corners at the poles in the middle again."""
-        face, corner, group = self.polar
-        if len(face) == 0:
-            return
-        others = uv[face, :, 0]
-        others[np.arange(len(face)), corner] = np.nan
-        others[np.abs(uv[face, :, 1]) >= 1] = np.nan
-        low, high = np.full((2, group.max() + 1), np.nan)
-        np.fmin.at(low, group, np.fmin.reduce(others, axis=1))
-        np.fmax.at(high, group, np.fmax.reduce(others, axis=1))
-        uv[face, corner, 0] = ((low + high) / 2)[group]
-
-
-def develop(layout, points, faces, polygons):
-    """The `Chart` of faces (m, 3), counter-clockwise between points (n, 3) of the unit sphere.
-
-    Faces with one number in `polygons` (m,) keep together. Points on a singular point of the layout have to
-    be exactly there.
-    """
-    singular = (points[:, None] == layout.singular).all(axis=2).any(axis=1)
-    local, closed = _triangle_moves(layout, points, faces, singular)
-    here, there, ambiguous = _diagonals(faces, polygons, singular)
-    closed &= ~np.isin(polygons, polygons[ambiguous])
-    moves = _joined(local, polygons, here, there)
-    chart = Chart(
-        layout, faces, layout.places(points), moves, _polar(layout, faces, polygons, singular), closed
-    )
-    number, first = np.unique(polygons, return_inverse=True)
-    low, centre = _extents(chart.moves.of(chart.places[faces]), singular[faces], first, len(number))
-    homes = layout.home(low, centre)[first]
-    chart.moves = homes[:, None].after(moves)
-    return chart
-
-
-def _triangle_moves(layout, points, faces, singular):
-    """Movements (m, 3) that put the corners of each face together, and whether they close up."""
-    rows = np.arange(len(faces))
-    moves = Movements.none(faces.shape)
-    # Arcs to singular points touch a cut; but all that they leave open is a movement about that point.
-    base = np.argmin(singular[faces], axis=1)
-    second, third = (base + 1) % 3, (base + 2) % 3
-    at = [points[faces[rows, corner]] for corner in (base, second, third)]
-    moves[rows, second] = layout.crossings(at[0], at[1])
-    moves[rows, third] = layout.crossings(at[0], at[2])
-    back = moves[rows, second].after(layout.crossings(at[1], at[2]))
-    ends = np.count_nonzero(singular[faces], axis=1)
-    return moves, (back.agree(moves[rows, third]) | (ends > 0)) & (ends <= layout.most_ends)
-
-
-def _joined(local, polygons, here, there):
-    """The movements (m, 3) with the triangles of a polygon put together along its diagonals."""
-    result, done = Movements(local.signs.copy(), local.shifts.copy()), np.zeros(len(polygons), bool)
-    done[np.unique(polygons, return_index=True)[1]] = True
-    while not done.all() and len(here):
-        known, new = done[here[0]], done[there[0]]
-        near = (
-            (here[:, known & ~new], there[:, known & ~new]),
-            (there[:, new & ~known], here[:, new & ~known]),
-        )
-        source, target = (np.concatenate(parts, axis=1) for parts in zip(*near, strict=True))
-        if source.shape[1] == 0:
-            break
-        whole = result[tuple(source)].after(local[tuple(target)].inverse())
-        result[target[0]] = whole[:, None].after(local[target[0]])
-        done[target[0]] = True
-        open_ = ~(known & new)
-        here, there = here[:, open_], there[:, open_]
-    return result
-
-
-def _diagonals(faces, polygons, singular):
-    """Corners (face, number), (2, k), on either side of diagonals, at an end that is not singular.
-
-    And the faces at diagonals between two singular points, where that is no longer one movement.
-    """
-    first, second = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    key = np.column_stack([np.repeat(polygons, 3), np.minimum(first, second), np.maximum(first, second)])
-    order = np.lexsort(key.T)
-    same = np.flatnonzero((key[order[1:]] == key[order[:-1]]).all(axis=1))
-    one, two = order[same], order[same + 1]
-    vertex = np.where(singular[first[one]], second[one], first[one])
-    faces_one, faces_two = one // 3, two // 3
-    corner_one = (faces[faces_one] == vertex[:, None]).argmax(axis=1)
-    corner_two = (faces[faces_two] == vertex[:, None]).argmax(axis=1)
-    return np.stack([faces_one, corner_one]), np.stack([faces_two, corner_two]), faces_one[singular[vertex]]
-
-
-def _polar(layout, faces, polygons, singular):
-    """Face, corner and polygon, counted through, of the corners at the poles of a cylinder."""
-    if layout is not Lambert:
-        return (np.empty(0, int),) * 3
-    face, corner = np.nonzero(singular[faces])
-    key = np.column_stack([polygons[face], faces[face, corner]])
-    return face, corner, np.unique(key, axis=0, return_inverse=True)[1].ravel()
-
-
-def _extents(uv, singular, group, count):
-    """The lower left corner and the centre (count, 2) of each polygon, singular corners left out."""
-    weights = np.where(singular.all(axis=1, keepdims=True), 1.0, ~singular)
-    low = np.full((count, 2), np.inf)
-    np.minimum.at(low, group, np.where(weights[..., None] > 0, uv, np.inf).min(axis=1))
-    total = np.bincount(group, weights.sum(axis=1), count)
-    sums = [np.bincount(group, (weights * uv[..., axis]).sum(axis=1), count) for axis in (0, 1)]
-    return low, np.stack(sums, axis=1) / total[:, None]

@@ -10,7 +10,8 @@ in the plane, and what they do to areas across the creases of the octahedral map
 import numpy as np
 
 from . import triangulation
-from .layouts import LAYOUTS, develop
+from .charts import develop
+from .layouts import LAYOUTS
 from .relaxation import relax
 from .twist import rotation, twist
 from .untangle import folded, untangle
@@ -24,7 +25,9 @@ _FRAMES = {
 _FIRST_CANDIDATES = 6
 _CANDIDATES = 30
 _NEIGHBOURHOOD = 150
-_ATTEMPTS = 6
+# Choice of vertices for the singular points, and turn about the pole axis; the turns are for coarse meshes.
+_ATTEMPTS = [(rank, 0.0) for rank in range(6)] + [(0, 2.4 * turn) for turn in range(1, 16)]
+_COARSE = 500
 _FEW, _SHARE = 100, 1e-3
 _FOLD_PENALTY = 100.0
 _DETOUR = 0.25
@@ -58,9 +61,11 @@ def project(
     areas = areas * (4 * np.pi / areas.sum())
     points = _in_frame(positions, faces, axis, seam)
     fewest = len(faces)
-    for attempt in range(_ATTEMPTS):
-        mesh = _Mesh(points.copy(), faces, polygons, areas, movable)
-        if not _place_singular_points(mesh, layout, attempt):
+    for rank, turn in _ATTEMPTS:
+        if turn and len(points) > _COARSE:
+            break
+        mesh = _Mesh(points @ _about_the_pole(turn), faces, polygons, areas, movable)
+        if not _place_singular_points(mesh, layout, rank):
             continue
         chart = develop(layout, mesh.points, faces, polygons)
         bad = _straighten(chart, areas * layout.scale, ~mesh.singular)
@@ -76,11 +81,11 @@ def _straighten(chart, areas, movable):
     """Mends what straight edges do to a chart, towards `areas` (m,); returns how many folds are left."""
     if not chart.closed.all():
         return np.count_nonzero(~chart.closed)
-    if chart.layout.creased:
+    if chart.layout.cones:
         relax(chart, areas, movable)
     if 0 < len(folded(chart.uv())) <= _hopeless(chart.faces):
         untangle(chart, areas, movable)
-        if chart.layout.creased:
+        if chart.layout.cones:
             relax(chart, areas, movable)
     return len(folded(chart.uv()))
 
@@ -121,14 +126,19 @@ def _in_frame(positions, faces, axis, seam):
     return positions @ np.stack([first, second, third], axis=1)
 
 
-def _place_singular_points(mesh, layout, attempt):
-    """Moves a vertex onto each singular point of the layout, the best but for `attempt` choices."""
+def _about_the_pole(angle):
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]])
+
+
+def _place_singular_points(mesh, layout, rank):
+    """Moves a vertex onto each singular point of the layout, the best but for `rank` others."""
     for index, goal in enumerate(layout.singular):
         placed = layout.singular[:index]
-        ranked = _ranked(mesh, layout, goal, placed, _FIRST_CANDIDATES if attempt == 0 else _CANDIDATES)
+        ranked = _ranked(mesh, layout, goal, placed, _FIRST_CANDIDATES if rank == 0 else _CANDIDATES)
         if len(ranked) == 0:
             return False
-        vertex = ranked[min(attempt, len(ranked) - 1)]
+        vertex = ranked[min(rank, len(ranked) - 1)]
         mesh.points = _moved(mesh.points, mesh.points[vertex], goal, placed)
         mesh.singular[vertex] = True
         mesh.points[vertex] = goal

@@ -18,7 +18,7 @@ _HALVINGS = 20
 
 
 def relax(chart, areas, movable):
-    """Moves places of a `layouts.Chart` so that its faces' areas come closer to `areas` (m,).
+    """Moves places of a `charts.Chart` so that its faces' areas come closer to `areas` (m,).
 
     Vertices that are not in the mask `movable` (n,) stay. Folded faces may unfold; no other one folds over.
     """

@@ -27,7 +27,7 @@ def folded(uv):
 
 
 def untangle(chart, areas, movable):
-    """Moves places of a `layouts.Chart` until no face is folded over, or nothing helps any more.
+    """Moves places of a `charts.Chart` until no face is folded over, or nothing helps any more.
 
     The faces' areas should be `areas` (m,). Vertices that are not in the mask `movable` (n,) stay.
     """

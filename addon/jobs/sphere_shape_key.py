@@ -4,7 +4,7 @@
 import time
 from dataclasses import dataclass
 
-from .. import bridge, messages, shape_keys
+from .. import bridge, mesh_io, messages, shape_keys
 from ..job import Cancelled, Job
 from . import targets
 
@@ -115,9 +115,14 @@ def _notes(done):
         for obj, shape in done
         if shape.uneven is not None
     ]
+    scaled = [
+        f"{obj.name}: non-uniform scale, the sphere is that of the non-scaled mesh"
+        for obj, _ in done
+        if not mesh_io.has_uniform_scale(obj)
+    ]
     shared = [
         f"{obj.name} shares its mesh, all {obj.data.users} users have the key"
         for obj, _ in done
         if obj.data.users > 1
     ]
-    return [*notes, *shared]
+    return [*notes, *scaled, *shared]

@@ -6,7 +6,8 @@ import conftest
 
 
 def _menu_entries():
-    return [f for f in bpy.types.IMAGE_MT_uvs_unwrap._dyn_ui_initialize() if "authalic" in f.__module__]
+    menus = bpy.types.IMAGE_MT_uvs_unwrap, bpy.types.MESH_MT_shape_key_context_menu
+    return [f for menu in menus for f in menu._dyn_ui_initialize() if "authalic" in f.__module__]
 
 
 def _registered():
@@ -15,8 +16,9 @@ def _registered():
 
 
 def test_enabled():
-    assert len(_menu_entries()) == 1
-    assert {"AUTHALIC_OT_unwrap", "AUTHALIC_OT_measure", "figures"} <= _registered()
+    assert len(_menu_entries()) == 2
+    operators = {f"AUTHALIC_OT_{name}" for name in ("unwrap", "sphere_shape_key", "measure")}
+    assert operators | {"figures"} <= _registered()
     spaces = {getattr(bpy.types, name).bl_space_type for name in _registered() if "_PT_" in name}
     assert spaces == {"VIEW_3D", "IMAGE_EDITOR"}
 
@@ -25,7 +27,7 @@ def test_disabling_leaves_nothing(extension):
     bpy.ops.preferences.addon_disable(module=extension)
     assert not _menu_entries() and not _registered()
     bpy.ops.preferences.addon_enable(module=extension)
-    assert len(_menu_entries()) == 1 and _registered()
+    assert len(_menu_entries()) == 2 and _registered()
 
 
 def test_uninstall_and_install_again(extension):
@@ -36,19 +38,26 @@ def test_uninstall_and_install_again(extension):
     assert extension not in bpy.context.preferences.addons
     assert not _menu_entries() and not _registered()
     conftest.install()
-    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == 1
+    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == 2
 
 
 def test_defaults_are_declared():
     properties = bpy.ops.authalic.unwrap.get_rna_type().properties
-    found = {key: properties[key].default for key in ("domain", "fill_holes", "uv_layer", "margin_method")}
-    assert found == {
+    expected = {
         "domain": "AUTO",
         "fill_holes": True,
+        "sphere_layout": "LAMBERT",
+        "pole_axis": "Z",
+        "seam_direction": 0.0,
         "uv_layer": "",
         "margin_method": "SCALED",
     }
-    assert all(p.name and not p.description.endswith(".") for p in properties if p.identifier != "rna_type")
+    assert {key: properties[key].default for key in expected} == expected
+    assert bpy.ops.authalic.sphere_shape_key.get_rna_type().properties["iterations"].default == 100
+    for name in ("unwrap", "sphere_shape_key"):
+        properties = getattr(bpy.ops.authalic, name).get_rna_type().properties
+        named = [p for p in properties if p.identifier != "rna_type"]
+        assert all(p.name and p.description and not p.description.endswith(".") for p in named)
 
 
 def test_sidebar_has_options_before_the_first_use():

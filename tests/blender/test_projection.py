@@ -166,6 +166,18 @@ def test_coarse_spheres(name, subdivisions):
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
+def test_cube_of_quads(name):
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    faces = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
+    uv = project(spheres.unit(corners), faces, polygons=np.tile(np.arange(6), 2), layout=name)
+    assert spheres.exactly_folded(uv) == []
+    assert (uv[:6, 0] == uv[6:, 0]).all() and (uv[:6, 2] == uv[6:, 1]).all()
+    area = meshes.uv_areas(uv)
+    assert area.std() < 0.01 * area.mean()
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
 def test_tetrahedron_is_refused(name):
     vertices, faces = meshes.tetrahedron()
     projection = part("projection")
@@ -223,7 +235,7 @@ def test_twist_keeps_areas_and_fixed_points():
 
 
 def test_untangling_unfolds_and_leaves_the_rest():
-    layouts, untangle = part("layouts"), part("untangle")
+    layouts, charts, untangle = part("layouts"), part("charts"), part("untangle")
     vertices, faces = spheres.icosphere(3, turned=11)
     for name in LAYOUTS:
         layout = layouts.LAYOUTS[name]
@@ -235,7 +247,7 @@ def test_untangling_unfolds_and_leaves_the_rest():
             np.ones(len(vertices), bool),
         )
         assert part("projection")._place_singular_points(placed, layout, 0)
-        chart = layouts.develop(layout, placed.points, faces, placed.polygons)
+        chart = charts.develop(layout, placed.points, faces, placed.polygons)
         inner = np.flatnonzero(np.abs(placed.points[:, 2] - 0.5) < 0.1)[::7]
         before = chart.uv()
         chart.places[inner] += 0.35 * np.sqrt(layout.scale) * spheres.rotation(1)[:2, 0]

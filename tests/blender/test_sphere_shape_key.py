@@ -160,11 +160,12 @@ def test_other_keys_stay_and_the_first_one_counts():
     assert np.linalg.norm(key_positions(obj) - centre, axis=1).mean() == pytest.approx(radius, rel=0.05)
 
 
-def test_object_scale_does_not_matter():
+def test_object_scale_does_not_matter(capfd):
     obj = meshes.bumpy(meshes.icosphere(3))
     obj.scale = (1, 5, 2)
     bpy.context.view_layer.update()
     add_key()
+    assert f"{obj.name}: non-uniform scale" in capfd.readouterr().out
     _, radius = centre_and_radius(mesh_positions(obj).astype(float), vertex_triangles(obj))
     size = np.ptp(key_positions(obj), axis=0)
     np.testing.assert_allclose(size, 2 * radius, rtol=0.05)

@@ -28,8 +28,15 @@ pub(super) fn minimize(end: f64, tolerance: f64, mut function: impl FnMut(f64) -
         Point { at, value: if value.is_nan() { f64::INFINITY } else { value } }
     };
     let (mut low, mut high) = (0.0, end);
-    // 1. The best point, the second best and the one before
+    // 1. The best point, the second best and the one before; what is not allowed lies at the far end
     let mut best = sample(GOLDEN * end);
+    for _ in 1..MAX_EVALUATIONS {
+        if best.value.is_finite() {
+            break;
+        }
+        high = best.at;
+        best = sample(GOLDEN * high);
+    }
     let (mut second, mut third) = (best, best);
     let (mut last, mut before_last) = (0.0f64, 0.0f64);
     for _ in 1..MAX_EVALUATIONS {

@@ -5,8 +5,10 @@
 //! [`Cholesky::refactor`] only computes numbers. Both run on one thread: the dense blocks of surface meshes
 //! are too small for the library's own threads to pay.
 
+use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
 use faer::sparse::linalg::cholesky::{
@@ -222,13 +224,19 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     }
 }
 
-/// A unit eigenvector of the largest eigenvalue of a symmetric matrix given by rows; a unit vector where the
-/// matrix has none that is finite.
+/// A unit eigenvector of the largest eigenvalue of a symmetric matrix given by rows; the first axis where the
+/// iteration fails.
 pub(crate) fn top_eigenvector<const N: usize>(symmetric: &[[f64; N]; N]) -> [f64; N] {
     let matrix = Mat::from_fn(N, N, |i, j| symmetric[i][j]);
-    match matrix.self_adjoint_eigen(Side::Lower) {
+    let (mut values, mut vectors) = (Diag::zeros(N), Mat::zeros(N, N));
+    // on this thread: the library's own pool does not survive a fork
+    let (want, params) = (ComputeEigenvectors::Yes, Spec::default());
+    let mut memory = MemBuffer::new(self_adjoint_evd_scratch::<f64>(N, want, Par::Seq, params));
+    let stack = MemStack::new(&mut memory);
+    let (to, u) = (values.as_mut(), Some(vectors.as_mut()));
+    match self_adjoint_evd(matrix.as_ref(), to, u, Par::Seq, stack, params) {
         // ascending eigenvalues
-        Ok(eigen) => std::array::from_fn(|i| eigen.U()[(i, N - 1)]),
+        Ok(()) => std::array::from_fn(|i| vectors[(i, N - 1)]),
         Err(_) => std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 }),
     }
 }

@@ -152,6 +152,59 @@ def compact(mesh):
     return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
 
 
+def tetrahedron():
+    corners = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    return Mesh(corners, np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]))
+
+
+def octahedron(radii=(1.0, 1.0, 1.0)):
+    corners = np.vstack([np.eye(3), -np.eye(3)]) * radii
+    upper = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2]])
+    lower = np.array([[1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]])
+    return Mesh(corners, np.vstack([upper, lower]))
+
+
+def ball(level=3):
+    """An octahedron with every face split in four `level` times, its vertices on the unit sphere."""
+    vertices, faces = octahedron()
+    for _ in range(level):
+        edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        ends, middle = np.unique(edges, axis=0, return_inverse=True)
+        (a, b, c), (ab, bc, ca) = faces.T, (len(vertices) + middle.reshape(-1, 3)).T
+        vertices = np.vstack([vertices, vertices[ends].mean(axis=1)])
+        split = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        faces = np.concatenate([np.stack(corners, axis=1) for corners in split])
+    return Mesh(vertices / np.linalg.norm(vertices, axis=1)[:, None], faces)
+
+
+def radial(radius, level=3):
+    """A ball whose vertices are moved along their rays to `radius(x, y, z)`."""
+    mesh = ball(level)
+    return Mesh(mesh.vertices * radius(*mesh.vertices.T)[:, None], mesh.faces)
+
+
+def bumpy_ball(level=3):
+    return radial(lambda x, y, z: 1 + 0.4 * np.sin(3 * x + 1) * np.cos(2 * y + 0.5) + 0.2 * z, level)
+
+
+def rough_ball(level=3, noise=0.15, seed=3):
+    return radial(lambda x, y, z: np.exp(noise * np.random.default_rng(seed).standard_normal(len(x))), level)
+
+
+def spiky_ball(level=3, length=5.0):
+    """Two long spikes, on which the papers' methods fold faces."""
+    spike = lambda cosine, width: length * np.exp(-width * (1 - cosine))  # noqa: E731
+    return radial(lambda x, y, z: 1 + spike(z, 40) + spike(0.6 * x + 0.8 * y, 60), level)
+
+
+def capsule(stacks=24, slices=12):
+    """A long thin tube with round ends."""
+    mesh, _ = sphere(stacks, slices)
+    x, y, z = mesh.vertices.T
+    ring = np.maximum(np.hypot(x, y), 1e-300)
+    return Mesh(np.stack([0.5 * x * ring**-0.6, 0.5 * y * ring**-0.6, 5 * z], axis=1), mesh.faces)
+
+
 DISKS = {
     "single_triangle": single_triangle(),
     "single_quad": single_quad(),
@@ -162,6 +215,19 @@ DISKS = {
     "rough_cap": bumpy_cap(noise=0.15, seed=7),
     "slit_sphere": slit_sphere(),
     "tube_disk": tube_disk(),
+}
+
+SPHERES = {
+    "tetrahedron": tetrahedron(),
+    "octahedron": octahedron((1.0, 2.0, 3.0)),
+    "ball": ball(),
+    "ellipsoid": Mesh(ball().vertices * [1, 2, 4], ball().faces),
+    "parallels": sphere()[0],
+    "bumpy_ball": bumpy_ball(),
+    "rough_ball": rough_ball(),
+    "spiky_ball": spiky_ball(),
+    "hedgehog": rough_ball(noise=0.8),
+    "capsule": capsule(),
 }
 
 

@@ -122,3 +122,59 @@ def assert_disk_embedding(result):
     assert (arcs > 0).all()
     assert abs(arcs.sum() - 2 * np.pi) < 1e-9
     assert radius.max() <= 1 + 1e-12
+
+
+# Maps onto the unit sphere
+
+
+def folded_on_sphere(positions, faces):
+    """Faces whose determinant is not positive, by exact arithmetic wherever rounding could decide."""
+    corners = np.asarray(positions, float)[faces]
+    a, b, c = np.moveaxis(corners, 1, 0)
+    size = np.einsum("ij,ij->i", np.abs(a), np.abs(np.roll(b, -1, 1) * np.roll(c, -2, 1)))
+    size += np.einsum("ij,ij->i", np.abs(a), np.abs(np.roll(b, -2, 1) * np.roll(c, -1, 1)))
+    doubtful = np.linalg.det(corners) <= 1e-13 * size
+    return [face for face in np.flatnonzero(doubtful) if exact_volume(corners[face]) <= 0]
+
+
+def exact_volume(corners):
+    """The determinant of three points as a fraction."""
+    a, b, c = [[Fraction(float(x)) for x in corner] for corner in corners]
+    return sum(a[i] * (b[i - 2] * c[i - 1] - b[i - 1] * c[i - 2]) for i in range(3))
+
+
+def solid_angles(positions, faces):
+    """Signed areas of the spherical triangles, (m,) (Van Oosterom & Strackee 1983)."""
+    a, b, c = np.moveaxis(np.asarray(positions)[faces], 1, 0)
+    volume = np.einsum("ij,ij->i", a, np.cross(b - a, c - a))
+    cosines = sum(np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a)))
+    return 2 * np.arctan2(volume, 1 + cosines)
+
+
+def sphere_energy(positions, faces, targets):
+    """Σ (a − |τ|)²/|τ| of the flat faces with the targets rescaled to the image's area."""
+    areas = face_areas(positions, faces)
+    targets = targets * areas.sum() / targets.sum()
+    return ((areas - targets) ** 2 / targets).sum()
+
+
+def vertex_weights(faces, targets, n):
+    """Each vertex's share of the targets, (n,)."""
+    return np.bincount(faces.ravel(), np.repeat(targets / 3, 3), n)
+
+
+def assert_lies_over(positions, vertices, weights):
+    """No rotation R makes Σ w (R f)·(v − c) larger: Σ w f (v − c)ᵀ is symmetric, and tr − it is positive."""
+    centred = vertices - weights @ vertices / weights.sum()
+    moment = (weights[:, None] * positions).T @ centred
+    scale = np.abs(moment).max()
+    assert np.abs(moment - moment.T).max() < 1e-7 * scale
+    assert np.linalg.eigvalsh(np.trace(moment) * np.eye(3) - moment).min() > -1e-9 * scale
+
+
+def assert_sphere_embedding(result):
+    """Unit rows, no fold by exact arithmetic, the sphere covered once."""
+    assert np.abs(np.linalg.norm(result.positions, axis=1) - 1).max() < 1e-14
+    assert folded_on_sphere(result.positions, result.faces) == []
+    assert len(result.distortion.folded) == 0
+    assert abs(solid_angles(result.positions, result.faces).sum() - 4 * np.pi) < 1e-8

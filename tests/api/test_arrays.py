@@ -12,6 +12,10 @@ from . import meshes
 VERTICES = np.hstack([meshes.grid(7, 9).vertices[:, :2] * 48, np.arange(63)[:, None] % 4 / 2])
 FACES = meshes.grid(7, 9).faces
 
+# the same for a closed surface
+BALL = np.round(meshes.bumpy_ball(2).vertices * 48) / 2
+BALL_FACES = meshes.ball(2).faces
+
 
 def strided(array):
     """The same values as every second entry of every third row, backwards in memory."""
@@ -50,6 +54,30 @@ LAYOUTS = {
 @pytest.fixture(scope="module")
 def expected():
     return authalic.disk_map(VERTICES, FACES).uv
+
+
+@pytest.fixture(scope="module")
+def expected_sphere():
+    return authalic.sphere_map(BALL, BALL_FACES).positions
+
+
+@pytest.mark.parametrize("dtype", ["f2", "f4", "f8", "longdouble"])
+def test_closed_surfaces_of_any_real_dtype(dtype, expected_sphere):
+    vertices = BALL.astype(dtype)
+    assert np.array_equal(vertices, BALL)
+    assert np.array_equal(authalic.sphere_map(vertices, BALL_FACES).positions, expected_sphere)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
+def test_arrays_of_a_sphere_map_of_any_layout(layout, expected_sphere):
+    assert np.array_equal(authalic.sphere_map(layout(BALL), layout(BALL_FACES)).positions, expected_sphere)
+    density = np.asarray(layout(np.arange(1.0, len(BALL_FACES) + 1)[:, None]))[:, 0]
+    options = {"density": density.copy(), "initial": expected_sphere, "max_iterations": 3}
+    plain = authalic.sphere_map(BALL, BALL_FACES, **options).positions
+    given = {**options, "density": density, "initial": layout(expected_sphere)}
+    assert np.array_equal(authalic.sphere_map(BALL, BALL_FACES, **given).positions, plain)
+    matrices = [authalic.stretch_hessian(BALL, BALL_FACES, image) for image in (BALL, layout(BALL))]
+    assert all(np.array_equal(*pair) for pair in zip(*matrices, strict=True))
 
 
 @pytest.mark.parametrize("dtype", ["f2", "f4", "f8", "longdouble", "i2", "i4", "i8"])
@@ -124,6 +152,22 @@ def test_inputs_are_left_unchanged():
     assert np.array_equal(np.sort(result.faces, axis=1), np.sort(FACES, axis=1))
 
 
+def test_inputs_of_sphere_maps_are_left_unchanged(expected_sphere):
+    arrays = {
+        "vertices": BALL.copy(),
+        "faces": BALL_FACES.copy(),
+        "density": np.ones(len(BALL_FACES)),
+        "initial": 3 * expected_sphere,  # rows are normalised, in a copy
+    }
+    arrays["faces"][5] = arrays["faces"][5][[0, 2, 1]]
+    before = {name: array.copy() for name, array in arrays.items()}
+    result = authalic.sphere_map(**arrays, max_iterations=0)
+    authalic.stretch_hessian(arrays["vertices"], arrays["faces"], arrays["initial"])
+    assert all(np.array_equal(arrays[name], before[name]) for name in arrays)
+    assert np.array_equal(result.faces, BALL_FACES)
+    assert not np.shares_memory(result.positions, arrays["initial"])
+
+
 def test_results_do_not_share_memory_with_the_input():
     (patch,) = authalic.cut(VERTICES, FACES)
     assert np.array_equal(patch.vertices, VERTICES)
@@ -151,7 +195,7 @@ BAD_VERTICES = {
 
 @pytest.mark.parametrize("vertices", BAD_VERTICES.values(), ids=BAD_VERTICES)
 def test_vertices_that_are_no_n_by_3_reals_are_refused(vertices):
-    for call in (authalic.disk_map, authalic.cut):
+    for call in (authalic.disk_map, authalic.sphere_map, authalic.cut):
         with pytest.raises(authalic.MeshError, match=r"^vertices must be ") as caught:
             call(vertices, FACES)
         assert (caught.value.indices, caught.value.count) == ((), 0)
@@ -175,7 +219,7 @@ BAD_FACES = {
 
 @pytest.mark.parametrize("faces", BAD_FACES.values(), ids=BAD_FACES)
 def test_faces_that_are_no_m_by_3_integers_are_refused(faces):
-    for call in (authalic.disk_map, authalic.cut):
+    for call in (authalic.disk_map, authalic.sphere_map, authalic.cut):
         with pytest.raises(authalic.MeshError, match=r"^faces must be "):
             call(VERTICES, faces)
 
@@ -195,6 +239,21 @@ def test_bad_images_are_refused(image, words):
         authalic.distortion(VERTICES, FACES, image)
 
 
+BAD_SPHERE_STARTS = {
+    "short": (BALL[:-1], "initial must be of shape"),
+    "planar": (BALL[:, :2], "initial must be of shape"),
+    "flat": (BALL.ravel(), "initial must be of shape"),
+    "complex": (BALL.astype(complex), "initial must be real numbers"),
+    "text": ("start", "initial must be"),
+}
+
+
+@pytest.mark.parametrize(("initial", "words"), BAD_SPHERE_STARTS.values(), ids=BAD_SPHERE_STARTS)
+def test_start_maps_of_the_sphere_that_are_no_n_by_3_reals_are_refused(initial, words):
+    with pytest.raises(authalic.MeshError, match=words):
+        authalic.sphere_map(BALL, BALL_FACES, initial=initial)
+
+
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
 def test_densities_that_are_not_positive_are_refused_by_face(value):
     density = np.ones(len(FACES))
@@ -206,6 +265,12 @@ def test_densities_that_are_not_positive_are_refused_by_face(value):
         with pytest.raises(authalic.MeshError, match="density must be positive, finite") as caught:
             call()
         assert (caught.value.indices, caught.value.count) == ((4, 17), 2)
+
+
+@pytest.mark.parametrize("density", [np.ones(5), np.ones((128, 1)), 1.0, np.ones(128, complex)])
+def test_densities_of_a_sphere_of_the_wrong_shape_or_dtype_are_refused(density):
+    with pytest.raises(authalic.MeshError, match="density must be"):
+        authalic.sphere_map(BALL, BALL_FACES, density=density)
 
 
 @pytest.mark.parametrize("density", [np.ones(5), np.ones((96, 1)), 1.0, np.ones(96, complex), ["a"] * 96])

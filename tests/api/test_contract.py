@@ -19,10 +19,13 @@ NAMES = {
     "MeshError",
     "Patch",
     "SolverError",
+    "SphereMap",
     "__version__",
     "cut",
     "disk_map",
     "distortion",
+    "sphere_map",
+    "stretch_hessian",
 }
 KEYWORDS = {
     "disk_map": {
@@ -36,11 +39,25 @@ KEYWORDS = {
         "fill_holes": False,
         "progress": None,
     },
+    "sphere_map": {
+        "method": "gradient_descent",
+        "line_search": "interpolation",
+        "density": None,
+        "angle_weight": 0.0,
+        "initial": None,
+        "max_iterations": None,
+        "tolerance": None,
+        "unfold": True,
+        "progress": None,
+    },
+    "stretch_hessian": {"density": None},
     "distortion": {"density": None},
     "cut": {"seams": None},
 }
 POSITIONAL = {
     "disk_map": ["vertices", "faces"],
+    "sphere_map": ["vertices", "faces"],
+    "stretch_hessian": ["vertices", "faces", "image"],
     "distortion": ["vertices", "faces", "image"],
     "cut": ["vertices", "faces"],
 }
@@ -50,6 +67,16 @@ FUNCTIONS = sorted(KEYWORDS)
 @pytest.fixture(scope="module")
 def result():
     return authalic.disk_map(*meshes.bumpy_cap())
+
+
+@pytest.fixture(scope="module")
+def sphere_result():
+    return authalic.sphere_map(*meshes.bumpy_ball())
+
+
+@pytest.fixture(params=["result", "sphere_result"])
+def any_result(request):
+    return request.getfixturevalue(request.param)
 
 
 def public_attributes(value):
@@ -90,7 +117,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         getattr(authalic, name)(*arguments, None)
 
 
-@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "Distortion", "Patch"])
+@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "SphereMap", "Distortion", "Patch"])
 def test_everything_is_documented(name):
     assert len(getattr(authalic, name).__doc__) > 20
 
@@ -115,7 +142,7 @@ def test_the_examples_in_the_docstrings_run(name):
 
 
 def test_every_attribute_of_the_results_is_documented():
-    for kind in (authalic.DiskMap, authalic.Distortion, authalic.Patch):
+    for kind in (authalic.DiskMap, authalic.SphereMap, authalic.Distortion, authalic.Patch):
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 
@@ -127,15 +154,16 @@ def test_the_errors_are_of_the_builtin_kinds():
     assert "MeshError" in repr(authalic.MeshError("text"))
 
 
-def test_a_disk_map_has_the_attributes_of_the_contract(result):
-    assert public_attributes(result) == {
-        *("uv", "faces", "status", "iterations", "history", "distortion", "seconds")
+def test_a_map_has_the_attributes_of_the_contract(any_result):
+    image = {authalic.DiskMap: "uv", authalic.SphereMap: "positions"}[type(any_result)]
+    assert public_attributes(any_result) == {
+        *(image, "faces", "status", "iterations", "history", "distortion", "seconds")
     }
-    assert isinstance(result.distortion, authalic.Distortion)
-    assert result.status in {"converged", "max_iterations", "stalled", "cancelled"}
-    assert type(result.iterations) is int
-    assert type(result.seconds) is float
-    assert result.seconds > 0
+    assert isinstance(any_result.distortion, authalic.Distortion)
+    assert any_result.status in {"converged", "max_iterations", "stalled", "cancelled"}
+    assert type(any_result.iterations) is int
+    assert type(any_result.seconds) is float
+    assert any_result.seconds > 0
 
 
 def test_a_distortion_has_the_attributes_of_the_contract(result):
@@ -173,6 +201,15 @@ def test_arrays_of_maps_are_c_ordered_float64_and_int64(result):
     assert_array(result.distortion.folded, (0,), np.int64)
 
 
+def test_arrays_of_sphere_maps_are_c_ordered_float64_and_int64(sphere_result):
+    vertices, faces = meshes.bumpy_ball()
+    assert_array(sphere_result.positions, (len(vertices), 3), np.float64)
+    assert_array(sphere_result.faces, faces.shape, np.int64)
+    assert_array(sphere_result.distortion.log2_area_ratio, (len(faces),), np.float64)
+    assert_array(sphere_result.distortion.angle_distortion, (len(faces),), np.float64)
+    assert_array(sphere_result.distortion.folded, (0,), np.int64)
+
+
 def test_arrays_of_patches_are_c_ordered_float64_and_int64():
     mesh = meshes.bumpy_cap()
     n, m = len(mesh.vertices), len(mesh.faces)
@@ -185,29 +222,34 @@ def test_arrays_of_patches_are_c_ordered_float64_and_int64():
     assert_array(patch.boundary_loops[0], (30,), np.int64)
 
 
-def test_the_history_is_a_structured_array_from_the_start_to_the_result(result):
-    history = result.history
+def test_the_history_is_a_structured_array_from_the_start_to_the_result(any_result):
+    history = any_result.history
     assert history.dtype.names == ("iteration", "authalic_energy", "step", "gradient_norm", "seconds")
     assert history.dtype["iteration"] == np.int64
     assert all(history.dtype[name] == np.float64 for name in history.dtype.names[1:])
-    assert history["iteration"].tolist() == list(range(result.iterations + 1))
+    assert history["iteration"].tolist() == list(range(any_result.iterations + 1))
     assert (np.diff(history["seconds"]) >= 0).all()
-    assert 0 <= history["seconds"][0] <= history["seconds"][-1] <= result.seconds
+    assert 0 <= history["seconds"][0] <= history["seconds"][-1] <= any_result.seconds
     assert history["step"][0] == 0
     assert (history["step"][1:] > 0).all()
 
 
-def test_the_last_energy_of_the_history_is_that_of_the_result(result):
-    assert result.history["authalic_energy"][-1] == pytest.approx(result.distortion.authalic_energy, rel=1e-9)
+def test_the_last_energy_of_the_history_is_that_of_the_result(any_result):
+    last = any_result.history["authalic_energy"][-1]
+    assert last == pytest.approx(any_result.distortion.authalic_energy, rel=1e-9)
 
 
-def test_results_cannot_be_changed(result):
-    for subject, name in ((result, "uv"), (result, "status"), (result.distortion, "folded")):
+def test_results_cannot_be_changed(any_result):
+    image = "uv" if isinstance(any_result, authalic.DiskMap) else "positions"
+    for subject, name in ((any_result, image), (any_result, "status"), (any_result.distortion, "folded")):
         with pytest.raises(AttributeError):
             setattr(subject, name, None)
 
 
-def test_results_are_printed_in_one_line_with_figures(result):
+def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
+    assert repr(sphere_result).startswith("SphereMap(258 vertices, max_iterations after 1")
+    assert "Distortion(authalic_energy=" in repr(sphere_result)
+    assert "\n" not in repr(sphere_result)
     text = repr(result)
     assert text.startswith("DiskMap(421 vertices, max_iterations after 55 iterations")
     assert "Distortion(authalic_energy=" in text
@@ -240,3 +282,41 @@ def test_an_option_out_of_range_is_a_plain_value_error(option, value, words):
 def test_an_option_of_the_wrong_type_is_a_type_error(option, value):
     with pytest.raises(TypeError):
         authalic.disk_map(*meshes.grid(), **{option: value})
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("method", "newton", 'method must be "gradient_descent" or "fixed_point", but is "newton"'),
+        ("line_search", "none", 'line_search must be "interpolation" or "bounded", but is "none"'),
+        ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
+        ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
+        ("tolerance", float("-inf"), "tolerance must be a finite number ≥ 0, but is -inf"),
+        ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),
+        ("angle_weight", 0.5, "angle_weight must be 0 "),
+    ],
+)
+def test_an_option_of_sphere_maps_out_of_range_is_a_plain_value_error(option, value, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        authalic.sphere_map(*meshes.octahedron(), **{option: value})
+    assert type(caught.value) is ValueError
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_the_fixed_point_takes_any_tolerance_below_infinity(value):
+    with pytest.raises(ValueError, match="tolerance must be below infinity"):
+        authalic.sphere_map(*meshes.octahedron(), method="fixed_point", tolerance=value)
+    for tolerance in (-np.inf, -1.0, 0.0, 1e300):
+        authalic.sphere_map(*meshes.octahedron(), method="fixed_point", tolerance=tolerance)
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        *[("method", 3), ("line_search", None), ("max_iterations", "many"), ("tolerance", "small")],
+        *[("unfold", "yes"), ("progress", 5)],
+    ],
+)
+def test_an_option_of_sphere_maps_of_the_wrong_type_is_a_type_error(option, value):
+    with pytest.raises(TypeError):
+        authalic.sphere_map(*meshes.octahedron(), **{option: value})

@@ -14,10 +14,10 @@ from . import meshes, oracle
 CAP = meshes.bumpy_cap()
 
 
-def refused(vertices, faces, words, **options):
+def refused(vertices, faces, words, call=authalic.disk_map, **options):
     """The elements that the MeshError names and their number."""
     with pytest.raises(authalic.MeshError, match=words) as caught:
-        authalic.disk_map(vertices, faces, **options)
+        call(vertices, faces, **options)
     assert str(caught.value).isprintable()
     return caught.value.indices, caught.value.count
 
@@ -60,7 +60,7 @@ def test_unsigned_indices_out_of_range():
     assert refused(CAP.vertices, faces, "in row 5") == ((5,), 1)
 
 
-@pytest.mark.parametrize("call", [authalic.disk_map, authalic.cut])
+@pytest.mark.parametrize("call", [authalic.disk_map, authalic.sphere_map, authalic.cut])
 @pytest.mark.parametrize(
     ("vertices", "faces", "words"),
     [

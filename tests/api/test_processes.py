@@ -12,18 +12,28 @@ import authalic
 from . import meshes
 
 
-def _solve(queue, vertices, faces):
-    queue.put(authalic.disk_map(vertices, faces, max_iterations=5).uv)
+def disk(vertices, faces):
+    return authalic.disk_map(vertices, faces, max_iterations=5).uv
+
+
+def sphere(vertices, faces):
+    return authalic.sphere_map(vertices, faces, max_iterations=5).positions
+
+
+def _solve(queue, solve, vertices, faces):
+    queue.put(solve(vertices, faces))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_a_forked_worker_maps_like_its_parent():
-    vertices, faces = meshes.grid(120, 120)[:2]
-    expected = authalic.disk_map(vertices, faces, max_iterations=5).uv
+@pytest.mark.parametrize(
+    ("solve", "mesh"), [(disk, meshes.grid(120, 120)), (sphere, meshes.bumpy_ball(5))], ids=["disk", "sphere"]
+)
+def test_a_forked_worker_maps_like_its_parent(solve, mesh):
+    expected = solve(*mesh)
     context = multiprocessing.get_context("fork")
     queue = context.Queue()
-    worker = context.Process(target=_solve, args=(queue, vertices, faces), daemon=True)
+    worker = context.Process(target=_solve, args=(queue, solve, *mesh), daemon=True)
     worker.start()
     assert np.array_equal(queue.get(timeout=60), expected)
     worker.join(timeout=60)

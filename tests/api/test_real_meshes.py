@@ -79,6 +79,74 @@ def test_every_patch_of_a_hard_mesh_is_refused_or_mapped_without_a_fold(path):
         assert oracle.folded(result.uv, result.faces) == []
 
 
+SPHERE_BOUNDS = {"david_10671": 3.3e-3, "bulldog_49797": 1.4e-2}
+"""Bounds of E_A after 100 steps of gradient descent; Sutti & Yueh have 3.04e-3 and 1.27e-2."""
+
+
+@real("sphere")
+def test_the_start_map_of_a_real_closed_surface_has_no_fold(path):
+    result = authalic.sphere_map(*meshes.load(path), method="fixed_point", max_iterations=0)
+    assert result.iterations == 0
+    oracle.assert_sphere_embedding(result)
+
+
+@real("sphere")
+def test_real_closed_surfaces_have_no_fold(path):
+    mesh = meshes.load(path)
+    result = authalic.sphere_map(*mesh)
+    oracle.assert_sphere_embedding(result)
+    targets = oracle.face_areas(mesh.vertices, result.faces)
+    energy = oracle.sphere_energy(result.positions, result.faces, targets)
+    assert result.distortion.authalic_energy == pytest.approx(energy, rel=1e-6)
+    assert energy <= SPHERE_BOUNDS.get(path.stem, np.inf)
+    weights = oracle.vertex_weights(result.faces, targets, len(mesh.vertices))
+    oracle.assert_lies_over(result.positions, mesh.vertices, weights)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("surface", ["V_white", "V_pial"])
+def test_the_cortex_is_mapped_better_than_by_freesurfer(side, surface):
+    path = meshes.DATA / "brain" / f"fsaverage5_{side}_10242.npz"
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    with np.load(path) as file:
+        vertices, faces, sphere = (file[name].astype(float) for name in (surface, "F", "V_sphere"))
+    result = authalic.sphere_map(vertices, faces)
+    oracle.assert_sphere_embedding(result)
+    sphere /= np.linalg.norm(sphere, axis=1)[:, None]
+    theirs = authalic.distortion(vertices, faces, sphere)
+    assert result.distortion.area_ratio_std < 0.2 * theirs.area_ratio_std
+
+
+def test_slivers_are_mapped_soundly_or_given_up():
+    path = meshes.DATA / "hard" / "triceratops_2832.npz"
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    try:
+        oracle.assert_sphere_embedding(authalic.sphere_map(*meshes.load(path)))
+    except authalic.SolverError as error:
+        assert "no map without folds" in str(error)
+
+
+@real("hard")
+def test_hard_closed_surfaces_are_refused_or_mapped_without_a_fold(path):
+    try:
+        result = authalic.sphere_map(*meshes.load(path), max_iterations=20)
+    except (authalic.MeshError, authalic.SolverError) as error:
+        assert len(str(error)) > 30
+        assert "internal error" not in str(error)
+        return
+    oracle.assert_sphere_embedding(result)
+
+
+def test_a_cheese_is_no_sphere():
+    path = meshes.DATA / "hard" / "cheese_8629.npz"
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    with pytest.raises(authalic.MeshError, match=r"genus 133 .*seams"):
+        authalic.sphere_map(*meshes.load(path))
+
+
 @real("sphere")
 def test_real_closed_surfaces_are_told_to_mark_seams(path):
     with pytest.raises(authalic.MeshError, match="seams"):

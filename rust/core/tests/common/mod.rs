@@ -2,6 +2,8 @@
 //! Meshes of known topology, made in code. Tests loop over all that qualify.
 #![allow(dead_code)] // each test binary uses its own part
 
+pub mod closed;
+
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
@@ -28,6 +30,10 @@ impl TestMesh {
     pub fn is_disk(&self) -> bool {
         self.components == 1 && self.n_loops == 1 && self.euler_characteristic == 1
     }
+
+    pub fn is_sphere(&self) -> bool {
+        self.components == 1 && self.n_loops == 0 && self.euler_characteristic == 2
+    }
 }
 
 /// Every test mesh.
@@ -42,6 +48,9 @@ pub fn all() -> Vec<TestMesh> {
         annulus(11, 3),
         icosphere(2),
         ellipsoid(2, [1.0, 2.0, 5.0]),
+        closed::octahedron(),
+        closed::cube(3),
+        closed::parallels(5, 8),
         torus(9, 14),
         punctured_torus(),
         two_pieces(),
@@ -293,7 +302,7 @@ pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }
 
-fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+pub fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh of the sphere in a layout, with the corners of every face where they belong together.
 
-Each edge is a great arc; the cuts of the layout that it leads across tell the image of its end next to that of
-its start. So both faces at an edge agree on it, wherever they are put in the end. Plain numpy, no bpy.
+Each edge is a great arc; the cuts of the layout that it leads across tell the image of its end next to that
+of its start. So both faces at an edge agree on it, wherever they are put in the end. Plain numpy, no bpy.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,6 @@ class Chart:
             return
         others = uv[face, :, 0]
         others[np.arange(len(face)), corner] = np.nan
-        others[np.abs(uv[face, :, 1]) >= 1] = np.nan
         low, high = np.full((2, group.max() + 1), np.nan)
         np.fmin.at(low, group, np.fmin.reduce(others, axis=1))
         np.fmax.at(high, group, np.fmax.reduce(others, axis=1))

@@ -3,8 +3,8 @@
 
 A layout has singular points: the poles of Lambert's cylinder, four points of the equator for the octahedral
 square. A face with one inside would fold over, so that first a vertex is moved onto each of them, the first
-by a rotation of the sphere, the others by twists that keep areas. What straight edges still fold is unfolded
-in the plane, and what they do to areas across the creases of the octahedral map is evened out.
+by a rotation of the sphere, the others by twists that keep areas. What straight edges do to areas, near
+poles and across the creases of the octahedral map, is evened out in the plane, and what they fold unfolded.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ _FIRST_CANDIDATES = 6
 _CANDIDATES = 30
 _NEIGHBOURHOOD = 150
 # Choice of vertices for the singular points, and turn about the pole axis; the turns are for coarse meshes.
-_ATTEMPTS = [(rank, 0.0) for rank in range(6)] + [(0, 2.4 * turn) for turn in range(1, 16)]
+_ATTEMPTS = [(rank, 0.0) for rank in range(4)] + [(0, 2.4 * turn) for turn in range(1, 16)]
 _COARSE = 500
 _FEW, _SHARE = 100, 1e-3
 _FOLD_PENALTY = 100.0
@@ -81,12 +81,10 @@ def _straighten(chart, areas, movable):
     """Mends what straight edges do to a chart, towards `areas` (m,); returns how many folds are left."""
     if not chart.closed.all():
         return np.count_nonzero(~chart.closed)
-    if chart.layout.cones:
-        relax(chart, areas, movable)
+    relax(chart, areas, movable)
     if 0 < len(folded(chart.uv())) <= _hopeless(chart.faces):
         untangle(chart, areas, movable)
-        if chart.layout.cones:
-            relax(chart, areas, movable)
+        relax(chart, areas, movable)
     return len(folded(chart.uv()))
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Evens out what straight edges do to areas where a layout has creases. Plain numpy, no bpy.
+"""Evens out what straight edges do to areas, near poles and across creases. Plain numpy, no bpy.
 
 Levenberg-Marquardt steps on the authalic energy, sum of (area - wanted)^2 / wanted over the faces, in the
 places of the vertices. Each step is solved roughly by conjugate gradients with a diagonal preconditioner:
-what creases do is local. Where a step would fold a face over, it is halved.
+what straight edges do is local. Where a step would fold a face over, or nearly, it is shortened.
 """
 
 import numpy as np
@@ -11,10 +11,12 @@ import numpy as np
 from . import triangulation
 from .untangle import folded
 
-_STEPS = 2
+_STEPS = 3
 _ITERATIONS = 20
 _DAMPING = 1e-2
 _HALVINGS = 20
+# Faces must not shrink below this part of the area wanted or, smaller ones, below this part of their own.
+_LEAST, _SHRINK = 0.4, 0.9
 
 
 def relax(chart, areas, movable):
@@ -23,28 +25,47 @@ def relax(chart, areas, movable):
     Vertices that are not in the mask `movable` (n,) stay. Folded faces may unfold; no other one folds over.
     """
     for _ in range(_STEPS):
-        _move(chart, _step(chart, areas, movable))
+        before = chart.places
+        energy = _energy(chart, areas)
+        _move(chart, _step(chart, areas, movable), areas, movable)
+        if not _energy(chart, areas) < energy:
+            chart.places = before
+            return
 
 
-def _move(chart, step):
+def _energy(chart, areas):
+    return ((triangulation.signed_areas(chart.uv()) - areas) ** 2 / areas).sum()
+
+
+def _move(chart, step, areas, movable):
     """Moves the places by a step (n, 2), less far where faces would fold over that do not."""
-    start, sound = chart.places, np.ones(len(chart.faces), bool)
-    sound[folded(chart.uv())] = False
+    start, uv = chart.places, chart.uv()
+    least = np.minimum(_LEAST * areas, _SHRINK * triangulation.signed_areas(uv))
+    least[folded(uv)] = -np.inf
     length = np.ones((len(start), 1))
     for halving in range(_HALVINGS):
         chart.places = start + length * step
-        bad = folded(chart.uv())
-        bad = bad[sound[bad]]
-        if len(bad) == 0:
+        uv = chart.uv()
+        bad = triangulation.signed_areas(uv) < least
+        new = folded(uv)
+        bad[new] |= np.isfinite(least[new])
+        outside = ~chart.layout.within(chart.places) & movable & (length[:, 0] > 0)
+        if not (bad.any() or outside.any()):
             return
         length[np.unique(chart.faces[bad])] *= 0.5 if halving < _HALVINGS // 2 else 0.0
+        length[outside] = 0
     chart.places = start
 
 
 def _step(chart, areas, movable):
     """The movement (n, 2) of the places by one damped Gauss-Newton step."""
     uv, faces, count = chart.uv(), chart.faces, len(chart.places)
-    gradient = _area_gradients(uv) * (chart.moves.signs * movable[faces])[..., None]
+    gradient = _area_gradients(uv)
+    at_pole = chart.polar[:2]
+    gradient[at_pole[0], :, 0] += (
+        gradient[at_pole][:, None, 0] / 2
+    )  # that corner is in the middle of the others
+    gradient *= (chart.moves.signs * movable[faces])[..., None]
     flat = faces.ravel()
 
     def gathered(values):

@@ -21,9 +21,10 @@ _ROUNDING = 16 * float(np.finfo(np.float32).eps)
 
 def folded(uv):
     """Faces of images (m, 3, 2) that are folded over, or so thin that rounding might fold them over."""
-    sides = np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2).max(axis=1)
-    rounding = _ROUNDING * sides * np.ptp(uv.reshape(-1, 2), axis=0).max()
-    return np.flatnonzero(~(triangulation.signed_areas(uv) > rounding))
+    a, b, c = uv[:, 0], uv[:, 1], uv[:, 2]
+    sides = np.maximum(np.abs(b - a), np.abs(c - a)).sum(axis=1)
+    size = max(np.ptp(uv[..., axis]) for axis in (0, 1))
+    return np.flatnonzero(~(triangulation.signed_areas(uv) > _ROUNDING * size * sides))
 
 
 def untangle(chart, areas, movable):

@@ -98,15 +98,24 @@ def test_lambert_rectangle():
     vertices, faces = uneven_sphere()
     uv = project(vertices, faces)
     low, high = uv.min(axis=(0, 1)), uv.max(axis=(0, 1))
-    assert low[1] == -1 and high[1] == 1 and -1e-5 <= low[0] < 0.2
+    assert low[1] == -1 and high[1] == 1 and -0.02 < low[0] < 0.2
     first = uv[..., 0].min(axis=1)
-    assert first.max() < 2 * np.pi and high[0] > 2 * np.pi
+    assert first.max() < 2 * np.pi + 0.02 and high[0] > 2 * np.pi
     assert np.ptp(uv[..., 0], axis=1).max() < np.pi
     polar = np.abs(uv[..., 1]) == 1
     assert 6 <= polar.sum() <= 14
     for face, corner in np.argwhere(polar):
         others = np.delete(uv[face, :, 0], corner)
         assert uv[face, corner, 0] == pytest.approx(others.mean(), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("turned", [None, 4])
+def test_areas_come_out_even(name, turned):
+    vertices, faces = spheres.icosphere(4, turned)
+    wanted = spheres.areas(vertices[faces])
+    ratios = meshes.uv_areas(project(vertices, faces, areas=wanted, layout=name)) / wanted
+    assert ratios.std() < 0.03 and 0.8 < ratios.min() < ratios.max() < 1.2
 
 
 @pytest.mark.parametrize(("axis", "seam"), [("X", (0, 1, 0)), ("Y", (0, 0, -1)), ("Z", (0, 1, 0))])
@@ -133,7 +142,10 @@ def test_uv_sphere_keeps_its_poles():
     polygons = np.array([triangle.polygon_index for triangle in obj.data.loop_triangles])
     uv = project(spheres.unit(vertices), faces, polygons=polygons)
     assert (np.abs(uv[..., 1]) == 1).sum() == 48 and np.ptp(uv[..., 0]) == pytest.approx(2 * np.pi, abs=1e-4)
-    np.testing.assert_allclose(uv[..., 1], spheres.unit(vertices)[faces][..., 2], atol=1e-6)
+    # The rows stay rows, a bit lower, where polar faces need room.
+    np.testing.assert_allclose(uv[..., 1], spheres.unit(vertices)[faces][..., 2], atol=0.05)
+    rows = np.unique(uv[..., 1].round(4))
+    assert len(rows) == 13
 
 
 def turn(points, pole):

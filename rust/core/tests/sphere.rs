@@ -373,8 +373,9 @@ proptest! {
     ) {
         radii[7] *= spike;
         let mesh = star(level, &radii).mesh();
+        // bounded, as densities too far apart are refused
         let density: Vec<f64> = mesh.face_areas().iter().enumerate()
-            .map(|(face, area)| area * (contrast * radii[face % radii.len()]).exp()).collect();
+            .map(|(face, area)| area * (contrast * radii[face % radii.len()].min(2.0)).exp()).collect();
         let options = SphereMapOptions { method, line_search, density: Some(&density), max_iterations: Some(20), ..Default::default() };
         assert_bijective(&mesh, &mapped(&mesh, options).positions, "random sphere");
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The demo's figures: the UV layouts and the histograms of area ratios.
+"""The demo's figures: the UV layouts, those by way of the sphere too, and the histograms of area ratios.
 
 Usage: python demo_figures.py OUT_FOLDER (after demo_scene.py has written OUT_FOLDER/data)
 """
@@ -26,10 +26,10 @@ RANGE = 3.0
 """Histograms and colours go from 2^-3 to 2^3."""
 
 
-def results(out):
+def results(data):
     """The unwrapped meshes: {mesh: {method: arrays}}, in the order of the report."""
     found = {}
-    for path in sorted((out / "data").glob("*.npz")):
+    for path in sorted(data.glob("*.npz")):
         with np.load(path) as stored:
             arrays = dict(stored)
         found.setdefault(str(arrays["mesh"]), {})[str(arrays["method"])] = arrays
@@ -47,9 +47,26 @@ def draw_layouts(found, path):
         row[0].set_ylabel(mesh, fontsize=12)
         for axis, method in zip(row, methods, strict=True):
             drawn = _draw_layout(axis, by_method.get(method))
-    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.35, aspect=30, ticks=[-2, -1, 0, 1, 2])
-    bar.ax.set_xticklabels(["1/4", "1/2", "1", "2", "4"])
-    bar.set_label("texture area / fair share")
+    _colour_bar(figure, axes, drawn)
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def draw_sphere_layouts(found, path):
+    """The UVs of closed meshes, all layouts at one height, with their figures below."""
+    methods = list(dict.fromkeys(name for row in found.values() for name in row))
+    widths = [max(_aspect(row.get(name)) for row in found.values()) for name in methods]
+    size = (2.9 * sum(widths) + 0.5, 3.6 * len(found) + 0.8)
+    figure, axes = plt.subplots(
+        len(found), len(methods), figsize=size, squeeze=False, layout="constrained", width_ratios=widths
+    )
+    for row, (mesh, by_method) in zip(axes, found.items(), strict=True):
+        row[0].set_ylabel(mesh, fontsize=12)
+        for axis, method in zip(row, methods, strict=True):
+            drawn = _draw_layout(axis, by_method.get(method))
+            axis.set_title(method, fontsize=12)
+            axis.set_xlabel(_figures(by_method.get(method)), fontsize=10.5)
+    _colour_bar(figure, axes, drawn)
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -71,6 +88,27 @@ def draw_histograms(found, path):
     axes[0][0].set_ylabel("share of the triangles")
     figure.savefig(path, dpi=130)
     plt.close(figure)
+
+
+def _aspect(arrays):
+    if arrays is None:
+        return 0.5
+    width, height = np.ptp(arrays["uv"].reshape(-1, 2), axis=0)
+    return float(np.clip(width / max(height, 1e-12), 0.3, 4))
+
+
+def _figures(arrays):
+    if arrays is None:
+        return ""
+    (a, b, c), ratio = np.moveaxis(arrays["uv"], 1, 0), arrays["area_ratio"]
+    flipped = int((np.linalg.det(np.stack([b - a, c - a], axis=1)) <= 0).sum())
+    return f"area ratio SD {ratio.std():.3g}, {flipped} flipped"
+
+
+def _colour_bar(figure, axes, drawn):
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.35, aspect=30, ticks=[-2, -1, 0, 1, 2])
+    bar.ax.set_xticklabels(["1/4", "1/2", "1", "2", "4"])
+    bar.set_label("texture area / fair share")
 
 
 def _draw_layout(axis, arrays):
@@ -104,6 +142,8 @@ def _draw_histogram(axis, method, ratio, bins):
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
-    unwrapped = results(folder)
+    unwrapped, spherical = results(folder / "data"), results(folder / "data" / "sphere")
     draw_layouts(unwrapped, folder / "layouts.png")
     draw_histograms(unwrapped, folder / "histogram.png")
+    if spherical:
+        draw_sphere_layouts(spherical, folder / "sphere_layouts.png")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Figures of a UV layout, from the coordinates that stand in the mesh and nothing else.
+"""Figures of a UV layout or of a map onto a sphere, from the coordinates in the mesh and nothing else.
 
 They are computed here in plain numpy, independently of the native module that made the maps.
 """
@@ -11,9 +11,9 @@ import numpy as np
 
 @dataclass
 class Layout:
-    """A mesh's triangles in space and in the UV plane.
+    """A mesh's triangles in space and their images: in the UV plane or on a sphere about the origin.
 
-    corners (m, 3, 3); uv (m, 3, 2); polygon (m,), the polygon of each triangle.
+    corners (m, 3, 3); uv (m, 3, 2 or 3); polygon (m,), the polygon of each triangle.
     """
 
     corners: np.ndarray
@@ -23,29 +23,46 @@ class Layout:
 
 def layout_of(mesh):
     """Reads the triangles of a Blender mesh with its active UV layer."""
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    loops, polygon = np.empty(3 * count, np.int32), np.empty(count, np.int32)
-    mesh.loop_triangles.foreach_get("loops", loops)
-    mesh.loop_triangles.foreach_get("polygon_index", polygon)
-    vertex = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_vert"].data.foreach_get("value", vertex)
-    position = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", position)
+    loops, vertices, polygon = _triangles(mesh)
     uv = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers.active.uv.foreach_get("vector", uv)
-    corners = position.reshape(-1, 3).astype(float)[vertex[loops]]
-    return Layout(
-        corners.reshape(-1, 3, 3), uv.reshape(-1, 2).astype(float)[loops].reshape(-1, 3, 2), polygon
-    )
+    return Layout(positions(mesh)[vertices], uv.reshape(-1, 2).astype(float)[loops], polygon)
+
+
+def sphere_of(mesh, key):
+    """Reads the triangles of a Blender mesh and their images by a shape key whose points lie on a sphere."""
+    _, vertices, polygon = _triangles(mesh)
+    image = points_of(mesh, key)
+    image -= _centre_of_sphere(image)
+    return Layout(positions(mesh)[vertices], image[vertices], polygon)
+
+
+def positions(mesh):
+    """The coordinates (n, 3) of a Blender mesh, those of its first shape key if it has any."""
+    found = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", found)
+    return found.reshape(-1, 3).astype(float)
+
+
+def points_of(mesh, key):
+    """The coordinates (n, 3) of a Blender mesh's shape key."""
+    found = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.shape_keys.key_blocks[key].points.foreach_get("co", found)
+    return found.reshape(-1, 3).astype(float)
 
 
 def areas(layout):
-    """The area of each triangle in space and its signed area in the UV plane."""
-    a, b = layout.corners[:, 1] - layout.corners[:, 0], layout.corners[:, 2] - layout.corners[:, 0]
-    u, v = layout.uv[:, 1] - layout.uv[:, 0], layout.uv[:, 2] - layout.uv[:, 0]
-    surface = np.linalg.norm(np.cross(a, b), axis=1) / 2
-    return surface, (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+    """The area of each triangle in space and the signed area of its image.
+
+    On the sphere the sign is positive where a face is seen counter-clockwise from outside.
+    """
+    surface = np.linalg.norm(np.cross(*_sides(layout.corners)), axis=1) / 2
+    u, v = _sides(layout.uv)
+    if layout.uv.shape[2] == 2:
+        return surface, (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+    normal = np.cross(u, v)
+    outward = np.sign(np.einsum("ij,ij->i", normal, layout.uv[:, 0]))
+    return surface, outward * np.linalg.norm(normal, axis=1) / 2
 
 
 def area_ratio(layout):
@@ -64,12 +81,12 @@ def polygon_log2_ratio(layout, polygons):
 
 
 def stretch(layout):
-    """sigma1 / sigma2 of each triangle's map from the surface to the plane: 1 keeps angles."""
-    a, b = layout.corners[:, 1] - layout.corners[:, 0], layout.corners[:, 2] - layout.corners[:, 0]
+    """sigma1 / sigma2 of each triangle's map from the surface to its image: 1 keeps angles."""
+    a, b = _sides(layout.corners)
     length = np.maximum(np.linalg.norm(a, axis=1), 1e-300)
     along = np.einsum("ij,ij->i", a, b) / length
     across = np.maximum(2 * areas(layout)[0] / length, 1e-300)
-    u, v = layout.uv[:, 1] - layout.uv[:, 0], layout.uv[:, 2] - layout.uv[:, 0]
+    u, v = _sides(layout.uv)
     first = u / length[:, None]
     second = (v - along[:, None] * first) / across[:, None]
     singular = np.linalg.svd(np.stack([first, second], axis=2), compute_uv=False)
@@ -87,3 +104,26 @@ def summary(layout):
         "angle_distortion_mean": float(angle.mean()),
         "angle_distortion_median": float(np.median(angle)),
     }
+
+
+def _sides(triangles):
+    return triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+
+
+def _triangles(mesh):
+    """The corners (m, 3) of a mesh's triangles, their vertices (m, 3) and the triangles' polygons (m,)."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    loops, polygon = np.empty(3 * count, np.int32), np.empty(count, np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    mesh.loop_triangles.foreach_get("polygon_index", polygon)
+    vertex = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", vertex)
+    loops = loops.reshape(-1, 3)
+    return loops, vertex[loops], polygon
+
+
+def _centre_of_sphere(points):
+    """Least squares: |p|² = 2 c·p + r² − |c|² for all points p of a sphere about c."""
+    matrix = np.column_stack([2 * points, np.ones(len(points))])
+    return np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0][:3]

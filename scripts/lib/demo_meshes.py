@@ -44,6 +44,43 @@ def cut_sphere():
     return _prepared(shape, "Sphere, one seam")
 
 
+def closed_suzanne():
+    """Blender's monkey as one closed surface, all of quads: eyes and head are joined by a remesh."""
+    bpy.ops.mesh.primitive_monkey_add()
+    shape = bpy.context.object
+    shape.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    shape.data.remesh_voxel_size, shape.data.remesh_voxel_adaptivity = 0.035, 0.0
+    bpy.ops.object.voxel_remesh()
+    smooth = shape.modifiers.new("Smooth", "SMOOTH")  # takes away the steps of the voxels
+    smooth.factor, smooth.iterations = 0.5, 4
+    bpy.ops.object.modifier_apply(modifier="Smooth")
+    return without_seams(_prepared(shape, "Suzanne, closed"))
+
+
+def without_seams(shape):
+    """Takes the seams off an object that a sphere is to be made of, and fits its sphere into a cell too."""
+    mesh = shape.data
+    for edge in mesh.edges:
+        edge.use_seam = False
+    area = sum(polygon.area for polygon in mesh.polygons)
+    diameter = math.sqrt(area / math.pi)
+    mesh.transform(Matrix.Scale(min(1.0, HEIGHT / diameter), 4))
+    return shape
+
+
+def is_sphere(mesh):
+    """Whether a mesh is one closed surface without handles: manifold, with Euler characteristic 2."""
+    work = bmesh.new()
+    work.from_mesh(mesh)
+    loose = any(not vertex.link_faces for vertex in work.verts)
+    manifold = all(part.is_manifold for part in (*work.edges, *work.verts))
+    euler = len(work.verts) - len(work.edges) + len(work.faces)
+    found = not loose and manifold and len(_pieces(work)) == 1 and euler == 2
+    work.free()
+    return found
+
+
 def from_file(name):
     """The objects of a mesh file, joined; closed pieces without seams are cut (see `open_up`)."""
     path = Path(name)
@@ -60,6 +97,15 @@ def from_file(name):
     if len(found) > 1:
         bpy.ops.object.join()
     return _prepared(bpy.context.object, path.stem)
+
+
+def copy_of(source, name):
+    """A copy of an object with a mesh of its own, in the scene."""
+    shape = source.copy()
+    shape.data = source.data.copy()
+    shape.name = name
+    bpy.context.scene.collection.objects.link(shape)
+    return shape
 
 
 def open_up(mesh):

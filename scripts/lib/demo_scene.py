@@ -4,19 +4,19 @@
 Usage: python demo_scene.py OUT_FOLDER [MESH_FILE ...]
 """
 
-import json
 import os
 import sys
 import traceback
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import demo_measure as measure
 import demo_meshes
+import demo_report as report
+import demo_sphere
 import demo_stage as stage
 import demo_unwrap
 
@@ -28,19 +28,43 @@ def main(out, files):
     """Makes everything the demo leaves, except for the figures that need matplotlib."""
     bpy.ops.wm.read_homefile(use_empty=True)
     install_extension()
+    bpy.context.scene.name = "Comparison"
     methods = demo_unwrap.available()
     sources = [demo_meshes.suzanne(), demo_meshes.cut_sphere(), *map(demo_meshes.from_file, files)]
-    materials = stage.checker_material(), stage.heat_material()
-    report = []
+    closed = closed_meshes(sources[2:])
+    heat = stage.heat_material()
+    results = compare(out, sources, methods, heat)
+    if hasattr(bpy.types, "AUTHALIC_OT_sphere_shape_key"):
+        results += demo_sphere.show(out, closed, heat)
+    report.write(out, results)
+    finish(out)
+
+
+def closed_meshes(sources):
+    """The meshes of the second picture, {name: mesh}: a closed Suzanne and the closed ones of those given."""
+    chosen = [demo_meshes.closed_suzanne()]
+    for source in sources:
+        if demo_meshes.is_sphere(source.data):
+            shape = demo_meshes.copy_of(source, f"{source.name}, closed")
+            chosen.append(demo_meshes.without_seams(shape))
+    found = {shape.name: shape.data for shape in chosen}
+    for shape in chosen:
+        bpy.data.objects.remove(shape)
+    return found
+
+
+def compare(out, sources, methods, heat):
+    """The wall of the comparison: every mesh by every method; returns the entries of the report."""
+    results, materials = [], (stage.checker_material(), heat)
     for index, source in enumerate(sources):
         row = 2 * index
         stage.label(source.name, -0.56, row, 0.2, "RIGHT")
         stage.label("area ratio", -0.56, row + 1, 0.15, "RIGHT", 0.1)
         for column, method in enumerate(methods):
-            report.append(one_cell(out, source, method, (column, row), materials))
+            results.append(one_cell(out, source, method, (column, row), materials))
         bpy.data.objects.remove(source)
-    write_report(out, report)
-    finish(out, [method.name for method in methods], len(sources), materials[1])
+    frame_comparison([method.name for method in methods], len(sources), heat)
+    return results
 
 
 def install_extension():
@@ -60,40 +84,22 @@ def one_cell(out, source, method, place, materials):
         stage.label("left out: takes minutes", *place, 0.15)
         print(f"  {source.name} ({triangles} triangles): {method.name} left out, it takes minutes")
         return entry | {"left_out": f"more than {method.limit} triangles"}
-    shape = copy_of(source, f"{source.name} - {method.name}")
+    shape = demo_meshes.copy_of(source, f"{source.name} - {method.name}")
     seconds, problem = demo_unwrap.timed(shape, method)
     layout = measure.layout_of(shape.data)
     entry |= {"seconds": round(seconds, 3), "problem": problem} | measure.summary(layout)
-    keep(out, entry, layout)
+    report.keep(out / "data", entry, layout)
     show(shape, layout, place, materials)
-    stage.label(caption(entry), place[0], place[1] + 1.47, 0.125)
-    print("  " + sentence(entry), flush=True)
+    stage.label(report.caption(entry), place[0], place[1] + 1.47, 0.125)
+    print("  " + report.sentence(entry), flush=True)
     return entry
-
-
-def copy_of(source, name):
-    """A copy of an object with a mesh of its own, in the scene."""
-    shape = source.copy()
-    shape.data = source.data.copy()
-    shape.name = name
-    bpy.context.scene.collection.objects.link(shape)
-    return shape
-
-
-def keep(out, entry, layout):
-    """Writes what the figures need, in the order of the report."""
-    number = len(list((out / "data").iterdir()))
-    names = {key: entry[key] for key in ("mesh", "method")}
-    ratio = measure.area_ratio(layout)
-    np.savez_compressed(out / "data" / f"{number:03}.npz", uv=layout.uv, area_ratio=ratio, **names)
 
 
 def show(shape, layout, place, materials):
     """The same mesh twice: with the checker, and below it with the heat map."""
     column, row = place
     surface, signed = measure.areas(layout)
-    density = float(np.sqrt(surface.sum() / max(np.abs(signed).sum(), 1e-300)))
-    shape["checker_scale"] = density / stage.CHECKER_SIZE
+    shape["checker_scale"] = stage.checker_scale(surface, signed)
     stage.write_ratio(shape.data, measure.polygon_log2_ratio(layout, len(shape.data.polygons)))
     below = shape.copy()
     below.name = f"{shape.name} - area ratio"
@@ -102,50 +108,24 @@ def show(shape, layout, place, materials):
     stage.place(below, materials[1], column, row + 1)
 
 
-def finish(out, names, meshes, heat):
-    """Headings, legend, light and camera; writes the .blend and the picture."""
+def frame_comparison(names, meshes, heat):
+    """Headings, legend, light and camera."""
     for column, name in enumerate(names):
         stage.label(name, column, -0.62, 0.22)
     last = 2 * meshes - 0.5
     stage.heat_legend(heat, (len(names) - 1) / 2, last + 0.3)
     stage.light_and_camera((-1.4, len(names) - 0.42), (-0.8, last + 0.52), PIXELS_PER_CELL)
-    bpy.ops.wm.save_as_mainfile(filepath=str(out / "demo.blend"), check_existing=False)
-    print("rendering the comparison ...", flush=True)
-    stage.render(out / "comparison.png", SAMPLES)
 
 
-def write_report(out, results):
-    """report.json: what the figures mean, and one entry for each mesh and method."""
-    report = {
-        "blender": bpy.app.version_string,
-        "seconds": "one operator call in edit mode, single run",
-        "area_ratio": "share of the UV area over share of the surface, per triangle; one scale per object",
-        "flipped_triangles": "triangles of non-positive signed area in the UV plane",
-        "angle_distortion": "sigma1 / sigma2 per triangle; 1 keeps angles",
-        "results": results,
-    }
-    (out / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
-
-
-def caption(entry):
-    """The line below a pair of meshes."""
-    parts = [
-        f"SD {entry['area_ratio_std']:.3g}",
-        f"{entry['flipped_triangles']} flipped",
-        f"σ₁/σ₂ {entry['angle_distortion_mean']:.2f}",
-        f"{entry['seconds']:.2f} s",
-    ]
-    return "     ".join(["failed", *parts] if entry["problem"] else parts)
-
-
-def sentence(entry):
-    """The line in the terminal."""
-    text = (
-        f"{entry['mesh']:<18} {entry['method']:<21} {entry['seconds']:7.2f} s   area ratio SD "
-        f"{entry['area_ratio_std']:<9.3g} flipped {entry['flipped_triangles']:<5} "
-        f"mean σ₁/σ₂ {entry['angle_distortion_mean']:.3g}"
-    )
-    return text + (f"\n    problem: {entry['problem']}" if entry["problem"] else "")
+def finish(out):
+    """Writes the .blend and renders the pictures."""
+    bpy.context.window.scene = bpy.data.scenes["Comparison"]
+    bpy.ops.wm.save_as_mainfile(filepath=str(out / "demo.blend"), check_existing=False, compress=True)
+    for name, samples in (("Comparison", SAMPLES), ("Sphere", demo_sphere.SAMPLES)):
+        if name in bpy.data.scenes:
+            print(f"rendering {name.lower()}.png ...", flush=True)
+            bpy.context.window.scene = bpy.data.scenes[name]
+            stage.render(out / f"{name.lower()}.png", samples)
 
 
 if __name__ == "__main__":

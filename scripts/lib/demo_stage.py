@@ -25,12 +25,21 @@ HEAT_STOPS = (
 )
 
 
-def checker_material():
-    """A checker whose squares have one size on the surface when the map is even."""
-    material, nodes, link = _material("Checker")
+def new_scene(name):
+    """Adds an empty scene and makes it the one that is worked in."""
+    bpy.context.window.scene = bpy.data.scenes.new(name)
+
+
+def checker_material(uv_map="", scale_name="checker_scale"):
+    """A checker whose squares have one size on the surface when the map is even.
+
+    uv_map: the UV map's name, or the active one; scale_name: the object's property that sets the size.
+    """
+    material, nodes, link = _material(f"Checker {uv_map}".strip())
     uv = nodes.new("ShaderNodeUVMap")
+    uv.uv_map = uv_map
     scale = nodes.new("ShaderNodeAttribute")
-    scale.attribute_type, scale.attribute_name = "OBJECT", "checker_scale"
+    scale.attribute_type, scale.attribute_name = "OBJECT", scale_name
     scaled = nodes.new("ShaderNodeVectorMath")
     scaled.operation = "SCALE"
     checker = nodes.new("ShaderNodeTexChecker")
@@ -58,6 +67,12 @@ def heat_material():
     link(place.outputs["Result"], ramp.inputs["Fac"])
     link(ramp.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
     return material
+
+
+def checker_scale(surface, image):
+    """What UVs are to be multiplied by, given the areas of the triangles in space and in the UV plane."""
+    density = float(np.sqrt(surface.sum() / max(np.abs(image).sum(), 1e-300)))
+    return density / CHECKER_SIZE
 
 
 def write_ratio(mesh, values):
@@ -133,7 +148,7 @@ def render(path, samples):
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples
-    scene.cycles.max_bounces = 2
+    scene.cycles.max_bounces = 1
     scene.cycles.use_denoising = False
     scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"
@@ -188,6 +203,9 @@ def _sun(name, rotation, strength, softness):
 
 def _ground(scene, background, ambient):
     """What the camera sees behind the meshes and what lights them may differ."""
+    scene.world = bpy.data.worlds.get("Ground")
+    if scene.world is not None:
+        return
     world = scene.world = bpy.data.worlds.new("Ground")
     world.use_nodes = True
     nodes, link = world.node_tree.nodes, world.node_tree.links.new

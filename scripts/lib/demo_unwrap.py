@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The ways of unwrapping that the demo compares, each timed as one operator call in edit mode."""
+"""The ways of unwrapping that the demo compares, each timed as one operator call."""
 
 import time
 from dataclasses import dataclass
@@ -43,13 +43,30 @@ def available():
     return found
 
 
-def timed(shape, method):
-    """Unwraps an object; returns the seconds of the operator call and the problem it reported, or None."""
+PROJECTION, LAMBERT, OCTAHEDRAL = "Blender sphere projection", "Lambert", "Octahedral"
+
+
+def of_closed_meshes():
+    """The ways of giving UVs to a closed mesh without seams, each into a UV map of its name."""
+    return [
+        Method(PROJECTION, lambda: bpy.ops.uv.sphere_project(direction="ALIGN_TO_OBJECT")),
+        Method(LAMBERT, lambda: bpy.ops.authalic.unwrap(domain="AUTO", sphere_layout="LAMBERT")),
+        Method(OCTAHEDRAL, lambda: bpy.ops.authalic.unwrap(domain="AUTO", sphere_layout="OCTAHEDRAL")),
+    ]
+
+
+SHAPE_KEY = Method("Authalic Sphere", lambda: bpy.ops.authalic.sphere_shape_key())
+"""Works in object mode; the shape key has the name of the method."""
+
+
+def timed(shape, method, mode="EDIT"):
+    """Runs a method on an object; returns the seconds of the call and the problem it reported, or None."""
     bpy.ops.object.select_all(action="DESELECT")
     shape.select_set(True)
     bpy.context.view_layer.objects.active = shape
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.object.mode_set(mode=mode)
+    if mode == "EDIT":
+        bpy.ops.mesh.select_all(action="SELECT")
     problem = None
     began = time.perf_counter()
     try:

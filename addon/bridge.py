@@ -29,6 +29,8 @@ __all__ = (
     "unwrap",
 )
 
+# A standard deviation of area ratios that comes of long limbs or of large polygons on a sphere.
+_UNEVEN = 0.5
 _CANCELLED = "cancelled, nothing was changed"
 
 
@@ -235,7 +237,12 @@ def _by_sphere(piece, settings, progress):
         ) from problem
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
-    return _island(piece, found, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
+    island = _island(piece, found, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
+    ratios = np.abs(triangulation.signed_areas(uv)) / triangulation.areas(piece.points[faces])
+    deviation = float(ratios.std() / ratios.mean())
+    if deviation > _UNEVEN:
+        island.uneven = deviation
+    return island
 
 
 def _sphere_map(points, faces, iterations, progress):
@@ -243,12 +250,16 @@ def _sphere_map(points, faces, iterations, progress):
     found = authalic.sphere_map(points, faces, max_iterations=iterations, progress=progress)
     if found.status == "cancelled":
         raise Cancelled(_CANCELLED)
-    if found.status == "stalled":  # which on coarse meshes may come out worse than the start
+    if found.status == "stalled" or _is_thin(found):  # coarse meshes may come out worse than the start
         start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
-        found = min(found, start, key=lambda result: result.distortion.authalic_energy)
+        found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
     oriented = np.asarray(found.faces)
-    positions = spherical.over_surface(points, oriented, np.array(found.positions))
-    return found, positions, spherical.turned(faces, oriented)
+    over = spherical.over_surface(points, oriented, np.array(found.positions))
+    return found, over, spherical.turned(faces, oriented)
+
+
+def _is_thin(found):
+    return spherical.is_thin(np.asarray(found.positions), np.asarray(found.faces))
 
 
 def _island(piece, found, uv, faces, turned, points):

@@ -5,6 +5,9 @@ import numpy as np
 
 from . import triangulation
 
+# Blender keeps coordinates in single precision.
+_ROUNDING = 8 * float(np.finfo(np.float32).eps)
+
 
 def centroid(points, faces):
     """The centre (3,) of the area of a surface."""
@@ -38,6 +41,13 @@ def over_surface(points, faces, positions):
     u, _, vt = np.linalg.svd((weights[:, None] * positions).T @ points)
     u[:, -1] *= np.sign(np.linalg.det(u @ vt))
     return positions @ (u @ vt)
+
+
+def is_thin(positions, faces):
+    """Whether a face of a map (n, 3) lies so flat on a great circle that rounding might fold it over."""
+    corners = positions[faces]
+    sides = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2))
+    return bool((np.linalg.det(corners) < _ROUNDING * sides).any())
 
 
 def turned(faces, oriented):

@@ -56,19 +56,19 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
     )
     sphere_layout: EnumProperty(
         name="Layout",
-        description="How the sphere of a closed island is laid flat. Areas are kept by both",
+        description="How the sphere of a closed island is laid flat, by a projection that keeps areas",
         items=(
             (
                 "LAMBERT",
                 "Lambert Cylindrical",
-                "A rectangle as long as the equator. Faces at the poles have half of their share, those at "
-                "the seam stand out to the right",
+                "A rectangle as long as the equator. The poles are its upper and lower side, faces at the "
+                "seam stand out to the right",
             ),
             (
                 "OCTAHEDRAL",
                 "Octahedral",
-                "A square with the upper pole in the middle and the lower pole in its corners. Every face "
-                "has its share, those at the seam stand out a little",
+                "A square with the upper pole in the middle and the lower pole in its corners. Faces at the "
+                "seam stand out a little",
             ),
         ),
         default="LAMBERT",

@@ -12,10 +12,15 @@
 //! the whole gradient. With targets rescaled so that |M| = A, E = E_A + A with the authalic energy E_A = Σ
 //! (a_τ − |τ|)²/|τ|. That form is used here because E_S − A cancels near the minimum.
 //!
+//! A smaller image lowers E even where no area ratio improves. A descent that is not to drift there minimises 4π/A · E
+//! instead ([`SpatialStretchEnergy::scale_free`]), which is 4π (1 + E_A/A).
+//!
 //! A descent that must not fold puts [`Profile::Barrier`] in place of (ρ − 1)² for the area ratio ρ =
 //! a_τ/|τ|.
 //!
 //! Cost: one pass over the faces, one gather over the corners of each vertex.
+
+use std::f64::consts::PI;
 
 use sprs::{CsMat, TriMat};
 
@@ -31,6 +36,7 @@ pub struct SpatialStretchEnergy<'a> {
     targets: &'a [f64],
     total_target: f64,
     profile: Profile,
+    scale_free: bool,
 }
 
 impl<'a> SpatialStretchEnergy<'a> {
@@ -38,12 +44,17 @@ impl<'a> SpatialStretchEnergy<'a> {
     pub fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
         assert_eq!(targets.len(), mesh.n_faces(), "one target area per face");
         let total_target = parallel::sum(targets.len(), |face| targets[face]);
-        Self { mesh, targets, total_target, profile: Profile::Stretch }
+        Self { mesh, targets, total_target, profile: Profile::Stretch, scale_free: false }
     }
 
     /// The same energy with another cost of area ratios.
     pub fn with_profile(self, profile: Profile) -> Self {
         Self { profile, ..self }
+    }
+
+    /// The same energy times 4π/A, which does not fall when the image only shrinks.
+    pub fn scale_free(self) -> Self {
+        Self { scale_free: true, ..self }
     }
 
     /// The target areas, one per face.
@@ -66,7 +77,7 @@ impl<'a> SpatialStretchEnergy<'a> {
     /// The value at `map` and the gradient of the objective by every vertex, (n, 3).
     ///
     /// With c = A/|M| and ρ = a_τ/(c|τ|) the objective Σ c|τ| ψ(ρ) + A has the derivative ψ'(ρ_τ) + (Σ c|τ|
-    /// ψ − Σ a ψ')/A + 1 by a_τ.
+    /// ψ − Σ a ψ')/A + 1 by a_τ; times 4π/A it has 4π/A (ψ'(ρ_τ) − Σ a ψ'/A).
     pub fn gradient(&self, map: &[Vector]) -> (Value, Vec<Vector>) {
         let vectors = parallel::map(self.targets.len(), |face| area_vector(self.corners(map, face)));
         let areas = parallel::map(vectors.len(), |face| norm(vectors[face]));
@@ -74,10 +85,13 @@ impl<'a> SpatialStretchEnergy<'a> {
         let scale = value.area / self.total_target;
         let slope = |face: usize| self.profile.slope(areas[face] / (scale * self.targets[face]));
         let moment = parallel::sum(areas.len(), |face| areas[face] * slope(face));
-        let shift = (value.objective - value.area - moment) / value.area + 1.0;
+        let (factor, shift) = match self.scale_free {
+            true => (4.0 * PI / value.area, -moment / value.area),
+            false => (1.0, (value.objective - moment) / value.area),
+        };
         // half the unit normal of each face times the derivative by its area; a face without area has none
         let pull = parallel::map(areas.len(), |face| match areas[face] > 0.0 {
-            true => scaled(vectors[face], 0.5 * (slope(face) + shift) / areas[face]),
+            true => scaled(vectors[face], 0.5 * factor * (slope(face) + shift) / areas[face]),
             false => [0.0; 3],
         });
         (value, self.gather(map, &pull))
@@ -133,7 +147,8 @@ impl<'a> SpatialStretchEnergy<'a> {
         };
         let authalic_energy = total(Profile::Stretch);
         let minimised = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
-        Value { authalic_energy, area, objective: minimised + area }
+        let factor = if self.scale_free { 4.0 * PI / area } else { 1.0 };
+        Value { authalic_energy, area, objective: factor * (minimised + area) }
     }
 
     fn corners(&self, map: &[Vector], face: usize) -> [Vector; 3] {

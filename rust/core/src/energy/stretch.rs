@@ -84,7 +84,7 @@ pub struct Value {
     /// Area A of the image, signed in the plane.
     pub area: f64,
     /// What the optimisers minimise: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
-    /// Σ |τ| ψ(ρ) + A, which is their normalised energy E_A + A.
+    /// Σ |τ| ψ(ρ) + A, which is their normalised energy E_A + A, or 4π/A times that.
     pub objective: f64,
 }
 

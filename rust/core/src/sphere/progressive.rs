@@ -11,7 +11,7 @@
 //! Per face with target T, D = det(x_i, x_j, x_k), ρ = D/2T and Q = Σ edge²/2√3:
 //!
 //! ```text
-//! E = T (ρ + 1/ρ − 2) + 0.3 T (Q/D − 1).
+//! E = T (ρ + 1/ρ − 2) + λ T (Q/D − 1),     λ = 0.3.
 //! ```
 //!
 //! Cost: O(n log n), some sixty one-vertex Newton steps for each vertex, on one thread.
@@ -19,12 +19,16 @@
 use std::f64::consts::PI;
 
 use super::Map;
+use crate::control::Observer;
 use crate::mesh::TriangleMesh;
 use crate::mesh::decimation::Decimation;
 use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub};
 
-/// Weight of the shape in the energy.
+/// λ, the weight of the shape in the energy.
 const SHAPE: f64 = 0.3;
+
+/// λ of the sweeps over a whole map, one after the other.
+const RELAXED_SHAPES: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 
 /// Newton steps of a vertex that has come back.
 const NEWTON_STEPS: usize = 5;
@@ -43,7 +47,7 @@ pub(super) fn progressive(mesh: &TriangleMesh, targets: &[f64]) -> Option<Map> {
     let mut decimation = Decimation::new(mesh, targets.iter().map(|target| scale * target).collect());
     decimation.coarsen(4);
     // 2. The tetrahedron on the sphere
-    let mut embedding = Embedding { map: vec![[0.0; 3]; mesh.n_vertices()], decimation };
+    let mut embedding = Embedding { map: vec![[0.0; 3]; mesh.n_vertices()], decimation, shape: SHAPE };
     let mut placed = embedding.lay_base()?;
     // 3. One vertex after the other comes back
     let mut next_sweep = 2 * placed.len();
@@ -61,10 +65,29 @@ pub(super) fn progressive(mesh: &TriangleMesh, targets: &[f64]) -> Option<Map> {
     Some(embedding.map)
 }
 
+/// A map without folds relaxed by sweeps of one-vertex Newton steps, none of which folds a face, the shape weighing less
+/// and less. Ends early where the observer asks for it.
+pub(super) fn relaxed(mesh: &TriangleMesh, targets: &[f64], map: Map, observer: &mut dyn Observer) -> Map {
+    let scale = 4.0 * PI / targets.iter().sum::<f64>();
+    let decimation = Decimation::new(mesh, targets.iter().map(|target| scale * target).collect());
+    let mut embedding = Embedding { map, decimation, shape: SHAPE };
+    let sweeps = SWEEPS[usize::from(mesh.n_vertices() > SMALL)];
+    for sweep in 0..sweeps * RELAXED_SHAPES.len() {
+        if !observer.progress(sweep as f64 / (sweeps * RELAXED_SHAPES.len()) as f64, "Relaxing") {
+            break;
+        }
+        embedding.shape = RELAXED_SHAPES[sweep / sweeps];
+        (0..mesh.n_vertices() as u32).for_each(|vertex| embedding.relax(vertex));
+    }
+    embedding.map
+}
+
 /// A map of the vertices that are back, with what they are connected by.
 struct Embedding<'a> {
     map: Map,
     decimation: Decimation<'a>,
+    /// λ, the weight of the shape in the energy.
+    shape: f64,
 }
 
 /// Two corners of a face seen from its third, with the face's target.
@@ -126,13 +149,14 @@ impl Embedding<'_> {
         let star = self.star(vertex);
         let x = self.map[vertex as usize];
         let basis = tangent_basis(x);
-        let Some((direction, slope)) = newton_direction(x, basis, &star) else { return };
-        let energy = energy(x, &star);
+        let Some((direction, slope)) = newton_direction(x, basis, &star, self.shape) else { return };
+        let energy = energy(x, &star, self.shape);
         let mut step = (0.5 / direction[0].hypot(direction[1])).min(1.0);
         for _ in 0..12 {
             let [a, b] = direction.map(|d| step * d);
             let moved = unit(add(x, add(scaled(basis[0], a), scaled(basis[1], b))));
-            if is_open(moved, &star) && self::energy(moved, &star) <= energy + 1e-4 * step * slope {
+            if is_open(moved, &star) && self::energy(moved, &star, self.shape) <= energy + 1e-4 * step * slope
+            {
                 self.map[vertex as usize] = moved;
                 return;
             }
@@ -170,17 +194,17 @@ fn determinant_and_size(x: Vector, face: &Opposite) -> (f64, f64) {
 }
 
 /// The energy of a star, all of whose faces are positive.
-fn energy(x: Vector, star: &[Opposite]) -> f64 {
+fn energy(x: Vector, star: &[Opposite], shape: f64) -> f64 {
     let of_face = |face: &Opposite| {
         let (d, q) = determinant_and_size(x, face);
         let ratio = 0.5 * d / face.target;
-        face.target * (ratio + 1.0 / ratio - 2.0 + SHAPE * (q / d - 1.0))
+        face.target * (ratio + 1.0 / ratio - 2.0 + shape * (q / d - 1.0))
     };
     star.iter().map(of_face).sum()
 }
 
 /// The derivatives of the energy by x in space.
-fn derivatives(x: Vector, star: &[Opposite]) -> Derivatives {
+fn derivatives(x: Vector, star: &[Opposite], shape: f64) -> Derivatives {
     let mut sum = Derivatives { gradient: [0.0; 3], hessian: [[0.0; 3]; 3] };
     for face in star {
         let (d, q) = determinant_and_size(x, face);
@@ -189,7 +213,7 @@ fn derivatives(x: Vector, star: &[Opposite]) -> Derivatives {
         let (to_one, to_two) = (sub(face.one, x), sub(face.two, x));
         let by_d = cross(face.one, sub(face.two, face.one));
         let by_q = scaled(add(to_one, to_two), -1.0 / 3f64.sqrt());
-        let shape = SHAPE * target;
+        let shape = shape * target;
         let on_d = 0.5 * (1.0 - ratio.powi(-2)) - shape * q / (d * d);
         let on_dd = 0.5 * ratio.powi(-3) / target + 2.0 * shape * q / d.powi(3);
         let on_dq = -shape / (d * d);
@@ -207,8 +231,8 @@ fn derivatives(x: Vector, star: &[Opposite]) -> Derivatives {
 
 /// The Newton direction in tangent coordinates with its slope, eigenvalues made positive; `None` at a
 /// minimum.
-fn newton_direction(x: Vector, basis: [Vector; 2], star: &[Opposite]) -> Option<([f64; 2], f64)> {
-    let Derivatives { gradient, hessian } = derivatives(x, star);
+fn newton_direction(x: Vector, basis: [Vector; 2], star: &[Opposite], shape: f64) -> Option<([f64; 2], f64)> {
+    let Derivatives { gradient, hessian } = derivatives(x, star, shape);
     let times = |z: Vector| hessian.map(|row| dot(row, z));
     let curvature = dot(gradient, x);
     let g = basis.map(|axis| dot(axis, gradient));

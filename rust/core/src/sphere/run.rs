@@ -6,7 +6,7 @@
 
 use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
-use super::progressive::progressive;
+use super::progressive::{progressive, relaxed};
 use super::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
@@ -23,6 +23,9 @@ const FIXED_POINT_STEPS: usize = 10;
 
 /// ε of Algorithm 2.
 const FIXED_POINT_TOLERANCE: f64 = 1e-6;
+
+/// A correction may multiply E_A by this; one that costs more has unfolded by shrinking what was folded.
+const DEAREST_CORRECTION: f64 = 2.0;
 
 /// Iterations of a guarded descent with one preconditioner.
 const ROUND: usize = 10;
@@ -49,30 +52,49 @@ impl Run<'_> {
         let start = self.start()?;
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
-        // 2. The correction that the paper makes here; where it fails, the start is the last map without folds
-        let corrected = if self.options.unfold { unfold::unfold(self.mesh, &stepped) } else { None };
-        let map = corrected.clone().unwrap_or(stepped);
+        // 2. The correction that the paper makes here
+        let map = self.corrected(&domain, &stepped).unwrap_or(stepped);
         // 3. Gradient descent
-        let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
+        let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let (map, status) = self.gradient_descent(&domain, map, status, history, &mut phase);
         if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
-        // 4. The correction again, and a descent from there that keeps every face open
+        // 4. The correction again; where it fails, the best map without folds that there is
+        let corrected = self.corrected(&domain, &map);
         domain.guard();
-        let unfolded = [unfold::unfold(self.mesh, &map), corrected, Some(start)];
-        let unfolded = match self.best_unfolded(&domain, unfolded.into_iter().flatten()) {
+        let unfolded = match corrected {
             Some(map) => map,
-            None => progressive(self.mesh, self.targets).map_or_else(|| self.conformal(), Ok)?,
+            None => {
+                let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
+                self.rescued(&domain, &map, &mut phase)?
+            }
         };
+        // 5. A descent from there that keeps every face open
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         Ok(self.guarded_descent(&mut domain, unfolded, status, history, &mut phase))
     }
 
-    /// Of several maps the one with the lowest guarded objective; `None` where all are folded.
-    fn best_unfolded(&self, domain: &SphereDomain<'_>, maps: impl Iterator<Item = Map>) -> Option<Map> {
-        let valued = maps.map(|map| (domain.objective(&map), map)).filter(|(value, _)| value.is_finite());
-        valued.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, map)| map)
+    /// The map unfolded, where that does not cost more area than a descent can be expected to win back.
+    fn corrected(&self, domain: &SphereDomain<'_>, map: &Map) -> Option<Map> {
+        let energy = |map: &Map| domain.energy().value(map).authalic_energy;
+        let unfolded = if self.options.unfold { unfold::unfold(self.mesh, map) } else { None };
+        unfolded.filter(|unfolded| energy(unfolded) <= DEAREST_CORRECTION * energy(map))
+    }
+
+    /// Of the unfolded map and the progressive one, both relaxed, the one with the lower guarded objective.
+    fn rescued(
+        &self,
+        domain: &SphereDomain<'_>,
+        map: &Map,
+        observer: &mut dyn Observer,
+    ) -> Result<Map, Error> {
+        let progressive = progressive(self.mesh, self.targets);
+        let unfolded = [unfold::unfold(self.mesh, map), progressive].into_iter().flatten();
+        let relaxed = unfolded.map(|map| relaxed(self.mesh, self.targets, map, observer));
+        let valued = relaxed.map(|map| (domain.objective(&map), map)).filter(|(value, _)| value.is_finite());
+        let best = valued.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or_else(|| self.conformal(), |(_, map)| Ok(map))
     }
 
     /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.

@@ -75,9 +75,25 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
 fn conformal(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let by_corner: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
-    let mut plane = harmonic(mesh, roundest_face(mesh), &by_corner)?;
+    let removed = roundest_face(mesh);
+    let mut plane = harmonic(mesh, removed, &by_corner)?;
     normalise(&mut plane, weights);
-    Ok(centred(Chart::South.lift_all(&plane), weights))
+    let map = centred(Chart::South.lift_all(&plane), weights);
+    Ok(upright(map, mesh.faces()[removed]))
+}
+
+/// The map rotated so that the removed face lies at the south pole, whichever way the plane was turned.
+fn upright(map: Map, removed: [u32; 3]) -> Map {
+    let [a, b, c] = triangle(&map, removed);
+    let face = add(a, add(b, c));
+    // a half turn about the axis between the face and the pole
+    let axis = add(scaled(face, 1.0 / norm(face)), [0.0, 0.0, -1.0]);
+    let length = norm(axis);
+    let axis = if length > 1e-6 { scaled(axis, 1.0 / length) } else { [1.0, 0.0, 0.0] };
+    parallel::map(map.len(), |v| {
+        let turned = sub(scaled(axis, 2.0 * dot(axis, map[v])), map[v]);
+        scaled(turned, 1.0 / norm(turned))
+    })
 }
 
 /// The face nearest to an equilateral triangle; the lowest of several.

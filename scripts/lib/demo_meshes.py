@@ -59,7 +59,7 @@ def closed_suzanne():
 
 
 def without_seams(shape):
-    """Takes the seams off an object that a sphere is to be made of, and fits its sphere into a cell too."""
+    """Takes the seams off an object that is to become a sphere, and makes that fit into a cell."""
     mesh = shape.data
     for edge in mesh.edges:
         edge.use_seam = False
@@ -96,7 +96,7 @@ def from_file(name):
     bpy.context.view_layer.objects.active = found[0]
     if len(found) > 1:
         bpy.ops.object.join()
-    return _prepared(bpy.context.object, path.stem)
+    return _opened(_prepared(bpy.context.object, path.stem))
 
 
 def copy_of(source, name):
@@ -143,9 +143,16 @@ def _prepared(shape, name):
     mesh.materials.clear()
     mesh.shade_smooth()
     _centre(mesh)
-    cuts = open_up(mesh)
+    return shape
+
+
+def _opened(shape):
+    cuts = open_up(shape.data)
     if cuts:
-        print(f"  {name}: {cuts} closed piece(s) without a seam, cut along a shortest path between far ends")
+        print(
+            f"  {shape.name}: {cuts} closed piece(s) without a seam, for the comparison cut along a shortest "
+            "path between far ends"
+        )
     return shape
 
 

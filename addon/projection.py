@@ -14,7 +14,7 @@ from .charts import develop
 from .layouts import LAYOUTS
 from .relaxation import relax
 from .twist import rotation, twist
-from .untangle import folded, untangle
+from .untangle import folded, folded_when_rounded, untangle
 
 # The seam's side, then what lies a quarter turn on about the pole axis, then the axis.
 _FRAMES = {
@@ -25,6 +25,8 @@ _FRAMES = {
 _FIRST_CANDIDATES = 6
 _CANDIDATES = 30
 _NEIGHBOURHOOD = 150
+# In coarse meshes no farther than this, so as not to come to the next singular point.
+_FAR, _FEWEST = 0.9, 12
 # Choice of vertices for the singular points, and turn about the pole axis; the turns are for coarse meshes.
 _ATTEMPTS = [(rank, 0.0) for rank in range(4)] + [(0, 2.4 * turn) for turn in range(1, 16)]
 _COARSE = 500
@@ -85,7 +87,7 @@ def _straighten(chart, areas, movable):
     if 0 < len(folded(chart.uv())) <= _hopeless(chart.faces):
         untangle(chart, areas, movable)
         relax(chart, areas, movable)
-    return len(folded(chart.uv()))
+    return len(folded_when_rounded(chart.uv()))
 
 
 def _hopeless(faces):
@@ -155,7 +157,7 @@ def _ranked(mesh, layout, goal, placed, enough):
     Beyond the `enough` nearest only while all of them fold faces over.
     """
     distance = np.linalg.norm(mesh.points - goal, axis=1)
-    near = _nearest(distance, _NEIGHBOURHOOD)
+    near = _nearest(distance, min(_NEIGHBOURHOOD, max(_FEWEST, np.count_nonzero(distance < _FAR))))
     part, own = mesh.part(near), np.flatnonzero((mesh.movable & ~mesh.singular)[near])
     costs = []
     for index in own[:_CANDIDATES]:

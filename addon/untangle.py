@@ -16,7 +16,7 @@ _PATIENCE = 12
 _DIRECTIONS = np.stack([np.cos(np.arange(12) * np.pi / 6), np.sin(np.arange(12) * np.pi / 6)], axis=1)
 _HALVINGS = 14
 # Blender keeps UVs in single precision; some more for islands that share the square with others.
-_ROUNDING = 16 * float(np.finfo(np.float32).eps)
+_ROUNDING = 4 * float(np.finfo(np.float32).eps)
 
 
 def folded(uv):
@@ -25,6 +25,13 @@ def folded(uv):
     sides = np.maximum(np.abs(b - a), np.abs(c - a)).sum(axis=1)
     size = max(np.ptp(uv[..., axis]) for axis in (0, 1))
     return np.flatnonzero(~(triangulation.signed_areas(uv) > _ROUNDING * size * sides))
+
+
+def folded_when_rounded(uv):
+    """Faces of images (m, 3, 2) that are folded over in single precision where they alone fill the square."""
+    low = uv.min(axis=(0, 1))
+    rounded = ((uv - low) / (uv.max(axis=(0, 1)) - low).max()).astype(np.float32).astype(float)
+    return np.flatnonzero(~(triangulation.signed_areas(rounded) > 0))
 
 
 def untangle(chart, areas, movable):

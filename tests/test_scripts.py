@@ -17,6 +17,8 @@ import bench_meshes
 import bench_report
 import bench_tables
 import bench_tables_stability
+import demo_figures
+import demo_measure
 import pythons
 import steps
 from shell import ROOT, CommandFailed, Unavailable, run, version
@@ -130,3 +132,37 @@ def test_noise_has_its_deviation_and_lies_along_the_normals():
     amount = np.einsum("ij,ij->i", noisy - smooth, vertices)
     assert np.isclose(amount.std(), 1e-3, rtol=0.05)
     assert np.allclose(np.linalg.norm(noisy - smooth, axis=1), np.abs(amount), rtol=1e-2, atol=1e-9)
+
+
+def test_the_demo_measures_maps_onto_a_sphere():
+    vertices, faces = bench_meshes.icosphere(2)
+    same = demo_measure.Layout(3 * vertices[faces], vertices[faces], np.arange(len(faces)))
+    figures = demo_measure.summary(same)
+    assert figures["flipped_triangles"] == 0 and np.isclose(figures["angle_distortion_mean"], 1)
+    assert np.allclose(demo_measure.area_ratio(same), 1)
+    assert np.allclose(demo_measure.polygon_log2_ratio(same, len(faces)), 0, atol=1e-9)
+    mirrored = demo_measure.Layout(vertices[faces], -vertices[faces], same.polygon)
+    assert demo_measure.summary(mirrored)["flipped_triangles"] == len(faces)
+
+
+def test_the_demo_and_the_package_agree_on_a_map_onto_a_sphere():
+    vertices, faces = bench_meshes.icosphere(3)
+    stretched = vertices * (1, 2, 3)
+    layout = demo_measure.Layout(stretched[faces], vertices[faces], np.arange(len(faces)))
+    ours, figures = demo_measure.summary(layout), authalic.distortion(stretched, faces, vertices)
+    assert np.isclose(ours["area_ratio_std"], figures.area_ratio_std)
+    assert np.isclose(ours["angle_distortion_mean"], figures.angle_distortion_mean)
+
+
+def test_the_demo_finds_the_centre_of_a_sphere():
+    vertices, _ = bench_meshes.icosphere(1)
+    cap = vertices[vertices[:, 2] > 0.3]
+    assert np.allclose(demo_measure._centre_of_sphere(2 * cap + (5, -3, 1)), (5, -3, 1))
+
+
+def test_the_demo_draws_sphere_layouts_when_one_is_missing(tmp_path):
+    corners = np.random.default_rng(1).random((20, 3, 2))
+    arrays = {"uv": corners, "area_ratio": np.ones(20)}
+    found = {"one": {"Lambert": arrays, "Octahedral": arrays}, "other": {"Lambert": arrays}}
+    demo_figures.draw_sphere_layouts(found, tmp_path / "layouts.png")
+    assert (tmp_path / "layouts.png").stat().st_size > 0

@@ -15,7 +15,7 @@ from mathutils import Matrix, Vector
 FRAMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 LAYOUTS = (demo_unwrap.LAMBERT, demo_unwrap.OCTAHEDRAL)
 KEY = demo_unwrap.SHAPE_KEY.name
-STEP, HEAT_ROW, ROWS = 0.88, 1.9, 3.0
+STEP, HEAT_ROW, ROWS = 0.88, 1.94, 3.06
 """On the wall, in rows: from one row of frames to the next, down to the heat maps, down to the next mesh."""
 COARSER = 1.4
 """The squares are larger than those of the comparison, for the morph's form to show."""
@@ -70,10 +70,9 @@ def _wall(shape, results, top, checkers):
         stage.label("no shape key: see report.json", 2, top, 0.15)
     for row, name in enumerate(LAYOUTS):
         place = top + row * STEP
-        stage.label(f"{name} UVs", -0.56, place + 0.08, 0.15, "RIGHT", 0.1)
         layout = results[name][1]
-        if layout is None:
-            stage.label("no UVs: see report.json", 0, place + 0.46, 0.125)
+        text = f"{name} UVs" if layout is not None else f"no {name} UVs"
+        stage.label(text, -0.56, place + 0.08, 0.15, "RIGHT", 0.1)
         for column, frame in enumerate(frames):
             if layout is not None:
                 frame[f"checker_scale {name}"] = stage.checker_scale(*measure.areas(layout)) / COARSER

@@ -121,9 +121,8 @@ def _heat_maps(shape, frames, results, row, heat):
         if layout is None:
             stage.label("no map: see report.json", column, row, 0.15)
             continue
-        copy = (
-            _twin(frames[-1], f"{name} - area ratio") if on_sphere else _bare(shape, f"{name} - area ratio")
-        )
+        title = f"{shape.name} - {name} - area ratio"
+        copy = _twin(frames[-1], title) if on_sphere else _bare(shape, title)
         stage.write_ratio(copy.data, measure.polygon_log2_ratio(layout, len(copy.data.polygons)))
         stage.place(copy, heat, column, row)
         _centre(copy, float(on_sphere))

@@ -138,6 +138,7 @@ def light_and_camera(columns, rows, pixels_per_cell):
     _sun("Key", (math.radians(48), 0, math.radians(-38)), 2.6, 25)
     _sun("Fill", (math.radians(70), 0, math.radians(50)), 0.7, 90)
     _ground(scene, background=0.42, ambient=0.55)
+    scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x = round(width / COLUMN * pixels_per_cell)
     scene.render.resolution_y = round(height / COLUMN * pixels_per_cell)
 
@@ -150,7 +151,6 @@ def render(path, samples):
     scene.cycles.samples = samples
     scene.cycles.max_bounces = 1
     scene.cycles.use_denoising = False
-    scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True)

@@ -165,9 +165,6 @@ def test_without_folds_nothing_is_unfolded(method):
     assert np.array_equal(plain.positions, authalic.sphere_map(*mesh, method=method).positions)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the normalised energy is E_A + A: on a dozen vertices the descent lowers A instead"
-)
 @pytest.mark.parametrize("name", ["tetrahedron", "octahedron"])
 def test_the_coarsest_meshes_are_mapped_no_worse_than_by_the_start(name):
     mesh = meshes.SPHERES[name]

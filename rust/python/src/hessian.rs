@@ -76,7 +76,16 @@ pub fn stretch_hessian(
             Some(density) => normalized_density(&density, mesh.n_faces())?,
             None => mesh.face_areas().to_vec(),
         };
-        Ok(SpatialStretchEnergy::new(&mesh, &targets).hessian(&image))
+        let energy = SpatialStretchEnergy::new(&mesh, &targets);
+        let hessian = energy.hessian(&image);
+        match hessian.data().iter().all(|value| value.is_finite()) {
+            true => Ok(hessian),
+            false => Err(Error::InvalidArray {
+                name: "image",
+                found: format!("of area {:e}", energy.value(&image).area),
+                expected: "a map whose faces have area, neither huge nor tiny".into(),
+            }),
+        }
     })?;
     let (starts, rows, data) = matrix.into_raw_storage();
     let (rows, starts) = (rows.into_iter(), starts.into_iter());

@@ -67,13 +67,6 @@ impl<'a> SpatialStretchEnergy<'a> {
         self.value_of_areas(&self.areas(map))
     }
 
-    /// E_S with the targets rescaled to a sum of `total`, as the fixed-point iteration watches it.
-    pub fn stretch_energy(&self, map: &[Vector], total: f64) -> f64 {
-        let areas = self.areas(map);
-        self.total_target / total
-            * parallel::sum(areas.len(), |face| areas[face].powi(2) / self.targets[face])
-    }
-
     /// The value at `map` and the gradient of the objective by every vertex, (n, 3).
     ///
     /// With c = A/|M| and ρ = a_τ/(c|τ|) the objective Σ c|τ| ψ(ρ) + A has the derivative ψ'(ρ_τ) + (Σ c|τ|

@@ -45,7 +45,8 @@ impl<'a> SphereDomain<'a> {
         &self.energy
     }
 
-    /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.
+    /// From now on a map with a folded face has an infinite objective, and one with a face near to losing its area a
+    /// large one.
     pub(super) fn guard(&mut self) {
         self.guarded = true;
         self.energy = self.energy.with_profile(Profile::Barrier);

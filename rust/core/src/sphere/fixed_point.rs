@@ -10,14 +10,13 @@
 //!
 //! and the whole chart is divided by the median modulus. The iteration ends when E_S falls by no more than ε.
 //!
-//! Two things differ from the paper. Its inversions mirror the map each time; here the chart changes, which
-//! is the same and keeps the orientation. And its median counts vertices, which on a mesh with more vertices
+//! Three things differ from the paper. Its inversions mirror the map each time; here the chart changes, which
+//! is the same and keeps the orientation. Its E_S is taken with image and targets scaled to the sphere's area, so that
+//! a smaller image does not count as progress. And its median counts vertices, which on a mesh with more vertices
 //! on one hemisphere pushes area across the equator after every step; here it counts target area, which an
 //! area-preserving map does halve. On meshes of even density the two agree.
 //!
 //! Cost of one iteration: one Cholesky analysis and factorisation of about 0.6 n vertices.
-
-use std::f64::consts::PI;
 
 use super::Map;
 use super::domain::SphereDomain;
@@ -36,8 +35,8 @@ const RADIUS: f64 = 1.2;
 pub(super) struct FixedPointStopping {
     /// Iterations at the most.
     pub max_iterations: usize,
-    /// ε: ends when E_S, targets rescaled to 4π, falls by no more than this; −∞ goes on whatever happens, and the
-    /// last map is returned instead of the best.
+    /// ε: ends when E_S falls by no more than this; −∞ goes on whatever happens, and the last map is returned
+    /// instead of the best.
     pub tolerance: f64,
 }
 
@@ -50,7 +49,7 @@ pub(super) fn fixed_point(
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (Map, Status) {
-    let stretch = |map: &Map| domain.energy().stretch_energy(map, 4.0 * PI);
+    let stretch = |map: &Map| domain.energy().value(map).objective;
     let (mut map, mut chart) = (start, Chart::North);
     let mut energy = stretch(&map);
     record(domain, &map, history, true);

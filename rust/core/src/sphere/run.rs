@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::optimize::gradient_descent::{DescentOptions, minimize};
 use crate::optimize::{Domain as _, Stopping};
+use crate::parallel;
 
 /// Iterations of either method, those of the paper's tables.
 const ITERATIONS: usize = 100;
@@ -53,33 +54,61 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
         // 2. The correction that the paper makes here
-        let map = self.corrected(&domain, &stepped).unwrap_or(stepped);
+        let map = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
         // 3. Gradient descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let (map, status) = self.gradient_descent(&domain, map, status, history, &mut phase);
-        if !self.options.unfold || self.folded(&map).is_empty() {
+        if !self.options.unfold {
             return Ok((map, status));
         }
-        // 4. The correction again; where it fails, the best map without folds that there is
-        let corrected = self.corrected(&domain, &map);
+        // 4. Where that folds, the correction again, or else the best map without folds that there is, and a descent
+        //    from there that keeps every face open
+        let (map, status) = match self.folded(&map).is_empty() {
+            true => (map, status),
+            false => self.mended(&mut domain, map, &start, status, history, observer)?,
+        };
+        // 5. Never worse than the start
+        let start_is_better = energy_share(&domain, &start) < energy_share(&domain, &map);
+        match start_is_better && self.folded(&start).is_empty() {
+            true => Ok((start, status)),
+            false => Ok((map, status)),
+        }
+    }
+
+    /// A map without folds from one with folds; of a run already cancelled the nearest at hand.
+    fn mended(
+        &self,
+        domain: &mut SphereDomain<'_>,
+        map: Map,
+        start: &Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let corrected = self.corrected(domain, &map, history);
+        if status == Status::Cancelled && (corrected.is_some() || self.folded(start).is_empty()) {
+            return Ok((corrected.unwrap_or_else(|| start.clone()), status));
+        }
         domain.guard();
         let unfolded = match corrected {
             Some(map) => map,
             None => {
                 let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
-                self.rescued(&domain, &map, &mut phase)?
+                self.rescued(domain, &map, history, &mut phase)?
             }
         };
-        // 5. A descent from there that keeps every face open
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-        Ok(self.guarded_descent(&mut domain, unfolded, status, history, &mut phase))
+        Ok(self.guarded_descent(domain, unfolded, status, history, &mut phase))
     }
 
     /// The map unfolded, where that does not cost more area than a descent can be expected to win back.
-    fn corrected(&self, domain: &SphereDomain<'_>, map: &Map) -> Option<Map> {
-        let energy = |map: &Map| domain.energy().value(map).authalic_energy;
-        let unfolded = if self.options.unfold { unfold::unfold(self.mesh, map) } else { None };
-        unfolded.filter(|unfolded| energy(unfolded) <= DEAREST_CORRECTION * energy(map))
+    fn corrected(&self, domain: &SphereDomain<'_>, map: &Map, history: &mut History) -> Option<Map> {
+        if !self.options.unfold || self.folded(map).is_empty() {
+            return None;
+        }
+        let unfolded = unfold::unfold(self.mesh, map)?;
+        let is_cheap = energy_share(domain, &unfolded) <= DEAREST_CORRECTION * energy_share(domain, map);
+        is_cheap.then(|| recorded(domain, unfolded, history))
     }
 
     /// Of the unfolded map and the progressive one, both relaxed, the one with the lower guarded objective.
@@ -87,6 +116,7 @@ impl Run<'_> {
         &self,
         domain: &SphereDomain<'_>,
         map: &Map,
+        history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<Map, Error> {
         let progressive = progressive(self.mesh, self.targets);
@@ -94,7 +124,8 @@ impl Run<'_> {
         let relaxed = unfolded.map(|map| relaxed(self.mesh, self.targets, map, observer));
         let valued = relaxed.map(|map| (domain.objective(&map), map)).filter(|(value, _)| value.is_finite());
         let best = valued.min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map_or_else(|| self.conformal(), |(_, map)| Ok(map))
+        let map = best.map_or_else(|| self.conformal(), |(_, map)| Ok(map))?;
+        Ok(recorded(domain, map, history))
     }
 
     /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.
@@ -207,4 +238,17 @@ impl Run<'_> {
             },
         }
     }
+}
+
+/// E_A/A: what is left when the size of the image does not count.
+fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
+    let value = domain.energy().value(map);
+    value.authalic_energy / value.area
+}
+
+/// The map, with a record of step 0 for it in the history.
+fn recorded(domain: &SphereDomain<'_>, map: Map, history: &mut History) -> Map {
+    let (energies, gradient) = domain.gradient(&map);
+    history.push(energies.authalic_energy, 0.0, parallel::dot(&gradient, &gradient).sqrt());
+    map
 }

@@ -110,7 +110,13 @@ fn the_normalised_energy_is_that_of_the_papers_definition() {
         assert_relative_eq!(value.objective, total / area * stretch, max_relative = 1e-10);
         assert_relative_eq!(value.authalic_energy, authalic, max_relative = 1e-10);
         assert_relative_eq!(value.objective, authalic + area, max_relative = 1e-10);
-        assert_relative_eq!(energy.stretch_energy(&map, 7.0), total / 7.0 * stretch, max_relative = 1e-10);
+        let scale_free = energy.scale_free().value(&map);
+        assert_relative_eq!(
+            scale_free.objective,
+            4.0 * PI * total / (area * area) * stretch,
+            max_relative = 1e-10
+        );
+        assert_relative_eq!(scale_free.authalic_energy, authalic, max_relative = 1e-10);
         energy.areas(&map).iter().zip(&own).for_each(|(a, b)| assert_relative_eq!(a, b, max_relative = 1e-6));
     }
 }
@@ -150,8 +156,11 @@ fn the_stretch_energy_is_half_the_quadratic_form_of_the_cotangent_laplacian() {
 fn the_gradient_is_that_of_central_differences() {
     for mesh in surfaces() {
         let (map, targets) = (some_map(&mesh), some_targets(&mesh));
-        for profile in PROFILES {
+        for (profile, scale_free) in
+            PROFILES.into_iter().flat_map(|profile| [(profile, false), (profile, true)])
+        {
             let energy = SpatialStretchEnergy::new(&mesh, &targets).with_profile(profile);
+            let energy = if scale_free { energy.scale_free() } else { energy };
             let (value, gradient) = energy.gradient(&map);
             assert_eq!(value, energy.value(&map));
             for (v, axis, expected) in differences(&map, 1e-6, |map| energy.value(map).objective) {

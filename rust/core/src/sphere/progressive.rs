@@ -19,7 +19,7 @@
 use std::f64::consts::PI;
 
 use super::Map;
-use crate::control::Observer;
+use crate::control::{Observer, Status};
 use crate::mesh::TriangleMesh;
 use crate::mesh::decimation::Decimation;
 use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub};
@@ -65,21 +65,27 @@ pub(super) fn progressive(mesh: &TriangleMesh, targets: &[f64]) -> Option<Map> {
     Some(embedding.map)
 }
 
-/// A map without folds relaxed by sweeps of one-vertex Newton steps, none of which folds a face, the shape weighing less
-/// and less. Ends early where the observer asks for it.
-pub(super) fn relaxed(mesh: &TriangleMesh, targets: &[f64], map: Map, observer: &mut dyn Observer) -> Map {
+/// A map without folds relaxed by sweeps of one-vertex Newton steps, none of which folds a face, the shape
+/// weighing less and less; `Cancelled` where the observer ended it early.
+pub(super) fn relaxed(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    map: Map,
+    observer: &mut dyn Observer,
+) -> (Map, Status) {
     let scale = 4.0 * PI / targets.iter().sum::<f64>();
     let decimation = Decimation::new(mesh, targets.iter().map(|target| scale * target).collect());
     let mut embedding = Embedding { map, decimation, shape: SHAPE };
-    let sweeps = SWEEPS[usize::from(mesh.n_vertices() > SMALL)];
-    for sweep in 0..sweeps * RELAXED_SHAPES.len() {
-        if !observer.progress(sweep as f64 / (sweeps * RELAXED_SHAPES.len()) as f64, "Relaxing") {
-            break;
+    let each = SWEEPS[usize::from(mesh.n_vertices() > SMALL)];
+    let sweeps = each * RELAXED_SHAPES.len();
+    for sweep in 0..sweeps {
+        if !observer.progress(sweep as f64 / sweeps as f64, "Relaxing") {
+            return (embedding.map, Status::Cancelled);
         }
-        embedding.shape = RELAXED_SHAPES[sweep / sweeps];
+        embedding.shape = RELAXED_SHAPES[sweep / each];
         (0..mesh.n_vertices() as u32).for_each(|vertex| embedding.relax(vertex));
     }
-    embedding.map
+    (embedding.map, Status::MaxIterations)
 }
 
 /// A map of the vertices that are back, with what they are connected by.

@@ -58,19 +58,16 @@ impl Run<'_> {
         // 3. Gradient descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let (map, status) = self.gradient_descent(&domain, map, status, history, &mut phase);
-        if !self.options.unfold {
+        if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
-        // 4. Where that folds, the correction again, or else the best map without folds that there is, and a descent
-        //    from there that keeps every face open
-        let (map, status) = match self.folded(&map).is_empty() {
-            true => (map, status),
-            false => self.mended(&mut domain, map, &start, status, history, observer)?,
-        };
+        // 4. The correction again, or else the best map without folds that there is, and a descent from there that
+        //    keeps every face open
+        let (map, status) = self.mended(&mut domain, map, &start, status, history, observer)?;
         // 5. Never worse than the start
         let start_is_better = energy_share(&domain, &start) < energy_share(&domain, &map);
         match start_is_better && self.folded(&start).is_empty() {
-            true => Ok((start, status)),
+            true => Ok((recorded(&domain, start, history), status)),
             false => Ok((map, status)),
         }
     }
@@ -90,8 +87,8 @@ impl Run<'_> {
             return Ok((corrected.unwrap_or_else(|| start.clone()), status));
         }
         domain.guard();
-        let unfolded = match corrected {
-            Some(map) => map,
+        let (unfolded, status) = match corrected {
+            Some(map) => (map, status),
             None => {
                 let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
                 self.rescued(domain, &map, history, &mut phase)?
@@ -118,14 +115,22 @@ impl Run<'_> {
         map: &Map,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<Map, Error> {
-        let progressive = progressive(self.mesh, self.targets);
-        let unfolded = [unfold::unfold(self.mesh, map), progressive].into_iter().flatten();
-        let relaxed = unfolded.map(|map| relaxed(self.mesh, self.targets, map, observer));
-        let valued = relaxed.map(|map| (domain.objective(&map), map)).filter(|(value, _)| value.is_finite());
-        let best = valued.min_by(|a, b| a.0.total_cmp(&b.0));
+    ) -> Result<(Map, Status), Error> {
+        let unfolded = [unfold::unfold(self.mesh, map), progressive(self.mesh, self.targets)];
+        let (mut best, mut status) = (None, Status::MaxIterations);
+        for (half, map) in unfolded.into_iter().enumerate() {
+            let (Some(map), true) = (map, status != Status::Cancelled) else { continue };
+            let from = 0.5 * half as f64;
+            let mut phase = Phase { whole: observer, from, to: from + 0.5 };
+            let (map, ended) = relaxed(self.mesh, self.targets, map, &mut phase);
+            let value = domain.objective(&map);
+            if value.is_finite() && best.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
+                best = Some((value, map));
+            }
+            status = ended;
+        }
         let map = best.map_or_else(|| self.conformal(), |(_, map)| Ok(map))?;
-        Ok(recorded(domain, map, history))
+        Ok((recorded(domain, map, history), status))
     }
 
     /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.

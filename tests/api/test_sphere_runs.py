@@ -197,7 +197,7 @@ def test_a_false_answer_cancels_and_leaves_a_sound_map(mesh, method, last):
         assert result.status != "cancelled"  # it was done before
         return
     assert (result.status, len(calls)) == ("cancelled", last + 1)
-    assert result.iterations <= last
+    assert result.iterations <= last + 1  # a mended map has a record of its own
 
 
 @pytest.mark.parametrize("mesh", [BUMPY, HEDGEHOG], ids=["bumpy_ball", "hedgehog"])

@@ -183,10 +183,10 @@ fn gradient_descent_stops_at_its_tolerance() {
 #[test]
 fn the_fixed_point_stops_where_the_stretch_energy_falls_too_little() {
     let mesh = bumpy();
-    // E_S with the targets on the scale of the sphere: (A/4π) (E_A + A)
+    // E_S with image and targets on the scale of the sphere: (4π/A) (E_A + A)
     let stretch = |map: &SphereMap| {
         let area: f64 = image_areas(&mesh, &map.positions).iter().sum();
-        area / (4.0 * PI) * (map.distortion.authalic_energy + area)
+        4.0 * PI / area * (map.distortion.authalic_energy + area)
     };
     let run = |tolerance, limit| {
         let max_iterations = Some(limit);

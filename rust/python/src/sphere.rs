@@ -24,8 +24,8 @@ pub struct SphereMap {
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start
-    /// first.
+    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm,
+    /// seconds; the start first, and a record of step 0 where a mended map took the place of a folded one.
     history: Py<PyAny>,
     /// The figures of the map.
     distortion: Py<Distortion>,

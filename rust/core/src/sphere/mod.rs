@@ -91,9 +91,10 @@ pub struct SphereMap {
     pub positions: Vec<Vector>,
     /// Why the run ended.
     pub status: Status,
-    /// The energy after every iteration.
+    /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place of a
+    /// folded one, a record of step 0.
     pub history: History,
-    /// The figures of the map.
+    /// The figures of the map, signed.
     pub distortion: Distortion,
     /// Wall time of the whole call.
     pub seconds: f64,

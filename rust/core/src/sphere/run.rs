@@ -54,21 +54,24 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
         // 2. The correction that the paper makes here
-        let map = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
+        let stepped = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
         // 3. Gradient descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
-        let (map, status) = self.gradient_descent(&domain, map, status, history, &mut phase);
+        let (map, status) = self.gradient_descent(&domain, stepped.clone(), status, history, &mut phase);
         if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
         // 4. The correction again, or else the best map without folds that there is, and a descent from there that
         //    keeps every face open
         let (map, status) = self.mended(&mut domain, map, &start, status, history, observer)?;
-        // 5. Never worse than the start
-        let start_is_better = energy_share(&domain, &start) < energy_share(&domain, &map);
-        match start_is_better && self.folded(&start).is_empty() {
-            true => Ok((recorded(&domain, start, history), status)),
-            false => Ok((map, status)),
+        // 5. Never worse than an earlier map without folds
+        let energy = energy_share(&domain, &map);
+        let better = [start, stepped]
+            .into_iter()
+            .filter(|earlier| energy_share(&domain, earlier) < energy && self.folded(earlier).is_empty());
+        match better.min_by(|a, b| energy_share(&domain, a).total_cmp(&energy_share(&domain, b))) {
+            Some(earlier) => Ok((recorded(&domain, earlier, history), status)),
+            None => Ok((map, status)),
         }
     }
 

@@ -132,7 +132,7 @@ def sphere_shape(surface, iterations=100, progress=_keep_going):
         radius=float(radius),
         deviation=float(figures.area_ratio_std),
         flips=len(figures.folded),
-        uneven=_uneven(found),
+        uneven=float(figures.area_ratio_std) if figures.area_ratio_std > _UNEVEN else _uneven(found),
     )
 
 
@@ -233,13 +233,13 @@ def _by_sphere(piece, settings, progress):
     except projection.CannotProject as problem:
         raise Unsuitable(
             f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; "
-            "try another Layout or Pole Axis, subdivide the mesh or mark seams"
+            "try another Layout or Pole Axis, poke its n-gons, subdivide the mesh or mark seams"
         ) from problem
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
     island = _island(piece, found, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
-    ratios = np.abs(triangulation.signed_areas(uv)) / triangulation.areas(piece.points[faces])
-    deviation = float(ratios.std() / ratios.mean())
+    image, area = np.abs(triangulation.signed_areas(uv)), triangulation.areas(piece.points[faces])
+    deviation = float((image / area).std() * area.sum() / image.sum())
     if deviation > _UNEVEN:
         island.uneven = deviation
     return island

@@ -20,7 +20,7 @@ def choose(patch, settings):
             "Automatic"
         )
     if settings.domain == "DISK" and patch.is_closed:
-        other = "; or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
+        other = ", or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
         raise Unsuitable(f"is closed; mark seams to cut it open{other}")
     if patch.genus > 0:
         closed = "is closed and " if patch.is_closed else ""

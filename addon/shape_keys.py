@@ -40,6 +40,8 @@ def write(obj, name, positions):
     key = keys.key_blocks.get(name) or obj.shape_key_add(name=name, from_mix=False)
     key.points.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
     key.relative_key = keys.reference_key
+    key.slider_min, key.slider_max = min(key.slider_min, 0.0), max(key.slider_max, 1.0)
+    key.mute, key.vertex_group = False, ""
     key.value = 0.0  # Blender 5 starts with 1
     obj.active_shape_key_index = keys.key_blocks.find(name)
     obj.data.update()

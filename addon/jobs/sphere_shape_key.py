@@ -111,7 +111,7 @@ def _figures(shape):
 def _notes(done):
     """What was written but may not be what was wanted."""
     notes = [
-        f"{obj.name}: uneven, the solver could not go on; its limbs may be too long or too thin"
+        f"{obj.name}: uneven; its limbs may be too long or too thin, or its n-gons too large (poke them)"
         for obj, shape in done
         if shape.uneven is not None
     ]

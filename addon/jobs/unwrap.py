@@ -153,7 +153,7 @@ def _notes(chosen, islands, figures):
     """What was written but may not be what was wanted."""
     notes = [
         f"{island.name} at face {island.polygon}: uneven, area ratio SD {island.uneven:.3g}; "
-        "cut its long parts open by seams"
+        "cut its long parts open by seams, or poke large n-gons"
         for island in islands
         if island.uneven is not None
     ]

@@ -195,7 +195,7 @@ def test_disk_leaves_closed_islands(capfd):
     assert unwrap(domain="DISK") == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Unwrapped 1 island" in said
-    assert "Mixed at face 36: is closed; mark seams to cut it open; or set Domain to" in said
+    assert "Mixed at face 36: is closed; mark seams to cut it open, or set Domain to" in said
     assert (meshes.uv(obj)[144:] == 0).all() or len(np.unique(meshes.uv(obj)[144:], axis=0)) < 5
 
 

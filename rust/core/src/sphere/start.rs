@@ -36,29 +36,50 @@ const CENTRED: f64 = 1e-9;
 /// A conformal face below this part of its target has collapsed for all that a descent can see.
 const COLLAPSED: f64 = 1e-9;
 
+/// A surface seen from its centroid is a sphere already where that view has less than this part of the
+/// conformal map's E_A; a conformal map turns such a surface about for nothing.
+const ROUND: f64 = 0.1;
+
 /// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
-/// the progressive one where parts of that have collapsed.
+/// the progressive one where parts of that have collapsed; on a sphere the surface itself.
 ///
 /// # Errors
 /// [`Error::NoEmbedding`] where both fold in double precision.
 pub(super) fn start(mesh: &TriangleMesh, targets: &[f64], weights: &[f64]) -> Result<Map, Error> {
-    // 1. The conformal map, where it is of use
+    // 1. The conformal map where it is of use, else the progressive one
     let conformal = conformal(mesh, weights);
     let mended = conformal.as_ref().ok().and_then(|map| unfold::unfold(mesh, map));
-    if let Some(map) = mended.as_ref().filter(|map| !has_collapsed(mesh, targets, map)) {
-        return Ok(map.clone());
+    let (map, part) = match mended.clone().filter(|map| !has_collapsed(mesh, targets, map)) {
+        Some(map) => (Some(map), ROUND),
+        None => (progressive(mesh, targets), 1.0),
+    };
+    // 2. On a sphere the surface itself
+    let energy = |map: &Map| SpatialStretchEnergy::new(mesh, targets).value(map).authalic_energy;
+    let is_round = |radial: &Map| map.as_ref().is_none_or(|map| energy(radial) < part * energy(map));
+    if let Some(radial) = radial(mesh, weights).filter(is_round) {
+        return Ok(radial);
     }
-    // 2. The progressive one, without any folds wherever there is one
-    if let Some(map) = progressive(mesh, targets) {
-        return Ok(map);
-    }
-    // 3. Any map without folds
-    mended.ok_or_else(|| match conformal {
+    // 3. If all else fails any map without folds
+    map.or(mended).ok_or_else(|| match conformal {
         Ok(map) => Error::NoEmbedding {
             folded: Elements::collect(folded_on_sphere(mesh.faces(), &map)).expect("it could not be mended"),
         },
         Err(error) => error,
     })
+}
+
+/// The surface seen from its centroid, where no face is folded there.
+fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<Map> {
+    let total: f64 = weights.iter().sum();
+    let centroid: Vector = std::array::from_fn(|axis| {
+        parallel::sum(mesh.n_vertices(), |v| weights[v] / total * mesh.points()[v][axis])
+    });
+    let offset = |v: usize| sub(mesh.points()[v], centroid);
+    if !parallel::all(mesh.n_vertices(), |v| norm(offset(v)) > 1e-6) {
+        return None;
+    }
+    let map = parallel::map(mesh.n_vertices(), |v| scaled(offset(v), 1.0 / norm(offset(v))));
+    folded_on_sphere(mesh.faces(), &map).is_empty().then_some(map)
 }
 
 /// Whether some face has next to nothing of its target area.

@@ -17,7 +17,7 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::optimize::{Domain, Energies};
 use crate::parallel;
-use crate::sparse::{Cholesky, Laplacian};
+use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
 /// A Laplacian with its factor.
 #[derive(Debug)]
@@ -74,16 +74,7 @@ impl<'a> DiskDomain<'a> {
     pub(super) fn solve_dirichlet(&mut self, weights: &[f64], map: &mut [[f64; 2]]) -> Result<(), Error> {
         self.preconditioned_at.clear();
         let Block { laplacian, factor } = &mut self.interior;
-        laplacian.assemble(self.mesh, weights);
-        factor.refactor(laplacian.matrix())?;
-        let mut correction = laplacian.residual(self.mesh, weights, map);
-        factor.solve(&mut correction);
-        let n = laplacian.free().len();
-        for (i, &vertex) in laplacian.free().iter().enumerate() {
-            map[vertex as usize][0] -= correction[i];
-            map[vertex as usize][1] -= correction[n + i];
-        }
-        Ok(())
+        solve_dirichlet(self.mesh, laplacian, factor, weights, map)
     }
 
     /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.

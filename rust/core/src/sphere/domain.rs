@@ -3,9 +3,10 @@
 //!
 //! Sutti & Yueh (2024), sections 4 and 5: directions are tangent, (x, y, z) of vertex 0, then of vertex 1,
 //! and so on; the Riemannian gradient is the Euclidean one projected to the tangent planes (5.1), and the
-//! retraction normalises f + ξ row by row (4.3). The objective is the paper's normalised energy (2.4) times 4π/A: the
-//! paper's own falls when the inscribed polyhedron shrinks, and on coarse meshes a descent ends there. The paper's descent has no preconditioner; the guarded one
-//! has I₃ ⊗ L_S(f⁰), projected to the tangent planes.
+//! retraction normalises f + ξ row by row (4.3). The objective is the paper's normalised energy (2.4) times
+//! 4π/A: the paper's own falls when the inscribed polyhedron shrinks, and on coarse meshes a descent ends
+//! there. The paper's descent has no preconditioner; the guarded one has I₃ ⊗ L_S(f⁰), projected to the
+//! tangent planes.
 
 use super::Map;
 use crate::energy::SpatialStretchEnergy;
@@ -125,12 +126,14 @@ fn tangent(x: Vector, z: Vector) -> Vector {
 /// Whether every face is positive around the origin by more than its rounding error; never true for a folded
 /// face.
 fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector]) -> bool {
-    parallel::all(mesh.n_faces(), |face| {
-        let [a, b, c] = triangle(map, mesh.faces()[face]);
-        let (p, q) = (sub(b, a), sub(c, a));
-        let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
-        let size = a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1);
-        // rounding of the differences, of the products and of their sum, generously
-        dot(a, cross(p, q)) > 2e-15 * size
-    })
+    parallel::all(mesh.n_faces(), |face| is_clearly_positive(triangle(map, mesh.faces()[face])))
+}
+
+/// Whether det(a, b, c) is positive by more than its rounding error.
+pub(super) fn is_clearly_positive([a, b, c]: [Vector; 3]) -> bool {
+    let (p, q) = (sub(b, a), sub(c, a));
+    let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+    let size = a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1);
+    // rounding of the differences, of the products and of their sum, generously
+    dot(a, cross(p, q)) > 2e-15 * size
 }

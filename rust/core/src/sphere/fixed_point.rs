@@ -25,7 +25,7 @@ use crate::control::{History, Observer, Status};
 use crate::error::Error;
 use crate::optimize::Domain;
 use crate::parallel;
-use crate::sparse::{Cholesky, Laplacian};
+use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
 /// r of the algorithm: modulus up to which a chart's vertices are solved for.
 const RADIUS: f64 = 1.2;
@@ -87,16 +87,8 @@ fn iterate(domain: &SphereDomain<'_>, weights: &[f64], map: &Map, chart: Chart) 
     let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
     // 1. Solve for the vertices inside
     let mut laplacian = Laplacian::new(mesh, |vertex| modulus(plane[vertex]) < RADIUS);
-    laplacian.assemble(mesh, &by_corner);
     let mut factor = Cholesky::analyse(laplacian.matrix())?;
-    factor.refactor(laplacian.matrix())?;
-    let mut correction = laplacian.residual(mesh, &by_corner, &plane);
-    factor.solve(&mut correction);
-    let n = laplacian.free().len();
-    for (i, &vertex) in laplacian.free().iter().enumerate() {
-        plane[vertex as usize][0] -= correction[i];
-        plane[vertex as usize][1] -= correction[n + i];
-    }
+    solve_dirichlet(mesh, &mut laplacian, &mut factor, &by_corner, &mut plane)?;
     // 2. Divide by the median modulus
     let scale = weighted_median(&parallel::map(plane.len(), |v| modulus(plane[v])), weights);
     parallel::fill_with_old(&mut plane, |_, z| [z[0] / scale, z[1] / scale]);

@@ -19,6 +19,7 @@
 use std::f64::consts::PI;
 
 use super::Map;
+use super::domain::is_clearly_positive;
 use crate::control::{Observer, Status};
 use crate::mesh::TriangleMesh;
 use crate::mesh::decimation::Decimation;
@@ -184,12 +185,7 @@ impl Embedding<'_> {
 
 /// Whether all faces of a star are positive by more than the rounding of their determinants.
 fn is_open(x: Vector, star: &[Opposite]) -> bool {
-    star.iter().all(|face| {
-        let (p, q) = (sub(face.one, x), sub(face.two, x));
-        let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
-        let size = x[0].abs() * products(1, 2) + x[1].abs() * products(2, 0) + x[2].abs() * products(0, 1);
-        dot(x, cross(p, q)) > 2e-15 * size
-    })
+    star.iter().all(|face| is_clearly_positive([x, face.one, face.two]))
 }
 
 /// det(x, one, two) in the form of differences, and Q.

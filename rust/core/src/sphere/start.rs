@@ -25,7 +25,7 @@ use crate::mesh::geometry::{
     Vector, add, corner_cotangents, cross, distance, dot, norm, scaled, sub, triangle,
 };
 use crate::parallel;
-use crate::sparse::{Cholesky, Laplacian};
+use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
 /// Newton steps of the centring; three or four are the rule.
 const CENTRING_STEPS: usize = 50;
@@ -140,16 +140,8 @@ fn harmonic(mesh: &TriangleMesh, removed: usize, by_corner: &[f64]) -> Result<Ve
         plane[vertex as usize] = place;
     }
     let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&(vertex as u32)));
-    laplacian.assemble(mesh, by_corner);
     let mut factor = Cholesky::analyse(laplacian.matrix())?;
-    factor.refactor(laplacian.matrix())?;
-    let mut correction = laplacian.residual(mesh, by_corner, &plane);
-    factor.solve(&mut correction);
-    let n = laplacian.free().len();
-    for (i, &vertex) in laplacian.free().iter().enumerate() {
-        plane[vertex as usize][0] -= correction[i];
-        plane[vertex as usize][1] -= correction[n + i];
-    }
+    solve_dirichlet(mesh, &mut laplacian, &mut factor, by_corner, &mut plane)?;
     Ok(plane)
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a long run speaks with its caller: progress, cancel, status and history.
 
-use std::time::Instant;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Listens to a run and may end it.
 ///
@@ -16,13 +18,14 @@ use std::time::Instant;
 /// };
 /// assert!(observer.progress(0.5, "half"));
 /// ```
-pub trait Observer {
-    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message;
-    /// `false` cancels, and the run returns its best map so far.
+pub trait Observer: Send {
+    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message, in a long step
+    /// also from within, on any thread, with the fraction of before; `false` cancels, and the run returns its best
+    /// map so far.
     fn progress(&mut self, fraction: f64, message: &str) -> bool;
 }
 
-impl<F: FnMut(f64, &str) -> bool> Observer for F {
+impl<F: FnMut(f64, &str) -> bool + Send> Observer for F {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         self(fraction, message)
     }
@@ -41,6 +44,41 @@ pub(crate) struct Phase<'a> {
 impl Observer for Phase<'_> {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         self.whole.progress(self.from + fraction * (self.to - self.from), message)
+    }
+}
+
+/// How often a long step asks whether to go on.
+const HEARTBEAT: Duration = Duration::from_millis(80);
+
+/// Lets all threads of one long step ask whether to go on, without asking the observer too often.
+pub(crate) struct Watch<'a> {
+    line: Mutex<(&'a mut dyn Observer, Instant)>,
+    fraction: f64,
+    message: &'a str,
+    cancelled: AtomicBool,
+}
+
+impl<'a> Watch<'a> {
+    /// Watches over a step at `fraction` of what `observer` listens to.
+    pub(crate) fn new(observer: &'a mut dyn Observer, fraction: f64, message: &'a str) -> Self {
+        let line = Mutex::new((observer, Instant::now()));
+        Self { line, fraction, message, cancelled: AtomicBool::new(false) }
+    }
+
+    /// Whether to go on; costs next to nothing, so inner loops may ask.
+    pub(crate) fn goes_on(&self) -> bool {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return false;
+        }
+        // another thread is asking at the moment
+        let Ok(mut line) = self.line.try_lock() else { return true };
+        if line.1.elapsed() < HEARTBEAT {
+            return true;
+        }
+        let goes_on = line.0.progress(self.fraction, self.message);
+        line.1 = Instant::now();
+        self.cancelled.store(!goes_on, Ordering::Relaxed);
+        goes_on
     }
 }
 
@@ -138,5 +176,25 @@ impl History {
     /// Seconds since the history was started.
     pub fn seconds(&self) -> f64 {
         self.began.elapsed().as_secs_f64()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_watch_asks_now_and_then_and_stays_cancelled() {
+        let mut asked = 0;
+        let mut observer = |_: f64, _: &str| {
+            asked += 1;
+            false
+        };
+        let watch = Watch::new(&mut observer, 0.5, "factoring");
+        assert!(watch.goes_on(), "too early to ask");
+        std::thread::sleep(HEARTBEAT);
+        assert!(!watch.goes_on());
+        assert!(!watch.goes_on());
+        assert_eq!(asked, 1);
     }
 }

@@ -33,7 +33,7 @@ struct Remote<T> {
     line: Option<(Sender<Message<T>>, Receiver<bool>)>,
 }
 
-impl<T> Observer for Remote<T> {
+impl<T: Send> Observer for Remote<T> {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         if self.cancelled.load(Ordering::Relaxed) {
             return false;

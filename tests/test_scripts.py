@@ -14,6 +14,9 @@ import authalic
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
 import bench_meshes
+import bench_peers
+import bench_peers_methods
+import bench_peers_run
 import bench_report
 import bench_tables
 import bench_tables_stability
@@ -105,6 +108,56 @@ def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
         assert re.search(r"(?m)^\| (cap|ellipsoid)", text) and "Error" not in text, text
         for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
             assert (target.parent / picture).stat().st_size > 0, picture
+
+
+def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tmp_path):
+    target = tmp_path / "peers.md"
+    absent = [f"{package}=no wheel" for package in ("libigl", "xatlas", "lapy", "bpy")]
+    bench_peers.main([str(target), "--absent", *absent])
+    text = target.read_text(encoding="utf-8")
+    assert len(re.findall(r"(?m)^\| \w+ \| \d+ \| authalic[^|]*\| 0\.\d+ \|", text)) == 6, text
+    assert len(re.findall(r"(?m)\| not installed: no wheel \|$", text)) == 13, text
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
+        assert (tmp_path / picture).stat().st_size > 0, picture
+
+
+def test_the_comparison_survives_what_happens_to_a_method(monkeypatch, tmp_path):
+    mesh, method = bench_meshes.icosphere(1), bench_peers_methods.named("authalic fixed_point", "sphere")
+    start = bench_peers_run.Starter(tmp_path, 60, "", {})
+    code = tmp_path / "worker.py"
+    monkeypatch.setattr(bench_peers_run, "WORKER", code)
+    code.write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    assert start("sphere", "ball", mesh, method).remark == "crashed: SIGSEGV"
+    code.write_text("raise SystemExit(3)")
+    assert start("sphere", "ball", mesh, method).remark.startswith("ended with code 3")
+    code.write_text("import time; time.sleep(60)")
+    start.limit = 0.3
+    assert start("sphere", "ball", mesh, method).remark == "stopped after 0.3 s"
+
+
+def test_a_mirrored_chart_is_no_fold_and_scale_does_not_count():
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    vertices = np.vstack([square, square + np.array([3, 0, 0])])
+    both = np.vstack([faces, faces + 4])
+    image = np.vstack([7 * square[:, :2], [-7, 7] * square[:, :2]])
+    found = bench_peers_run.measured(vertices, both, image)
+    assert found.folds == 0 and found.deviation < 1e-12 and np.isclose(found.angle_p99, 1)
+    ball, triangles = bench_meshes.icosphere(2)
+    mirrored = bench_peers_run.measured(ball, triangles, 100 * ball * [-1, 1, 1])
+    assert mirrored.folds == 0 and mirrored.energy < 1e-12
+    image[6] = image[5] + 0.5 * (image[4] - image[5])  # one face of the second square folds onto the other
+    assert bench_peers_run.measured(vertices, both, image).folds == 1
+
+
+def test_the_start_of_other_tools_is_an_embedding():
+    vertices, faces = bench_meshes.built_disks()["bumps (built)"]
+    edge = np.flatnonzero(np.abs(vertices[:, :2]).max(axis=1) == 1)
+    loop = edge[np.argsort(np.arctan2(vertices[edge, 1], vertices[edge, 0]))]
+    angle = 2 * np.pi * np.arange(len(loop)) / len(loop)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    image = bench_peers_methods.tutte(faces, loop, circle, len(vertices))
+    assert (bench_peers_methods.signed_areas(image, faces) > 0).all()
 
 
 def test_an_error_of_the_package_is_a_row_of_the_table():

@@ -43,7 +43,7 @@ def area_ratios(outcomes):
 
 def draw_convergence(path, title, curves, published):
     """Energies against iterations, both from the histories; `published` {mesh: [(iteration, energy)]}."""
-    figure, axes = _panels(title, curves)
+    figure, axes = panels(title, curves)
     for axis, (mesh, by_label) in zip(axes, curves.items()):
         for label, (iterations, energies) in by_label.items():
             axis.plot(
@@ -55,14 +55,14 @@ def draw_convergence(path, title, curves, published):
         axis.set_xlabel("iteration")
         axis.grid(alpha=0.25, which="major")
         axis.legend(frameon=False, fontsize=8)
-    for axis in _leftmost(axes):
+    for axis in leftmost(axes):
         axis.set_ylabel("authalic energy $E_A$")
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_histograms(path, title, ratios):
     """How the faces spread over the area ratios; an area-preserving map is a spike at 1."""
-    figure, axes = _panels(title, ratios)
+    figure, axes = panels(title, ratios)
     bins = np.linspace(-RANGE, RANGE, 92)  # an odd number of bins: 1 is the middle of one
     for axis, by_label in zip(axes, ratios.values()):
         for label, (log2_ratio, deviation) in by_label.items():
@@ -75,12 +75,12 @@ def draw_histograms(path, title, ratios):
         axis.set_yscale("log")
         axis.legend(frameon=False, fontsize=7.5, loc="upper left")
         axis.set_ylim(top=axis.get_ylim()[1] * 30)  # room for the legend
-    for axis in _leftmost(axes):
+    for axis in leftmost(axes):
         axis.set_ylabel("share of the faces")
-    _save(figure, path)
+    save(figure, path)
 
 
-def _panels(title, meshes):
+def panels(title, meshes):
     """A figure with an axis for each mesh, four in a row."""
     columns = min(4, len(meshes))
     rows = math.ceil(len(meshes) / columns)
@@ -96,10 +96,10 @@ def _panels(title, meshes):
     return figure, axes[: len(meshes)]
 
 
-def _leftmost(axes):
+def leftmost(axes):
     return axes[::4]
 
 
-def _save(figure, path):
+def save(figure, path):
     figure.savefig(path, dpi=120)
     plt.close(figure)

@@ -13,6 +13,9 @@ import authalic
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
+import bench_fuzz
+import bench_fuzz_cases
+import bench_fuzz_rust
 import bench_meshes
 import bench_peers
 import bench_peers_methods
@@ -158,6 +161,31 @@ def test_the_start_of_other_tools_is_an_embedding():
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     image = bench_peers_methods.tutte(faces, loop, circle, len(vertices))
     assert (bench_peers_methods.signed_areas(image, faces) > 0).all()
+
+
+def test_the_search_for_failures_has_a_table_and_a_replay(tmp_path, capsys):
+    target = tmp_path / "fuzz.md"
+    assert bench_fuzz.main([str(target), "--cases", "4"]) == 0
+    assert re.search(r"(?m)^\| all \| 4 \| 0 \|", target.read_text(encoding="utf-8"))
+    for number in (3, 4, 5):  # one of each kind
+        assert bench_fuzz.main([str(target), "--seed", str(number)]) == 0
+        assert f"case {number}: " in capsys.readouterr().out
+
+
+def test_the_search_for_failures_notices_a_hang_and_goes_on():
+    worker = bench_fuzz_cases.Worker(0.001)  # too short to start the process
+    assert worker(0).failure == "not done after 0.001 s"
+    worker.limit = 60
+    assert worker(0).failure == ""
+    worker._process.kill()
+    assert worker(3).failure.startswith("crashed: ")
+    worker.stop()
+
+
+def test_the_property_tests_are_found():
+    found = bench_fuzz_rust.properties()
+    assert found["random_disks_are_mapped_one_to_one"] == ("--test", "disk")
+    assert found["hostile_input_never_panics"] == ("--test", "mesh")
 
 
 def test_an_error_of_the_package_is_a_row_of_the_table():

@@ -30,6 +30,28 @@ fn threads() -> Option<Arc<ThreadPool>> {
     pool.as_ref().map(|(_, threads)| threads.clone())
 }
 
+/// Runs `work` on the threads of this process, so that [`join`] finds them; where there are none, on this one.
+pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    if rayon::current_thread_index().is_some() {
+        return work();
+    }
+    match threads() {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
+}
+
+/// Runs both parts, at the same time where a thread is free and [`install`] has been called around it.
+pub(crate) fn join<A: Send, B: Send>(
+    one: impl FnOnce() -> A + Send,
+    other: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    match rayon::current_thread_index() {
+        Some(_) => rayon::join(one, other),
+        None => (one(), other()),
+    }
+}
+
 /// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
 /// several.
 fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
@@ -74,6 +96,16 @@ pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
         part[0] = (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum();
     });
     partial.iter().sum()
+}
+
+/// Several sums over `0..n` in one pass.
+pub(crate) fn sums<const K: usize>(n: usize, values: impl Fn(usize) -> [f64; K] + Sync + Send) -> [f64; K] {
+    let mut partial = vec![[0.0; K]; n.div_ceil(CHUNK)];
+    let add = |sum: [f64; K], terms: [f64; K]| std::array::from_fn(|k| sum[k] + terms[k]);
+    for_each_chunk(&mut partial, 1, |chunk, part| {
+        part[0] = (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&values).fold([0.0; K], add);
+    });
+    partial.into_iter().fold([0.0; K], add)
 }
 
 /// Σ a_i b_i.

@@ -8,8 +8,12 @@
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place as llt_in_place, cholesky_in_place_scratch};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+use faer::linalg::matmul::triangular::BlockStructure;
+use faer::linalg::{matmul, triangular_solve};
 use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -17,7 +21,8 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, Par, Side, Spec};
+use faer::traits::RealField;
+use faer::{Accum, Conj, Mat, MatMut, MatRef, Par, Side, Spec};
 use sprs::CsMat;
 
 use crate::Error;
@@ -239,6 +244,106 @@ pub(crate) fn top_eigenvector<const N: usize>(symmetric: &[[f64; N]; N]) -> [f64
         Ok(()) => std::array::from_fn(|i| vectors[(i, N - 1)]),
         Err(_) => std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 }),
     }
+}
+
+/// A real number that the dense kernels take.
+pub(crate) trait Scalar: RealField + Copy + std::ops::SubAssign {
+    const ZERO: Self;
+    const ONE: Self;
+
+    /// The nearest number.
+    fn from_f64(value: f64) -> Self;
+    fn to_f64(self) -> f64;
+    fn sqrt(self) -> Self;
+    fn is_finite(self) -> bool;
+}
+
+macro_rules! impl_scalar {
+    ($float:ty) => {
+        impl Scalar for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
+
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+        }
+    };
+}
+
+impl_scalar!(f32);
+impl_scalar!(f64);
+
+/// A column-major part of a dense matrix that may be written.
+pub(super) type Block<'a, T> = MatMut<'a, T>;
+/// A column-major part of a dense matrix.
+pub(super) type BlockRef<'a, T> = MatRef<'a, T>;
+
+/// The numbers as a matrix of `rows` rows, stored column by column.
+pub(super) fn block<T>(values: &mut [T], rows: usize, columns: usize) -> Block<'_, T> {
+    MatMut::from_column_major_slice_mut(values, rows, columns)
+}
+
+/// The numbers as a matrix of `rows` rows, stored column by column.
+pub(super) fn block_ref<T>(values: &[T], rows: usize, columns: usize) -> BlockRef<'_, T> {
+    MatRef::from_column_major_slice(values, rows, columns)
+}
+
+/// Overwrites the lower triangle by its Cholesky factor; false where a pivot is not positive and finite.
+pub(super) fn cholesky_in_place<T: Scalar>(lower: Block<'_, T>) -> bool {
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(lower.nrows(), Par::Seq, Spec::default()));
+    let stack = MemStack::new(&mut memory);
+    llt_in_place(lower, LltRegularization::default(), Par::Seq, stack, Spec::default()).is_ok()
+}
+
+/// `rows := rows · L⁻ᵀ` for a lower triangle L.
+pub(super) fn lower_solve_rows<T: Scalar>(lower: BlockRef<'_, T>, rows: Block<'_, T>) {
+    triangular_solve::solve_lower_triangular_in_place(lower, rows.transpose_mut(), Par::Seq);
+}
+
+/// `out -= a · bᵀ` or, to replace it, `out := −a · bᵀ`; for a square `out` the lower triangle only, if asked for.
+pub(super) fn subtract_product<T: Scalar>(
+    out: Block<'_, T>,
+    a: BlockRef<'_, T>,
+    b: BlockRef<'_, T>,
+    replace: bool,
+    only_lower: bool,
+) {
+    let beta = if replace { Accum::Replace } else { Accum::Add };
+    let of_out = if only_lower { BlockStructure::TriangularLower } else { BlockStructure::Rectangular };
+    let full = BlockStructure::Rectangular;
+    matmul::triangular::matmul(out, of_out, beta, a, full, b.transpose(), full, -T::ONE, Par::Seq);
+}
+
+/// An order of the nodes of a graph that keeps the factor sparse, by approximate minimum degree (Amestoy, Davis and
+/// Duff 1996); the neighbours of node v are those from `starts[v]` to `starts[v + 1]`.
+///
+/// # Errors
+/// [`Error::FactorizationFailed`] where there are too many edges for 32-bit indices.
+pub(super) fn minimum_degree(starts: &[u32], neighbours: &[u32]) -> Result<Vec<u32>, Error> {
+    let n = starts.len() - 1;
+    let graph = SymbolicSparseColMatRef::new_checked(n, n, starts, None, neighbours);
+    let (mut order, mut position) = (vec![0; n], vec![0; n]);
+    let mut memory = MemBuffer::new(amd::order_scratch::<u32>(n, neighbours.len()));
+    amd::order(&mut order, &mut position, graph, amd::Control::default(), MemStack::new(&mut memory))
+        .map_err(|error| failed(format!("ordering {n} unknowns: {error:?}")))?;
+    Ok(order)
 }
 
 fn pattern(matrix: &CsMat<f64>) -> SymbolicSparseColMatRef<'_, usize> {

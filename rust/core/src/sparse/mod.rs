@@ -4,8 +4,10 @@
 mod dirichlet;
 mod factor;
 mod laplacian;
+mod multifrontal;
 
 pub(crate) use dirichlet::solve_dirichlet;
 pub(crate) use factor::top_eigenvector;
 pub use factor::{Cholesky, solve_general};
 pub use laplacian::Laplacian;
+pub(crate) use multifrontal::{Analysis, Factor, Failure};

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Loops over the columns of small fronts, where a call of a general dense kernel costs more than it does.
+//!
+//! All are inlined into code compiled for the processor's widest vectors (see [`on_wide_vectors`]).
+
+use super::super::factor::Scalar;
+
+/// Runs `work` compiled for the widest vectors that this processor has.
+pub(super) fn on_wide_vectors<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
+}
+
+/// `out -= Σ_p columns[p] · factors[p]`, all as long as `out`.
+#[inline(always)]
+fn subtract_four<T: Scalar>(out: &mut [T], columns: [&[T]; 4], factors: [T; 4]) {
+    let n = out.len();
+    let [a, b, c, d] = columns.map(|column| &column[..n]);
+    for i in 0..n {
+        out[i] -= (a[i] * factors[0] + b[i] * factors[1]) + (c[i] * factors[2] + d[i] * factors[3]);
+    }
+}
+
+#[inline(always)]
+fn subtract_one<T: Scalar>(out: &mut [T], column: &[T], factor: T) {
+    for (out, &entry) in out.iter_mut().zip(column) {
+        *out -= entry * factor;
+    }
+}
+
+/// `out -= Σ_p panel[row.., p] · factor(p)` over the first `width` columns of a panel.
+#[inline(always)]
+pub(super) fn subtract_columns<T: Scalar>(
+    out: &mut [T],
+    (panel, height, width): (&[T], usize, usize),
+    row: usize,
+    factor: impl Fn(usize) -> T,
+) {
+    let column = |p: usize| &panel[p * height + row..(p + 1) * height];
+    let fours = width / 4 * 4;
+    for p in (0..fours).step_by(4) {
+        let columns = [column(p), column(p + 1), column(p + 2), column(p + 3)];
+        subtract_four(out, columns, [factor(p), factor(p + 1), factor(p + 2), factor(p + 3)]);
+    }
+    for p in fours..width {
+        subtract_one(out, column(p), factor(p));
+    }
+}
+
+/// The inner products of `x` with four columns as long, in eight interleaved sums each.
+#[inline(always)]
+pub(super) fn four_inner_products<T: Scalar>(columns: [&[T]; 4], x: &[T]) -> [T; 4] {
+    let mut sums = [[T::ZERO; 8]; 4];
+    let (blocks, rest) = x.as_chunks::<8>();
+    for (block, x) in blocks.iter().enumerate() {
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let entries = &column[8 * block..8 * block + 8];
+            for lane in 0..8 {
+                sums[lane] += entries[lane] * x[lane];
+            }
+        }
+    }
+    let done = 8 * blocks.len();
+    std::array::from_fn(|p| {
+        let s = sums[p];
+        let sum = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+        rest.iter().zip(&columns[p][done..]).fold(sum, |sum, (&x, &entry)| sum + entry * x)
+    })
+}
+
+/// Overwrites the columns of a panel by those of the factor; false where a pivot is not positive and finite.
+#[inline(always)]
+pub(super) fn eliminate<T: Scalar>(panel: &mut [T], height: usize, width: usize) -> bool {
+    for j in 0..width {
+        let (done, rest) = panel.split_at_mut(j * height);
+        let column = &mut rest[j..height];
+        subtract_columns(column, (done, height, j), j, |p| done[p * height + j]);
+        let pivot = column[0];
+        if !(pivot > T::ZERO && pivot.is_finite()) {
+            return false;
+        }
+        let root = pivot.sqrt();
+        let inverse = T::ONE / root;
+        column[0] = root;
+        column[1..].iter_mut().for_each(|entry| *entry *= inverse);
+    }
+    true
+}
+
+/// Writes −L Lᵀ of the rows below the columns of a factored panel into the lower triangle of `update`.
+#[inline(always)]
+pub(super) fn subtract_square<T: Scalar>(update: &mut [T], panel: &[T], height: usize, width: usize) {
+    let rows = height - width;
+    for j in 0..rows {
+        let out = &mut update[j * rows + j..(j + 1) * rows];
+        let row = width + j;
+        out.fill(T::ZERO);
+        subtract_columns(out, (panel, height, width), row, |p| panel[p * height + row]);
+    }
+}

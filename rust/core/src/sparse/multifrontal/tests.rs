@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+use super::*;
+use crate::control::Silent;
+
+/// A grid of n × n vertices, its squares cut into two faces.
+pub(super) fn grid(n: usize) -> (usize, Vec<[u32; 3]>) {
+    let vertex = |x: usize, y: usize| (y * n + x) as u32;
+    let square = |x: usize, y: usize| {
+        let [a, b, c, d] = [vertex(x, y), vertex(x + 1, y), vertex(x + 1, y + 1), vertex(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let faces = (0..(n.max(1) - 1) * (n.max(1) - 1)).flat_map(|k| square(k % (n - 1), k / (n - 1))).collect();
+    (n * n, faces)
+}
+
+/// A number in (−1, 1) that depends on its arguments like a random one.
+fn noise(a: usize, b: usize) -> f64 {
+    let mut x = (a as u64) << 32 ^ (b as u64) ^ 0x9E37_79B9_7F4A_7C15;
+    for _ in 0..3 {
+        x ^= x >> 31;
+        x = x.wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    }
+    (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// A positive definite matrix for each face: a square and a little of the identity.
+fn element(face: usize) -> [[f64; 6]; 6] {
+    let root: [[f64; 6]; 6] =
+        std::array::from_fn(|i| std::array::from_fn(|j| noise(36 * face + 6 * i + j, 1)));
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            (0..6).map(|k| root[k][i] * root[k][j]).sum::<f64>() + if i == j { 0.3 } else { 0.0 }
+        })
+    })
+}
+
+/// 0, 1 or 2 unknowns at each vertex.
+fn mixed_dofs(n: usize) -> Vec<u8> {
+    (0..n).map(|vertex| (noise(vertex, 7) * 1.5 + 1.5) as u8).collect()
+}
+
+/// A x of the assembled matrix.
+fn multiply(analysis: &Analysis, faces: &[[u32; 3]], dofs: &[u8], x: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; x.len()];
+    for (face, corners) in faces.iter().enumerate() {
+        let matrix = element(face);
+        let places = |a: usize| {
+            let vertex = corners[a] as usize;
+            (0..usize::from(dofs[vertex])).map(move |i| (analysis.first_unknown(vertex) + i, 2 * a + i))
+        };
+        for (row, i) in (0..3).flat_map(places) {
+            for (column, j) in (0..3).flat_map(places) {
+                out[row] += matrix[i][j] * x[column];
+            }
+        }
+    }
+    out
+}
+
+fn factored<T: Scalar>(analysis: &Analysis) -> Factor<T> {
+    let (mut silent, mut factor) = (Silent, Factor::new(analysis));
+    factor.refactor(analysis, &element, &Watch::new(&mut silent, 0.0, "")).unwrap();
+    factor
+}
+
+/// The largest |A x − b| for two right-hand sides.
+fn residual<T: Scalar>(n: usize, faces: &[[u32; 3]], dofs: &[u8]) -> f64 {
+    let analysis = Analysis::new(n, faces, dofs).unwrap();
+    let factor = factored::<T>(&analysis);
+    let b: [Vec<f64>; 2] = [1, 2].map(|k| (0..analysis.n_unknowns()).map(|i| noise(i, k)).collect());
+    let mut x = b.concat();
+    factor.solve(&analysis, &mut x);
+    let mut worst: f64 = 0.0;
+    for (x, b) in x.chunks(analysis.n_unknowns().max(1)).zip(&b) {
+        let product = multiply(&analysis, faces, dofs, x);
+        worst = product.iter().zip(b).map(|(p, b)| (p - b).abs()).fold(worst, f64::max);
+    }
+    worst
+}
+
+#[test]
+fn solves_grids_with_none_one_and_two_unknowns_at_a_vertex() {
+    for size in [2, 3, 5, 10, 40, 120] {
+        let (n, faces) = grid(size);
+        for dofs in [vec![2; n], vec![1; n], mixed_dofs(n)] {
+            let (double, single) = (residual::<f64>(n, &faces, &dofs), residual::<f32>(n, &faces, &dofs));
+            assert!(double < 1e-11 && single < 1e-2, "{size}: {double:e} {single:e}");
+        }
+    }
+}
+
+/// Runs `work` on a pool of so many threads.
+fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+/// The bits of the factor and of one solution.
+fn bits<T: Scalar>(analysis: &Analysis, threads: usize) -> (Vec<u64>, Vec<u64>) {
+    on_threads(threads, || {
+        let factor = factored::<T>(analysis);
+        let mut x: Vec<f64> = (0..analysis.n_unknowns()).map(|i| noise(i, 3)).collect();
+        factor.solve(analysis, &mut x);
+        let bits = |value: f64| value.to_bits();
+        (factor.values.iter().map(|value| bits(value.to_f64())).collect(), x.into_iter().map(bits).collect())
+    })
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_a_bit() {
+    let (n, faces) = grid(150);
+    let analysis = Analysis::new(n, &faces, &mixed_dofs(n)).unwrap();
+    let (double, single) = (bits::<f64>(&analysis, 1), bits::<f32>(&analysis, 1));
+    for threads in [2, 2, 2, 7, 7] {
+        assert!(bits::<f64>(&analysis, threads) == double);
+        assert!(bits::<f32>(&analysis, threads) == single);
+    }
+}
+
+#[test]
+#[ignore = "prints times: AUTHALIC_MESH=mesh.obj cargo test --release multifrontal -- --ignored --nocapture"]
+fn times() {
+    let Ok(path) = std::env::var("AUTHALIC_MESH") else { return };
+    let (n, faces) = read_obj(&path);
+    for dofs in [1_u8, 2] {
+        let began = std::time::Instant::now();
+        // one vertex held, as on a closed mesh
+        let analysis = Analysis::new(n, &faces, &vec![dofs; n]).unwrap();
+        let fronts = &analysis.symbolic.fronts;
+        let largest = (0..fronts.len()).map(|f| fronts.front(f).height()).max().unwrap();
+        println!(
+            "{dofs} unknowns at {n} vertices: analysis {:.0} ms, {:.2} M numbers, {:.2} G multiplications, {} fronts, {largest} rows",
+            began.elapsed().as_secs_f64() * 1e3,
+            fronts.factor_len() as f64 / 1e6,
+            fronts.work(&(0..fronts.len())) / 1e9,
+            fronts.len(),
+        );
+        for threads in [1, 2] {
+            on_threads(threads, || times_of::<f64>("f64", threads, &analysis));
+            on_threads(threads, || times_of::<f32>("f32", threads, &analysis));
+        }
+    }
+}
+
+fn milliseconds(mut work: impl FnMut()) -> f64 {
+    let mut all: Vec<f64> = (0..5)
+        .map(|_| {
+            let began = std::time::Instant::now();
+            work();
+            began.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    all.sort_by(f64::total_cmp);
+    all[2]
+}
+
+fn times_of<T: Scalar>(name: &str, threads: usize, analysis: &Analysis) {
+    let simple: [[f64; 6]; 6] = std::array::from_fn(|i| {
+        std::array::from_fn(
+            |j| if i == j { 4.0 + 0.01 * i as f64 } else { -0.5 + 0.1 * ((i + j) % 3) as f64 },
+        )
+    });
+    let (mut silent, mut factor) = (Silent, Factor::<T>::new(analysis));
+    let refactor = milliseconds(|| {
+        factor.refactor(analysis, &|_| simple, &Watch::new(&mut silent, 0.0, "")).unwrap();
+    });
+    let mut rhs = vec![1.0; 2 * analysis.n_unknowns()];
+    let two = milliseconds(|| factor.solve(analysis, &mut rhs));
+    rhs.truncate(analysis.n_unknowns());
+    let one = milliseconds(|| factor.solve(analysis, &mut rhs));
+    println!(
+        "    {name}, {threads} threads: factor {refactor:.1}, two solves {two:.1}, one solve {one:.1} ms"
+    );
+}
+
+/// (number of vertices, faces) of a file with triangles.
+fn read_obj(path: &str) -> (usize, Vec<[u32; 3]>) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let n = text.lines().filter(|line| line.starts_with("v ")).count();
+    let face = |line: &str| {
+        let mut corners = line[2..]
+            .split_whitespace()
+            .map(|word| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1);
+        std::array::from_fn(|_| corners.next().unwrap())
+    };
+    (n, text.lines().filter(|line| line.starts_with("f ")).map(face).collect())
+}

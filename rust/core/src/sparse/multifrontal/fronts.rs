@@ -13,7 +13,7 @@ use super::graph::{Graph, NONE};
 const ALLOWED_ZEROS: [(usize, f64); 4] = [(8, 0.5), (16, 0.4), (48, 0.15), (usize::MAX, 0.05)];
 
 /// Unknowns of consecutive rows of a front that are consecutive in its parent too.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     /// First row of the front, counted from the first below its columns.
     pub(super) from: u32,
@@ -23,7 +23,7 @@ pub(super) struct Run {
 }
 
 /// What an element adds to, and where.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Element {
     /// Index of the clique among those of the analysis.
     pub(super) index: u32,
@@ -34,6 +34,7 @@ pub(super) struct Element {
 }
 
 /// One dense block of the elimination.
+#[derive(Debug, Clone)]
 pub(super) struct Front {
     /// The first front of the subtree that ends with this one.
     pub(super) first: u32,
@@ -64,6 +65,7 @@ impl Front {
 }
 
 /// All fronts in postorder: a subtree is a contiguous range, its last front the root.
+#[derive(Debug, Clone)]
 pub(super) struct Fronts {
     fronts: Vec<Front>,
     runs: Vec<Run>,

@@ -37,6 +37,7 @@ pub(crate) enum Failure {
 }
 
 /// The pattern of the factor for one mesh and the unknowns of its vertices.
+#[derive(Debug, Clone)]
 pub(crate) struct Analysis {
     /// The first unknown of each vertex; the number of unknowns last.
     first_unknown: Vec<u32>,
@@ -79,6 +80,7 @@ impl Analysis {
 }
 
 /// The pattern of a factor over nodes with one or two unknowns each.
+#[derive(Debug, Clone)]
 struct Symbolic {
     fronts: Fronts,
     /// The unknown of each column of the factor.
@@ -109,6 +111,7 @@ fn unknowns_in_order(order: &[u32], dofs: &[u8]) -> Vec<u32> {
 }
 
 /// A factor L of a matrix A = L Lᵀ in the precision T.
+#[derive(Debug, Clone)]
 pub(crate) struct Factor<T> {
     values: Vec<T>,
 }

@@ -134,6 +134,7 @@ fn times() {
             fronts.work(&(0..fronts.len())) / 1e9,
             fronts.len(),
         );
+        times_of_library(&analysis, &faces, dofs.into());
         for threads in [1, 2] {
             on_threads(threads, || times_of::<f64>("f64", threads, &analysis));
             on_threads(threads, || times_of::<f32>("f32", threads, &analysis));
@@ -153,12 +154,42 @@ fn milliseconds(mut work: impl FnMut()) -> f64 {
     all[2]
 }
 
-fn times_of<T: Scalar>(name: &str, threads: usize, analysis: &Analysis) {
-    let simple: [[f64; 6]; 6] = std::array::from_fn(|i| {
+/// The matrix that [`simple_element`] assembles, all vertices with as many unknowns.
+fn assembled(n: usize, faces: &[[u32; 3]], dofs: usize) -> sprs::CsMat<f64> {
+    let matrix = simple_element();
+    let mut triplets = sprs::TriMat::new((n, n));
+    for face in faces {
+        let places = || (0..3).flat_map(|a| (0..dofs).map(move |i| (dofs * face[a] as usize + i, 2 * a + i)));
+        for (row, i) in places() {
+            places()
+                .filter(|&(column, _)| row <= column)
+                .for_each(|(column, j)| triplets.add_triplet(row, column, matrix[i][j]));
+        }
+    }
+    triplets.to_csc()
+}
+
+fn times_of_library(analysis: &Analysis, faces: &[[u32; 3]], dofs: usize) {
+    let n = analysis.n_unknowns();
+    let matrix = assembled(n, faces, dofs);
+    let mut factor = super::super::Cholesky::analyse(&matrix).unwrap();
+    let refactor = milliseconds(|| factor.refactor(&matrix).unwrap());
+    let mut rhs = vec![1.0; 2 * n];
+    let two = milliseconds(|| factor.solve(&mut rhs));
+    let one = milliseconds(|| factor.solve(&mut rhs[..n]));
+    println!("    Cholesky: factor {refactor:.1}, two solves {two:.1}, one solve {one:.1} ms");
+}
+
+fn simple_element() -> [[f64; 6]; 6] {
+    std::array::from_fn(|i| {
         std::array::from_fn(
             |j| if i == j { 4.0 + 0.01 * i as f64 } else { -0.5 + 0.1 * ((i + j) % 3) as f64 },
         )
-    });
+    })
+}
+
+fn times_of<T: Scalar>(name: &str, threads: usize, analysis: &Analysis) {
+    let simple = simple_element();
     let (mut silent, mut factor) = (Silent, Factor::<T>::new(analysis));
     let refactor = milliseconds(|| {
         factor.refactor(analysis, &|_| simple, &Watch::new(&mut silent, 0.0, "")).unwrap();

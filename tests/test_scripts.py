@@ -13,6 +13,7 @@ import authalic
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
+import bench_angle
 import bench_fuzz
 import bench_fuzz_cases
 import bench_fuzz_rust
@@ -161,6 +162,26 @@ def test_the_start_of_other_tools_is_an_embedding():
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     image = bench_peers_methods.tutte(faces, loop, circle, len(vertices))
     assert (bench_peers_methods.signed_areas(image, faces) > 0).all()
+
+
+def test_the_curve_of_areas_against_angles_has_rows(tiny_meshes, monkeypatch, tmp_path):
+    monkeypatch.setattr(bench_angle, "WEIGHTS", (0,))
+    target = tmp_path / "angle.md"
+    bench_angle.main([str(target)])
+    text = target.read_text(encoding="utf-8")
+    assert re.search(r"(?m)^\| cap \| \d+ \| 0 \| 0\.\d+ \|", text) and "| ellipsoid |" in text, text
+    assert "Not measured: there is no Blender" in text
+    assert (tmp_path / "angle-curve.png").stat().st_size > 0
+
+
+def test_the_curve_is_read_at_equal_angles():
+    points = [(1, 0.4, 1.2), (0.1, 0.1, 1.6), (0.01, 0.05, 2.0)]
+    curve = [bench_angle.Point("", w, d, 0.0, angle, 9.0, 0, 0.0) for w, d, angle in points]
+    assert np.allclose(bench_angle.at_angle(curve, 1.4), (0.2, 10**-0.5))
+    other = bench_angle.Point("Blender", np.nan, 0.8, 0.0, 1.4, 9.0, 0, 0.0)
+    assert bench_angle.beside_cells("ear", 7, other, curve)[-1] == "0.250"
+    too_flat = bench_angle.Point("Blender", np.nan, 0.8, 0.0, 1.1, 9.0, 0, 0.0)
+    assert bench_angle.beside_cells("ear", 7, too_flat, curve)[-3].startswith("outside the curve, 1.200 to")
 
 
 def test_the_search_for_failures_has_a_table_and_a_replay(tmp_path, capsys):

@@ -139,6 +139,15 @@ def test_the_comparison_survives_what_happens_to_a_method(monkeypatch, tmp_path)
     assert start("sphere", "ball", mesh, method).remark == "stopped after 0.3 s"
 
 
+def test_methods_are_chosen_by_name_or_by_a_part_of_it():
+    def names(*words):
+        return [method.name for method in bench_peers_methods.of_kind("disk", words)]
+
+    assert names("authalic") == ["authalic"]
+    assert names("slim", "xatlas") == ["libigl SLIM 10", "libigl SLIM 50", "xatlas"]
+    assert len(names()) == 11
+
+
 def test_a_mirrored_chart_is_no_fold_and_scale_does_not_count():
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     faces = np.array([[0, 1, 2], [0, 2, 3]])

@@ -69,10 +69,10 @@ def parsed(arguments=None):
     parser.add_argument("--blender", default="")
     parser.add_argument("--absent", nargs="+", default=[], type=lambda text: text.split("=", 1))
     options = parser.parse_args(arguments)
-    known = [method.name for part in options.parts for method in bench_peers_methods.of_kind(part)]
-    unknown = [w for w in options.methods if not any(w.casefold() in name.casefold() for name in known)]
+    unknown = [word for word in options.methods if not bench_peers_methods.called(word)]
     if unknown:
-        parser.error(f"no method {', '.join(unknown)}; there are: {', '.join(dict.fromkeys(known))}")
+        names = ", ".join(dict.fromkeys(method.name for method in bench_peers_methods.METHODS))
+        parser.error(f"no method {', '.join(unknown)}; there are: {names}")
     return options
 
 

@@ -220,14 +220,16 @@ METHODS = (
 """In the order of the tables."""
 
 
-def of_kind(kind, names=()):
-    """The methods for "disk" or "sphere"; only those whose names contain one of `names`, if any."""
-    wanted = [name.casefold() for name in names]
-    return [
-        method
-        for method in METHODS
-        if kind in method.kinds and (not wanted or any(name in method.name.casefold() for name in wanted))
-    ]
+def of_kind(kind, words=()):
+    """The methods for "disk" or "sphere"; only those that one of the words names, if there are any."""
+    wanted = [method for word in words for method in METHODS if method.name in called(word)]
+    return [method for method in METHODS if kind in method.kinds and (not words or method in wanted)]
+
+
+def called(word):
+    """The names that a word stands for: itself if it is one, otherwise those that contain it."""
+    names = list(dict.fromkeys(method.name for method in METHODS))
+    return [word] if word in names else [name for name in names if word.casefold() in name.casefold()]
 
 
 def named(name, kind):

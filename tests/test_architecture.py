@@ -18,7 +18,7 @@ CORE_ROOMS = (
     {"mesh"},
     {"sparse", "geometry", "distortion"},
     {"energy"},
-    {"optimize"},
+    {"optimize", "embedding"},
     {"disk", "sphere"},
     {"registration"},
     {"hyperbolic"},

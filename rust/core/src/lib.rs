@@ -22,6 +22,7 @@
 mod control;
 mod disk;
 mod distortion;
+pub mod embedding;
 pub mod energy;
 mod error;
 pub mod mesh;

@@ -5,34 +5,51 @@
 //! collapse keeps the surface a sphere where v and w have exactly two common neighbours (link condition);
 //! with more than four vertices there always is one. The next vertex is the one whose star has least target
 //! measure, weighed by its degree and the shapes it would leave, so that the vertices of every coarse mesh
-//! are spread evenly over the measure.
+//! are spread evenly over the measure. The measure of a star is handed on to the faces that fill it, so the
+//! sum over all faces stays the same.
 //!
-//! The measure of a star is handed on to the faces that fill it, so the sum over all faces stays the same.
+//! A surface with one boundary loop is closed by an apex, a vertex without place or measure that is joined
+//! to the whole loop. The apex never collapses, and a vertex of the loop only onto a neighbour in the loop.
 //!
-//! Cost: O(n log n), about fifty shapes looked at for each vertex.
+//! Cost: O(n log n), the stars of about four vertices looked at for each one.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::TriangleMesh;
-use super::geometry::{Vector, area, dot, sub, triangle};
+use super::geometry::{Vector, area, cross, dot, sub, triangle};
+use super::topology::{next_corner, previous_corner};
+use crate::control::Observer;
+use crate::parallel;
+
+/// The observer is asked once for so many vertices.
+const BEAT: usize = 1024;
+
+/// The shapes around a vertex with more neighbours are not looked at before it has come to the front of the
+/// queue; few such vertices keep them all till then.
+const MANY_NEIGHBOURS: usize = 32;
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]
 pub(crate) struct Decimation<'a> {
-    points: &'a [Vector],
+    mesh: &'a TriangleMesh,
+    /// The faces of the mesh, then those at the apex.
     faces: Vec<[u32; 3]>,
+    /// The corner across the edge opposite to each corner.
+    twins: Vec<u32>,
     targets: Vec<f64>,
-    /// The faces at each vertex; of a vertex that is gone, those it had.
-    stars: Vec<Vec<u32>>,
+    /// A corner at each vertex; of a vertex that is gone, the one whose next corner it went onto.
+    corners: Vec<u32>,
+    /// How many neighbours each vertex has; of a vertex that is gone, those it had.
+    degrees: Vec<u32>,
     gone: Vec<bool>,
     collapses: Vec<Collapse>,
-    /// The targets of the stars before each collapse, one after the other.
+    /// The targets that each collapse changed, one after the other.
     old_targets: Vec<f64>,
 }
 
 /// A vertex that moved onto a neighbour.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Collapse {
     /// The vertex that went.
     pub vertex: u32,
@@ -61,29 +78,108 @@ impl PartialOrd for Candidate {
     }
 }
 
-impl<'a> Decimation<'a> {
-    /// The whole mesh with its targets, before any collapse.
-    pub(crate) fn new(mesh: &'a TriangleMesh, targets: Vec<f64>) -> Self {
-        let star = |vertex: usize| mesh.vertex_corners(vertex).iter().map(|&corner| corner / 3).collect();
-        Self {
-            points: mesh.points(),
-            faces: mesh.faces().to_vec(),
-            targets,
-            stars: (0..mesh.n_vertices()).map(star).collect(),
-            gone: vec![false; mesh.n_vertices()],
-            collapses: Vec::with_capacity(mesh.n_vertices()),
-            old_targets: Vec::new(),
-        }
+/// The neighbours of a vertex, counter-clockwise, and the measure of its star.
+#[derive(Default)]
+struct Ring {
+    /// The corners at the vertex whose next corners are the neighbours.
+    corners: Vec<u32>,
+    vertices: Vec<u32>,
+    points: Vec<Vector>,
+    measure: f64,
+    /// Where in the ring the apex is.
+    apex: Option<usize>,
+}
+
+impl Ring {
+    /// Whether a collapse onto the neighbour keeps the boundary what it is.
+    fn keeps_the_boundary(&self, neighbour: usize) -> bool {
+        let n = self.vertices.len();
+        self.apex.is_none_or(|apex| (apex + 1) % n == neighbour || (neighbour + 1) % n == apex)
     }
 
-    /// The faces at a vertex, each by the two others of its corners in order, with their targets.
+    /// 4√3·area/Σ edge² of the worst face that a collapse onto a neighbour makes; 1 is equilateral.
+    fn worst_shape(&self, neighbour: usize) -> f64 {
+        let n = self.vertices.len();
+        let onto = self.points[neighbour];
+        let mut worst = 1.0;
+        for k in neighbour + 1..neighbour + n - 1 {
+            let [one, two] = [k, k + 1].map(|k| if k < n { k } else { k - n });
+            if self.apex.is_some_and(|apex| apex == one || apex == two) {
+                continue;
+            }
+            let (edge, spoke) = (sub(self.points[two], self.points[one]), sub(self.points[one], onto));
+            let other = sub(self.points[two], onto);
+            let squares = dot(edge, edge) + dot(spoke, spoke) + dot(other, other);
+            let normal = cross(spoke, edge);
+            let shape = if squares > 0.0 { dot(normal, normal) / (squares * squares) } else { 0.0 };
+            worst = f64::min(worst, 12.0 * shape);
+        }
+        worst.sqrt()
+    }
+}
+
+impl<'a> Decimation<'a> {
+    /// The whole mesh with its targets, before any collapse: a sphere, or a disk, which gets its apex.
+    pub(crate) fn new(mesh: &'a TriangleMesh, targets: Vec<f64>) -> Self {
+        let n = mesh.n_vertices();
+        let mut whole = Self {
+            mesh,
+            faces: mesh.faces().to_vec(),
+            twins: (0..3 * mesh.n_faces() as u32).map(|c| mesh.opposite(c).unwrap_or_default()).collect(),
+            targets,
+            corners: (0..n).map(|vertex| mesh.vertex_corners(vertex)[0]).collect(),
+            degrees: (0..n).map(|vertex| mesh.vertex_corners(vertex).len() as u32).collect(),
+            gone: vec![false; n],
+            collapses: Vec::with_capacity(n),
+            old_targets: Vec::with_capacity(6 * n),
+        };
+        mesh.boundary_loops().first().into_iter().for_each(|boundary| whole.close(boundary));
+        whole
+    }
+
+    /// Joins the boundary loop to the apex.
+    fn close(&mut self, boundary: &[u32]) {
+        let (apex, first) = (self.apex(), self.twins.len() as u32);
+        let end = first + 3 * boundary.len() as u32;
+        for (k, &vertex) in boundary.iter().enumerate() {
+            let next = boundary[(k + 1) % boundary.len()];
+            let along = |&&corner: &&u32| {
+                self.vertex(next_corner(corner)) == next
+                    && self.mesh.opposite(previous_corner(corner)).is_none()
+            };
+            let corner = self.mesh.vertex_corners(vertex as usize).iter().find(along);
+            let across = previous_corner(*corner.expect("the loop runs along boundary edges"));
+            let face = first + 3 * k as u32;
+            self.faces.push([next, vertex, apex]);
+            self.twins[across as usize] = face + 2;
+            let [before, behind] =
+                [if k == 0 { end } else { face } - 3, if face + 3 == end { first } else { face + 3 }];
+            self.twins.extend([before + 1, behind, across]);
+            self.degrees[vertex as usize] += 2;
+        }
+        self.targets.resize(self.faces.len(), 0.0);
+        self.corners.push(first + 2);
+        self.degrees.push(boundary.len() as u32);
+        self.gone.push(false);
+    }
+
+    /// The vertex that closes a disk.
+    pub(crate) fn apex(&self) -> u32 {
+        self.mesh.n_vertices() as u32
+    }
+
+    /// The faces at a vertex, counter-clockwise, each by the two others of its corners in order, with their
+    /// targets.
     pub(crate) fn star(&self, vertex: u32) -> impl Iterator<Item = (u32, u32, f64)> {
-        self.stars[vertex as usize].iter().map(move |&face| {
-            let corners = self.faces[face as usize];
-            let k =
-                corners.iter().position(|&corner| corner == vertex).expect("a star's faces have its vertex");
-            (corners[(k + 1) % 3], corners[(k + 2) % 3], self.targets[face as usize])
+        self.around(self.corners[vertex as usize]).map(|corner| {
+            let ends = [next_corner(corner), previous_corner(corner)].map(|corner| self.vertex(corner));
+            (ends[0], ends[1], self.targets[corner as usize / 3])
         })
+    }
+
+    /// How many neighbours a vertex has.
+    pub(crate) fn degree(&self, vertex: u32) -> usize {
+        self.degrees[vertex as usize] as usize
     }
 
     /// Whether a vertex has been collapsed.
@@ -91,168 +187,272 @@ impl<'a> Decimation<'a> {
         self.gone[vertex as usize]
     }
 
-    /// Collapses vertices until `left` are left, or until none can be collapsed.
-    pub(crate) fn coarsen(&mut self, left: usize) {
-        let n = self.stars.len();
-        let mut queue: BinaryHeap<Reverse<Candidate>> = BinaryHeap::with_capacity(n);
-        let mut costs: Vec<f64> = (0..n as u32).map(|vertex| self.best_collapse(vertex).0).collect();
-        queue.extend((0..n as u32).map(|vertex| Reverse(Candidate { cost: costs[vertex as usize], vertex })));
-        while n - self.collapses.len() > left {
-            let Some(Reverse(Candidate { cost, vertex })) = queue.pop() else { return };
-            // 1. Out of date?
-            if self.gone[vertex as usize] || cost != costs[vertex as usize] {
+    /// Collapses vertices until four are left, the apex among them, or until none can be collapsed; `None`
+    /// where the observer ended it early.
+    pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
+        let surplus = self.degrees.len().saturating_sub(4);
+        let mut queue = self.candidates();
+        let mut waiting = vec![false; self.degrees.len()];
+        let mut ring = Ring::default();
+        while self.collapses.len() < surplus {
+            let Some(Reverse(Candidate { cost, vertex })) = queue.pop() else { break };
+            // 1. Out of date? A cost that fell since then is good enough as it is
+            let (now, corner) = self.best_collapse(vertex, &mut ring);
+            let Some(corner) = corner else {
+                waiting[vertex as usize] = true;
                 continue;
-            }
-            let (now, onto) = self.best_collapse(vertex);
+            };
             if now > cost {
-                costs[vertex as usize] = now;
                 queue.push(Reverse(Candidate { cost: now, vertex }));
                 continue;
             }
-            let Some(onto) = onto else { continue };
-            // 2. Collapse, and look at the ring anew
-            let ring: Vec<u32> = self.star(vertex).map(|(next, _, _)| next).collect();
-            self.collapse(Collapse { vertex, onto });
-            for vertex in ring {
-                let cost = self.best_collapse(vertex).0;
-                costs[vertex as usize] = cost;
-                queue.push(Reverse(Candidate { cost, vertex }));
+            // 2. Collapse; neighbours that could not collapse may be able to now
+            self.collapse(corner);
+            for &vertex in &ring.vertices {
+                if std::mem::take(&mut waiting[vertex as usize]) {
+                    queue.push(Reverse(Candidate { cost: 0.0, vertex }));
+                }
+            }
+            let part = self.collapses.len() as f64 / surplus as f64;
+            if self.collapses.len().is_multiple_of(BEAT) && !observer.progress(part, "Coarsening") {
+                return None;
             }
         }
+        Some(())
     }
 
     /// Takes the last collapse back and returns it; `None` once all are undone.
     pub(crate) fn refine(&mut self) -> Option<Collapse> {
         let collapse = self.collapses.pop()?;
         let Collapse { vertex, onto } = collapse;
-        let star = std::mem::take(&mut self.stars[vertex as usize]);
-        for &face in &star {
-            let corners = &mut self.faces[face as usize];
-            if corners.contains(&vertex) {
-                // one of the two that vanished
-                let ends = corners.iter().copied().filter(|&corner| corner != vertex);
-                ends.for_each(|corner| self.stars[corner as usize].push(face));
-            } else {
-                corners.iter_mut().filter(|corner| **corner == onto).for_each(|corner| *corner = vertex);
-                self.stars[onto as usize].retain(|&other| other != face);
+        let corner = self.corners[vertex as usize];
+        // 1. The dead faces come back between their neighbours
+        for corner in self.dead_faces(corner).into_iter().flat_map(|face| 3 * face..3 * face + 3) {
+            let across = self.twins[corner as usize];
+            self.twins[across as usize] = corner;
+        }
+        // 2. The star has its vertex again
+        let mut at = corner;
+        loop {
+            self.faces.as_flattened_mut()[at as usize] = vertex;
+            at = self.turned(at);
+            if at == corner {
+                break;
             }
         }
-        let begin = self.old_targets.len() - star.len();
-        for (&face, target) in star.iter().zip(self.old_targets.drain(begin..)) {
+        self.corners[onto as usize] = next_corner(corner);
+        self.gone[vertex as usize] = false;
+        self.count_neighbours(collapse, corner, 1);
+        // 3. And its measure
+        let faces: Vec<u32> = self.measured_faces(corner).collect();
+        let begin = self.old_targets.len() - faces.len();
+        for (face, target) in faces.into_iter().zip(self.old_targets.drain(begin..)) {
             self.targets[face as usize] = target;
         }
-        self.stars[vertex as usize] = star;
-        self.gone[vertex as usize] = false;
         Some(collapse)
     }
 
-    fn collapse(&mut self, collapse: Collapse) {
-        let Collapse { vertex, onto } = collapse;
-        let star = std::mem::take(&mut self.stars[vertex as usize]);
-        let measure: f64 = star.iter().map(|&face| self.targets[face as usize]).sum();
-        self.old_targets.extend(star.iter().map(|&face| self.targets[face as usize]));
-        let (vanishing, staying): (Vec<u32>, Vec<u32>) =
-            star.iter().partition(|&&face| self.faces[face as usize].contains(&onto));
-        for &face in &vanishing {
-            let ends = self.faces[face as usize].into_iter().filter(|&corner| corner != vertex);
-            ends.for_each(|corner| self.stars[corner as usize].retain(|&other| other != face));
-            self.targets[face as usize] = 0.0;
+    /// Moves the vertex at a corner onto that of the next corner.
+    fn collapse(&mut self, corner: u32) {
+        let collapse = Collapse { vertex: self.vertex(corner), onto: self.vertex(next_corner(corner)) };
+        let dead = self.dead_faces(corner);
+        let heirs: Vec<u32> = self.measured_faces(corner).collect();
+        self.count_neighbours(collapse, corner, -1);
+        // 1. The star gets its new vertex
+        let mut last = corner;
+        loop {
+            self.faces.as_flattened_mut()[last as usize] = collapse.onto;
+            let next = self.turned(last);
+            if next == corner {
+                break;
+            }
+            last = next;
         }
-        for &face in &staying {
-            let corners = &mut self.faces[face as usize];
-            corners.iter_mut().filter(|corner| **corner == vertex).for_each(|corner| *corner = onto);
-            self.stars[onto as usize].push(face);
+        // 2. The faces beside each dead one become neighbours
+        for [one, two] in [[corner, next_corner(corner)], [last, previous_corner(last)]] {
+            let [one, two] = [one, two].map(|corner| self.twins[corner as usize]);
+            self.twins[one as usize] = two;
+            self.twins[two as usize] = one;
+            for corner in [next_corner(two), previous_corner(two)] {
+                let vertex = self.vertex(corner);
+                self.corners[vertex as usize] = corner;
+            }
         }
-        self.share_out(&staying, measure);
-        self.stars[vertex as usize] = star;
-        self.gone[vertex as usize] = true;
+        // 3. Its measure goes to the faces that stay
+        let measure: f64 = heirs.iter().map(|&face| self.targets[face as usize]).sum();
+        self.old_targets.extend(heirs.iter().map(|&face| self.targets[face as usize]));
+        dead.into_iter().for_each(|face| self.targets[face as usize] = 0.0);
+        self.share_out(heirs.into_iter().filter(|face| !dead.contains(face)), measure);
+        // 4. How to undo it
+        self.corners[collapse.vertex as usize] = corner;
+        self.gone[collapse.vertex as usize] = true;
         self.collapses.push(collapse);
     }
 
     /// Half of a measure in equal parts, half by area.
-    fn share_out(&mut self, faces: &[u32], measure: f64) {
-        let areas: Vec<f64> =
-            faces.iter().map(|&face| area(triangle(self.points, self.faces[face as usize]))).collect();
+    fn share_out(&mut self, faces: impl Iterator<Item = u32> + Clone, measure: f64) {
+        let face_area = |face: u32| area(triangle(self.mesh.points(), self.faces[face as usize]));
+        let areas: Vec<f64> = faces.clone().map(face_area).collect();
         let total: f64 = areas.iter().sum();
-        let equal = 1.0 / faces.len() as f64;
-        for (&face, area) in faces.iter().zip(areas) {
+        let equal = 1.0 / areas.len() as f64;
+        for (face, area) in faces.zip(areas) {
             let by_area = if total > 0.0 { area / total } else { equal };
             self.targets[face as usize] = 0.5 * measure * (by_area + equal);
         }
     }
 
-    /// What it costs to collapse a vertex and onto which neighbour; infinite where it cannot be.
-    fn best_collapse(&self, vertex: u32) -> (f64, Option<u32>) {
-        let star: Vec<(u32, u32, f64)> = self.star(vertex).collect();
-        let shape = |onto: u32| {
-            let degree = (self.stars[onto as usize].len() + star.len()) as f64 - 4.0;
-            (1.0 / (self.worst_shape(&star, onto) + 0.05)) * (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2))
-        };
-        let allowed =
-            star.iter().map(|&(next, _, _)| next).filter(|&onto| self.keeps_the_sphere(&star, onto));
-        let best =
-            allowed.map(|onto| (shape(onto), onto)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let Some((shape, onto)) = best else { return (f64::INFINITY, None) };
-        let measure: f64 = star.iter().map(|&(_, _, target)| target).sum();
-        let degree = 1.0 + 0.15 * (star.len() as f64 - 6.0).max(0.0).powi(2);
-        (measure * degree * shape.sqrt(), Some(onto))
+    /// Adds to the degrees of a vertex's neighbours what it means to them that it comes back (`sign` 1) or
+    /// goes (−1).
+    fn count_neighbours(&mut self, collapse: Collapse, corner: u32, sign: i32) {
+        let beyond = self.degrees[collapse.vertex as usize] as i32 - 4;
+        let across = self.twins[previous_corner(corner) as usize];
+        let beside = [previous_corner(corner), across].map(|corner| (self.vertex(corner), sign));
+        for (vertex, change) in beside.into_iter().chain([(collapse.onto, -sign * beyond)]) {
+            let degree = &mut self.degrees[vertex as usize];
+            *degree = degree.wrapping_add_signed(change);
+        }
     }
 
-    /// The link condition: exactly two common neighbours, and the surface keeps four vertices.
-    fn keeps_the_sphere(&self, star: &[(u32, u32, f64)], onto: u32) -> bool {
-        let is_neighbour = |other: u32| star.iter().any(|&(next, _, _)| next == other);
-        self.star(onto).filter(|&(next, _, _)| is_neighbour(next)).count() == 2
-    }
-
-    /// 4√3·area/Σ edge² of the worst face that a collapse of the star onto `onto` makes; 1 is equilateral.
-    fn worst_shape(&self, star: &[(u32, u32, f64)], onto: u32) -> f64 {
-        let kept = star.iter().filter(|&&(one, two, _)| one != onto && two != onto);
-        let shapes = kept.map(|&(one, two, _)| {
-            let [a, b, c] = triangle(self.points, [onto, one, two]);
-            let squares: f64 = [sub(b, a), sub(c, b), sub(a, c)].iter().map(|&edge| dot(edge, edge)).sum();
-            if squares > 0.0 { 4.0 * 3f64.sqrt() * area([a, b, c]) / squares } else { 0.0 }
+    /// All vertices that may collapse, with what it costs.
+    fn candidates(&self) -> BinaryHeap<Reverse<Candidate>> {
+        let costs = parallel::map(self.mesh.n_vertices(), |vertex| {
+            let mut ring = Ring::default();
+            let cost = match self.degrees[vertex] as usize > MANY_NEIGHBOURS {
+                true => 0.0,
+                false => self.best_collapse(vertex as u32, &mut ring).0,
+            };
+            // those that cannot collapse learn it first
+            if cost.is_finite() { cost } else { 0.0 }
         });
-        shapes.fold(1.0, f64::min)
+        let candidate = |(vertex, cost)| Reverse(Candidate { cost, vertex: vertex as u32 });
+        BinaryHeap::from(costs.into_iter().enumerate().map(candidate).collect::<Vec<_>>())
+    }
+
+    /// What it costs to collapse a vertex and the corner at it that is followed by the neighbour it goes
+    /// onto; infinite where it cannot be.
+    fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
+        self.fill_ring(vertex, ring);
+        let n = ring.vertices.len();
+        let mut best = (f64::INFINITY, u32::MAX, None);
+        for k in (0..n).filter(|&k| ring.apex != Some(k) && ring.keeps_the_boundary(k)) {
+            let onto = ring.vertices[k];
+            let degree = (self.degree(onto) + n) as f64 - 4.0;
+            let shape = (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (ring.worst_shape(k) + 0.05);
+            if (shape, onto) < (best.0, best.1) && self.keeps_the_sphere(ring, onto) {
+                best = (shape, onto, Some(ring.corners[k]));
+            }
+        }
+        let degree = 1.0 + 0.15 * (n as f64 - 6.0).max(0.0).powi(2);
+        (ring.measure * degree * best.0.sqrt(), best.2)
+    }
+
+    fn fill_ring(&self, vertex: u32, ring: &mut Ring) {
+        ring.corners.clear();
+        ring.vertices.clear();
+        ring.points.clear();
+        (ring.measure, ring.apex) = (0.0, None);
+        for corner in self.around(self.corners[vertex as usize]) {
+            let neighbour = self.vertex(next_corner(corner));
+            if neighbour == self.apex() {
+                ring.apex = Some(ring.vertices.len());
+            }
+            ring.measure += self.targets[corner as usize / 3];
+            ring.corners.push(corner);
+            ring.vertices.push(neighbour);
+            ring.points.push(self.mesh.points().get(neighbour as usize).copied().unwrap_or_default());
+        }
+    }
+
+    /// The link condition: exactly two common neighbours.
+    fn keeps_the_sphere(&self, ring: &Ring, onto: u32) -> bool {
+        let around = self.around(self.corners[onto as usize]);
+        around.filter(|&corner| ring.vertices.contains(&self.vertex(next_corner(corner)))).count() == 2
+    }
+
+    /// The faces between which the measure of the star around a corner is shared: its own, without those at
+    /// the apex; where that is only one, also the one across from the vertex, which inherits it.
+    fn measured_faces(&self, corner: u32) -> impl Iterator<Item = u32> {
+        let own = self.around(corner).filter(|&corner| (corner as usize) < 3 * self.mesh.n_faces());
+        let is_ear = own.clone().nth(1).is_none();
+        let heir = own.clone().next().filter(|_| is_ear).map(|corner| self.twins[corner as usize]);
+        own.chain(heir).map(|corner| corner / 3)
+    }
+
+    /// The faces on both sides of the edge from the vertex at a corner to that of the next corner.
+    fn dead_faces(&self, corner: u32) -> [u32; 2] {
+        [corner / 3, self.twins[previous_corner(corner) as usize] / 3]
+    }
+
+    /// The corners at one vertex, counter-clockwise.
+    fn around(&self, first: u32) -> impl Iterator<Item = u32> + Clone {
+        std::iter::successors(Some(first), move |&corner| {
+            Some(self.turned(corner)).filter(|&turned| turned != first)
+        })
+    }
+
+    /// The next corner at the same vertex, counter-clockwise.
+    fn turned(&self, corner: u32) -> u32 {
+        next_corner(self.twins[next_corner(corner) as usize])
+    }
+
+    fn vertex(&self, corner: u32) -> u32 {
+        self.faces.as_flattened()[corner as usize]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::Silent;
 
-    /// A bipyramid over a polygon of n corners, all on the unit sphere.
-    fn bipyramid(n: u32) -> TriangleMesh {
+    /// A bipyramid over a polygon of n corners, all on the unit sphere; without the first `open` faces.
+    fn bipyramid(n: u32, open: usize) -> TriangleMesh {
         let corner = |i: u32| {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
             [angle.cos(), angle.sin(), 0.05 * (3.0 * angle).sin()]
         };
         let vertices: Vec<Vector> = (0..n).map(corner).chain([[0., 0., 1.], [0., 0., -1.]]).collect();
-        let faces: Vec<[u32; 3]> =
-            (0..n).flat_map(|i| [[i, (i + 1) % n, n], [(i + 1) % n, i, n + 1]]).collect();
-        TriangleMesh::new(&vertices, &faces).unwrap()
+        let faces = (0..n).flat_map(|i| [[i, (i + 1) % n, n], [(i + 1) % n, i, n + 1]]).skip(open);
+        TriangleMesh::new(&vertices, &faces.collect::<Vec<_>>()).unwrap()
+    }
+
+    fn comes_down_and_back(mesh: &TriangleMesh, left: usize) {
+        let targets: Vec<f64> = (0..mesh.n_faces()).map(|face| 1.0 + face as f64).collect();
+        let total: f64 = targets.iter().sum();
+        let mut decimation = Decimation::new(mesh, targets);
+        let before = (decimation.faces.clone(), decimation.twins.clone());
+        let (targets, degrees) = (decimation.targets.clone(), decimation.degrees.clone());
+        decimation.coarsen(&mut Silent).unwrap();
+        assert!((decimation.targets.iter().sum::<f64>() - total).abs() < 1e-9 * total);
+        let remaining: Vec<u32> = (0..mesh.n_vertices() as u32).filter(|&v| !decimation.is_gone(v)).collect();
+        assert_eq!(remaining.len(), left);
+        assert!(remaining.iter().all(|&v| decimation.degree(v) == 3 && decimation.star(v).count() == 3));
+        while let Some(Collapse { vertex, onto }) = decimation.refine() {
+            assert!((decimation.targets.iter().sum::<f64>() - total).abs() < 1e-9 * total);
+            for vertex in [vertex, onto] {
+                assert_eq!(decimation.star(vertex).count(), decimation.degree(vertex));
+            }
+        }
+        assert_eq!((decimation.faces, decimation.twins), before);
+        assert_eq!((decimation.targets, decimation.degrees), (targets, degrees));
     }
 
     #[test]
     fn a_sphere_comes_down_to_a_tetrahedron_and_back() {
-        let mesh = bipyramid(23);
-        let targets: Vec<f64> = (0..mesh.n_faces()).map(|face| 1.0 + face as f64).collect();
-        let total: f64 = targets.iter().sum();
-        let mut decimation = Decimation::new(&mesh, targets.clone());
-        decimation.coarsen(4);
-        assert_eq!(decimation.collapses.len(), mesh.n_vertices() - 4);
-        assert!((decimation.targets.iter().sum::<f64>() - total).abs() < 1e-9 * total);
-        let left: Vec<usize> = (0..mesh.n_vertices()).filter(|&v| !decimation.is_gone(v as u32)).collect();
-        assert!(left.iter().all(|&v| decimation.stars[v].len() == 3));
-        while decimation.refine().is_some() {
-            assert!((decimation.targets.iter().sum::<f64>() - total).abs() < 1e-9 * total);
-        }
-        assert_eq!(decimation.faces, mesh.faces());
-        assert_eq!(decimation.targets, targets);
-        for vertex in 0..mesh.n_vertices() {
-            let mut star = decimation.stars[vertex].clone();
-            star.sort_unstable();
-            let given: Vec<u32> = mesh.vertex_corners(vertex).iter().map(|corner| corner / 3).collect();
-            assert_eq!(star, given);
-        }
+        [3, 4, 23, 200].into_iter().for_each(|n| comes_down_and_back(&bipyramid(n, 0), 4));
+    }
+
+    #[test]
+    fn a_disk_comes_down_to_a_triangle_and_back() {
+        [4, 5, 23, 200].into_iter().for_each(|n| comes_down_and_back(&bipyramid(n, 1), 3));
+        comes_down_and_back(&bipyramid(23, 2), 3);
+    }
+
+    #[test]
+    fn an_observer_ends_it_early() {
+        let mesh = bipyramid(2 * BEAT as u32, 0);
+        let mut decimation = Decimation::new(&mesh, vec![1.0; mesh.n_faces()]);
+        assert_eq!(decimation.coarsen(&mut |_: f64, _: &str| false), None);
+        assert_eq!(decimation.collapses.len(), BEAT);
     }
 }

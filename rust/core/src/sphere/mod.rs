@@ -13,7 +13,6 @@
 mod alignment;
 mod domain;
 mod fixed_point;
-mod progressive;
 mod run;
 mod start;
 mod stereographic;

@@ -6,10 +6,10 @@
 
 use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
-use super::progressive::{progressive, relaxed};
 use super::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
+use crate::embedding::{progressive_sphere, relaxed};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::optimize::gradient_descent::{DescentOptions, minimize};
@@ -119,7 +119,8 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        let unfolded = [unfold::unfold(self.mesh, map), progressive(self.mesh, self.targets)];
+        let built = progressive_sphere(self.mesh, self.targets, observer).ok();
+        let unfolded = [unfold::unfold(self.mesh, map), built];
         let (mut best, mut status) = (None, Status::MaxIterations);
         for (half, map) in unfolded.into_iter().enumerate() {
             let (Some(map), true) = (map, status != Status::Cancelled) else { continue };

@@ -8,16 +8,17 @@
 //! the centroid of the surface's measure at the sphere's centre.
 //!
 //! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts beyond
-//! double precision, which cannot; then the [progressive](super::progressive) map is taken.
+//! double precision, which cannot; then the [progressive](progressive_sphere) map is taken.
 //!
 //! Cost: one sparse Cholesky factorisation of all vertices but three.
 
 use std::f64::consts::PI;
 
-use super::progressive::progressive;
 use super::stereographic::{Chart, weighted_median};
 use super::{Map, unfold};
+use crate::control::Silent;
 use crate::distortion::folded_on_sphere;
+use crate::embedding::progressive_sphere;
 use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
@@ -51,7 +52,7 @@ pub(super) fn start(mesh: &TriangleMesh, targets: &[f64], weights: &[f64]) -> Re
     let mended = conformal.as_ref().ok().and_then(|map| unfold::unfold(mesh, map));
     let (map, part) = match mended.clone().filter(|map| !has_collapsed(mesh, targets, map)) {
         Some(map) => (Some(map), ROUND),
-        None => (progressive(mesh, targets), 1.0),
+        None => (progressive_sphere(mesh, targets, &mut Silent).ok(), 1.0),
     };
     // 2. On a sphere the surface itself
     let energy = |map: &Map| SpatialStretchEnergy::new(mesh, targets).value(map).authalic_energy;

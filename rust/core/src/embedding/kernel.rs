@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Room for a vertex inside the polygon of its neighbours.
+
+use crate::mesh::geometry::{Vector, cross, dot, norm, sub};
+
+/// The centroid of the kernel of a polygon, in coordinates along `basis` from `centre`: of the points from
+/// which all its edges, given by their ends, are seen to run counter-clockwise.
+///
+/// `centre` is a corner of the polygon from which all its edges are seen so, but for the two at it. `room` is
+/// a buffer.
+pub(super) fn kernel_centroid(
+    centre: Vector,
+    basis: [Vector; 2],
+    edges: impl Iterator<Item = [Vector; 2]> + Clone,
+    room: &mut [Vec<[f64; 2]>; 2],
+) -> [f64; 2] {
+    let reach = edges.clone().map(|[one, _]| norm(sub(one, centre))).fold(0.0, f64::max);
+    let [polygon, next] = room;
+    polygon.clear();
+    polygon.extend([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]]);
+    for [one, two] in edges {
+        let normal = cross(one, sub(two, one));
+        // exactly 0 for the two edges that end at the centre itself
+        let constant = dot(centre, cross(sub(one, centre), sub(two, centre)));
+        let [a, b] = basis.map(|axis| dot(axis, normal));
+        clip(polygon, |z| constant + a * z[0] + b * z[1], next);
+        std::mem::swap(polygon, next);
+    }
+    centroid(polygon)
+}
+
+/// Writes the part of a convex polygon where `height` is not negative.
+fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64, kept: &mut Vec<[f64; 2]>) {
+    kept.clear();
+    let Some(&last) = polygon.last() else { return };
+    let (mut from, mut here) = (last, height(last));
+    for &to in polygon {
+        let there = height(to);
+        if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+            let part = here / (here - there);
+            kept.push([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])));
+        }
+        if there >= 0.0 {
+            kept.push(to);
+        }
+        (from, here) = (to, there);
+    }
+}
+
+/// The centroid of a convex polygon, of its corners where it has no area; the origin where it is empty.
+fn centroid(polygon: &[[f64; 2]]) -> [f64; 2] {
+    let Some(&first) = polygon.first() else { return [0.0; 2] };
+    let (mut total, mut sum) = (0.0, [0.0; 2]);
+    for pair in polygon.windows(2) {
+        let [a, b] = [pair[0], pair[1]].map(|z| [z[0] - first[0], z[1] - first[1]]);
+        let area = a[0] * b[1] - a[1] * b[0];
+        total += area;
+        (0..2).for_each(|axis| sum[axis] += area * (a[axis] + b[axis]) / 3.0);
+    }
+    if total > 0.0 {
+        return [0, 1].map(|axis| first[axis] + sum[axis] / total);
+    }
+    let count = polygon.len() as f64;
+    [0, 1].map(|axis| polygon.iter().map(|z| z[axis]).sum::<f64>() / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kernel_of_a_notched_square_lies_beyond_the_notch() {
+        // the notch at (0, -.5) is seen into only from x in [-.5, .5]… of the square's upper part
+        let corners = [[-1., -1., 1.], [0., 0., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]];
+        let edges = (0..5).map(|k| [corners[k], corners[(k + 1) % 5]]);
+        let basis = [[1., 0., 0.], [0., 1., 0.]];
+        let [x, y] = kernel_centroid(corners[1], basis, edges, &mut Default::default());
+        // the kernel is the triangle (0, 0), (1, 1), (−1, 1)
+        assert!(x.abs() < 1e-15 && (y - 2.0 / 3.0).abs() < 1e-15, "{x} {y}");
+    }
+}

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A start map without folds for every topological sphere and disk: coarse to fine.
+//!
+//! The surface is decimated to a tetrahedron, which is laid onto the sphere, or to a triangle, which is laid
+//! into the disk, and gets its vertices back one by one. The vertices around the one that comes back form a
+//! polygon that is star-shaped from the vertex it went onto, so there is room for it near that one; it is
+//! placed there and then moved, with its neighbours, to lower an energy of area and shape that is infinite at
+//! a fold. No face is ever folded, by a filtered determinant, whatever the shape: a conformal or Tutte map
+//! shrinks a tentacle of length L and girth c by exp(−2π L/c), beyond double precision, and this one does
+//! not.
+//!
+//! Cost: O(n log n), some twenty one-vertex Newton steps for each vertex, on one thread.
+
+use std::f64::consts::{PI, TAU};
+
+use super::kernel::kernel_centroid;
+use super::star::{Chart, Star, angle, rotated};
+use crate::control::{Observer, Phase, Status};
+use crate::mesh::TriangleMesh;
+use crate::mesh::decimation::{Collapse, Decimation};
+use crate::mesh::geometry::{Vector, distance};
+
+/// λ, the weight of the shape in the energy.
+const SHAPE: f64 = 0.3;
+
+/// λ of the sweeps over a whole map, one after the other.
+const RELAXED_SHAPES: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
+
+/// Newton steps of a vertex that has come back.
+const NEWTON_STEPS: usize = 5;
+
+/// Sweeps over all vertices whenever their number has doubled.
+const SWEEPS: usize = 2;
+
+/// A neighbour with more neighbours of its own is not moved for one vertex that has come back.
+const MANY_NEIGHBOURS: usize = 40;
+
+/// The observer is asked once for so many vertices.
+const BEAT: usize = 1024;
+
+/// The part of the run that the decimation takes.
+const COARSENING: f64 = 0.35;
+
+/// Where along its arc a vertex of the boundary may come back, from either end.
+const ARC_PARTS: [f64; 10] = [0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+
+/// Why there is no map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// The observer ended the run.
+    Cancelled,
+    /// Double precision does not suffice.
+    NoRoom,
+}
+
+/// The progressive map of a closed surface of genus 0 onto the unit sphere.
+///
+/// `targets` (m,) are the faces' target areas on any common scale, all positive. Returns unit vectors (n, 3)
+/// of which no face is folded.
+///
+/// # Errors
+/// [`Stop`].
+pub fn progressive_sphere(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    observer: &mut dyn Observer,
+) -> Result<Vec<Vector>, Stop> {
+    let mut embedding = Embedding::new(mesh, targets);
+    embedding.build(observer)?;
+    Ok(embedding.places)
+}
+
+/// The progressive map of a surface with one boundary loop and no handle onto the unit disk.
+///
+/// `targets` (m,) are the faces' target areas on any common scale, all positive. Returns points (n, 2) of
+/// which no face is folded; the boundary runs once around the unit circle, counter-clockwise.
+///
+/// # Errors
+/// [`Stop`].
+pub fn progressive_disk(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    observer: &mut dyn Observer,
+) -> Result<Vec<[f64; 2]>, Stop> {
+    let mut embedding = Embedding::new(mesh, targets);
+    embedding.build(observer)?;
+    Ok(embedding.places.into_iter().map(|[u, v, _]| [u, v]).collect())
+}
+
+/// A map without folds onto the sphere relaxed by sweeps of one-vertex Newton steps, none of which folds a
+/// face, the shape weighing less and less.
+///
+/// Returns the map with [`Status::Cancelled`] where the observer ended it early.
+pub fn relaxed(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    map: Vec<Vector>,
+    observer: &mut dyn Observer,
+) -> (Vec<Vector>, Status) {
+    let mut embedding = Embedding::new(mesh, targets);
+    embedding.places = map;
+    let sweeps = 4 * RELAXED_SHAPES.len();
+    for sweep in 0..sweeps {
+        embedding.shape = RELAXED_SHAPES[sweep / 4];
+        let part = |sweep: usize| sweep as f64 / sweeps as f64;
+        let mut phase = Phase { whole: observer, from: part(sweep), to: part(sweep + 1) };
+        if embedding.sweep(&mut phase).is_err() {
+            return (embedding.places, Status::Cancelled);
+        }
+    }
+    (embedding.places, Status::MaxIterations)
+}
+
+/// A map of the vertices that are back, with what they are connected by.
+struct Embedding<'a> {
+    mesh: &'a TriangleMesh,
+    decimation: Decimation<'a>,
+    /// Where the vertices are: on the unit sphere, or in the disk at z = 1.
+    places: Vec<Vector>,
+    /// How far along the boundary each of its vertices is, 2π in all; empty on the sphere.
+    travelled: Vec<f64>,
+    /// λ, the weight of the shape in the energy.
+    shape: f64,
+    star: Star,
+    room: [Vec<[f64; 2]>; 2],
+}
+
+impl<'a> Embedding<'a> {
+    fn new(mesh: &'a TriangleMesh, targets: &[f64]) -> Self {
+        let boundary = mesh.boundary_loops().first();
+        let size = boundary.map_or(4.0 * PI, |boundary| polygon_area(boundary.len()));
+        let scale = size / targets.iter().sum::<f64>();
+        Self {
+            mesh,
+            decimation: Decimation::new(mesh, targets.iter().map(|target| scale * target).collect()),
+            places: vec![[0.0; 3]; mesh.n_vertices()],
+            travelled: boundary.map_or(Vec::new(), |boundary| travelled(mesh, boundary)),
+            shape: SHAPE,
+            star: Star::default(),
+            room: Default::default(),
+        }
+    }
+
+    fn build(&mut self, observer: &mut dyn Observer) -> Result<(), Stop> {
+        // 1. Down to a tetrahedron or a triangle
+        let mut coarsening = Phase { whole: observer, from: 0.0, to: COARSENING };
+        self.decimation.coarsen(&mut coarsening).ok_or(Stop::Cancelled)?;
+        // 2. That onto the sphere or into the disk
+        let mut n_placed = self.lay_base().ok_or(Stop::NoRoom)?;
+        // 3. One vertex after the other comes back
+        let mut next_sweep = 2 * n_placed;
+        let n = self.mesh.n_vertices();
+        let part = |n_placed: usize| COARSENING + (1.0 - COARSENING) * n_placed as f64 / n as f64;
+        while let Some(collapse) = self.decimation.refine() {
+            self.insert(collapse).ok_or(Stop::NoRoom)?;
+            n_placed += 1;
+            if n_placed.is_multiple_of(BEAT) && !observer.progress(part(n_placed), "Refining") {
+                return Err(Stop::Cancelled);
+            }
+            // 4. All vertices once more whenever their number has doubled
+            if n_placed == next_sweep || n_placed == n {
+                next_sweep *= 2;
+                for _ in 0..SWEEPS {
+                    self.sweep(&mut Phase { whole: observer, from: part(n_placed), to: part(n_placed) })?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Lays the vertices that are left onto a regular tetrahedron or triangle; returns how many they are.
+    fn lay_base(&mut self) -> Option<usize> {
+        let n = self.mesh.n_vertices() as u32;
+        let base: Vec<u32> = (0..n).filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
+        let third = 3f64.sqrt().recip();
+        let (c, s) = (-0.5, 0.75f64.sqrt());
+        let corners: &[Vector] = match self.travelled.is_empty() {
+            true => {
+                &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| x.map(|x| third * x))
+            }
+            false => &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]],
+        };
+        if base.len() != corners.len() {
+            return None;
+        }
+        // one of the two orders has the right orientation
+        let orders: [&[usize]; 2] = [&[0, 1, 2, 3], &[0, 2, 1, 3]];
+        for order in orders {
+            base.iter().zip(order).for_each(|(&vertex, &k)| self.places[vertex as usize] = corners[k]);
+            self.fill_star(base[0]);
+            if self.star.energy(self.places[base[0] as usize], self.shape).is_some() {
+                return Some(base.len());
+            }
+        }
+        None
+    }
+
+    /// Places a vertex that has come back, and moves it and its neighbours.
+    fn insert(&mut self, collapse: Collapse) -> Option<()> {
+        let Collapse { vertex, onto } = collapse;
+        let chart = self.chart(vertex);
+        self.fill_star(vertex);
+        // 1. A place
+        let mut place = match chart {
+            Chart::Circle => self.place_on_arc()?,
+            chart => self.place_in_kernel(self.places[onto as usize], chart)?,
+        };
+        // 2. To lower energy
+        for _ in 0..NEWTON_STEPS {
+            let Some(better) = self.star.improved(place, chart, self.shape) else { break };
+            place = better;
+        }
+        self.places[vertex as usize] = place;
+        // 3. With its neighbours
+        let ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
+        for neighbour in ring {
+            if neighbour != self.decimation.apex() && self.decimation.degree(neighbour) <= MANY_NEIGHBOURS {
+                self.relax(neighbour);
+            }
+        }
+        self.relax(vertex);
+        Some(())
+    }
+
+    /// A place inside the polygon around a vertex that went onto the one at `centre`.
+    fn place_in_kernel(&mut self, centre: Vector, chart: Chart) -> Option<Vector> {
+        let basis = chart.basis(centre);
+        let centroid = kernel_centroid(centre, basis, self.star.edges(), &mut self.room);
+        // towards the vertex it went onto, where the kernel is
+        let mut places = (0..12).map(|k| chart.moved(centre, basis, centroid.map(|x| 0.1f64.powi(k) * x)));
+        places.find(|&place| self.star.energy(place, self.shape).is_some())
+    }
+
+    /// The best place on the arc between the neighbours of a vertex of the boundary.
+    fn place_on_arc(&self) -> Option<Vector> {
+        let [(before, _), (behind, _)] = self.star.arcs?;
+        let arc = angle(before, behind);
+        let places =
+            ARC_PARTS.iter().flat_map(|part| [part * arc, arc - part * arc]).map(|a| rotated(before, a));
+        let energies = places.filter_map(|place| Some((self.star.energy(place, self.shape)?, place)));
+        energies.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
+    }
+
+    /// One Newton step of every vertex in turn.
+    fn sweep(&mut self, observer: &mut dyn Observer) -> Result<(), Stop> {
+        let n = self.mesh.n_vertices();
+        for vertex in 0..n {
+            if vertex.is_multiple_of(BEAT) && !observer.progress(vertex as f64 / n as f64, "Relaxing") {
+                return Err(Stop::Cancelled);
+            }
+            if !self.decimation.is_gone(vertex as u32) {
+                self.relax(vertex as u32);
+            }
+        }
+        Ok(())
+    }
+
+    /// One Newton step of one vertex, which never folds a face.
+    fn relax(&mut self, vertex: u32) {
+        self.fill_star(vertex);
+        let place = &mut self.places[vertex as usize];
+        if let Some(better) = self.star.improved(*place, self.chart(vertex), self.shape) {
+            self.places[vertex as usize] = better;
+        }
+    }
+
+    fn chart(&self, vertex: u32) -> Chart {
+        match (self.travelled.is_empty(), self.mesh.is_boundary(vertex as usize)) {
+            (true, _) => Chart::Sphere,
+            (false, false) => Chart::Plane,
+            (false, true) => Chart::Circle,
+        }
+    }
+
+    fn fill_star(&mut self, vertex: u32) {
+        let apex = self.decimation.apex();
+        self.star.clear();
+        let (mut before, mut behind) = (None, None);
+        for (one, two, target) in self.decimation.star(vertex) {
+            if one == apex {
+                behind = Some(two);
+            } else if two == apex {
+                before = Some(one);
+            } else {
+                self.star.push(self.places[one as usize], self.places[two as usize], target);
+            }
+        }
+        if let (Some(before), Some(behind)) = (before, behind) {
+            let arc = |from: u32, to: u32| {
+                let share = self.travelled[to as usize] - self.travelled[from as usize];
+                if share > 0.0 { share } else { share + TAU }
+            };
+            let places = [before, behind].map(|vertex| self.places[vertex as usize]);
+            self.star.arcs = Some([(places[0], arc(before, vertex)), (places[1], arc(vertex, behind))]);
+        }
+    }
+}
+
+/// The area of the regular polygon in the unit circle.
+fn polygon_area(n: usize) -> f64 {
+    0.5 * n as f64 * (TAU / n as f64).sin()
+}
+
+/// The way along the boundary to each of its vertices, 2π in all; 0 elsewhere.
+fn travelled(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
+    let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
+    let lengths: Vec<f64> = (0..boundary.len()).map(|k| distance(point(k), point(k + 1))).collect();
+    let total: f64 = lengths.iter().sum();
+    let (mut travelled, mut so_far) = (vec![0.0; mesh.n_vertices()], 0.0);
+    for (&vertex, length) in boundary.iter().zip(lengths) {
+        travelled[vertex as usize] = TAU * so_far / total;
+        so_far += length;
+    }
+    travelled
+}

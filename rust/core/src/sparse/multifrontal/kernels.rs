@@ -49,22 +49,25 @@ pub(super) fn subtract_columns<T: Scalar>(
 /// The inner products of `x` with four columns as long, in eight interleaved sums each.
 #[inline(always)]
 pub(super) fn four_inner_products<T: Scalar>(columns: [&[T]; 4], x: &[T]) -> [T; 4] {
-    let mut sums = [[T::ZERO; 8]; 4];
-    let (blocks, rest) = x.as_chunks::<8>();
-    for (block, x) in blocks.iter().enumerate() {
-        for (sums, column) in sums.iter_mut().zip(columns) {
-            let entries = &column[8 * block..8 * block + 8];
-            for lane in 0..8 {
-                sums[lane] += entries[lane] * x[lane];
-            }
+    let n = x.len();
+    let (x_blocks, x_rest) = x.as_chunks::<8>();
+    let [(a, a_rest), (b, b_rest), (c, c_rest), (d, d_rest)] =
+        columns.map(|column| column[..n].as_chunks::<8>());
+    let (mut sum_a, mut sum_b, mut sum_c, mut sum_d) =
+        ([T::ZERO; 8], [T::ZERO; 8], [T::ZERO; 8], [T::ZERO; 8]);
+    for ((((x, a), b), c), d) in x_blocks.iter().zip(a).zip(b).zip(c).zip(d) {
+        for lane in 0..8 {
+            sum_a[lane] += a[lane] * x[lane];
+            sum_b[lane] += b[lane] * x[lane];
+            sum_c[lane] += c[lane] * x[lane];
+            sum_d[lane] += d[lane] * x[lane];
         }
     }
-    let done = 8 * blocks.len();
-    std::array::from_fn(|p| {
-        let s = sums[p];
+    let add = |s: [T; 8], rest: &[T]| {
         let sum = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
-        rest.iter().zip(&columns[p][done..]).fold(sum, |sum, (&x, &entry)| sum + entry * x)
-    })
+        x_rest.iter().zip(rest).fold(sum, |sum, (&x, &entry)| sum + entry * x)
+    };
+    [add(sum_a, a_rest), add(sum_b, b_rest), add(sum_c, c_rest), add(sum_d, d_rest)]
 }
 
 /// Overwrites the columns of a panel by those of the factor; false where a pivot is not positive and finite.

@@ -11,6 +11,8 @@
 //! surface: about n log n numbers and n^1.5 multiplications.
 
 mod dense;
+#[cfg(feature = "metis")]
+mod dissection;
 mod elimination;
 mod fronts;
 mod graph;
@@ -91,12 +93,27 @@ impl Symbolic {
     /// Orders and analyses the sum of matrices over cliques of nodes; [`NONE`] is no node.
     fn new(cliques: &[[u32; 3]], dofs: &[u8]) -> Result<Self, Error> {
         let graph = Graph::of_cliques(dofs.len(), cliques);
-        let (starts, neighbours) = graph.compressed();
-        let order = minimum_degree(starts, neighbours)?;
+        let order = fill_reducing_order(&graph)?;
         let tree = Elimination::new(&graph, &order, dofs);
         let fronts = Fronts::new(&graph, &tree, dofs, cliques);
         Ok(Self { fronts, unknowns: unknowns_in_order(&tree.order, dofs) })
     }
+}
+
+/// Nodes from which an order that takes longer to find pays for itself within a few factorisations.
+#[cfg(feature = "metis")]
+const LARGE: usize = 200_000;
+
+/// An order of the nodes that keeps the factor sparse.
+fn fill_reducing_order(graph: &Graph) -> Result<Vec<u32>, Error> {
+    #[cfg(feature = "metis")]
+    if graph.n_nodes() >= LARGE
+        && let Some(order) = dissection::nested_dissection(graph)?
+    {
+        return Ok(order);
+    }
+    let (starts, neighbours) = graph.compressed();
+    minimum_degree(starts, neighbours)
 }
 
 fn unknowns_in_order(order: &[u32], dofs: &[u8]) -> Vec<u32> {

@@ -117,13 +117,76 @@ fn the_number_of_threads_does_not_change_a_bit() {
 }
 
 #[test]
+fn solves_closed_meshes_fans_and_parts_that_do_not_touch() {
+    let octahedron = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let fan: Vec<[u32; 3]> = (1..1500).map(|k| [0, k, k + 1]).collect();
+    let apart = [[0, 1, 2], [3, 4, 5]];
+    let strip: Vec<[u32; 3]> = (0..20_000).map(|k| [k, k + 1, k + 2]).collect();
+    for (n, faces) in [(6, &octahedron[..]), (1501, &fan), (6, &apart), (20_002, &strip)] {
+        for dofs in [vec![2; n], mixed_dofs(n), vec![1; n]] {
+            assert!(residual::<f64>(n, faces, &dofs) < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn tiny_systems_and_none_at_all_are_solved() {
+    let face = [[0, 1, 2]];
+    for dofs in [[0, 0, 0], [0, 1, 0], [2, 0, 0], [1, 2, 0], [2, 2, 2]] {
+        assert!(residual::<f64>(3, &face, &dofs) < 1e-12, "{dofs:?}");
+    }
+    assert_eq!(residual::<f64>(0, &[], &[]), 0.0);
+    let analysis = Analysis::new(3, &face, &[1, 0, 2]).unwrap();
+    assert_eq!(analysis.n_unknowns(), 3);
+    assert_eq!([0, 1, 2].map(|vertex| analysis.first_unknown(vertex)), [0, 1, 1]);
+}
+
+#[test]
+fn indefinite_singular_and_broken_matrices_are_refused() {
+    for size in [2, 60] {
+        let (n, faces) = grid(size);
+        let analysis = Analysis::new(n, &faces, &vec![2; n]).unwrap();
+        // the only face of one corner of the grid
+        let lonely = 2 * (size - 2);
+        for wrong in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+            let matrix = |face: usize| match face == lonely {
+                true => element(face).map(|row| row.map(|value| value * wrong)),
+                false => element(face).map(|row| row.map(|value| value * 1e-3)),
+            };
+            let (mut silent, mut factor) = (Silent, Factor::<f64>::new(&analysis));
+            let outcome = factor.refactor(&analysis, &matrix, &Watch::new(&mut silent, 0.0, ""));
+            assert_eq!(outcome, Err(Failure::NotPositiveDefinite), "{size} {wrong}");
+        }
+    }
+}
+
+#[test]
+fn a_factorisation_can_be_cancelled_and_done_again() {
+    let (n, faces) = grid(400);
+    let analysis = Analysis::new(n, &faces, &vec![2; n]).unwrap();
+    let mut factor = Factor::<f64>::new(&analysis);
+    let mut asked: Option<std::time::Instant> = None;
+    let mut cancel = |_: f64, _: &str| {
+        asked = Some(std::time::Instant::now());
+        false
+    };
+    let outcome = factor.refactor(&analysis, &element, &Watch::new(&mut cancel, 0.0, ""));
+    if let Some(asked) = asked {
+        assert_eq!(outcome, Err(Failure::Cancelled));
+        assert!(asked.elapsed().as_secs_f64() < 0.2, "{:?}", asked.elapsed());
+    }
+    let mut silent = Silent;
+    factor.refactor(&analysis, &element, &Watch::new(&mut silent, 0.0, "")).unwrap();
+    assert!(factor.values == factored::<f64>(&analysis).values);
+}
+
+#[test]
 #[ignore = "prints times: AUTHALIC_MESH=mesh.obj cargo test --release multifrontal -- --ignored --nocapture"]
 fn times() {
     let Ok(path) = std::env::var("AUTHALIC_MESH") else { return };
     let (n, faces) = read_obj(&path);
     for dofs in [1_u8, 2] {
         let began = std::time::Instant::now();
-        // one vertex held, as on a closed mesh
         let analysis = Analysis::new(n, &faces, &vec![dofs; n]).unwrap();
         let fronts = &analysis.symbolic.fronts;
         let largest = (0..fronts.len()).map(|f| fronts.front(f).height()).max().unwrap();
@@ -142,16 +205,30 @@ fn times() {
     }
 }
 
-fn milliseconds(mut work: impl FnMut()) -> f64 {
-    let mut all: Vec<f64> = (0..5)
+/// Milliseconds of all threads of this process on a processor, as far as the system tells.
+fn processor_milliseconds() -> f64 {
+    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
+    let of_task = |path: std::path::PathBuf| -> Option<f64> {
+        let text = std::fs::read_to_string(path.join("schedstat")).ok()?;
+        text.split(' ').next()?.parse().ok()
+    };
+    tasks.flatten().filter_map(|task| of_task(task.path())).sum::<f64>() / 1e6
+}
+
+/// The median of five runs: milliseconds by the clock, and of all threads together.
+fn milliseconds(mut work: impl FnMut()) -> String {
+    let mut all: Vec<[f64; 2]> = (0..5)
         .map(|_| {
-            let began = std::time::Instant::now();
+            let (began, processor) = (std::time::Instant::now(), processor_milliseconds());
             work();
-            began.elapsed().as_secs_f64() * 1e3
+            [began.elapsed().as_secs_f64() * 1e3, processor_milliseconds() - processor]
         })
         .collect();
-    all.sort_by(f64::total_cmp);
-    all[2]
+    let mut median = |k: usize| {
+        all.sort_by(|a, b| a[k].total_cmp(&b[k]));
+        all[2][k]
+    };
+    format!("{:.1} ({:.1})", median(0), median(1))
 }
 
 /// The matrix that [`simple_element`] assembles, all vertices with as many unknowns.
@@ -177,7 +254,7 @@ fn times_of_library(analysis: &Analysis, faces: &[[u32; 3]], dofs: usize) {
     let mut rhs = vec![1.0; 2 * n];
     let two = milliseconds(|| factor.solve(&mut rhs));
     let one = milliseconds(|| factor.solve(&mut rhs[..n]));
-    println!("    Cholesky: factor {refactor:.1}, two solves {two:.1}, one solve {one:.1} ms");
+    println!("    Cholesky: factor {refactor}, two solves {two}, one solve {one} ms");
 }
 
 fn simple_element() -> [[f64; 6]; 6] {
@@ -198,9 +275,7 @@ fn times_of<T: Scalar>(name: &str, threads: usize, analysis: &Analysis) {
     let two = milliseconds(|| factor.solve(analysis, &mut rhs));
     rhs.truncate(analysis.n_unknowns());
     let one = milliseconds(|| factor.solve(analysis, &mut rhs));
-    println!(
-        "    {name}, {threads} threads: factor {refactor:.1}, two solves {two:.1}, one solve {one:.1} ms"
-    );
+    println!("    {name}, {threads} threads: factor {refactor}, two solves {two}, one solve {one} ms");
 }
 
 /// (number of vertices, faces) of a file with triangles.

@@ -327,6 +327,10 @@ pub enum Error {
         what: String,
     },
 
+    /// The observer ended the run before there was any map without folds.
+    #[error("cancelled before there was a map without folds: let it run longer")]
+    CancelledEarly,
+
     /// No map without folded faces was found.
     #[error(
         "no map without folds was found in double precision, left over: {}; cut the long thin parts there open by seams",
@@ -370,7 +374,7 @@ impl Error {
 
     /// Whether the numerics failed on good input.
     pub fn is_solver_error(&self) -> bool {
-        matches!(self, Self::FactorizationFailed { .. } | Self::NoEmbedding { .. })
+        matches!(self, Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } | Self::CancelledEarly)
     }
 }
 

@@ -30,12 +30,15 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The papers' method, then whatever it takes to have no folded face.
+    /// Our own method, or the papers' and then whatever it takes to have no folded face.
     pub(super) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
+        if self.options.method == Method::GaussNewton {
+            return self.gauss_newton(history, observer);
+        }
         let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
         let (map, status) = self.as_published(&mut domain, history, observer)?;
@@ -160,7 +163,7 @@ impl Run<'_> {
     }
 
     /// The face itself, or for one that fills a hole the given face at its edge of the hole.
-    fn given_face(&self, face: usize) -> usize {
+    pub(super) fn given_face(&self, face: usize) -> usize {
         // the third corner of a fan's face is its apex, which faces the edge
         let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);
         if face < self.n_given_faces { face } else { beside() }
@@ -179,7 +182,7 @@ impl Run<'_> {
         let whole = self.stopping();
         match self.options.method {
             Method::FixedPoint => whole,
-            Method::ConjugateGradient => {
+            Method::ConjugateGradient | Method::GaussNewton => {
                 Stopping { max_iterations: whole.max_iterations.min(FIXED_POINT_STEPS), ..whole }
             }
         }

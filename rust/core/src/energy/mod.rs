@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Energies of a map: values, gradients and the Laplacians that go with them.
 
+pub(crate) mod authalic;
 pub(crate) mod mean_value;
+pub(crate) mod motion;
+mod psd;
 pub mod spatial;
 pub mod stretch;
 

@@ -19,7 +19,8 @@ pub use topology::Topology;
 
 use crate::error::{Elements, Error};
 use geometry::Vector;
-use topology::{EdgeTable, NO_CORNER, VertexCorners};
+pub(crate) use topology::VertexCorners;
+use topology::{EdgeTable, NO_CORNER};
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
 ///

@@ -137,6 +137,11 @@ impl VertexCorners {
         Self { start, corners }
     }
 
+    /// How many vertices there are.
+    pub(crate) fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
     /// The corners at one vertex.
     pub(crate) fn of(&self, vertex: usize) -> &[u32] {
         &self.corners[self.start[vertex] as usize..self.start[vertex + 1] as usize]

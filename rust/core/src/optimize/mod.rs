@@ -3,12 +3,16 @@
 //! share them.
 
 mod bounded;
+pub(crate) mod floors;
+pub(crate) mod gauss_newton;
 pub mod gradient_descent;
 mod interpolation;
 pub mod line_search;
+mod local;
 pub mod nonlinear_cg;
 
 use crate::control::{Observer, Status};
+use crate::error::Error;
 
 /// When an optimiser ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +49,17 @@ impl Stopping {
             Some(Status::Cancelled)
         }
     }
+}
+
+/// Refuses a weight of angles out of range, and one for a method that has none.
+pub(crate) fn check_angle_weight(weight: f64, is_weighed: bool) -> Result<(), Error> {
+    let expected = match is_weighed {
+        true if weight >= 0.0 && weight.is_finite() => return Ok(()),
+        false if weight == 0.0 => return Ok(()),
+        true => "a finite number ≥ 0",
+        false => "0 for the papers' methods; only gauss_newton trades areas for angles",
+    };
+    Err(Error::InvalidOption { name: "angle_weight", found: weight.to_string(), expected: expected.into() })
 }
 
 /// The energies of a map.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Area-preserving maps of closed surfaces of genus 0 onto the unit sphere.
 //!
-//! [`sphere_map`] is the entry. The papers' methods (Sutti & Yueh 2024): a spherical conformal start, the
+//! [`sphere_map`] is the entry. The default is guarded Gauss–Newton, our own. The papers' methods (Sutti & Yueh 2024): a spherical conformal start, the
 //! fixed-point iteration of the stretch energy (Algorithm 2), Riemannian gradient descent (Algorithm 1), and
-//! the bijectivity correction by mean-value weights. They cannot promise an unfolded map, so every result is
-//! checked by exact predicates, and where the correction does not suffice the run is repeated from a map
-//! without folds and never leaves it.
+//! the bijectivity correction by mean-value weights. They cannot promise an unfolded map, so where the correction
+//! does not suffice the run is repeated from a map without folds and never leaves it. Every result is checked by
+//! exact predicates.
 //!
 //! Input: a [`TriangleMesh`] that is closed, connected and without handles. Cost: one sparse Cholesky
 //! factorisation of all vertices, about ten of six tenths of them, and one gradient per iteration.
@@ -13,6 +13,7 @@
 mod alignment;
 mod domain;
 mod fixed_point;
+mod gauss_newton;
 mod run;
 mod start;
 mod stereographic;
@@ -25,6 +26,7 @@ use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, area_vector, dot, norm, scaled, triangle};
+use crate::optimize::check_angle_weight;
 use crate::optimize::gradient_descent::LineSearch;
 use crate::parallel;
 
@@ -40,31 +42,37 @@ pub enum SphereMethod {
     /// Fixed-point iteration of the stretch energy (Sutti & Yueh 2024, Algorithm 2).
     FixedPoint,
     /// Riemannian gradient descent (Sutti & Yueh 2024, Algorithm 1) after a few fixed-point steps.
-    #[default]
     GradientDescent,
+    /// Guarded Gauss–Newton, our own: more exact by orders of magnitude, and never a folded face on the way.
+    #[default]
+    GaussNewton,
 }
 
 /// Options of [`sphere_map`].
 #[derive(Debug, Clone)]
 pub struct SphereMapOptions<'a> {
-    /// The method; gradient descent.
+    /// The method; guarded Gauss–Newton.
     pub method: SphereMethod,
     /// The line search of the gradient descent; interpolation, which the paper found faster and no less exact.
     pub line_search: LineSearch,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and for gradient descent
-    /// fixed-point steps from it.
+    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas alone.
+    pub angle_weight: f64,
+    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the fixed point
+    /// itself fixed-point steps from it.
     pub initial: Option<&'a [Vector]>,
-    /// Iterations at the most; 100 where `None`, as in the paper's tables. The fixed-point steps before the gradient
-    /// descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the
+    /// Iterations at the most. Gauss–Newton where `None`: as many as it takes, 12 where those leave the area ratio a
+    /// deviation of 1 %, up to 60 else; the papers' methods: 100, as in the paper's tables. The fixed-point steps before
+    /// the descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the
     /// start map itself.
     pub max_iterations: Option<usize>,
-    /// Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For the fixed point it is ε
+    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴ where
+    /// `None`. Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For the fixed point it is ε
     /// of Algorithm 2: the iteration ends when E_S falls by no more than this; 10⁻⁶ where `None`, as in the paper.
     /// −∞ asks the fixed point for all iterations, through rises, and for the last map instead of the best.
     pub tolerance: Option<f64>,
-    /// Unfold what the method folds; on. The paper's tables count folds before that too.
+    /// Unfold what the papers' methods fold; on. The paper's tables count folds before that too.
     pub unfold: bool,
 }
 
@@ -74,6 +82,7 @@ impl Default for SphereMapOptions<'_> {
             method: SphereMethod::default(),
             line_search: LineSearch::default(),
             density: None,
+            angle_weight: 0.0,
             initial: None,
             max_iterations: None,
             tolerance: None,
@@ -158,6 +167,7 @@ impl SphereMapOptions<'_> {
         if let Some(initial) = self.initial {
             check_initial(mesh, initial)?;
         }
+        check_angle_weight(self.angle_weight, self.method == SphereMethod::GaussNewton)?;
         let fixed_point = self.method == SphereMethod::FixedPoint;
         let in_range = |tolerance: f64| match fixed_point {
             true => tolerance < f64::INFINITY,

@@ -42,12 +42,15 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The papers' method, then whatever it takes to have no folded face.
+    /// Our own method, or the papers' and then whatever it takes to have no folded face.
     pub(super) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
+        if self.options.method == SphereMethod::GaussNewton {
+            return self.gauss_newton(history, observer);
+        }
         let mut domain = SphereDomain::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
         let start = self.start()?;
@@ -119,8 +122,8 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        let built = progressive_sphere(self.mesh, self.targets, observer).ok();
-        let unfolded = [unfold::unfold(self.mesh, map), built];
+        let unfolded =
+            [unfold::unfold(self.mesh, map), progressive_sphere(self.mesh, self.targets, observer).ok()];
         let (mut best, mut status) = (None, Status::MaxIterations);
         for (half, map) in unfolded.into_iter().enumerate() {
             let (Some(map), true) = (map, status != Status::Cancelled) else { continue };
@@ -228,7 +231,7 @@ impl Run<'_> {
             max_iterations: self.options.max_iterations.unwrap_or(ITERATIONS),
             tolerance: match self.options.method {
                 SphereMethod::GradientDescent => self.options.tolerance,
-                SphereMethod::FixedPoint => None,
+                SphereMethod::FixedPoint | SphereMethod::GaussNewton => None,
             }
             .unwrap_or(Stopping::default().tolerance),
         }
@@ -241,7 +244,7 @@ impl Run<'_> {
                 max_iterations: whole,
                 tolerance: self.options.tolerance.unwrap_or(FIXED_POINT_TOLERANCE),
             },
-            SphereMethod::GradientDescent => FixedPointStopping {
+            SphereMethod::GradientDescent | SphereMethod::GaussNewton => FixedPointStopping {
                 max_iterations: whole.min(FIXED_POINT_STEPS),
                 tolerance: FIXED_POINT_TOLERANCE,
             },

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Our own method on the disk: fixed-point steps, Levenberg–Marquardt steps that unfold, a guarded descent.
+//!
+//! The few steps of the papers' fixed point bring most disks near the minimum with some faces folded. Signed areas
+//! unfold these on the way of an unguarded descent, nearly always all of them. From the first map without folds the
+//! descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)) and never folds a face again.
+//! Where the quick way leaves folds, the guarded descent starts from Tutte's embedding, and where double precision does
+//! not suffice for that, from the [progressive](crate::embedding) one.
+//!
+//! Cost: about five factorisations of the interior vertices with one unknown each, about twelve with two.
+
+use super::domain::DiskDomain;
+use super::fixed_point::fixed_point;
+use super::run::Run;
+use super::{Boundary, certificate, start, unfold};
+use crate::control::{History, Observer, Phase, Status};
+use crate::embedding::{Stop, progressive_disk};
+use crate::energy::motion::Motion;
+use crate::energy::stretch::Profile;
+use crate::error::{Elements, Error};
+use crate::mesh::geometry::Vector;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
+use crate::optimize::{Stopping, floors};
+
+/// Fixed-point steps at the most.
+const FIXED_POINT_STEPS: usize = 5;
+
+/// They end when √(gᵀM⁻¹g) is below this, at an E_A of about 0.05: Gauss–Newton gains more from there.
+const NEAR: f64 = 0.15;
+
+/// Unguarded iterations: so many also where nothing is folded, because they are the fastest, and at the most.
+const OPEN_ITERATIONS: [usize; 2] = [4, 12];
+
+/// A map whose smallest face has less than this part of its target has collapsed for all that a descent can see.
+const COLLAPSED: f64 = 1e-9;
+
+/// A result is uneven when E_A is more than this part of the area; then another start may do better.
+const UNEVEN: f64 = 0.1;
+
+/// Area deviation of the result below which nothing is left to gain.
+const TOLERANCE: f64 = 2e-4;
+
+/// Up to so many vertices a cancelled run computes an embedding where it has none yet.
+const QUICK: usize = 50_000;
+
+/// A map in the plane z = 1.
+type Map = Vec<Vector>;
+
+impl Run<'_> {
+    /// An area-preserving map without folds.
+    ///
+    /// # Errors
+    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+    /// there was a map without folds.
+    pub(super) fn gauss_newton(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(super::Map, Status), Error> {
+        // 1. Targets of slivers raised to a floor
+        let floor = floors::floors(self.targets)[0];
+        let energy = floors::energy(self.mesh, self.targets, true, floor);
+        let problem = Problem::new(energy, self.motions())?;
+        // 2. The quick start; what folds is unfolded by an unguarded descent
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let (quick, status) = self.quick_start(&problem, history, &mut phase);
+        // 3. Where that fails, an embedding that holds on any disk
+        let mut phase = Phase { whole: observer, from: 0.4, to: 0.5 };
+        let (map, status) = match quick {
+            Some(map) => (map, status),
+            None => self.safe_start(&problem, status, &mut phase)?,
+        };
+        // 4. A guarded descent
+        let mut phase = Phase { whole: observer, from: 0.5, to: 0.9 };
+        let (problem, map, status) = self.guarded_descent(problem, map, status, history, &mut phase);
+        // 5. Another one from the progressive embedding where the result is uneven
+        let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+        let (map, status) = self.second_try(problem, map, status, history, &mut phase);
+        Ok((flat(&map), status))
+    }
+
+    /// How the vertices may move.
+    fn motions(&self) -> Vec<Motion> {
+        let on_boundary = match self.options.boundary {
+            Boundary::ArcLength => Motion::Held,
+            Boundary::Sliding => Motion::Circle,
+        };
+        let motion = |v: usize| if self.mesh.is_boundary(v) { on_boundary } else { Motion::Plane };
+        (0..self.mesh.n_vertices()).map(motion).collect()
+    }
+
+    /// A map without folds near the minimum by fixed-point steps and an unguarded descent; `None` where some stay.
+    fn quick_start(
+        &self,
+        problem: &Problem,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Option<Map>, Status) {
+        // 1. Fixed-point steps, or the map given
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
+        let Ok((stepped, status)) = self.fixed_point_steps(problem, history, &mut phase) else {
+            return (None, Status::Stalled);
+        };
+        let is_embedding = problem.energy.is_embedding(&stepped);
+        if status == Status::Cancelled || (is_embedding && self.options.initial.is_some()) {
+            return (is_embedding.then_some(stepped), status);
+        }
+        // 2. Unguarded steps until nothing is folded; angles would be lost on the way, so none more where these count
+        let [least, most] = OPEN_ITERATIONS;
+        let least = if self.options.angle_weight > 0.0 { 0 } else { least };
+        let options = GaussNewtonOptions {
+            profile: Profile::Stretch,
+            until_open: Some(least),
+            max_iterations: Some(self.options.max_iterations.map_or(most, |given| given.min(most))),
+            ..self.gauss_newton_options()
+        };
+        let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
+        let (open, status) = minimize(problem, stepped.clone(), &options, history, &mut phase);
+        // 3. The best of these without folds
+        if problem.energy.is_embedding(&open) {
+            return (Some(open), status);
+        }
+        if is_embedding {
+            return (Some(stepped), status);
+        }
+        let unfolded =
+            if status == Status::Cancelled { None } else { unfold::unfold(self.mesh, &flat(&open)) };
+        (unfolded.map(lifted).filter(|map| self.has_not_collapsed(problem, map)), status)
+    }
+
+    /// The harmonic map and fixed-point steps from it, or the map given.
+    fn fixed_point_steps(
+        &self,
+        problem: &Problem,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        if let Some(initial) = self.options.initial {
+            return Ok((lifted(initial.to_vec()), Status::MaxIterations));
+        }
+        let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), self.options.boundary)?;
+        let start = start::start(self.mesh, &mut domain)?;
+        let stopping = Stopping { max_iterations: FIXED_POINT_STEPS, tolerance: NEAR };
+        let (map, status) = fixed_point(&mut domain, start, &stopping, history, observer);
+        Ok((lifted(map), status))
+    }
+
+    /// Tutte's embedding, or the progressive one where that collapses.
+    fn safe_start(
+        &self,
+        problem: &Problem,
+        status: Status,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        if status == Status::Cancelled && self.mesh.n_vertices() > QUICK {
+            return Err(Error::CancelledEarly);
+        }
+        let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), Boundary::ArcLength)?;
+        let tutte = start::tutte(self.mesh, &mut domain).map(lifted);
+        let holds = |map: &Map| problem.energy.is_embedding(map);
+        if let Some(tutte) = tutte.iter().find(|map| holds(map) && self.has_not_collapsed(problem, map)) {
+            return Ok((tutte.clone(), status));
+        }
+        match progressive_disk(self.mesh, problem.energy.targets(), observer).map(lifted) {
+            Ok(map) if holds(&map) => Ok((map, status)),
+            Err(Stop::Cancelled) => Err(Error::CancelledEarly),
+            _ => tutte.and_then(|tutte| self.last_resort(tutte)).map(|map| (map, status)),
+        }
+    }
+
+    /// Any map without folds, however small its faces.
+    fn last_resort(&self, tutte: Map) -> Result<Map, Error> {
+        let folded = certificate::folded(self.mesh, &flat(&tutte));
+        match Elements::collect(folded.into_iter().map(|face| self.given_face(face))) {
+            None => Ok(tutte),
+            Some(folded) => Err(Error::NoEmbedding { folded }),
+        }
+    }
+
+    /// The guarded descent from a map without folds; a run already cancelled only keeps the map.
+    fn guarded_descent(
+        &self,
+        problem: Problem,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Problem, Map, Status) {
+        if status == Status::Cancelled {
+            return (problem, map, status);
+        }
+        let options = self.gauss_newton_options();
+        let begun = map.clone();
+        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, planar: true };
+        let (problem, map, status) = floors::descend(&surface, problem, map, &options, history, observer);
+        match certificate::is_bijective(self.mesh, &flat(&map)) {
+            true => (problem, map, status),
+            // no step folds a face, so only a boundary that turned twice leads here
+            false => (problem, begun, Status::Stalled),
+        }
+    }
+
+    /// The better of an uneven map and what the progressive embedding leads to.
+    fn second_try(
+        &self,
+        problem: Problem,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let unevenness = |problem: &Problem, map: &Map| {
+            let sums = problem.energy.sums(map);
+            sums.authalic_energy / sums.area
+        };
+        let first = unevenness(&problem, &map);
+        let is_given = self.options.initial.is_some() || self.options.angle_weight > 0.0;
+        if status == Status::Cancelled || is_given || first <= UNEVEN {
+            return (map, status);
+        }
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+        let Ok(other) = progressive_disk(self.mesh, problem.energy.targets(), &mut phase).map(lifted) else {
+            return (map, status);
+        };
+        let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
+        let (problem, other, ended) = self.guarded_descent(problem, other, status, history, &mut phase);
+        match unevenness(&problem, &other) < first {
+            true => (other, ended),
+            false => (map, status),
+        }
+    }
+
+    fn has_not_collapsed(&self, problem: &Problem, map: &Map) -> bool {
+        let (areas, targets) = (problem.energy.areas(map), problem.energy.targets());
+        let least = COLLAPSED * areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
+        areas.iter().zip(targets).all(|(area, target)| *area > least * target)
+    }
+
+    fn gauss_newton_options(&self) -> GaussNewtonOptions {
+        GaussNewtonOptions {
+            profile: Profile::Barrier,
+            angle_weight: self.options.angle_weight,
+            max_iterations: self.options.max_iterations,
+            tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
+            until_open: None,
+        }
+    }
+}
+
+fn lifted(map: super::Map) -> Map {
+    map.into_iter().map(|[u, v]| [u, v, 1.0]).collect()
+}
+
+fn flat(map: &Map) -> super::Map {
+    map.iter().map(|&[u, v, _]| [u, v]).collect()
+}

@@ -1,0 +1,604 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The energy of the guarded Gauss–Newton method: area ratios behind a barrier, with a share of angle distortion.
+//!
+//! One formula for both domains (see [`motion`](super::motion)). For a face with corners x_i, N = (x_j − x_i) × (x_k −
+//! x_i), image area a = |N|/2, D = det(x_i, x_j, x_k), target T, ρ = a/T, and Q = ½ Σ cot_c |opposite edge|² with the
+//! cotangents of the rest triangle:
+//!
+//! ```text
+//! E = Σ T [ψ(ρ) + λ ((m − 1) + ½ β (m − 1)²)],     m = Q/D,     ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ),     β = 0.1.
+//! ```
+//!
+//! Σ T ψ is E_A to second order. On fine meshes m = ½ (σ₁/σ₂ + σ₂/σ₁); its D makes it infinite exactly at a fold on
+//! both domains, while areas are the flat ones that E_A is made of. A face is feasible where D is positive by more than
+//! its rounding error, so a finite energy certifies a map without folds.
+//!
+//! Faces are sums of two kinds in the Hessian. A regular face gives a composite form that is positive semidefinite as it
+//! stands (Gauss–Newton in the area, the Hessian of quadratic over linear in m); a difficult one, far from its area or
+//! nearly folded, the exact Hessian with its negative eigenvalues set to zero.
+
+use super::motion::Frame;
+use super::psd::clamp_negative_eigenvalues;
+use super::stretch::Profile;
+use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub, triangle};
+use crate::mesh::{TriangleMesh, VertexCorners};
+use crate::parallel;
+
+/// β, what a large m costs beyond its own size.
+const STEEPNESS: f64 = 0.1;
+
+/// A symmetric matrix by the unknowns of a face's corners, two for each.
+pub(crate) type Element = [[f64; 6]; 6];
+
+/// Energy of maps of one mesh, or of a patch of one.
+#[derive(Debug)]
+pub(crate) struct AuthalicEnergy {
+    faces: Vec<[u32; 3]>,
+    /// The corners at each vertex.
+    corners: VertexCorners,
+    /// Cotangents of the rest triangles, (m, 3).
+    cotangents: Vec<[f64; 3]>,
+    /// Target areas on any common scale, (m,).
+    targets: Vec<f64>,
+    /// The edges of each face on the boundary, bit c for the one opposite corner c.
+    boundary_edges: Vec<u8>,
+    /// Whether the image lies in the plane, where areas have signs.
+    planar: bool,
+}
+
+/// What the terms of the energy weigh at the moment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weights {
+    /// What targets are multiplied by to sum up to the image's area.
+    pub scale: f64,
+    /// λ, the weight of the angle distortion.
+    pub angle: f64,
+    /// The papers' profile lets faces fold and counts signed areas, the barrier does neither.
+    pub profile: Profile,
+}
+
+/// Sums over the faces of a map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sums {
+    /// Area of the image.
+    pub area: f64,
+    /// E_A on targets rescaled to that area.
+    pub authalic_energy: f64,
+    /// Σ T ((m − 1) + ½ β (m − 1)²) on the same targets; infinite where a face is folded.
+    pub angle_energy: f64,
+}
+
+/// An image triangle.
+#[derive(Clone, Copy)]
+struct Triangle {
+    x: [Vector; 3],
+    /// D = det(x_i, x_j, x_k).
+    determinant: f64,
+    /// Twice the area, signed in the plane.
+    doubled_area: f64,
+    /// N divided by that.
+    normal: Vector,
+    /// Q.
+    quadratic: f64,
+    /// Bound of the rounding error of D.
+    rounding: f64,
+}
+
+/// Derivatives of a triangle's area, D and Q by the unknowns of its corners.
+struct Slopes {
+    area: [f64; 6],
+    determinant: [f64; 6],
+    quadratic: [f64; 6],
+}
+
+/// The derivatives of a face's energy by a, D and Q.
+struct Outer {
+    by_area: f64,
+    by_determinant: f64,
+    by_quadratic: f64,
+}
+
+impl AuthalicEnergy {
+    /// The energy of maps of `mesh` to `targets` (m,) on any common scale; `planar` for maps into the plane z = 1, else
+    /// onto the sphere. Rest triangles flatter than `flattest` (height over longest edge) count as that flat.
+    pub(crate) fn new(mesh: &TriangleMesh, targets: Vec<f64>, planar: bool, flattest: f64) -> Self {
+        let cotangents = parallel::map(mesh.n_faces(), |face| {
+            rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), flattest)
+        });
+        let is_boundary = |corner: usize| u8::from(mesh.opposite(corner as u32).is_none());
+        let boundary_edges = parallel::map(mesh.n_faces(), |face| {
+            (0..3).map(|c| is_boundary(3 * face + c) << c).fold(0, |bits, bit| bits | bit)
+        });
+        let faces = mesh.faces().to_vec();
+        let corners = VertexCorners::new(mesh.n_vertices(), &faces);
+        Self { faces, corners, cotangents, targets, boundary_edges, planar }
+    }
+
+    /// The energy of the faces `chosen`, whose vertices get the indices that `local` gives them, `n_vertices` in all.
+    pub(crate) fn patch(&self, chosen: &[u32], n_vertices: usize, local: impl Fn(u32) -> u32) -> Self {
+        let faces: Vec<[u32; 3]> = chosen.iter().map(|&face| self.faces[face as usize].map(&local)).collect();
+        Self {
+            corners: VertexCorners::new(n_vertices, &faces),
+            faces,
+            cotangents: chosen.iter().map(|&face| self.cotangents[face as usize]).collect(),
+            targets: chosen.iter().map(|&face| self.targets[face as usize]).collect(),
+            boundary_edges: chosen.iter().map(|&face| self.boundary_edges[face as usize]).collect(),
+            planar: self.planar,
+        }
+    }
+
+    /// The faces, (m, 3).
+    pub(crate) fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The corners at a vertex, in ascending order.
+    pub(crate) fn vertex_corners(&self, vertex: usize) -> &[u32] {
+        self.corners.of(vertex)
+    }
+
+    /// Whether no face of `map` is folded and no boundary edge turned.
+    pub(crate) fn is_embedding(&self, map: &[Vector]) -> bool {
+        parallel::all(self.faces.len(), |face| self.is_open(&self.triangle(map, face), face))
+    }
+
+    /// The target areas, (m,).
+    pub(crate) fn targets(&self) -> &[f64] {
+        &self.targets
+    }
+
+    /// The areas of the faces of `map`, signed in the plane.
+    pub(crate) fn areas(&self, map: &[Vector]) -> Vec<f64> {
+        parallel::map(self.targets.len(), |face| 0.5 * self.triangle(map, face).doubled_area)
+    }
+
+    /// ρ of a face.
+    pub(crate) fn ratio(&self, map: &[Vector], weights: &Weights, face: usize) -> f64 {
+        0.5 * self.triangle(map, face).doubled_area / (weights.scale * self.targets[face])
+    }
+
+    /// T ψ(ρ) of a face.
+    pub(crate) fn area_cost(&self, map: &[Vector], weights: &Weights, face: usize) -> f64 {
+        weights.scale * self.targets[face] * weights.profile.cost(self.ratio(map, weights, face))
+    }
+
+    /// The sums of `map`.
+    pub(crate) fn sums(&self, map: &[Vector]) -> Sums {
+        let n = self.targets.len();
+        let area = parallel::sum(n, |face| 0.5 * self.triangle(map, face).doubled_area);
+        let total = parallel::sum(n, |face| self.targets[face]);
+        let scale = area / total;
+        let [authalic_energy, angle_energy] = parallel::sums(n, |face| {
+            let (corners, target) = (self.triangle(map, face), scale * self.targets[face]);
+            let off = 0.5 * corners.doubled_area - target;
+            let angle = if self.is_open(&corners, face) { corners.angle() } else { f64::INFINITY };
+            [off * off / target, target * angle_cost(angle)]
+        });
+        Sums { area, authalic_energy, angle_energy }
+    }
+
+    /// The energy of `map`; infinite where the barrier's profile meets a face that is not open.
+    pub(crate) fn value(&self, map: &[Vector], weights: &Weights) -> f64 {
+        parallel::sum(self.targets.len(), |face| {
+            let (corners, target) = (self.triangle(map, face), weights.scale * self.targets[face]);
+            let of_area = target * weights.profile.cost(0.5 * corners.doubled_area / target);
+            match weights.profile {
+                Profile::Stretch => of_area,
+                Profile::Barrier if !self.is_open(&corners, face) => f64::INFINITY,
+                Profile::Barrier => of_area + weights.angle * target * angle_cost(corners.angle()),
+            }
+        })
+    }
+
+    /// The gradient by the unknowns of every vertex, (n, 2).
+    pub(crate) fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
+        self.gather(|face| {
+            let corners = self.triangle(map, face);
+            let outer = self.outer(&corners, face, weights);
+            let slopes = corners.slopes(self.frames(frames, face), self.cotangents[face]);
+            std::array::from_fn(|k| outer.along(&slopes, k))
+        })
+    }
+
+    /// What the image areas miss of their linear prediction after `direction`, carried back to the unknowns as −JᵀWc:
+    /// the right-hand side of the second-order correction.
+    pub(crate) fn curvature(
+        &self,
+        map: &[Vector],
+        moved: &[Vector],
+        frames: &[Frame],
+        direction: &[[f64; 2]],
+        weights: &Weights,
+    ) -> Vec<[f64; 2]> {
+        self.gather(|face| {
+            let (before, after) = (self.triangle(map, face), self.triangle(moved, face));
+            let target = weights.scale * self.targets[face];
+            let slopes = before.area_slopes(self.frames(frames, face));
+            let corners = self.faces[face].map(|vertex| direction[vertex as usize]);
+            let predicted: f64 = (0..6).map(|k| slopes[k] * corners[k / 2][k % 2]).sum();
+            let missed = 0.5 * (after.doubled_area - before.doubled_area) - predicted;
+            let stiffness =
+                2.0 * weights.profile.stiffness(0.5 * before.doubled_area / target) / target * missed;
+            slopes.map(|slope| -stiffness * slope)
+        })
+    }
+
+    /// The Hessian of one face by the unknowns of its corners, positive semidefinite.
+    pub(crate) fn element(
+        &self,
+        map: &[Vector],
+        frames: &[Frame],
+        weights: &Weights,
+        face: usize,
+    ) -> Element {
+        let (corners, target) = (self.triangle(map, face), weights.scale * self.targets[face]);
+        let (frames, cotangents) = (self.frames(frames, face), self.cotangents[face]);
+        let slopes = corners.slopes(frames, cotangents);
+        let stiffness = 2.0 * weights.profile.stiffness(0.5 * corners.doubled_area / target) / target;
+        let mut element = [[0.0; 6]; 6];
+        add_product(&mut element, stiffness, &slopes.area);
+        if weights.profile == Profile::Stretch {
+            return element;
+        }
+        corners.add_angle(&mut element, weights.angle * target, &slopes, frames, cotangents);
+        if corners.is_difficult(target) {
+            let outer = self.outer(&corners, face, weights);
+            corners.add_curvature(&mut element, &outer, frames, cotangents);
+            clamp_negative_eigenvalues(&mut element);
+        }
+        element
+    }
+
+    fn outer(&self, corners: &Triangle, face: usize, weights: &Weights) -> Outer {
+        let target = weights.scale * self.targets[face];
+        let by_area = weights.profile.slope(0.5 * corners.doubled_area / target);
+        if weights.profile == Profile::Stretch || weights.angle == 0.0 {
+            return Outer { by_area, by_determinant: 0.0, by_quadratic: 0.0 };
+        }
+        let angle = corners.angle();
+        let by_angle = weights.angle * target * (1.0 + STEEPNESS * (angle - 1.0)) / corners.determinant;
+        Outer { by_area, by_determinant: -by_angle * angle, by_quadratic: by_angle }
+    }
+
+    /// Whether the face is unfolded by more than rounding and its boundary edges run counter-clockwise around the
+    /// circle.
+    fn is_open(&self, corners: &Triangle, face: usize) -> bool {
+        let runs_forward = |c: usize| {
+            let (from, to) = (corners.x[(c + 1) % 3], corners.x[(c + 2) % 3]);
+            self.boundary_edges[face] & (1 << c) == 0 || from[0] * to[1] > from[1] * to[0]
+        };
+        corners.determinant > corners.rounding && (0..3).all(runs_forward)
+    }
+
+    fn triangle(&self, map: &[Vector], face: usize) -> Triangle {
+        Triangle::new(triangle(map, self.faces[face]), self.cotangents[face], self.planar)
+    }
+
+    fn frames<'f>(&self, frames: &'f [Frame], face: usize) -> [&'f Frame; 3] {
+        self.faces[face].map(|vertex| &frames[vertex as usize])
+    }
+
+    /// Sums up what each face gives to the unknowns of its corners.
+    fn gather(&self, of_face: impl Fn(usize) -> [f64; 6] + Sync + Send) -> Vec<[f64; 2]> {
+        let by_face = parallel::map(self.targets.len(), of_face);
+        parallel::map(self.corners.len(), |vertex| {
+            let mut sum = [0.0; 2];
+            for &corner in self.corners.of(vertex) {
+                let (face, k) = (corner as usize / 3, corner as usize % 3);
+                (0..2).for_each(|axis| sum[axis] += by_face[face][2 * k + axis]);
+            }
+            sum
+        })
+    }
+}
+
+impl Outer {
+    fn along(&self, slopes: &Slopes, k: usize) -> f64 {
+        self.by_area * slopes.area[k]
+            + self.by_determinant * slopes.determinant[k]
+            + self.by_quadratic * slopes.quadratic[k]
+    }
+}
+
+/// (m − 1) + ½ β (m − 1)².
+fn angle_cost(angle: f64) -> f64 {
+    (angle - 1.0) * (1.0 + 0.5 * STEEPNESS * (angle - 1.0))
+}
+
+impl Triangle {
+    fn new(x: [Vector; 3], cotangents: [f64; 3], planar: bool) -> Self {
+        let (p, q) = (sub(x[1], x[0]), sub(x[2], x[0]));
+        let r = sub(q, p);
+        let product = cross(p, q);
+        let determinant = dot(x[0], product);
+        let (doubled_area, normal) = if planar {
+            (determinant, [0.0, 0.0, 1.0])
+        } else {
+            let length = norm(product);
+            (length, scaled(product, 1.0 / length.max(f64::MIN_POSITIVE)))
+        };
+        let quadratic =
+            0.5 * (cotangents[0] * dot(r, r) + cotangents[1] * dot(q, q) + cotangents[2] * dot(p, p));
+        let size = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+        // rounding of the differences, of the products and of their sum, generously
+        let rounding =
+            2e-15 * (x[0][0].abs() * size(1, 2) + x[0][1].abs() * size(2, 0) + x[0][2].abs() * size(0, 1));
+        Self { x, determinant, doubled_area, normal, quadratic, rounding }
+    }
+
+    /// m.
+    fn angle(&self) -> f64 {
+        self.quadratic / self.determinant
+    }
+
+    /// Far from its target, nearly folded, or thin: where the composite Hessian misleads.
+    fn is_difficult(&self, target: f64) -> bool {
+        let ratio = 0.5 * self.doubled_area / target;
+        !(0.6..=3.0).contains(&ratio)
+            || self.determinant < 0.8 * self.doubled_area
+            || self.quadratic > 8.0 * self.determinant
+    }
+
+    /// ∇a = ½ (x_{c+1} − x_{c+2}) × n by the unknowns of each corner c.
+    fn area_slopes(&self, frames: [&Frame; 3]) -> [f64; 6] {
+        self.reduced(frames, |[next, after, _]| scaled(cross(sub(next, after), self.normal), 0.5))
+    }
+
+    fn slopes(&self, frames: [&Frame; 3], cotangents: [f64; 3]) -> Slopes {
+        let area = self.area_slopes(frames);
+        // in the plane D is twice the area
+        let determinant = self.reduced(frames, |[next, after, _]| cross(next, sub(after, next)));
+        let mut quadratic = [0.0; 6];
+        for c in 0..3 {
+            let (next, after) = ((c + 1) % 3, (c + 2) % 3);
+            let slope = add(
+                scaled(sub(self.x[c], self.x[after]), cotangents[next]),
+                scaled(sub(self.x[c], self.x[next]), cotangents[after]),
+            );
+            (0..2).for_each(|axis| quadratic[2 * c + axis] = dot(slope, frames[c].axes[axis]));
+        }
+        Slopes { area, determinant, quadratic }
+    }
+
+    /// A vector per corner, from the corners after it and itself, by the unknowns.
+    fn reduced(&self, frames: [&Frame; 3], of_corner: impl Fn([Vector; 3]) -> Vector) -> [f64; 6] {
+        let mut out = [0.0; 6];
+        for c in 0..3 {
+            let slope = of_corner([self.x[(c + 1) % 3], self.x[(c + 2) % 3], self.x[c]]);
+            (0..2).for_each(|axis| out[2 * c + axis] = dot(slope, frames[c].axes[axis]));
+        }
+        out
+    }
+
+    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² without the curvature of D: that of quadratic over
+    /// linear, and β ∇m ∇mᵀ.
+    fn add_angle(
+        &self,
+        element: &mut Element,
+        weight: f64,
+        slopes: &Slopes,
+        frames: [&Frame; 3],
+        cotangents: [f64; 3],
+    ) {
+        let (d, angle) = (self.determinant, self.angle());
+        let weight_of_angle = weight * (1.0 + STEEPNESS * (angle - 1.0));
+        add_quadratic(element, weight_of_angle / d, frames, cotangents);
+        let by_angle: [f64; 6] =
+            std::array::from_fn(|k| (slopes.quadratic[k] - angle * slopes.determinant[k]) / d);
+        for row in 0..6 {
+            for column in 0..6 {
+                // −(∇Q ∇Dᵀ + ∇D ∇Qᵀ)/D² + 2Q ∇D ∇Dᵀ/D³ = −(∇m ∇Dᵀ + ∇D ∇mᵀ)/D
+                let mixed =
+                    by_angle[row] * slopes.determinant[column] + slopes.determinant[row] * by_angle[column];
+                element[row][column] +=
+                    weight * STEEPNESS * by_angle[row] * by_angle[column] - weight_of_angle / d * mixed;
+            }
+        }
+    }
+
+    /// Adds what the composite Hessian leaves out: the curvature of a, of D, and of the domain.
+    fn add_curvature(&self, element: &mut Element, outer: &Outer, frames: [&Frame; 3], cotangents: [f64; 3]) {
+        let axis = |k: usize| frames[k / 2].axes[k % 2];
+        let in_plane: [Vector; 6] = std::array::from_fn(|k| {
+            let c = k / 2;
+            let turned = cross(axis(k), sub(self.x[(c + 1) % 3], self.x[(c + 2) % 3]));
+            sub(turned, scaled(self.normal, dot(turned, self.normal)))
+        });
+        for row in 0..6 {
+            for column in 0..6 {
+                let (c, e) = (row / 2, column / 2);
+                // det(axis, axis, z), zero at one corner and odd under exchange of the two
+                let triple = |z: Vector| match (3 + e - c) % 3 {
+                    0 => 0.0,
+                    1 => dot(axis(row), cross(axis(column), z)),
+                    _ => dot(axis(column), cross(axis(row), z)),
+                };
+                let third = self.x[(6 - c - e) % 3];
+                let of_area =
+                    0.5 * (dot(in_plane[row], in_plane[column]) / self.doubled_area + triple(self.normal));
+                element[row][column] += outer.by_area * of_area + outer.by_determinant * triple(third);
+            }
+        }
+        for c in 0..3 {
+            let pull = dot(self.slope_in_space(outer, cotangents, c), frames[c].outward);
+            (0..2).for_each(|axis| element[2 * c + axis][2 * c + axis] -= pull);
+        }
+    }
+
+    /// The gradient of the face's energy by the place of a corner in space.
+    fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector {
+        let (n, a) = ((c + 1) % 3, (c + 2) % 3);
+        let (next, after) = (self.x[n], self.x[a]);
+        let by_area = scaled(cross(sub(next, after), self.normal), 0.5 * outer.by_area);
+        let by_determinant = scaled(cross(next, sub(after, next)), outer.by_determinant);
+        let by_quadratic = add(
+            scaled(sub(self.x[c], after), outer.by_quadratic * cotangents[n]),
+            scaled(sub(self.x[c], next), outer.by_quadratic * cotangents[a]),
+        );
+        add(by_area, add(by_determinant, by_quadratic))
+    }
+}
+
+/// Adds `factor` v vᵀ.
+fn add_product(element: &mut Element, factor: f64, v: &[f64; 6]) {
+    for row in 0..6 {
+        (0..6).for_each(|column| element[row][column] += factor * v[row] * v[column]);
+    }
+}
+
+/// Adds `factor` times the Hessian of ½ Σ weight_c |opposite edge|² by the unknowns of the corners.
+pub(crate) fn add_quadratic(element: &mut Element, factor: f64, frames: [&Frame; 3], weights: [f64; 3]) {
+    for c in 0..3 {
+        let (next, after) = ((c + 1) % 3, (c + 2) % 3);
+        for i in 0..2 {
+            for j in 0..2 {
+                let own = dot(frames[c].axes[i], frames[c].axes[j]);
+                element[2 * c + i][2 * c + j] += factor * (weights[next] + weights[after]) * own;
+                let mixed = factor * weights[after] * dot(frames[c].axes[i], frames[next].axes[j]);
+                element[2 * c + i][2 * next + j] -= mixed;
+                element[2 * next + j][2 * c + i] -= mixed;
+            }
+        }
+    }
+}
+
+/// The cotangents of a triangle whose height on the longest edge counts as at least `flattest` times that edge.
+fn rest_cotangents(corners: [Vector; 3], flattest: f64) -> [f64; 3] {
+    let lengths = crate::mesh::geometry::edge_lengths(corners);
+    let apex = (0..3).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b])).expect("three edges");
+    let [top, left, right] = [0, 1, 2].map(|k| corners[(apex + k) % 3]);
+    let base = sub(right, left);
+    let length = norm(base);
+    let foot = dot(sub(top, left), base) / length;
+    let height = (norm(cross(base, sub(top, left))) / length).max(flattest * length);
+    let (at_left, at_right) = (foot / height, (length - foot) / height);
+    let at_top = (1.0 - at_left * at_right) / (at_left + at_right);
+    let mut cotangents = [0.0; 3];
+    for (k, value) in [at_top, at_left, at_right].into_iter().enumerate() {
+        cotangents[(apex + k) % 3] = value;
+    }
+    cotangents
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::motion::{Motion, frames};
+
+    const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    const WEIGHTS: Weights = Weights { scale: 0.9, angle: 0.4, profile: Profile::Barrier };
+
+    /// A tetrahedron with its image on the sphere.
+    fn closed() -> (TriangleMesh, Vec<Motion>, Vec<Vector>) {
+        let corners = [[1., 1., 1.], [1.2, -1., -1.], [-1., 0.8, -1.], [-1., -1., 1.1]];
+        let mesh = TriangleMesh::new(&corners, &FACES).unwrap();
+        let image = [[0.6, 0.7, 0.9], [0.9, -1., -0.5], [-1., 1., -1.1], [-0.3, -1., 1.]];
+        let image = image.map(|x| scaled(x, 1.0 / norm(x))).to_vec();
+        (mesh, vec![Motion::Sphere; 4], image)
+    }
+
+    /// A pyramid without its base, with its image in the disk.
+    fn open() -> (TriangleMesh, Vec<Motion>, Vec<Vector>) {
+        let corners = [[0., 0., 1.], [1.3, 0., 0.], [0., 1., 0.2], [-1., -0.5, 0.]];
+        let mesh = TriangleMesh::new(&corners, &FACES[..3]).unwrap();
+        let on_circle = |angle: f64| [angle.cos(), angle.sin(), 1.0];
+        let image = vec![[0.2, -0.1, 1.0], on_circle(0.3), on_circle(1.5), on_circle(4.0)];
+        let motions = vec![Motion::Plane, Motion::Circle, Motion::Held, Motion::Circle];
+        (mesh, motions, image)
+    }
+
+    fn moved(motions: &[Motion], map: &[Vector], direction: &[[f64; 2]], step: f64) -> Vec<Vector> {
+        let frames = frames(motions, map);
+        (0..map.len()).map(|v| motions[v].moved(map[v], &frames[v], direction[v].map(|d| step * d))).collect()
+    }
+
+    fn directions(n: usize) -> Vec<[f64; 2]> {
+        (0..n).map(|v| [(1.0 + 3.0 * v as f64).sin(), (2.0 + 5.0 * v as f64).cos()]).collect()
+    }
+
+    /// The Hessian of a face before negative eigenvalues go.
+    fn exact_element(energy: &AuthalicEnergy, map: &[Vector], frames: &[Frame], face: usize) -> Element {
+        let (corners, target) = (energy.triangle(map, face), WEIGHTS.scale * energy.targets[face]);
+        let (frames, cotangents) = (energy.frames(frames, face), energy.cotangents[face]);
+        let slopes = corners.slopes(frames, cotangents);
+        let ratio = 0.5 * corners.doubled_area / target;
+        let mut element = [[0.0; 6]; 6];
+        add_product(&mut element, (1.0 + ratio.powi(-3)) / target, &slopes.area);
+        corners.add_angle(&mut element, WEIGHTS.angle * target, &slopes, frames, cotangents);
+        let outer = energy.outer(&corners, face, &WEIGHTS);
+        corners.add_curvature(&mut element, &outer, frames, cotangents);
+        element
+    }
+
+    #[test]
+    fn gradient_and_exact_hessian_are_the_differences_of_the_value() {
+        for ((mesh, motions, map), planar) in [(closed(), false), (open(), true)] {
+            let energy =
+                AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), planar, 0.0);
+            let frames = frames(&motions, &map);
+            let direction = directions(map.len());
+            let value = |step: f64| energy.value(&moved(&motions, &map, &direction, step), &WEIGHTS);
+            let gradient = energy.gradient(&map, &frames, &WEIGHTS);
+            let along = |v: usize| gradient[v][0] * direction[v][0] + gradient[v][1] * direction[v][1];
+            let slope: f64 = (0..map.len()).map(along).sum();
+            let (h, there, back) = (1e-4, value(1e-4), value(-1e-4));
+            assert!(value(0.0).is_finite());
+            assert!((slope - (there - back) / (2.0 * h)).abs() < 1e-6 * (1.0 + slope.abs()));
+            let mut curvature = 0.0;
+            for face in 0..mesh.n_faces() {
+                let element = exact_element(&energy, &map, &frames, face);
+                // a vertex that cannot leave a direction has no frame there
+                let d: Vec<f64> = mesh.faces()[face].iter().flat_map(|&v| direction[v as usize]).collect();
+                for row in 0..6 {
+                    curvature += (0..6).map(|column| d[row] * element[row][column] * d[column]).sum::<f64>();
+                }
+            }
+            // the second unknown of a vertex on the circle does not exist, nor do those of a held one
+            let difference = (there + back - 2.0 * value(0.0)) / (h * h);
+            let missing: f64 =
+                (0..map.len()).map(|v| missing_pull(&energy, &map, &frames, &motions, &direction, v)).sum();
+            assert!(
+                (curvature + missing - difference).abs() < 1e-5 * (1.0 + difference.abs()),
+                "{curvature} {difference}"
+            );
+        }
+    }
+
+    /// The diagonal entry of an unknown that does not exist, which its element carries all the same.
+    fn missing_pull(
+        energy: &AuthalicEnergy,
+        map: &[Vector],
+        frames: &[Frame],
+        motions: &[Motion],
+        direction: &[[f64; 2]],
+        vertex: usize,
+    ) -> f64 {
+        if motions[vertex] != Motion::Circle {
+            return 0.0;
+        }
+        let of_corner = |&corner: &u32| {
+            let (face, c) = (corner as usize / 3, corner as usize % 3);
+            let corners = energy.triangle(map, face);
+            let outer = energy.outer(&corners, face, &WEIGHTS);
+            dot(corners.slope_in_space(&outer, energy.cotangents[face], c), frames[vertex].outward)
+        };
+        direction[vertex][1].powi(2) * energy.corners.of(vertex).iter().map(of_corner).sum::<f64>()
+    }
+
+    #[test]
+    fn a_folded_face_is_infinitely_expensive() {
+        let (mesh, _, mut map) = open();
+        let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], true, 0.0);
+        map[0] = [0.9, -0.9, 1.0];
+        assert_eq!(energy.value(&map, &WEIGHTS), f64::INFINITY);
+        assert_eq!(energy.sums(&map).angle_energy, f64::INFINITY);
+    }
+
+    #[test]
+    fn flat_rest_triangles_count_as_a_little_fatter() {
+        let right = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+        assert!((0..3).all(|k| (rest_cotangents(right, 1e-3)[k] - [0., 1., 1.][k]).abs() < 1e-15));
+        let sliver = [[0., 0., 0.], [1., 0., 0.], [0.5, 1e-9, 0.]];
+        assert!((rest_cotangents(sliver, 0.01)[0] - 50.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! How the vertices of a map may move, on the disk and on the sphere alike.
+//!
+//! Both images live in space: the sphere around the origin, the disk in the plane z = 1. Then det(x_i, x_j, x_k) is
+//! positive exactly where a face is not folded, in either domain. A vertex has two unknowns, one or none, its
+//! coordinates along the [`Frame`] at its place; [`Motion::moved`] takes them back to the domain.
+
+use crate::mesh::geometry::{Vector, add, cross, norm, scaled};
+use crate::parallel;
+
+/// What one vertex may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// Stays where it is.
+    Held,
+    /// Slides along the unit circle of the plane z = 1, by an angle.
+    Circle,
+    /// Moves in the plane z = 1.
+    Plane,
+    /// Moves on the unit sphere.
+    Sphere,
+}
+
+/// The directions in which a vertex may leave its place.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Frame {
+    /// Unit vectors; zero where the vertex cannot move.
+    pub axes: [Vector; 2],
+    /// Where its path bends away from: moving by ξ, its acceleration is −|ξ|² times this.
+    pub outward: Vector,
+}
+
+impl Motion {
+    /// How many unknowns a vertex has.
+    pub(crate) fn n_unknowns(self) -> u8 {
+        match self {
+            Self::Held => 0,
+            Self::Circle => 1,
+            Self::Plane | Self::Sphere => 2,
+        }
+    }
+
+    /// The frame at `x`.
+    pub(crate) fn frame(self, x: Vector) -> Frame {
+        match self {
+            Self::Held => Frame::default(),
+            Self::Circle => Frame { axes: [[-x[1], x[0], 0.0], [0.0; 3]], outward: [x[0], x[1], 0.0] },
+            Self::Plane => Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], outward: [0.0; 3] },
+            Self::Sphere => Frame { axes: tangent_axes(x), outward: x },
+        }
+    }
+
+    /// The place reached from `x` by `unknowns` along its frame: straight in the plane, by a true rotation on the
+    /// circle, by the normalising retraction on the sphere.
+    pub(crate) fn moved(self, x: Vector, frame: &Frame, unknowns: [f64; 2]) -> Vector {
+        let [a, b] = unknowns;
+        match self {
+            Self::Held => x,
+            Self::Circle => {
+                let (sine, cosine) = a.sin_cos();
+                let [u, v] = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]];
+                let length = u.hypot(v);
+                [u / length, v / length, 1.0]
+            }
+            Self::Plane => [x[0] + a, x[1] + b, 1.0],
+            Self::Sphere => {
+                let moved = add(x, add(scaled(frame.axes[0], a), scaled(frame.axes[1], b)));
+                scaled(moved, 1.0 / norm(moved))
+            }
+        }
+    }
+}
+
+/// The frames of all vertices.
+pub(crate) fn frames(motions: &[Motion], map: &[Vector]) -> Vec<Frame> {
+    parallel::map(map.len(), |vertex| motions[vertex].frame(map[vertex]))
+}
+
+/// Two unit vectors that make an orthonormal frame with the unit vector `x`.
+pub(crate) fn tangent_axes(x: Vector) -> [Vector; 2] {
+    let smallest = (0..3).min_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs())).expect("three axes");
+    let axis: Vector = std::array::from_fn(|k| if k == smallest { 1.0 } else { 0.0 });
+    let first = cross(x, axis);
+    let first = scaled(first, 1.0 / norm(first));
+    [first, cross(x, first)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::geometry::{dot, sub};
+
+    #[test]
+    fn paths_start_along_the_frame_and_bend_away_from_outward() {
+        let places = [
+            (Motion::Circle, [0.6, -0.8, 1.0], [1.0, 0.0]),
+            (Motion::Plane, [0.3, 0.2, 1.0], [0.6, 0.8]),
+            (Motion::Sphere, [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0], [0.6, 0.8]),
+        ];
+        for (motion, x, along) in places {
+            let frame = motion.frame(x);
+            let at = |t: f64| motion.moved(x, &frame, along.map(|a| t * a));
+            let (h, back, here, there) = (1e-4, at(-1e-4), at(0.0), at(1e-4));
+            for k in 0..3 {
+                let velocity = along[0] * frame.axes[0][k] + along[1] * frame.axes[1][k];
+                assert!((here[k] - x[k]).abs() < 1e-15);
+                assert!(((there[k] - back[k]) / (2.0 * h) - velocity).abs() < 1e-7);
+                let acceleration = (there[k] + back[k] - 2.0 * here[k]) / (h * h);
+                assert!((acceleration + frame.outward[k]).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn tangent_axes_are_orthonormal() {
+        for x in [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.48, 0.6, 0.64]] {
+            let [a, b] = tangent_axes(x);
+            assert!(dot(a, b).abs() < 1e-15 && dot(a, x).abs() < 1e-15 && dot(b, x).abs() < 1e-15);
+            assert!(norm(sub(cross(a, b), x)) < 1e-12 || norm(add(cross(a, b), x)) < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Gauss–Newton for surfaces with slivers: targets are raised to a floor that is lowered step by step.
+//!
+//! The energy of a face grows like 1/T, so a face with a millionth of the mean target rules the whole descent long before
+//! the others are in place. Solved first with every target at least a hundredth of the mean, then with lower floors, the
+//! same slivers cost a few iterations each. Rest triangles are fattened along with them, so that cotangents stay
+//! moderate.
+//!
+//! While a floor holds, the energies in the history are those for the raised targets.
+
+use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
+use crate::control::{History, Observer, Phase, Status};
+use crate::energy::authalic::AuthalicEnergy;
+use crate::energy::stretch::Profile;
+use crate::mesh::TriangleMesh;
+use crate::parallel;
+
+/// Floors one after the other, in units of the mean target.
+const FLOORS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-6, 0.0];
+
+/// Iterations of each floor but the first.
+const ITERATIONS: usize = 8;
+
+/// Rest triangles are fattened to a height of at most this part of their longest edge,
+const FLATTEST: f64 = 0.02;
+
+/// and at least this.
+const FLATTEST_LAST: f64 = 1e-7;
+
+/// The part of the whole that the first floor takes.
+const FIRST_PART: f64 = 0.6;
+
+/// The floors that targets (m,) need: only the last where none is small.
+pub(crate) fn floors(targets: &[f64]) -> &'static [f64] {
+    let least = targets.iter().fold(f64::INFINITY, |least, &target| least.min(target)) / mean(targets);
+    if least >= FLOORS[0] {
+        return &FLOORS[FLOORS.len() - 1..];
+    }
+    &FLOORS
+}
+
+/// Targets raised to a floor.
+pub(crate) fn raised(targets: &[f64], floor: f64) -> Vec<f64> {
+    let floor = floor * mean(targets);
+    parallel::map(targets.len(), |face| targets[face].max(floor))
+}
+
+/// The energy for targets raised to a floor.
+pub(crate) fn energy(mesh: &TriangleMesh, targets: &[f64], planar: bool, floor: f64) -> AuthalicEnergy {
+    let flattest = (2.0 * floor).clamp(FLATTEST_LAST, FLATTEST);
+    AuthalicEnergy::new(mesh, raised(targets, floor), planar, flattest)
+}
+
+/// What is mapped, to what areas, and where.
+pub(crate) struct Surface<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub targets: &'a [f64],
+    /// To the plane z = 1, else to the sphere.
+    pub planar: bool,
+}
+
+/// A guarded descent through all floors; `problem` has the energy of the first, and comes back with that of the last.
+pub(crate) fn descend(
+    surface: &Surface<'_>,
+    mut problem: Problem,
+    start: Map,
+    options: &GaussNewtonOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Problem, Map, Status) {
+    debug_assert!(options.profile == Profile::Barrier);
+    let Surface { mesh, targets, planar } = *surface;
+    let floors = floors(targets);
+    let part = |k: usize| match k {
+        0 => 0.0,
+        _ => FIRST_PART + (1.0 - FIRST_PART) * (k - 1) as f64 / (floors.len() - 1) as f64,
+    };
+    let (mut map, mut status) = (start, Status::MaxIterations);
+    for (k, &floor) in floors.iter().enumerate() {
+        let mut options = *options;
+        if k > 0 {
+            problem = problem.with_energy(energy(mesh, targets, planar, floor));
+            options.max_iterations = Some(options.max_iterations.unwrap_or(ITERATIONS).min(ITERATIONS));
+        }
+        let to = if floors.len() == 1 { 1.0 } else { part(k + 1) };
+        let mut phase = Phase { whole: observer, from: part(k), to };
+        (map, status) = minimize(&problem, map, &options, history, &mut phase);
+        if status == Status::Cancelled {
+            break;
+        }
+    }
+    (problem, map, status)
+}
+
+fn mean(targets: &[f64]) -> f64 {
+    parallel::sum(targets.len(), |face| targets[face]) / targets.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_slivers_need_floors() {
+        assert_eq!(floors(&[1.0, 2.0, 0.1]), [0.0]);
+        assert_eq!(floors(&[1.0, 2.0, 1e-3]).len(), FLOORS.len());
+        assert_eq!(raised(&[1.0, 3.0, 1e-9], 0.0), [1.0, 3.0, 1e-9]);
+        let raised = raised(&[1.0, 2.0 - 1e-9, 1e-9], 1e-2);
+        assert!((raised[2] - 0.01).abs() < 1e-12 && raised[0] == 1.0);
+    }
+}

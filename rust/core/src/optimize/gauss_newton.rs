@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Guarded Gauss–Newton: our own descent to an area-preserving map, on the disk and on the sphere.
+//!
+//! E_A is a zero-residual least-squares problem, so its Gauss–Newton Hessian is all it takes near the minimum; far from
+//! it the energy of [`authalic`](crate::energy::authalic) adds a share of angle distortion, whose weight λ falls with
+//! E_A, and a barrier that no step can cross. In each iteration:
+//!
+//! 1. targets are rescaled to the area of the image, λ is balanced against E_A;
+//! 2. the Hessian is factored with a damping of each face in proportion to how far it is from its target, once;
+//! 3. the same factor gives the direction d and a second-order correction for what the areas miss of their linear
+//!    prediction;
+//! 4. the step is accepted where the energy falls, after the few faces that carry most of it were solved by themselves
+//!    ([`local`](super::local)).
+//!
+//! With [`Profile::Barrier`] an accepted map has no folded face: the energy of every trial is infinite where a face is
+//! not positive by more than rounding. [`Profile::Stretch`] drops the barrier and the angles (Levenberg–Marquardt on
+//! E_A); in the plane, where areas have signs, it unfolds faces on its way.
+//!
+//! Cost of one iteration: one factorisation of two unknowns per vertex, in single precision where that suffices, two
+//! solves, some ten passes over the faces.
+
+use super::local;
+use crate::control::{History, Observer, Status, Watch};
+use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights, add_quadratic};
+use crate::energy::motion::{Frame, Motion, frames};
+use crate::energy::stretch::Profile;
+use crate::error::Error;
+use crate::mesh::geometry::Vector;
+use crate::parallel;
+use crate::sparse::{Analysis, Factor, Failure};
+
+/// A map of the vertices, in space.
+pub(crate) type Map = Vec<Vector>;
+
+/// κ, E_A over the angle energy that λ aims at: 1 costs a third more iterations and leaves angles 1 % better.
+const BALANCE: f64 = 0.3;
+
+/// λ stays between these.
+const ANGLE_WEIGHTS: [f64; 2] = [1e-7, 1.0];
+
+/// λ falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
+const FASTEST_FALL: f64 = 0.1;
+
+/// A step below this is short.
+const SHORT: f64 = 0.3;
+
+/// μ, the damping of a face that is wholly off its target.
+const DAMPING: f64 = 0.02;
+
+/// What every face is damped by in units of the deviation of its area ratio.
+const LEAST_DEVIATION: f64 = 5e-3;
+
+/// Deviations count up to this.
+const MOST_DEVIATION: f64 = 1e3;
+
+/// No vertex moves farther than this in one step.
+const LONGEST_MOVE: f64 = 0.5;
+
+/// Steps tried along one direction.
+const MOST_TRIALS: usize = 30;
+
+/// The slope's share that a step must gain.
+const SUFFICIENT: f64 = 1e-4;
+
+/// After so many iterations a map is even enough for a descent without a limit of its own when the deviation of its
+/// area ratio is below [`EVEN_ENOUGH`].
+const USUAL_ITERATIONS: usize = 12;
+const EVEN_ENOUGH: f64 = 0.01;
+
+/// Iterations at the most of a descent without a limit of its own.
+const MOST_ITERATIONS: usize = 60;
+
+/// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
+const PATIENCE: usize = 5;
+const LEAST_GAIN: f64 = 0.05;
+
+/// With λ held, the descent ends when the slope promises less than this part of the energy.
+const LEAST_SLOPE: f64 = 1e-3;
+
+/// A surface, how its vertices may move, and the energy of its maps.
+pub(crate) struct Problem {
+    pub energy: AuthalicEnergy,
+    pub motions: Vec<Motion>,
+    analysis: Analysis,
+}
+
+/// When and how to descend.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GaussNewtonOptions {
+    /// The barrier, or none.
+    pub profile: Profile,
+    /// λ never falls below this.
+    pub angle_weight: f64,
+    /// Iterations at the most; where `None`, as many as it takes: 12 where those leave the area ratio a deviation of
+    /// 1 %, up to 60 else.
+    pub max_iterations: Option<usize>,
+    /// Converged when the deviation of the area ratio, √(E_A/A), is below this.
+    pub tolerance: f64,
+    /// Whether to end as soon as no face is folded, after so many iterations.
+    pub until_open: Option<usize>,
+}
+
+impl Problem {
+    /// The same with another energy of the same surface.
+    pub(crate) fn with_energy(self, energy: AuthalicEnergy) -> Self {
+        Self { energy, ..self }
+    }
+
+    /// Orders and analyses the system of the energy.
+    pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>) -> Result<Self, Error> {
+        let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
+        let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns)?;
+        Ok(Self { energy, motions, analysis })
+    }
+
+    /// The map reached from `map` by `direction` along the frames.
+    pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> Map {
+        parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
+    }
+
+    /// The unknowns of values at the vertices.
+    fn packed(&self, values: &[[f64; 2]]) -> Vec<f64> {
+        let mut unknowns = vec![0.0; self.analysis.n_unknowns()];
+        for (vertex, value) in values.iter().enumerate() {
+            let (first, n) = (self.analysis.first_unknown(vertex), self.motions[vertex].n_unknowns());
+            unknowns[first..first + usize::from(n)].copy_from_slice(&value[..usize::from(n)]);
+        }
+        unknowns
+    }
+
+    /// The values at the vertices of unknowns.
+    fn unpacked(&self, unknowns: &[f64]) -> Vec<[f64; 2]> {
+        parallel::map(self.motions.len(), |vertex| {
+            let first = self.analysis.first_unknown(vertex);
+            let n = usize::from(self.motions[vertex].n_unknowns());
+            std::array::from_fn(|k| if k < n { unknowns[first + k] } else { 0.0 })
+        })
+    }
+}
+
+/// Lowers the energy from `start` and returns the last map with the status.
+pub(crate) fn minimize(
+    problem: &Problem,
+    start: Map,
+    options: &GaussNewtonOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Map, Status) {
+    let mut descent = Descent::new(problem, *options);
+    let mut map = start;
+    let mut energies = Vec::new();
+    for done in 0.. {
+        // 1. Targets on the scale of the image, λ in balance
+        let sums = problem.energy.sums(&map);
+        let weights = descent.balance(&sums);
+        energies.push(sums.authalic_energy);
+        history.push_start(sums.authalic_energy, f64::NAN);
+        if let Some(status) = descent.verdict(done, &sums, &energies, observer) {
+            return (map, status);
+        }
+        // 2. One factorisation, the direction
+        let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
+        let newton = match descent.linearised.direction(problem, &map, &weights, descent.damping, &watch) {
+            Ok(newton) => newton,
+            Err(Failure::Cancelled) => return (map, Status::Cancelled),
+            Err(Failure::NotPositiveDefinite) => return (map, Status::Stalled),
+        };
+        // 3. A step along it that lowers the energy and folds nothing
+        let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
+            return (map, Status::Stalled);
+        };
+        map = next;
+        descent.adapt(step);
+        history.push(problem.energy.sums(&map).authalic_energy, step, (-newton.slope).max(0.0).sqrt());
+    }
+    unreachable!("the verdict ends the loop")
+}
+
+const MESSAGE: &str = "Evening out areas";
+
+/// What the iterations hand on.
+struct Descent<'a> {
+    problem: &'a Problem,
+    options: GaussNewtonOptions,
+    linearised: Linearised,
+    /// λ; NaN before the first iteration.
+    angle_weight: f64,
+    /// μ.
+    damping: f64,
+    last_step: f64,
+    /// Σ targets.
+    total_target: f64,
+    /// Whether the slope promised less than [`LEAST_SLOPE`] of the energy.
+    flat: bool,
+}
+
+/// The direction at a map, with what was needed to find it.
+pub(super) struct Newton {
+    pub frames: Vec<Frame>,
+    pub direction: Vec<[f64; 2]>,
+    /// The directional derivative of the energy, negative.
+    pub slope: f64,
+}
+
+impl<'a> Descent<'a> {
+    fn new(problem: &'a Problem, options: GaussNewtonOptions) -> Self {
+        let targets = problem.energy.targets();
+        Self {
+            problem,
+            options,
+            linearised: Linearised::default(),
+            angle_weight: f64::NAN,
+            damping: DAMPING,
+            last_step: 1.0,
+            total_target: parallel::sum(targets.len(), |face| targets[face]),
+            flat: false,
+        }
+    }
+
+    /// The weights of the next iteration.
+    fn balance(&mut self, sums: &Sums) -> Weights {
+        let [least, most] = ANGLE_WEIGHTS;
+        let balanced = BALANCE * sums.authalic_energy / sums.angle_energy.max(1e-3);
+        let goal = balanced.clamp(least, most).max(self.options.angle_weight);
+        if self.angle_weight.is_nan() {
+            self.angle_weight = goal;
+        } else if goal < self.angle_weight && self.last_step >= SHORT {
+            self.angle_weight = goal.max(FASTEST_FALL * self.angle_weight);
+        }
+        Weights {
+            scale: sums.area / self.total_target,
+            angle: self.angle_weight,
+            profile: self.options.profile,
+        }
+    }
+
+    /// The status with which to end, if any.
+    fn verdict(
+        &self,
+        done: usize,
+        sums: &Sums,
+        energies: &[f64],
+        observer: &mut dyn Observer,
+    ) -> Option<Status> {
+        let options = &self.options;
+        let is_held = options.angle_weight > 0.0 && self.angle_weight <= options.angle_weight;
+        let is_slow = done >= PATIENCE
+            && energies[done] > (1.0 - LEAST_GAIN) * energies[done - PATIENCE]
+            && options.angle_weight == 0.0;
+        let deviation = (sums.authalic_energy / sums.area).sqrt();
+        let is_even = match options.max_iterations {
+            None if done >= USUAL_ITERATIONS => deviation <= EVEN_ENOUGH.max(options.tolerance),
+            _ => deviation <= options.tolerance,
+        };
+        let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
+        if (is_even && !is_held) || is_open || is_slow || (is_held && self.flat) {
+            Some(Status::Converged)
+        } else if done >= options.max_iterations.unwrap_or(MOST_ITERATIONS) {
+            Some(Status::MaxIterations)
+        } else if observer.progress(self.fraction(done), MESSAGE) {
+            None
+        } else {
+            Some(Status::Cancelled)
+        }
+    }
+
+    /// The part done after `done` iterations.
+    fn fraction(&self, done: usize) -> f64 {
+        match self.options.max_iterations {
+            Some(most) => done as f64 / most.max(1) as f64,
+            // half of what is left in every usual run
+            None => 1.0 - 0.5f64.powf(done as f64 / (0.5 * USUAL_ITERATIONS as f64)),
+        }
+    }
+
+    /// The next map, with the step's length; `None` where no step lowers the energy.
+    fn step(
+        &mut self,
+        map: &Map,
+        newton: &Newton,
+        weights: &Weights,
+        watch: &Watch<'_>,
+    ) -> Option<(Map, f64)> {
+        let problem = self.problem;
+        let value = problem.energy.value(map, weights);
+        self.flat = -newton.slope <= LEAST_SLOPE * value;
+        // 1. The longest step allowed, straight and corrected to second order
+        let longest = newton.direction.iter().map(|d| d[0].hypot(d[1])).fold(0.0, f64::max);
+        let mut step = (LONGEST_MOVE / longest).min(1.0);
+        let mut bend = None;
+        let mut trial = Trial::new(problem, self.path(map, newton, None, step), weights);
+        if step == 1.0 {
+            let correction = self.linearised.correction(problem, map, &trial.map, newton, weights);
+            let corrected = Trial::new(problem, self.path(map, newton, Some(&correction), step), weights);
+            if corrected.value < trial.value {
+                (trial, bend) = (corrected, Some(correction));
+            }
+        }
+        // 2. The worst faces by themselves, then shorter steps until the energy falls
+        for _ in 0..MOST_TRIALS {
+            if trial.value.is_finite() {
+                local::repair(problem, &mut trial.map, weights, watch);
+                trial.value = problem.energy.value(&trial.map, weights);
+            }
+            if trial.value <= value + SUFFICIENT * step * newton.slope {
+                return Some((trial.map, step));
+            }
+            step *= shrinkage(trial.value - value, step * newton.slope);
+            trial = Trial::new(problem, self.path(map, newton, bend.as_deref(), step), weights);
+        }
+        None
+    }
+
+    /// The map at `step` along the direction, bent by the correction.
+    fn path(&self, map: &Map, newton: &Newton, bend: Option<&[[f64; 2]]>, step: f64) -> Map {
+        let along = |v: usize| match bend {
+            None => newton.direction[v].map(|d| step * d),
+            Some(bend) => [0, 1].map(|k| step * (newton.direction[v][k] + step * bend[v][k])),
+        };
+        let direction = parallel::map(map.len(), along);
+        self.problem.moved(map, &newton.frames, &direction)
+    }
+
+    /// A short step asks for more damping, a long one for less.
+    fn adapt(&mut self, step: f64) {
+        self.last_step = step;
+        self.damping = if step < SHORT { 3.0 * self.damping } else { (self.damping / 3.0).max(DAMPING) };
+    }
+}
+
+struct Trial {
+    map: Map,
+    value: f64,
+}
+
+impl Trial {
+    fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
+        Self { value: problem.energy.value(&map, weights), map }
+    }
+}
+
+/// By what to shorten a step that changed the energy by `change` where its slope promised `promised`: to the minimum of
+/// the parabola through them, within limits.
+fn shrinkage(change: f64, promised: f64) -> f64 {
+    match change.is_finite() {
+        true => (-0.5 * promised / (change - promised)).clamp(0.1, 0.6),
+        false => 0.5,
+    }
+}
+
+/// The factor of the Hessian at a map, in single precision while that holds.
+#[derive(Default)]
+pub(super) struct Linearised {
+    single: Option<Factor<f32>>,
+    double: Option<Factor<f64>>,
+    single_failed: usize,
+}
+
+impl Linearised {
+    /// The damped Gauss–Newton direction at `map`.
+    pub(super) fn direction(
+        &mut self,
+        problem: &Problem,
+        map: &[Vector],
+        weights: &Weights,
+        damping: f64,
+        watch: &Watch<'_>,
+    ) -> Result<Newton, Failure> {
+        let (energy, frames) = (&problem.energy, frames(&problem.motions, map));
+        let gradient = energy.gradient(map, &frames, weights);
+        let element = |face: usize| damped_element(energy, map, &frames, weights, damping, face);
+        for _ in 0..3 {
+            self.refactor(problem, &element, watch)?;
+            let mut unknowns = problem.packed(&gradient);
+            self.solve(problem, &mut unknowns);
+            let direction = problem.unpacked(&unknowns);
+            let direction = parallel::map(map.len(), |v| direction[v].map(|d| -d));
+            let slope = parallel::sum(map.len(), |v| {
+                gradient[v][0] * direction[v][0] + gradient[v][1] * direction[v][1]
+            });
+            if slope <= 0.0 && slope.is_finite() {
+                return Ok(Newton { frames, direction, slope });
+            }
+            // single precision was not enough
+            if self.single.take().is_none() {
+                break;
+            }
+            self.single_failed = usize::MAX;
+        }
+        Err(Failure::NotPositiveDefinite)
+    }
+
+    /// Second-order correction of a full step to `moved`, by the factor of the direction.
+    fn correction(
+        &self,
+        problem: &Problem,
+        map: &[Vector],
+        moved: &[Vector],
+        newton: &Newton,
+        weights: &Weights,
+    ) -> Vec<[f64; 2]> {
+        let rhs = problem.energy.curvature(map, moved, &newton.frames, &newton.direction, weights);
+        let mut unknowns = problem.packed(&rhs);
+        self.solve(problem, &mut unknowns);
+        problem.unpacked(&unknowns)
+    }
+
+    /// Factors in single precision, in double where that fails; always in double once it failed twice.
+    fn refactor(
+        &mut self,
+        problem: &Problem,
+        element: &(dyn Fn(usize) -> Element + Sync),
+        watch: &Watch<'_>,
+    ) -> Result<(), Failure> {
+        let analysis = &problem.analysis;
+        if self.single_failed < 2 {
+            self.double = None;
+            let factor = self.single.get_or_insert_with(|| Factor::new(analysis));
+            match factor.refactor(analysis, element, watch) {
+                Err(Failure::NotPositiveDefinite) => self.single_failed += 1,
+                verdict => return verdict,
+            }
+        }
+        self.single = None;
+        self.double.get_or_insert_with(|| Factor::new(analysis)).refactor(analysis, element, watch)
+    }
+
+    fn solve(&self, problem: &Problem, unknowns: &mut [f64]) {
+        match (&self.single, &self.double) {
+            (Some(factor), _) => factor.solve(&problem.analysis, unknowns),
+            (None, Some(factor)) => factor.solve(&problem.analysis, unknowns),
+            (None, None) => unreachable!("factored before"),
+        }
+    }
+}
+
+/// The Hessian of a face with its damping: the graph Laplacian of the triangle, in proportion to the deviation of its
+/// area ratio, and a shift that keeps rotations of the whole from being free.
+fn damped_element(
+    energy: &AuthalicEnergy,
+    map: &[Vector],
+    frames: &[Frame],
+    weights: &Weights,
+    damping: f64,
+    face: usize,
+) -> Element {
+    let mut element = energy.element(map, frames, weights, face);
+    let deviation = (energy.ratio(map, weights, face) - 1.0).abs().min(MOST_DEVIATION);
+    let corners = energy.faces()[face].map(|vertex| &frames[vertex as usize]);
+    add_quadratic(&mut element, damping * (deviation + LEAST_DEVIATION), corners, [0.5; 3]);
+    for (k, row) in element.iter_mut().enumerate() {
+        row[k] += 1e-10 * row[k] + 1e-14;
+    }
+    element
+}

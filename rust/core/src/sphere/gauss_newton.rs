@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Our own method on the sphere: a start without folds and a guarded descent that never leaves it.
+//!
+//! On most surfaces the spherical conformal map and a few steps of the papers' fixed point are without folds and near
+//! the minimum. Where they fold or leave long thin parts next to nothing of their area, the start is the
+//! [progressive](crate::embedding) embedding. From there the descent goes on behind a barrier
+//! ([`gauss_newton`](crate::optimize::gauss_newton)).
+//!
+//! Cost: about six factorisations with one unknown per vertex, about twelve with two.
+
+use std::f64::consts::PI;
+
+use super::domain::SphereDomain;
+use super::fixed_point::{FixedPointStopping, fixed_point};
+use super::run::Run;
+use super::{Map, normalized, start, unfold};
+use crate::control::{History, Observer, Phase, Status};
+use crate::distortion::folded_on_sphere;
+use crate::embedding::{Stop, progressive_sphere};
+use crate::energy::motion::Motion;
+use crate::energy::stretch::Profile;
+use crate::error::{Elements, Error};
+use crate::mesh::geometry::{cross, dot, triangle};
+use crate::optimize::floors;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem};
+use crate::parallel;
+
+/// Fixed-point steps at the most.
+const FIXED_POINT_STEPS: usize = 5;
+
+/// They end when the stretch energy falls by no more than this.
+const FIXED_POINT_TOLERANCE: f64 = 1e-2;
+
+/// A start is bad when E_A is more than this part of the area; the progressive one is better then.
+const BAD_START: f64 = 0.5;
+
+/// A result is uneven when E_A is more than this part of the area; then another start may do better.
+const UNEVEN: f64 = 0.02;
+
+/// Area deviation of the result below which nothing is left to gain.
+const TOLERANCE: f64 = 2e-4;
+
+impl Run<'_> {
+    /// An area-preserving map without folds.
+    ///
+    /// # Errors
+    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+    /// there was a map without folds.
+    pub(super) fn gauss_newton(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        // 1. Targets of slivers raised to a floor
+        let floor = floors::floors(self.targets)[0];
+        let energy = floors::energy(self.mesh, self.targets, false, floor);
+        let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()])?;
+        // 2. A start without folds
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let (quick, status) = self.quick_start(&problem, history, &mut phase)?;
+        let is_quick = quick.is_some();
+        let map = match quick {
+            Some(map) => map,
+            None => self.progressive_start(&problem, &mut phase)?,
+        };
+        // 3. A guarded descent
+        let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
+        let (problem, map, status) = self.descend(problem, map, status, history, &mut phase);
+        // 4. Another one from the progressive embedding where the result is uneven
+        let is_final = !is_quick || self.options.initial.is_some() || self.options.angle_weight > 0.0;
+        if is_final || status == Status::Cancelled || unevenness(&problem, &map) <= UNEVEN {
+            return Ok((map, status));
+        }
+        let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+        Ok(self.second_try(problem, map, status, history, &mut phase))
+    }
+
+    /// The start map given, else the conformal one and fixed-point steps; `None` where it is of no use.
+    fn quick_start(
+        &self,
+        problem: &Problem,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Option<Map>, Status), Error> {
+        let holds = |map: &Map| problem.energy.is_embedding(map);
+        // 1. A map that was given only needs to be unfolded
+        if let Some(initial) = self.options.initial {
+            let map: Map = initial.iter().filter_map(|&x| normalized(x)).collect();
+            let map = if holds(&map) { Some(map) } else { unfold::unfold(self.mesh, &map).filter(holds) };
+            return Ok((map, Status::MaxIterations));
+        }
+        // 2. The conformal start and fixed-point steps
+        let targets = problem.energy.targets();
+        let Ok(start) = start::start(self.mesh, targets, self.weights) else {
+            return Ok((None, Status::Stalled));
+        };
+        let domain = SphereDomain::new(self.mesh, targets);
+        let stopping =
+            FixedPointStopping { max_iterations: FIXED_POINT_STEPS, tolerance: FIXED_POINT_TOLERANCE };
+        let (stepped, status) =
+            fixed_point(&domain, self.weights, start.clone(), &stopping, history, observer);
+        // 3. Either of them, where it is not far off
+        let candidates = [stepped, start].into_iter().filter(holds);
+        let best = candidates.min_by(|a, b| unevenness(problem, a).total_cmp(&unevenness(problem, b)));
+        let is_good = |map: &Map| status == Status::Cancelled || unevenness(problem, map) <= BAD_START;
+        Ok((best.filter(is_good), status))
+    }
+
+    fn progressive_start(&self, problem: &Problem, observer: &mut dyn Observer) -> Result<Map, Error> {
+        match progressive_sphere(self.mesh, problem.energy.targets(), observer) {
+            Ok(map) if problem.energy.is_embedding(&map) => return Ok(map),
+            Err(Stop::Cancelled) => return Err(Error::CancelledEarly),
+            _ => {}
+        }
+        let start = start::start(self.mesh, self.targets, self.weights)?;
+        match Elements::collect(folded_on_sphere(self.mesh.faces(), &start)) {
+            None => Ok(start),
+            Some(folded) => Err(Error::NoEmbedding { folded }),
+        }
+    }
+
+    /// The guarded descent from a map without folds; a run already cancelled only keeps the map.
+    fn descend(
+        &self,
+        problem: Problem,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Problem, Map, Status) {
+        if status == Status::Cancelled {
+            return (problem, map, status);
+        }
+        let options = GaussNewtonOptions {
+            profile: Profile::Barrier,
+            angle_weight: self.options.angle_weight,
+            max_iterations: self.options.max_iterations,
+            tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
+            until_open: None,
+        };
+        let begun = map.clone();
+        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, planar: false };
+        let (problem, map, status) = floors::descend(&surface, problem, map, &options, history, observer);
+        match self.is_bijective(&map) {
+            true => (problem, map, status),
+            // no step folds a face, so only a one-ring that turned twice around its vertex leads here
+            false => (problem, begun, Status::Stalled),
+        }
+    }
+
+    /// The better of an uneven map and what the progressive embedding leads to.
+    fn second_try(
+        &self,
+        problem: Problem,
+        map: Map,
+        status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let first = unevenness(&problem, &map);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+        let Ok(other) = self.progressive_start(&problem, &mut phase) else { return (map, status) };
+        let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
+        let (problem, other, ended) = self.descend(problem, other, status, history, &mut phase);
+        match unevenness(&problem, &other) < first {
+            true => (other, ended),
+            false => (map, status),
+        }
+    }
+
+    /// Whether no face is folded and the faces cover the sphere once.
+    fn is_bijective(&self, map: &Map) -> bool {
+        let covered = parallel::sum(self.mesh.n_faces(), |face| {
+            let [a, b, c] = triangle(map, self.mesh.faces()[face]);
+            2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
+        });
+        (covered - 4.0 * PI).abs() < 1.0 && folded_on_sphere(self.mesh.faces(), map).is_empty()
+    }
+}
+
+/// E_A over the area of the image.
+fn unevenness(problem: &Problem, map: &Map) -> f64 {
+    let sums = problem.energy.sums(map);
+    sums.authalic_energy / sums.area
+}

@@ -20,7 +20,7 @@ use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub};
 const CLEARLY: f64 = 1e-14;
 
 /// The weight of the arcs in the energy of a vertex on the circle.
-const ARC: f64 = 0.05;
+const ARC: f64 = 0.1;
 
 /// The longest step that is tried.
 const LONGEST: f64 = 0.5;

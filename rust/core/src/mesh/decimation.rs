@@ -25,8 +25,15 @@ use crate::parallel;
 /// The observer is asked once for so many vertices.
 const BEAT: usize = 1024;
 
-/// The shapes around a vertex with more neighbours are not looked at before it has come to the front of the
-/// queue; few such vertices keep them all till then.
+/// And once for so many at the beginning, on all threads.
+const ROUND: usize = 65_536;
+
+/// A vertex of the boundary costs so many times as much as another: a coarse boundary has room for too few
+/// vertices behind it.
+const BOUNDARY: f64 = 12.0;
+
+/// The shapes around a vertex with more neighbours are not looked at before it comes to the front of the
+/// queue; by then it has fewer.
 const MANY_NEIGHBOURS: usize = 32;
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
@@ -91,10 +98,23 @@ struct Ring {
 }
 
 impl Ring {
+    /// The cost of the vertex but for the shapes that it leaves.
+    fn weight(&self) -> f64 {
+        let degree = 1.0 + 0.15 * (self.vertices.len() as f64 - 6.0).max(0.0).powi(2);
+        let boundary = if self.apex.is_some() { BOUNDARY } else { 1.0 };
+        self.measure * degree * boundary
+    }
+
     /// Whether a collapse onto the neighbour keeps the boundary what it is.
     fn keeps_the_boundary(&self, neighbour: usize) -> bool {
         let n = self.vertices.len();
         self.apex.is_none_or(|apex| (apex + 1) % n == neighbour || (neighbour + 1) % n == apex)
+    }
+
+    /// How bad the shapes and the degree are that a collapse onto a neighbour of some degree leaves; 1/1.05 or more.
+    fn shape(&self, neighbour: usize, degree: usize) -> f64 {
+        let degree = (degree + self.vertices.len()) as f64 - 4.0;
+        (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (self.worst_shape(neighbour) + 0.05)
     }
 
     /// 4√3·area/Σ edge² of the worst face that a collapse onto a neighbour makes; 1 is equilateral.
@@ -191,7 +211,7 @@ impl<'a> Decimation<'a> {
     /// where the observer ended it early.
     pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
         let surplus = self.degrees.len().saturating_sub(4);
-        let mut queue = self.candidates();
+        let mut queue = self.candidates(observer)?;
         let mut waiting = vec![false; self.degrees.len()];
         let mut ring = Ring::default();
         while self.collapses.len() < surplus {
@@ -313,37 +333,50 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// All vertices that may collapse, with what it costs.
-    fn candidates(&self) -> BinaryHeap<Reverse<Candidate>> {
-        let costs = parallel::map(self.mesh.n_vertices(), |vertex| {
-            let mut ring = Ring::default();
-            let cost = match self.degrees[vertex] as usize > MANY_NEIGHBOURS {
-                true => 0.0,
-                false => self.best_collapse(vertex as u32, &mut ring).0,
-            };
-            // those that cannot collapse learn it first
-            if cost.is_finite() { cost } else { 0.0 }
-        });
-        let candidate = |(vertex, cost)| Reverse(Candidate { cost, vertex: vertex as u32 });
-        BinaryHeap::from(costs.into_iter().enumerate().map(candidate).collect::<Vec<_>>())
+    /// All vertices with what it costs to collapse them; `None` where the observer ended it early.
+    fn candidates(&self, observer: &mut dyn Observer) -> Option<BinaryHeap<Reverse<Candidate>>> {
+        let n = self.mesh.n_vertices();
+        let mut candidates = Vec::with_capacity(n);
+        for first in (0..n).step_by(ROUND) {
+            let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost((first + k) as u32));
+            let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: (first + k) as u32 });
+            candidates.extend(costs.into_iter().enumerate().map(with_cost));
+            if !observer.progress(0.0, "Coarsening") {
+                return None;
+            }
+        }
+        Some(BinaryHeap::from(candidates))
+    }
+
+    /// What it costs to collapse a vertex, or less.
+    fn first_cost(&self, vertex: u32) -> f64 {
+        let mut ring = Ring::default();
+        if self.degree(vertex) > MANY_NEIGHBOURS {
+            self.fill_ring(vertex, &mut ring);
+            return ring.weight() / 1.05f64.sqrt();
+        }
+        let cost = self.best_collapse(vertex, &mut ring).0;
+        // those that cannot collapse learn it first
+        if cost.is_finite() { cost } else { 0.0 }
     }
 
     /// What it costs to collapse a vertex and the corner at it that is followed by the neighbour it goes
     /// onto; infinite where it cannot be.
     fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
         self.fill_ring(vertex, ring);
-        let n = ring.vertices.len();
-        let mut best = (f64::INFINITY, u32::MAX, None);
-        for k in (0..n).filter(|&k| ring.apex != Some(k) && ring.keeps_the_boundary(k)) {
-            let onto = ring.vertices[k];
-            let degree = (self.degree(onto) + n) as f64 - 4.0;
-            let shape = (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (ring.worst_shape(k) + 0.05);
-            if (shape, onto) < (best.0, best.1) && self.keeps_the_sphere(ring, onto) {
-                best = (shape, onto, Some(ring.corners[k]));
+        let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);
+        let mut rated: Vec<(f64, u32, u32)> = (0..ring.vertices.len())
+            .filter(allowed)
+            .map(|k| (ring.shape(k, self.degree(ring.vertices[k])), ring.vertices[k], ring.corners[k]))
+            .collect();
+        // the link condition costs most, so only of the best is it asked, then of the second best
+        while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
+            if self.keeps_the_sphere(ring, best.1) {
+                return (ring.weight() * best.0.sqrt(), Some(best.2));
             }
+            rated.retain(|other| other.1 != best.1);
         }
-        let degree = 1.0 + 0.15 * (n as f64 - 6.0).max(0.0).powi(2);
-        (ring.measure * degree * best.0.sqrt(), best.2)
+        (f64::INFINITY, None)
     }
 
     fn fill_ring(&self, vertex: u32, ring: &mut Ring) {
@@ -452,7 +485,7 @@ mod tests {
     fn an_observer_ends_it_early() {
         let mesh = bipyramid(2 * BEAT as u32, 0);
         let mut decimation = Decimation::new(&mesh, vec![1.0; mesh.n_faces()]);
-        assert_eq!(decimation.coarsen(&mut |_: f64, _: &str| false), None);
+        assert_eq!(decimation.coarsen(&mut |part: f64, _: &str| part == 0.0), None);
         assert_eq!(decimation.collapses.len(), BEAT);
     }
 }

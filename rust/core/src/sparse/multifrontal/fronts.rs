@@ -24,13 +24,13 @@ pub(super) struct Run {
 
 /// What an element adds to, and where.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element {
+pub(in crate::sparse) struct Element {
     /// Index of the clique among those of the analysis.
-    pub(super) index: u32,
+    pub(in crate::sparse) index: u32,
     /// The row of the front where each corner begins; [`NONE`] for a corner that is held.
-    pub(super) rows: [u32; 3],
+    pub(in crate::sparse) rows: [u32; 3],
     /// Unknowns of each corner.
-    pub(super) dofs: [u8; 3],
+    pub(in crate::sparse) dofs: [u8; 3],
 }
 
 /// One dense block of the elimination.

@@ -2,7 +2,7 @@
 //! The graph of the unknowns: which nodes share an element.
 
 /// No node: a corner that is held, or a place that an element does not use.
-pub(super) const NONE: u32 = u32::MAX;
+pub(in crate::sparse) const NONE: u32 = u32::MAX;
 
 /// The neighbours of every node, ascending, without the node itself.
 pub(super) struct Graph {

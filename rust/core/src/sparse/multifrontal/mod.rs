@@ -25,9 +25,11 @@ use crate::Error;
 use crate::control::Watch;
 use crate::sparse::factor::{Scalar, minimum_degree};
 use elimination::Elimination;
-use fronts::{Element, Fronts};
-use graph::{Graph, NONE};
-use numeric::Place;
+pub(super) use fronts::Element;
+use fronts::Fronts;
+use graph::Graph;
+pub(super) use graph::NONE;
+pub(super) use numeric::Place;
 
 /// Why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,7 +85,7 @@ impl Analysis {
 
 /// The pattern of a factor over nodes with one or two unknowns each.
 #[derive(Debug, Clone)]
-struct Symbolic {
+pub(super) struct Symbolic {
     fronts: Fronts,
     /// The unknown of each column of the factor.
     unknowns: Vec<u32>,
@@ -91,7 +93,7 @@ struct Symbolic {
 
 impl Symbolic {
     /// Orders and analyses the sum of matrices over cliques of nodes; [`NONE`] is no node.
-    fn new(cliques: &[[u32; 3]], dofs: &[u8]) -> Result<Self, Error> {
+    pub(super) fn new(cliques: &[[u32; 3]], dofs: &[u8]) -> Result<Self, Error> {
         let graph = Graph::of_cliques(dofs.len(), cliques);
         let order = fill_reducing_order(&graph)?;
         let tree = Elimination::new(&graph, &order, dofs);
@@ -139,7 +141,7 @@ impl<T: Scalar> Factor<T> {
         Self::of(&analysis.symbolic)
     }
 
-    fn of(symbolic: &Symbolic) -> Self {
+    pub(super) fn of(symbolic: &Symbolic) -> Self {
         Self { values: vec![T::ZERO; symbolic.fronts.factor_len()] }
     }
 
@@ -162,7 +164,7 @@ impl<T: Scalar> Factor<T> {
         self.refactor_by(&analysis.symbolic, &assemble, watch)
     }
 
-    fn refactor_by(
+    pub(super) fn refactor_by(
         &mut self,
         symbolic: &Symbolic,
         assemble: &(impl Fn(&Element, &mut Place<'_, T>) + Sync),
@@ -176,7 +178,7 @@ impl<T: Scalar> Factor<T> {
         self.solve_by(&analysis.symbolic, rhs);
     }
 
-    fn solve_by(&self, symbolic: &Symbolic, rhs: &mut [f64]) {
+    pub(super) fn solve_by(&self, symbolic: &Symbolic, rhs: &mut [f64]) {
         let mut columns = rhs.chunks_mut(symbolic.unknowns.len().max(1));
         while let Some(one) = columns.next() {
             match columns.next() {

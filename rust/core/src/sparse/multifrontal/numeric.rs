@@ -25,7 +25,7 @@ pub(super) fn factorize<T: Scalar>(
 }
 
 /// Where the elements of one front are added.
-pub(super) struct Place<'a, T> {
+pub(in crate::sparse) struct Place<'a, T> {
     panel: &'a mut [T],
     height: usize,
     width: usize,
@@ -36,7 +36,7 @@ pub(super) struct Place<'a, T> {
 impl<T: Scalar> Place<'_, T> {
     /// Adds an entry of the symmetric front, given on either side of the diagonal.
     #[inline]
-    pub(super) fn add(&mut self, one: usize, other: usize, value: f64) {
+    pub(in crate::sparse) fn add(&mut self, one: usize, other: usize, value: f64) {
         let (row, column) = (one.max(other), one.min(other));
         let value = T::from_f64(value);
         if column < self.width {

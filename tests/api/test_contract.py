@@ -29,7 +29,7 @@ NAMES = {
 }
 KEYWORDS = {
     "disk_map": {
-        "method": "conjugate_gradient",
+        "method": "gauss_newton",
         "boundary": "sliding",
         "density": None,
         "angle_weight": 0.0,
@@ -40,7 +40,7 @@ KEYWORDS = {
         "progress": None,
     },
     "sphere_map": {
-        "method": "gradient_descent",
+        "method": "gauss_newton",
         "line_search": "interpolation",
         "density": None,
         "angle_weight": 0.0,
@@ -62,6 +62,8 @@ POSITIONAL = {
     "cut": ["vertices", "faces"],
 }
 FUNCTIONS = sorted(KEYWORDS)
+DISK_METHODS = '"gauss_newton", "conjugate_gradient" or "fixed_point"'
+SPHERE_METHODS = '"gauss_newton", "gradient_descent" or "fixed_point"'
 
 
 @pytest.fixture(scope="module")
@@ -247,11 +249,11 @@ def test_results_cannot_be_changed(any_result):
 
 
 def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
-    assert repr(sphere_result).startswith("SphereMap(258 vertices, max_iterations after 1")
+    assert repr(sphere_result).startswith("SphereMap(258 vertices, converged after 1")
     assert "Distortion(authalic_energy=" in repr(sphere_result)
     assert "\n" not in repr(sphere_result)
     text = repr(result)
-    assert text.startswith("DiskMap(421 vertices, max_iterations after 55 iterations")
+    assert text.startswith("DiskMap(421 vertices, converged after 1")
     assert "Distortion(authalic_energy=" in text
     assert "\n" not in text
     (patch,) = authalic.cut(*meshes.annulus())
@@ -261,12 +263,14 @@ def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
 @pytest.mark.parametrize(
     ("option", "value", "words"),
     [
-        ("method", "newton", 'method must be "conjugate_gradient" or "fixed_point", but is "newton"'),
+        ("method", "newton", f'method must be {DISK_METHODS}, but is "newton"'),
         ("boundary", "free", 'boundary must be "sliding" or "arc_length", but is "free"'),
         ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
         ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
         ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),
-        ("angle_weight", 0.5, "angle_weight must be 0 "),
+        ("angle_weight", -0.5, "angle_weight must be a finite number ≥ 0, but is -0.5"),
+        ("angle_weight", float("inf"), "angle_weight must be a finite number ≥ 0, but is inf"),
+        ("angle_weight", float("nan"), "angle_weight must be a finite number ≥ 0, but is NaN"),
     ],
 )
 def test_an_option_out_of_range_is_a_plain_value_error(option, value, words):
@@ -277,7 +281,10 @@ def test_an_option_out_of_range_is_a_plain_value_error(option, value, words):
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("method", 3), ("boundary", None), ("max_iterations", "many"), ("tolerance", "small"), ("progress", 5)],
+    [
+        *[("method", 3), ("boundary", None), ("max_iterations", "many"), ("tolerance", "small")],
+        *[("angle_weight", "some"), ("progress", 5)],
+    ],
 )
 def test_an_option_of_the_wrong_type_is_a_type_error(option, value):
     with pytest.raises(TypeError):
@@ -287,19 +294,34 @@ def test_an_option_of_the_wrong_type_is_a_type_error(option, value):
 @pytest.mark.parametrize(
     ("option", "value", "words"),
     [
-        ("method", "newton", 'method must be "gradient_descent" or "fixed_point", but is "newton"'),
+        ("method", "newton", f'method must be {SPHERE_METHODS}, but is "newton"'),
         ("line_search", "none", 'line_search must be "interpolation" or "bounded", but is "none"'),
         ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
         ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
         ("tolerance", float("-inf"), "tolerance must be a finite number ≥ 0, but is -inf"),
         ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),
-        ("angle_weight", 0.5, "angle_weight must be 0 "),
+        ("angle_weight", -0.5, "angle_weight must be a finite number ≥ 0, but is -0.5"),
+        ("angle_weight", float("inf"), "angle_weight must be a finite number ≥ 0, but is inf"),
+        ("angle_weight", float("nan"), "angle_weight must be a finite number ≥ 0, but is NaN"),
     ],
 )
 def test_an_option_of_sphere_maps_out_of_range_is_a_plain_value_error(option, value, words):
     with pytest.raises(ValueError, match=words) as caught:
         authalic.sphere_map(*meshes.octahedron(), **{option: value})
     assert type(caught.value) is ValueError
+
+
+@pytest.mark.parametrize(
+    ("call", "mesh", "method"),
+    [
+        *[(authalic.disk_map, meshes.single_quad(), name) for name in ("conjugate_gradient", "fixed_point")],
+        *[(authalic.sphere_map, meshes.octahedron(), name) for name in ("gradient_descent", "fixed_point")],
+    ],
+)
+def test_the_papers_methods_do_not_weigh_angles(call, mesh, method):
+    call(*mesh, method=method, angle_weight=0)
+    with pytest.raises(ValueError, match=r"angle_weight must be 0 for the papers' methods.*is 0\.5"):
+        call(*mesh, method=method, angle_weight=0.5)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
@@ -314,7 +336,7 @@ def test_the_fixed_point_takes_any_tolerance_below_infinity(value):
     ("option", "value"),
     [
         *[("method", 3), ("line_search", None), ("max_iterations", "many"), ("tolerance", "small")],
-        *[("unfold", "yes"), ("progress", 5)],
+        *[("angle_weight", None), ("unfold", "yes"), ("progress", 5)],
     ],
 )
 def test_an_option_of_sphere_maps_of_the_wrong_type_is_a_type_error(option, value):

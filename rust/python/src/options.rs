@@ -7,16 +7,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 
-/// Angles cannot be weighed yet, by any method.
-pub fn check_angle_weight(angle_weight: f64) -> PyResult<()> {
-    match angle_weight == 0.0 {
-        true => Ok(()),
-        false => Err(PyValueError::new_err(format!(
-            "angle_weight must be 0 for the papers' methods, but is {angle_weight}"
-        ))),
-    }
-}
-
 /// A number of iterations.
 pub fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
     usize::try_from(max_iterations)

@@ -26,7 +26,7 @@ use crate::parallel;
 const BEAT: usize = 1024;
 
 /// And once for so many at the beginning, on all threads.
-const ROUND: usize = 65_536;
+const ROUND: usize = 16_384;
 
 /// A vertex of the boundary costs so many times as much as another: a coarse boundary has room for too few
 /// vertices behind it.

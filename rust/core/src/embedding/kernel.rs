@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn the_kernel_of_a_notched_square_lies_beyond_the_notch() {
-        // the notch at (0, -.5) is seen into only from x in [-.5, .5]… of the square's upper part
+        // a square whose lower side is pushed in to the origin: both halves of that side must be seen
         let corners = [[-1., -1., 1.], [0., 0., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]];
         let edges = (0..5).map(|k| [corners[k], corners[(k + 1) % 5]]);
         let basis = [[1., 0., 0.], [0., 1., 0.]];

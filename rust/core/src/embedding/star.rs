@@ -178,24 +178,29 @@ impl Star {
             hessian[1] += on_dd * n[0] * n[1] + on_dq * (n[0] * s[1] + s[0] * n[1]);
             hessian[2] += (on_dd * n[1] + 2.0 * on_dq * s[1]) * n[1] + on_q;
         }
-        let mut along = basis.map(|axis| dot(axis, gradient));
-        // what a step along the sphere or the circle bends towards its centre
+        let along = basis.map(|axis| dot(axis, gradient));
+        let mut sum = (energy, Derivatives { gradient: along, hessian });
+        self.bend(x, chart, gradient, &mut sum);
+        Some(sum)
+    }
+
+    /// Adds what a step along the sphere or the circle bends towards its centre, and the arcs.
+    fn bend(&self, x: Vector, chart: Chart, gradient: Vector, (energy, sum): &mut (f64, Derivatives)) {
         match chart {
             Chart::Plane => {}
             Chart::Sphere => {
                 let bend = dot(gradient, x);
-                hessian[0] -= bend;
-                hessian[2] -= bend;
+                sum.hessian[0] -= bend;
+                sum.hessian[2] -= bend;
             }
             Chart::Circle => {
                 let arcs = self.arcs.map_or([0.0; 3], |arcs| arc_energy(x, arcs));
-                energy += arcs[0];
-                along = [along[0] + arcs[1], 0.0];
                 let bend = gradient[0] * x[0] + gradient[1] * x[1];
-                hessian = [hessian[0] - bend + arcs[2], 0.0, 1.0];
+                *energy += arcs[0];
+                sum.gradient = [sum.gradient[0] + arcs[1], 0.0];
+                sum.hessian = [sum.hessian[0] - bend + arcs[2], 0.0, 1.0];
             }
         }
-        Some((energy, Derivatives { gradient: along, hessian }))
     }
 }
 
@@ -272,4 +277,71 @@ fn tangent_basis([x, y, z]: Vector) -> [Vector; 2] {
     let a = -1.0 / (sign + z);
     let b = x * y * a;
     [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A polygon around the vertex at x: on the sphere and in the plane closed, on the circle a fan.
+    fn star(chart: Chart) -> (Star, Vector) {
+        let corner = |k: usize| match chart {
+            Chart::Sphere => {
+                let angle = 1.2 * k as f64;
+                let x = [0.3 * angle.cos(), 0.5 * angle.sin(), 1.0];
+                scaled(x, 1.0 / norm(x))
+            }
+            Chart::Plane => [0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0],
+            Chart::Circle => [[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k],
+        };
+        let mut star = Star::default();
+        let n = if chart == Chart::Circle { 3 } else { 5 };
+        let next = |k: usize| if chart == Chart::Circle { k + 1 } else { (k + 1) % n };
+        (0..n).for_each(|k| star.push(corner(k), corner(next(k)), 0.02 + 0.01 * k as f64));
+        match chart {
+            Chart::Sphere => (star, [0.0, 0.0, 1.0]),
+            Chart::Plane => (star, [0.2, 0.05, 1.0]),
+            Chart::Circle => {
+                star.arcs = Some([(corner(3), 0.4), (corner(0), 0.9)]);
+                (star, rotated([0.0, -1.0, 1.0], -0.1))
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_finite_differences() {
+        for chart in [Chart::Sphere, Chart::Plane, Chart::Circle] {
+            let (star, x) = star(chart);
+            let basis = chart.basis(x);
+            let (energy, Derivatives { gradient, hessian }) = star.derivatives(x, chart, basis, 0.3).unwrap();
+            let at = |a: f64, b: f64| star.energy(chart.moved(x, basis, [a, b]), 0.3).unwrap();
+            assert!((energy - at(0.0, 0.0)).abs() < 1e-12, "{chart:?}");
+            let h = 1e-4;
+            let slopes = [(at(h, 0.0) - at(-h, 0.0)) / (2.0 * h), (at(0.0, h) - at(0.0, -h)) / (2.0 * h)];
+            let bends = [
+                (at(h, 0.0) + at(-h, 0.0) - 2.0 * energy) / (h * h),
+                (at(h, h) + at(-h, -h) - at(h, -h) - at(-h, h)) / (4.0 * h * h),
+                (at(0.0, h) + at(0.0, -h) - 2.0 * energy) / (h * h),
+            ];
+            let n = if chart == Chart::Circle { 1 } else { 2 };
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-4 * (1.0 + b.abs());
+            assert!((0..n).all(|k| close(slopes[k], gradient[k])), "{chart:?}: {slopes:?} {gradient:?}");
+            assert!((0..2 * n - 1).all(|k| close(bends[k], hessian[k])), "{chart:?}: {bends:?} {hessian:?}");
+        }
+    }
+
+    #[test]
+    fn a_step_lowers_the_energy_and_folds_nothing() {
+        for chart in [Chart::Sphere, Chart::Plane, Chart::Circle] {
+            let (star, mut x) = star(chart);
+            for _ in 0..20 {
+                let Some(better) = star.improved(x, chart, 0.3) else { break };
+                assert!(star.energy(better, 0.3).unwrap() < star.energy(x, 0.3).unwrap(), "{chart:?}");
+                x = better;
+            }
+            let basis = chart.basis(x);
+            let (_, Derivatives { gradient, .. }) = star.derivatives(x, chart, basis, 0.3).unwrap();
+            assert!(gradient[0].hypot(gradient[1]) < 1e-2, "{chart:?}: {gradient:?}");
+        }
+    }
 }

@@ -13,28 +13,11 @@
 //!
 //! Cost: O(n log n), the stars of about four vertices looked at for each one.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+mod coarsen;
 
 use super::TriangleMesh;
-use super::geometry::{Vector, area, cross, dot, sub, triangle};
+use super::geometry::{area, triangle};
 use super::topology::{next_corner, previous_corner};
-use crate::control::Observer;
-use crate::parallel;
-
-/// The observer is asked once for so many vertices.
-const BEAT: usize = 1024;
-
-/// And once for so many at the beginning, on all threads.
-const ROUND: usize = 16_384;
-
-/// A vertex of the boundary costs so many times as much as another: a coarse boundary has room for too few
-/// vertices behind it.
-const BOUNDARY: f64 = 12.0;
-
-/// The shapes around a vertex with more neighbours are not looked at before it comes to the front of the
-/// queue; by then it has fewer.
-const MANY_NEIGHBOURS: usize = 32;
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]
@@ -68,80 +51,6 @@ pub(crate) struct Collapse {
     pub vertex: u32,
     /// The neighbour it went onto.
     pub onto: u32,
-}
-
-/// A vertex in the queue: cheap ones first, of equal ones the lowest.
-#[derive(PartialEq)]
-struct Candidate {
-    cost: f64,
-    vertex: u32,
-}
-
-impl Eq for Candidate {}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.cost.total_cmp(&other.cost).then(self.vertex.cmp(&other.vertex))
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// The neighbours of a vertex, counter-clockwise, and the measure of its star.
-#[derive(Default)]
-struct Ring {
-    /// The corners at the vertex whose next corners are the neighbours.
-    corners: Vec<u32>,
-    vertices: Vec<u32>,
-    points: Vec<Vector>,
-    measure: f64,
-    /// Where in the ring the apex is.
-    apex: Option<usize>,
-}
-
-impl Ring {
-    /// The cost of the vertex but for the shapes that it leaves.
-    fn weight(&self) -> f64 {
-        let degree = 1.0 + 0.15 * (self.vertices.len() as f64 - 6.0).max(0.0).powi(2);
-        let boundary = if self.apex.is_some() { BOUNDARY } else { 1.0 };
-        self.measure * degree * boundary
-    }
-
-    /// Whether a collapse onto the neighbour keeps the boundary what it is.
-    fn keeps_the_boundary(&self, neighbour: usize) -> bool {
-        let n = self.vertices.len();
-        self.apex.is_none_or(|apex| (apex + 1) % n == neighbour || (neighbour + 1) % n == apex)
-    }
-
-    /// How bad the shapes and the degree are that a collapse onto a neighbour of some degree leaves; 1/1.05 or more.
-    fn shape(&self, neighbour: usize, degree: usize) -> f64 {
-        let degree = (degree + self.vertices.len()) as f64 - 4.0;
-        (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (self.worst_shape(neighbour) + 0.05)
-    }
-
-    /// 4√3·area/Σ edge² of the worst face that a collapse onto a neighbour makes; 1 is equilateral.
-    fn worst_shape(&self, neighbour: usize) -> f64 {
-        let n = self.vertices.len();
-        let onto = self.points[neighbour];
-        let mut worst = 1.0;
-        for k in neighbour + 1..neighbour + n - 1 {
-            let [one, two] = [k, k + 1].map(|k| if k < n { k } else { k - n });
-            if self.apex.is_some_and(|apex| apex == one || apex == two) {
-                continue;
-            }
-            let (edge, spoke) = (sub(self.points[two], self.points[one]), sub(self.points[one], onto));
-            let other = sub(self.points[two], onto);
-            let squares = dot(edge, edge) + dot(spoke, spoke) + dot(other, other);
-            let normal = cross(spoke, edge);
-            let shape = if squares > 0.0 { dot(normal, normal) / (squares * squares) } else { 0.0 };
-            worst = f64::min(worst, 12.0 * shape);
-        }
-        worst.sqrt()
-    }
 }
 
 impl<'a> Decimation<'a> {
@@ -215,40 +124,6 @@ impl<'a> Decimation<'a> {
     /// Whether a vertex has been collapsed.
     pub(crate) fn is_gone(&self, vertex: u32) -> bool {
         self.gone[vertex as usize]
-    }
-
-    /// Collapses vertices until four are left, the apex among them, or until none can be collapsed; `None`
-    /// where the observer ended it early.
-    pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
-        let surplus = self.degrees.len().saturating_sub(4);
-        let mut queue = self.candidates(observer)?;
-        let mut waiting = vec![false; self.degrees.len()];
-        let mut ring = Ring::default();
-        while self.collapses.len() < surplus {
-            let Some(Reverse(Candidate { cost, vertex })) = queue.pop() else { break };
-            // 1. Out of date? A cost that fell since then is good enough as it is
-            let (now, corner) = self.best_collapse(vertex, &mut ring);
-            let Some(corner) = corner else {
-                waiting[vertex as usize] = true;
-                continue;
-            };
-            if now > cost {
-                queue.push(Reverse(Candidate { cost: now, vertex }));
-                continue;
-            }
-            // 2. Collapse; neighbours that could not collapse may be able to now
-            self.collapse(corner);
-            for &vertex in &ring.vertices {
-                if std::mem::take(&mut waiting[vertex as usize]) {
-                    queue.push(Reverse(Candidate { cost: 0.0, vertex }));
-                }
-            }
-            let part = self.collapses.len() as f64 / surplus as f64;
-            if self.collapses.len().is_multiple_of(BEAT) && !observer.progress(part, "Coarsening") {
-                return None;
-            }
-        }
-        Some(())
     }
 
     /// Takes the last collapse back and returns it; `None` once all are undone.
@@ -343,75 +218,6 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// All vertices with what it costs to collapse them; `None` where the observer ended it early.
-    fn candidates(&self, observer: &mut dyn Observer) -> Option<BinaryHeap<Reverse<Candidate>>> {
-        let n = self.mesh.n_vertices();
-        let mut candidates = Vec::with_capacity(n);
-        for first in (0..n).step_by(ROUND) {
-            let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost((first + k) as u32));
-            let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: (first + k) as u32 });
-            candidates.extend(costs.into_iter().enumerate().map(with_cost));
-            if !observer.progress(0.0, "Coarsening") {
-                return None;
-            }
-        }
-        Some(BinaryHeap::from(candidates))
-    }
-
-    /// What it costs to collapse a vertex, or less.
-    fn first_cost(&self, vertex: u32) -> f64 {
-        let mut ring = Ring::default();
-        if self.degree(vertex) > MANY_NEIGHBOURS {
-            self.fill_ring(vertex, &mut ring);
-            return ring.weight() / 1.05f64.sqrt();
-        }
-        let cost = self.best_collapse(vertex, &mut ring).0;
-        // those that cannot collapse learn it first
-        if cost.is_finite() { cost } else { 0.0 }
-    }
-
-    /// What it costs to collapse a vertex and the corner at it that is followed by the neighbour it goes
-    /// onto; infinite where it cannot be.
-    fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
-        self.fill_ring(vertex, ring);
-        let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);
-        let mut rated: Vec<(f64, u32, u32)> = (0..ring.vertices.len())
-            .filter(allowed)
-            .map(|k| (ring.shape(k, self.degree(ring.vertices[k])), ring.vertices[k], ring.corners[k]))
-            .collect();
-        // the link condition costs most, so only of the best is it asked, then of the second best
-        while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
-            if self.keeps_the_sphere(ring, best.1) {
-                return (ring.weight() * best.0.sqrt(), Some(best.2));
-            }
-            rated.retain(|other| other.1 != best.1);
-        }
-        (f64::INFINITY, None)
-    }
-
-    fn fill_ring(&self, vertex: u32, ring: &mut Ring) {
-        ring.corners.clear();
-        ring.vertices.clear();
-        ring.points.clear();
-        (ring.measure, ring.apex) = (0.0, None);
-        for corner in self.around(self.corners[vertex as usize]) {
-            let neighbour = self.vertex(next_corner(corner));
-            if neighbour == self.apex() {
-                ring.apex = Some(ring.vertices.len());
-            }
-            ring.measure += self.faces[corner as usize / 3].target;
-            ring.corners.push(corner);
-            ring.vertices.push(neighbour);
-            ring.points.push(self.mesh.points().get(neighbour as usize).copied().unwrap_or_default());
-        }
-    }
-
-    /// The link condition: exactly two common neighbours.
-    fn keeps_the_sphere(&self, ring: &Ring, onto: u32) -> bool {
-        let around = self.around(self.corners[onto as usize]);
-        around.filter(|&corner| ring.vertices.contains(&self.vertex(next_corner(corner)))).count() == 2
-    }
-
     /// The faces between which the measure of the star around a corner is shared: its own, without those at
     /// the apex; where that is only one, also the one across from the vertex, which inherits it.
     fn measured_faces(&self, corner: u32) -> impl Iterator<Item = u32> {
@@ -453,8 +259,10 @@ impl<'a> Decimation<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::coarsen::BEAT;
     use super::*;
     use crate::control::Silent;
+    use crate::mesh::geometry::Vector;
 
     /// A bipyramid over a polygon of n corners, all on the unit sphere; without the first `open` faces.
     fn bipyramid(n: u32, open: usize) -> TriangleMesh {

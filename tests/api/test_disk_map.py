@@ -8,8 +8,10 @@ import authalic
 
 from . import meshes, oracle
 
+# at this E_A gauss_newton has converged
+ENOUGH = 4e-8 * np.pi
 BOUNDARIES = ("sliding", "arc_length")
-METHODS = ("conjugate_gradient", "fixed_point")
+METHODS = ("gauss_newton", "conjugate_gradient", "fixed_point")
 # those on which areas can be kept better than by the harmonic start
 IMPROVABLE = ("grid", "bumpy_cap", "rough_cap", "slit_sphere", "tube_disk")
 disks = pytest.mark.parametrize("name", meshes.DISKS)
@@ -52,16 +54,18 @@ def test_areas_are_kept_better_than_by_the_start(name, boundary, method):
 @improvable
 @boundaries
 def test_conjugate_gradients_lower_the_energy_in_every_step(name, boundary):
-    result = authalic.disk_map(*meshes.DISKS[name], boundary=boundary)
+    result = authalic.disk_map(*meshes.DISKS[name], boundary=boundary, method="conjugate_gradient")
     energy = result.history["authalic_energy"]
     assert len(energy) > 20
     assert (np.diff(energy[5:]) < 0).all()
 
 
 @improvable
-def test_conjugate_gradients_beat_the_fixed_point_iteration(name):
-    cg, fixed = (authalic.disk_map(*meshes.DISKS[name], method=method).distortion for method in METHODS)
-    assert cg.authalic_energy < fixed.authalic_energy
+def test_each_method_beats_the_next(name):
+    ours, descent, fixed = (
+        authalic.disk_map(*meshes.DISKS[name], method=method).distortion.authalic_energy for method in METHODS
+    )
+    assert max(ours, ENOUGH) <= max(descent, ENOUGH) < fixed
 
 
 @improvable
@@ -70,7 +74,7 @@ def test_a_sliding_boundary_beats_a_fixed_one(name):
         authalic.disk_map(*meshes.DISKS[name], boundary=boundary, max_iterations=300).distortion
         for boundary in BOUNDARIES
     )
-    assert sliding.authalic_energy <= fixed.authalic_energy + 1e-12
+    assert sliding.authalic_energy <= fixed.authalic_energy + ENOUGH
 
 
 @disks

@@ -31,6 +31,8 @@ struct Remote<T> {
     /// Only where the caller gave a progress function: each report waits for its answer, so that where a
     /// run is cancelled does not depend on timing.
     line: Option<(Sender<Message<T>>, Receiver<bool>)>,
+    /// The largest fraction so far: a second attempt at something does not take back what was reported.
+    reached: f64,
 }
 
 impl<T: Send> Observer for Remote<T> {
@@ -41,8 +43,12 @@ impl<T: Send> Observer for Remote<T> {
         let Some((sender, answers)) = &self.line else {
             return true;
         };
-        let sent = sender.send(Message::Progress(fraction, message.to_owned()));
-        sent.is_ok() && answers.recv().unwrap_or(false)
+        self.reached = self.reached.max(fraction);
+        let sent = sender.send(Message::Progress(self.reached, message.to_owned()));
+        let goes_on = sent.is_ok() && answers.recv().unwrap_or(false);
+        // one refusal counts for good: the caller is not asked again
+        self.cancelled.fetch_or(!goes_on, Ordering::Relaxed);
+        goes_on
     }
 }
 
@@ -59,7 +65,7 @@ pub fn run<T: Send + 'static>(
     let (answer, answers) = channel();
     let cancelled = Arc::new(AtomicBool::new(false));
     let line = progress.map(|_| (sender.clone(), answers));
-    let mut remote = Remote { cancelled: cancelled.clone(), line };
+    let mut remote = Remote { cancelled: cancelled.clone(), line, reached: 0.0 };
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| work(&mut remote)));
         // the caller may have gone on Ctrl-C: nobody is left to tell

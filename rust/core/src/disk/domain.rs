@@ -60,7 +60,7 @@ impl<'a> DiskDomain<'a> {
     pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
         let interior = Block::analyse(Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
-            Boundary::ArcLength => None,
+            Boundary::ArcLength | Boundary::Free => None,
             Boundary::Sliding => {
                 let block = Block::analyse(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
                 Some(SlidingBoundary { block, barrier: ArcBarrier::new(mesh) })

@@ -27,6 +27,9 @@ use crate::parallel;
 /// β, what a large m costs beyond its own size.
 const STEEPNESS: f64 = 0.1;
 
+/// From this λ on angles take their part in the minimum, not only on the way to it, and no face is regular.
+const ANGLES_COUNT: f64 = 3e-3;
+
 /// A symmetric matrix by the unknowns of a face's corners, two for each.
 pub(crate) type Element = [[f64; 6]; 6];
 
@@ -42,8 +45,18 @@ pub(crate) struct AuthalicEnergy {
     targets: Vec<f64>,
     /// The edges of each face on the boundary, bit c for the one opposite corner c.
     boundary_edges: Vec<u8>,
-    /// Whether the image lies in the plane, where areas have signs.
-    planar: bool,
+    codomain: Codomain,
+}
+
+/// Where a map goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Codomain {
+    /// The unit sphere.
+    Sphere,
+    /// The unit disk in the plane z = 1, the boundary counter-clockwise around the circle.
+    Disk,
+    /// The plane z = 1.
+    Plane,
 }
 
 /// What the terms of the energy weigh at the moment.
@@ -99,9 +112,8 @@ struct Outer {
 }
 
 impl AuthalicEnergy {
-    /// The energy of maps of `mesh` to `targets` (m,) on any common scale; `planar` for maps into the plane z = 1, else
-    /// onto the sphere. Rest triangles flatter than `flattest` (height over longest edge) count as that flat.
-    pub(crate) fn new(mesh: &TriangleMesh, targets: Vec<f64>, planar: bool, flattest: f64) -> Self {
+    /// The energy of maps of `mesh` to `targets` (m,) on any common scale; Rest triangles flatter than `flattest` (height over longest edge) count as that flat.
+    pub(crate) fn new(mesh: &TriangleMesh, targets: Vec<f64>, codomain: Codomain, flattest: f64) -> Self {
         let cotangents = parallel::map(mesh.n_faces(), |face| {
             rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), flattest)
         });
@@ -111,7 +123,7 @@ impl AuthalicEnergy {
         });
         let faces = mesh.faces().to_vec();
         let corners = VertexCorners::new(mesh.n_vertices(), &faces);
-        Self { faces, corners, cotangents, targets, boundary_edges, planar }
+        Self { faces, corners, cotangents, targets, boundary_edges, codomain }
     }
 
     /// The energy of the faces `chosen`, whose vertices get the indices that `local` gives them, `n_vertices` in all.
@@ -123,7 +135,7 @@ impl AuthalicEnergy {
             cotangents: chosen.iter().map(|&face| self.cotangents[face as usize]).collect(),
             targets: chosen.iter().map(|&face| self.targets[face as usize]).collect(),
             boundary_edges: chosen.iter().map(|&face| self.boundary_edges[face as usize]).collect(),
-            planar: self.planar,
+            codomain: self.codomain,
         }
     }
 
@@ -165,14 +177,16 @@ impl AuthalicEnergy {
     /// The sums of `map`.
     pub(crate) fn sums(&self, map: &[Vector]) -> Sums {
         let n = self.targets.len();
-        let area = parallel::sum(n, |face| 0.5 * self.triangle(map, face).doubled_area);
-        let total = parallel::sum(n, |face| self.targets[face]);
+        let costs = parallel::map(n, |face| {
+            let corners = self.triangle(map, face);
+            let angle = if self.is_open(&corners, face) { corners.angle() } else { f64::INFINITY };
+            [0.5 * corners.doubled_area, angle_cost(angle)]
+        });
+        let [area, total] = parallel::sums(n, |face| [costs[face][0], self.targets[face]]);
         let scale = area / total;
         let [authalic_energy, angle_energy] = parallel::sums(n, |face| {
-            let (corners, target) = (self.triangle(map, face), scale * self.targets[face]);
-            let off = 0.5 * corners.doubled_area - target;
-            let angle = if self.is_open(&corners, face) { corners.angle() } else { f64::INFINITY };
-            [off * off / target, target * angle_cost(angle)]
+            let ([area, angle_cost], target) = (costs[face], scale * self.targets[face]);
+            [(area - target) * (area - target) / target, target * angle_cost]
         });
         Sums { area, authalic_energy, angle_energy }
     }
@@ -223,28 +237,42 @@ impl AuthalicEnergy {
         })
     }
 
-    /// The Hessian of one face by the unknowns of its corners, positive semidefinite.
+    /// The Hessian of one face by the unknowns of its corners, positive semidefinite, with `damping` by the deviation
+    /// of its area ratio, |ρ − 1|: the weight of the triangle's graph Laplacian.
     pub(crate) fn element(
         &self,
         map: &[Vector],
         frames: &[Frame],
         weights: &Weights,
+        damping: impl Fn(f64) -> f64,
         face: usize,
     ) -> Element {
         let (corners, target) = (self.triangle(map, face), weights.scale * self.targets[face]);
         let (frames, cotangents) = (self.frames(frames, face), self.cotangents[face]);
-        let slopes = corners.slopes(frames, cotangents);
-        let stiffness = 2.0 * weights.profile.stiffness(0.5 * corners.doubled_area / target) / target;
+        let ratio = 0.5 * corners.doubled_area / target;
+        let damping = 0.5 * damping((ratio - 1.0).abs());
+        let stiffness = 2.0 * weights.profile.stiffness(ratio) / target;
         let mut element = [[0.0; 6]; 6];
-        add_product(&mut element, stiffness, &slopes.area);
         if weights.profile == Profile::Stretch {
+            add_product(&mut element, stiffness, &corners.area_slopes(frames));
+            add_quadratic(&mut element, frames, [damping; 3]);
             return element;
         }
-        corners.add_angle(&mut element, weights.angle * target, &slopes, frames, cotangents);
-        if corners.is_difficult(target) {
+        let slopes = corners.slopes(frames, cotangents);
+        add_product(&mut element, stiffness, &slopes.area);
+        let by_quadratic = corners.add_angle(&mut element, weights.angle * target, &slopes);
+        if corners.is_difficult(ratio, weights.angle) {
+            add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent));
             let outer = self.outer(&corners, face, weights);
             corners.add_curvature(&mut element, &outer, frames, cotangents);
             clamp_negative_eigenvalues(&mut element);
+            add_quadratic(&mut element, frames, [damping; 3]);
+        } else {
+            add_quadratic(
+                &mut element,
+                frames,
+                cotangents.map(|cotangent| by_quadratic * cotangent + damping),
+            );
         }
         element
     }
@@ -267,11 +295,17 @@ impl AuthalicEnergy {
             let (from, to) = (corners.x[(c + 1) % 3], corners.x[(c + 2) % 3]);
             self.boundary_edges[face] & (1 << c) == 0 || from[0] * to[1] > from[1] * to[0]
         };
-        corners.determinant > corners.rounding && (0..3).all(runs_forward)
+        let is_free = self.boundary_edges[face] == 0 || self.codomain != Codomain::Disk;
+        corners.determinant > corners.rounding && (is_free || (0..3).all(runs_forward))
     }
 
+    #[inline(always)]
     fn triangle(&self, map: &[Vector], face: usize) -> Triangle {
-        Triangle::new(triangle(map, self.faces[face]), self.cotangents[face], self.planar)
+        Triangle::new(
+            triangle(map, self.faces[face]),
+            self.cotangents[face],
+            self.codomain != Codomain::Sphere,
+        )
     }
 
     fn frames<'f>(&self, frames: &'f [Frame], face: usize) -> [&'f Frame; 3] {
@@ -306,6 +340,7 @@ fn angle_cost(angle: f64) -> f64 {
 }
 
 impl Triangle {
+    #[inline(always)]
     fn new(x: [Vector; 3], cotangents: [f64; 3], planar: bool) -> Self {
         let (p, q) = (sub(x[1], x[0]), sub(x[2], x[0]));
         let r = sub(q, p);
@@ -331,12 +366,13 @@ impl Triangle {
         self.quadratic / self.determinant
     }
 
-    /// Far from its target, nearly folded, or thin: where the composite Hessian misleads.
-    fn is_difficult(&self, target: f64) -> bool {
-        let ratio = 0.5 * self.doubled_area / target;
-        !(0.6..=3.0).contains(&ratio)
+    /// Far from its target, nearly folded, or so thin that its angles count: where the composite Hessian misleads.
+    fn is_difficult(&self, ratio: f64, angle_weight: f64) -> bool {
+        let thin = |angle: f64| angle > 8.0 && angle_weight * angle * (1.0 + STEEPNESS * angle) > 0.02;
+        angle_weight > ANGLES_COUNT
+            || !(0.6..=3.0).contains(&ratio)
             || self.determinant < 0.8 * self.doubled_area
-            || self.quadratic > 8.0 * self.determinant
+            || thin(self.angle())
     }
 
     /// ∇a = ½ (x_{c+1} − x_{c+2}) × n by the unknowns of each corner c.
@@ -370,19 +406,11 @@ impl Triangle {
         out
     }
 
-    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² without the curvature of D: that of quadratic over
-    /// linear, and β ∇m ∇mᵀ.
-    fn add_angle(
-        &self,
-        element: &mut Element,
-        weight: f64,
-        slopes: &Slopes,
-        frames: [&Frame; 3],
-        cotangents: [f64; 3],
-    ) {
+    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² but for the curvature of D and of Q; returns what the
+    /// Hessian of Q is to be multiplied by.
+    fn add_angle(&self, element: &mut Element, weight: f64, slopes: &Slopes) -> f64 {
         let (d, angle) = (self.determinant, self.angle());
-        let weight_of_angle = weight * (1.0 + STEEPNESS * (angle - 1.0));
-        add_quadratic(element, weight_of_angle / d, frames, cotangents);
+        let by_quadratic = weight * (1.0 + STEEPNESS * (angle - 1.0)) / d;
         let by_angle: [f64; 6] =
             std::array::from_fn(|k| (slopes.quadratic[k] - angle * slopes.determinant[k]) / d);
         for row in 0..6 {
@@ -391,9 +419,10 @@ impl Triangle {
                 let mixed =
                     by_angle[row] * slopes.determinant[column] + slopes.determinant[row] * by_angle[column];
                 element[row][column] +=
-                    weight * STEEPNESS * by_angle[row] * by_angle[column] - weight_of_angle / d * mixed;
+                    weight * STEEPNESS * by_angle[row] * by_angle[column] - by_quadratic * mixed;
             }
         }
+        by_quadratic
     }
 
     /// Adds what the composite Hessian leaves out: the curvature of a, of D, and of the domain.
@@ -446,15 +475,15 @@ fn add_product(element: &mut Element, factor: f64, v: &[f64; 6]) {
     }
 }
 
-/// Adds `factor` times the Hessian of ½ Σ weight_c |opposite edge|² by the unknowns of the corners.
-pub(crate) fn add_quadratic(element: &mut Element, factor: f64, frames: [&Frame; 3], weights: [f64; 3]) {
+/// Adds the Hessian of ½ Σ weight_c |opposite edge|² by the unknowns of the corners.
+fn add_quadratic(element: &mut Element, frames: [&Frame; 3], weights: [f64; 3]) {
     for c in 0..3 {
         let (next, after) = ((c + 1) % 3, (c + 2) % 3);
         for i in 0..2 {
             for j in 0..2 {
                 let own = dot(frames[c].axes[i], frames[c].axes[j]);
-                element[2 * c + i][2 * c + j] += factor * (weights[next] + weights[after]) * own;
-                let mixed = factor * weights[after] * dot(frames[c].axes[i], frames[next].axes[j]);
+                element[2 * c + i][2 * c + j] += (weights[next] + weights[after]) * own;
+                let mixed = weights[after] * dot(frames[c].axes[i], frames[next].axes[j]);
                 element[2 * c + i][2 * next + j] -= mixed;
                 element[2 * next + j][2 * c + i] -= mixed;
             }
@@ -524,7 +553,8 @@ mod tests {
         let ratio = 0.5 * corners.doubled_area / target;
         let mut element = [[0.0; 6]; 6];
         add_product(&mut element, (1.0 + ratio.powi(-3)) / target, &slopes.area);
-        corners.add_angle(&mut element, WEIGHTS.angle * target, &slopes, frames, cotangents);
+        let by_quadratic = corners.add_angle(&mut element, WEIGHTS.angle * target, &slopes);
+        add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent));
         let outer = energy.outer(&corners, face, &WEIGHTS);
         corners.add_curvature(&mut element, &outer, frames, cotangents);
         element
@@ -532,9 +562,9 @@ mod tests {
 
     #[test]
     fn gradient_and_exact_hessian_are_the_differences_of_the_value() {
-        for ((mesh, motions, map), planar) in [(closed(), false), (open(), true)] {
+        for ((mesh, motions, map), codomain) in [(closed(), Codomain::Sphere), (open(), Codomain::Disk)] {
             let energy =
-                AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), planar, 0.0);
+                AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), codomain, 0.0);
             let frames = frames(&motions, &map);
             let direction = directions(map.len());
             let value = |step: f64| energy.value(&moved(&motions, &map, &direction, step), &WEIGHTS);
@@ -588,7 +618,7 @@ mod tests {
     #[test]
     fn a_folded_face_is_infinitely_expensive() {
         let (mesh, _, mut map) = open();
-        let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], true, 0.0);
+        let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], Codomain::Disk, 0.0);
         map[0] = [0.9, -0.9, 1.0];
         assert_eq!(energy.value(&map, &WEIGHTS), f64::INFINITY);
         assert_eq!(energy.sums(&map).angle_energy, f64::INFINITY);

@@ -59,7 +59,7 @@ impl Motion {
             Self::Circle => {
                 let (sine, cosine) = a.sin_cos();
                 let [u, v] = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]];
-                let length = u.hypot(v);
+                let length = (u * u + v * v).sqrt();
                 [u / length, v / length, 1.0]
             }
             Self::Plane => [x[0] + a, x[1] + b, 1.0],

@@ -35,8 +35,8 @@ fn rotate<const N: usize>(matrix: &mut [[f64; N]; N], vectors: &mut [[f64; N]; N
         return;
     }
     let ratio = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
-    let tangent = ratio.signum() / (ratio.abs() + ratio.hypot(1.0));
-    let cosine = tangent.hypot(1.0).recip();
+    let tangent = ratio.signum() / (ratio.abs() + (ratio * ratio + 1.0).sqrt());
+    let cosine = (tangent * tangent + 1.0).sqrt().recip();
     let sine = tangent * cosine;
     let turn = |a: f64, b: f64| (cosine * a - sine * b, sine * a + cosine * b);
     for row in matrix.iter_mut() {

@@ -8,6 +8,7 @@ mod cut;
 pub(crate) mod decimation;
 pub mod geometry;
 pub mod orientation;
+pub(crate) mod polygon;
 mod soup;
 mod topology;
 mod validate;

@@ -10,16 +10,16 @@
 
 use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::control::{History, Observer, Phase, Status};
-use crate::energy::authalic::AuthalicEnergy;
+use crate::energy::authalic::{AuthalicEnergy, Codomain};
 use crate::energy::stretch::Profile;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
 /// Floors one after the other, in units of the mean target.
-const FLOORS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-6, 0.0];
+const FLOORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
-/// Iterations of each floor but the first.
-const ITERATIONS: usize = 8;
+/// Iterations of each floor but the first: so many where they suffice, and at the most.
+const ITERATIONS: [usize; 2] = [2, 8];
 
 /// Rest triangles are fattened to a height of at most this part of their longest edge,
 const FLATTEST: f64 = 0.02;
@@ -30,13 +30,10 @@ const FLATTEST_LAST: f64 = 1e-7;
 /// The part of the whole that the first floor takes.
 const FIRST_PART: f64 = 0.6;
 
-/// The floors that targets (m,) need: only the last where none is small.
-pub(crate) fn floors(targets: &[f64]) -> &'static [f64] {
+/// The floors that targets (m,) need, one after the other: those above the smallest target, and none at last.
+pub(crate) fn floors(targets: &[f64]) -> Vec<f64> {
     let least = targets.iter().fold(f64::INFINITY, |least, &target| least.min(target)) / mean(targets);
-    if least >= FLOORS[0] {
-        return &FLOORS[FLOORS.len() - 1..];
-    }
-    &FLOORS
+    FLOORS.into_iter().filter(|&floor| floor > least).chain([0.0]).collect()
 }
 
 /// Targets raised to a floor.
@@ -46,17 +43,16 @@ pub(crate) fn raised(targets: &[f64], floor: f64) -> Vec<f64> {
 }
 
 /// The energy for targets raised to a floor.
-pub(crate) fn energy(mesh: &TriangleMesh, targets: &[f64], planar: bool, floor: f64) -> AuthalicEnergy {
+pub(crate) fn energy(mesh: &TriangleMesh, targets: &[f64], codomain: Codomain, floor: f64) -> AuthalicEnergy {
     let flattest = (2.0 * floor).clamp(FLATTEST_LAST, FLATTEST);
-    AuthalicEnergy::new(mesh, raised(targets, floor), planar, flattest)
+    AuthalicEnergy::new(mesh, raised(targets, floor), codomain, flattest)
 }
 
 /// What is mapped, to what areas, and where.
 pub(crate) struct Surface<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
-    /// To the plane z = 1, else to the sphere.
-    pub planar: bool,
+    pub codomain: Codomain,
 }
 
 /// A guarded descent through all floors; `problem` has the energy of the first, and comes back with that of the last.
@@ -69,7 +65,7 @@ pub(crate) fn descend(
     observer: &mut dyn Observer,
 ) -> (Problem, Map, Status) {
     debug_assert!(options.profile == Profile::Barrier);
-    let Surface { mesh, targets, planar } = *surface;
+    let Surface { mesh, targets, codomain } = *surface;
     let floors = floors(targets);
     let part = |k: usize| match k {
         0 => 0.0,
@@ -79,8 +75,10 @@ pub(crate) fn descend(
     for (k, &floor) in floors.iter().enumerate() {
         let mut options = *options;
         if k > 0 {
-            problem = problem.with_energy(energy(mesh, targets, planar, floor));
-            options.max_iterations = Some(options.max_iterations.unwrap_or(ITERATIONS).min(ITERATIONS));
+            problem = problem.with_energy(energy(mesh, targets, codomain, floor));
+            let [usual, most] = ITERATIONS;
+            options.usual_iterations = usual;
+            options.most_iterations = options.most_iterations.min(most);
         }
         let to = if floors.len() == 1 { 1.0 } else { part(k + 1) };
         let mut phase = Phase { whole: observer, from: part(k), to };
@@ -103,7 +101,7 @@ mod tests {
     #[test]
     fn only_slivers_need_floors() {
         assert_eq!(floors(&[1.0, 2.0, 0.1]), [0.0]);
-        assert_eq!(floors(&[1.0, 2.0, 1e-3]).len(), FLOORS.len());
+        assert_eq!(floors(&[1.0, 2.0, 1e-3]), [1e-2, 1e-3, 0.0]);
         assert_eq!(raised(&[1.0, 3.0, 1e-9], 0.0), [1.0, 3.0, 1e-9]);
         let raised = raised(&[1.0, 2.0 - 1e-9, 1e-9], 1e-2);
         assert!((raised[2] - 0.01).abs() < 1e-12 && raised[0] == 1.0);

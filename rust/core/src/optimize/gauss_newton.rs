@@ -21,11 +21,12 @@
 
 use super::local;
 use crate::control::{History, Observer, Status, Watch};
-use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights, add_quadratic};
+use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights};
 use crate::energy::motion::{Frame, Motion, frames};
 use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::mesh::geometry::Vector;
+use crate::mesh::polygon::is_simple_polygon;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure};
 
@@ -62,13 +63,8 @@ const MOST_TRIALS: usize = 30;
 /// The slope's share that a step must gain.
 const SUFFICIENT: f64 = 1e-4;
 
-/// After so many iterations a map is even enough for a descent without a limit of its own when the deviation of its
-/// area ratio is below [`EVEN_ENOUGH`].
-const USUAL_ITERATIONS: usize = 12;
+/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this.
 const EVEN_ENOUGH: f64 = 0.01;
-
-/// Iterations at the most of a descent without a limit of its own.
-const MOST_ITERATIONS: usize = 60;
 
 /// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
 const PATIENCE: usize = 5;
@@ -81,6 +77,8 @@ const LEAST_SLOPE: f64 = 1e-3;
 pub(crate) struct Problem {
     pub energy: AuthalicEnergy,
     pub motions: Vec<Motion>,
+    /// The boundary loop where it may take any shape that does not cross itself; empty elsewhere.
+    pub outline: Vec<u32>,
     analysis: Analysis,
 }
 
@@ -91,9 +89,10 @@ pub(crate) struct GaussNewtonOptions {
     pub profile: Profile,
     /// λ never falls below this.
     pub angle_weight: f64,
-    /// Iterations at the most; where `None`, as many as it takes: 12 where those leave the area ratio a deviation of
-    /// 1 %, up to 60 else.
-    pub max_iterations: Option<usize>,
+    /// Iterations after which an area ratio with a deviation of 1 % is good enough.
+    pub usual_iterations: usize,
+    /// Iterations at the most.
+    pub most_iterations: usize,
     /// Converged when the deviation of the area ratio, √(E_A/A), is below this.
     pub tolerance: f64,
     /// Whether to end as soon as no face is folded, after so many iterations.
@@ -110,7 +109,28 @@ impl Problem {
     pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>) -> Result<Self, Error> {
         let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
         let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns)?;
-        Ok(Self { energy, motions, analysis })
+        Ok(Self { energy, motions, outline: Vec::new(), analysis })
+    }
+
+    /// The same with a boundary loop that must not cross itself.
+    pub(crate) fn with_outline(self, outline: Vec<u32>) -> Self {
+        Self { outline, ..self }
+    }
+
+    /// The energy of a map; infinite where its outline crosses itself.
+    fn value(&self, map: &[Vector], weights: &Weights) -> f64 {
+        let value = self.energy.value(map, weights);
+        match value.is_finite() && !self.is_simple(map) {
+            true => f64::INFINITY,
+            false => value,
+        }
+    }
+
+    /// Whether the outline does not cross itself.
+    pub(crate) fn is_simple(&self, map: &[Vector]) -> bool {
+        let corners: Vec<[f64; 2]> =
+            self.outline.iter().map(|&v| [0, 1].map(|k| map[v as usize][k])).collect();
+        is_simple_polygon(&corners)
     }
 
     /// The map reached from `map` by `direction` along the frames.
@@ -148,10 +168,10 @@ pub(crate) fn minimize(
 ) -> (Map, Status) {
     let mut descent = Descent::new(problem, *options);
     let mut map = start;
+    let mut sums = problem.energy.sums(&map);
     let mut energies = Vec::new();
     for done in 0.. {
         // 1. Targets on the scale of the image, λ in balance
-        let sums = problem.energy.sums(&map);
         let weights = descent.balance(&sums);
         energies.push(sums.authalic_energy);
         history.push_start(sums.authalic_energy, f64::NAN);
@@ -170,8 +190,9 @@ pub(crate) fn minimize(
             return (map, Status::Stalled);
         };
         map = next;
+        sums = problem.energy.sums(&map);
         descent.adapt(step);
-        history.push(problem.energy.sums(&map).authalic_energy, step, (-newton.slope).max(0.0).sqrt());
+        history.push(sums.authalic_energy, step, (-newton.slope).max(0.0).sqrt());
     }
     unreachable!("the verdict ends the loop")
 }
@@ -185,6 +206,8 @@ struct Descent<'a> {
     linearised: Linearised,
     /// λ; NaN before the first iteration.
     angle_weight: f64,
+    /// What targets are multiplied by; NaN before the first iteration.
+    scale: f64,
     /// μ.
     damping: f64,
     last_step: f64,
@@ -210,6 +233,7 @@ impl<'a> Descent<'a> {
             options,
             linearised: Linearised::default(),
             angle_weight: f64::NAN,
+            scale: f64::NAN,
             damping: DAMPING,
             last_step: 1.0,
             total_target: parallel::sum(targets.len(), |face| targets[face]),
@@ -227,11 +251,11 @@ impl<'a> Descent<'a> {
         } else if goal < self.angle_weight && self.last_step >= SHORT {
             self.angle_weight = goal.max(FASTEST_FALL * self.angle_weight);
         }
-        Weights {
-            scale: sums.area / self.total_target,
-            angle: self.angle_weight,
-            profile: self.options.profile,
+        // a free image would grow or shrink for ever if its targets followed it
+        if self.scale.is_nan() || self.problem.outline.is_empty() {
+            self.scale = sums.area / self.total_target;
         }
+        Weights { scale: self.scale, angle: self.angle_weight, profile: self.options.profile }
     }
 
     /// The status with which to end, if any.
@@ -248,14 +272,14 @@ impl<'a> Descent<'a> {
             && energies[done] > (1.0 - LEAST_GAIN) * energies[done - PATIENCE]
             && options.angle_weight == 0.0;
         let deviation = (sums.authalic_energy / sums.area).sqrt();
-        let is_even = match options.max_iterations {
-            None if done >= USUAL_ITERATIONS => deviation <= EVEN_ENOUGH.max(options.tolerance),
-            _ => deviation <= options.tolerance,
-        };
+        let is_even =
+            deviation <= options.tolerance || (deviation <= EVEN_ENOUGH && done >= options.usual_iterations);
         let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
-        if (is_even && !is_held) || is_open || is_slow || (is_held && self.flat) {
+        if (is_even && !is_held) || is_open || (is_held && self.flat) {
             Some(Status::Converged)
-        } else if done >= options.max_iterations.unwrap_or(MOST_ITERATIONS) {
+        } else if is_slow {
+            Some(if deviation <= EVEN_ENOUGH { Status::Converged } else { Status::Stalled })
+        } else if done >= options.most_iterations {
             Some(Status::MaxIterations)
         } else if observer.progress(self.fraction(done), MESSAGE) {
             None
@@ -266,11 +290,9 @@ impl<'a> Descent<'a> {
 
     /// The part done after `done` iterations.
     fn fraction(&self, done: usize) -> f64 {
-        match self.options.max_iterations {
-            Some(most) => done as f64 / most.max(1) as f64,
-            // half of what is left in every usual run
-            None => 1.0 - 0.5f64.powf(done as f64 / (0.5 * USUAL_ITERATIONS as f64)),
-        }
+        // nearly all runs end after the usual iterations, and none may seem to go back
+        let usual = self.options.usual_iterations.min(self.options.most_iterations).max(1);
+        1.0 - 0.1f64.powf(done as f64 / usual as f64)
     }
 
     /// The next map, with the step's length; `None` where no step lowers the energy.
@@ -285,7 +307,8 @@ impl<'a> Descent<'a> {
         let value = problem.energy.value(map, weights);
         self.flat = -newton.slope <= LEAST_SLOPE * value;
         // 1. The longest step allowed, straight and corrected to second order
-        let longest = newton.direction.iter().map(|d| d[0].hypot(d[1])).fold(0.0, f64::max);
+        let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
+        let longest = squares.fold(0.0, f64::max).sqrt();
         let mut step = (LONGEST_MOVE / longest).min(1.0);
         let mut bend = None;
         let mut trial = Trial::new(problem, self.path(map, newton, None, step), weights);
@@ -299,8 +322,7 @@ impl<'a> Descent<'a> {
         // 2. The worst faces by themselves, then shorter steps until the energy falls
         for _ in 0..MOST_TRIALS {
             if trial.value.is_finite() {
-                local::repair(problem, &mut trial.map, weights, watch);
-                trial.value = problem.energy.value(&trial.map, weights);
+                trial.repair(problem, weights, watch);
             }
             if trial.value <= value + SUFFICIENT * step * newton.slope {
                 return Some((trial.map, step));
@@ -335,7 +357,19 @@ struct Trial {
 
 impl Trial {
     fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
-        Self { value: problem.energy.value(&map, weights), map }
+        Self { value: problem.value(&map, weights), map }
+    }
+}
+
+impl Trial {
+    /// Solves the worst faces by themselves, unless the outline would cross itself.
+    fn repair(&mut self, problem: &Problem, weights: &Weights, watch: &Watch<'_>) {
+        let mut repaired = self.map.clone();
+        let gain = local::repair(problem, &mut repaired, weights, watch);
+        if gain > 0.0 && problem.is_simple(&repaired) {
+            self.map = repaired;
+            self.value -= gain;
+        }
     }
 }
 
@@ -434,8 +468,8 @@ impl Linearised {
     }
 }
 
-/// The Hessian of a face with its damping: the graph Laplacian of the triangle, in proportion to the deviation of its
-/// area ratio, and a shift that keeps rotations of the whole from being free.
+/// The Hessian of a face, damped in proportion to the deviation of its area ratio, with a shift that keeps rotations of
+/// the whole from being free.
 fn damped_element(
     energy: &AuthalicEnergy,
     map: &[Vector],
@@ -444,10 +478,8 @@ fn damped_element(
     damping: f64,
     face: usize,
 ) -> Element {
-    let mut element = energy.element(map, frames, weights, face);
-    let deviation = (energy.ratio(map, weights, face) - 1.0).abs().min(MOST_DEVIATION);
-    let corners = energy.faces()[face].map(|vertex| &frames[vertex as usize]);
-    add_quadratic(&mut element, damping * (deviation + LEAST_DEVIATION), corners, [0.5; 3]);
+    let damping = |deviation: f64| damping * (deviation.min(MOST_DEVIATION) + LEAST_DEVIATION);
+    let mut element = energy.element(map, frames, weights, damping, face);
     for (k, row) in element.iter_mut().enumerate() {
         row[k] += 1e-10 * row[k] + 1e-14;
     }

@@ -35,18 +35,19 @@ struct Patch {
     vertices: Vec<u32>,
 }
 
-/// Lowers the energy of `map`, which must be finite, over its worst faces.
-pub(super) fn repair(problem: &Problem, map: &mut Map, weights: &Weights, watch: &Watch<'_>) {
+/// Lowers the energy of `map`, which must be finite, over its worst faces; returns by how much.
+pub(super) fn repair(problem: &Problem, map: &mut Map, weights: &Weights, watch: &Watch<'_>) -> f64 {
     // 1. The worst faces and their one-rings
     let worst = worst_faces(problem, map, weights);
-    let Some(patch) = cut_out(problem, &worst) else { return };
+    let Some(patch) = cut_out(problem, &worst) else { return 0.0 };
     // 2. A few damped steps over them
     let part: Map = patch.vertices.iter().map(|&vertex| map[vertex as usize]).collect();
-    let part = descend(&patch.problem, part, weights, watch);
+    let (part, gain) = descend(&patch.problem, part, weights, watch);
     // 3. Back into the whole
     for (&vertex, x) in patch.vertices.iter().zip(part) {
         map[vertex as usize] = x;
     }
+    gain
 }
 
 /// The faces whose areas cost most, in ascending order.
@@ -110,10 +111,11 @@ fn sorted(mut indices: Vec<u32>) -> Vec<u32> {
     indices
 }
 
-fn descend(problem: &Problem, mut map: Map, weights: &Weights, watch: &Watch<'_>) -> Map {
+fn descend(problem: &Problem, mut map: Map, weights: &Weights, watch: &Watch<'_>) -> (Map, f64) {
     let (mut damping, mut growth) = (DAMPING, 2.0);
     let mut linearised = Linearised::default();
-    let mut value = problem.energy.value(&map, weights);
+    let begun = problem.energy.value(&map, weights);
+    let mut value = begun;
     for _ in 0..STEPS {
         let Ok(newton) = linearised.direction(problem, &map, weights, damping, watch) else { break };
         let trial = problem.moved(&map, &newton.frames, &newton.direction);
@@ -131,7 +133,7 @@ fn descend(problem: &Problem, mut map: Map, weights: &Weights, watch: &Watch<'_>
             growth *= 2.0;
         }
     }
-    map
+    (map, begun - value)
 }
 
 #[cfg(test)]

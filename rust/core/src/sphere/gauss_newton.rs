@@ -17,6 +17,7 @@ use super::{Map, normalized, start, unfold};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
+use crate::energy::authalic::Codomain;
 use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
@@ -30,6 +31,9 @@ const FIXED_POINT_STEPS: usize = 5;
 
 /// They end when the stretch energy falls by no more than this.
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
+
+/// Iterations where those leave the area ratio a deviation of 1 %, and at the most.
+const ITERATIONS: [usize; 2] = [10, 60];
 
 /// A start is bad when E_A is more than this part of the area; the progressive one is better then.
 const BAD_START: f64 = 0.5;
@@ -53,7 +57,7 @@ impl Run<'_> {
     ) -> Result<(Map, Status), Error> {
         // 1. Targets of slivers raised to a floor
         let floor = floors::floors(self.targets)[0];
-        let energy = floors::energy(self.mesh, self.targets, false, floor);
+        let energy = floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
         let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()])?;
         // 2. A start without folds
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
@@ -134,12 +138,13 @@ impl Run<'_> {
         let options = GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: self.options.angle_weight,
-            max_iterations: self.options.max_iterations,
+            usual_iterations: ITERATIONS[0],
+            most_iterations: self.options.max_iterations.unwrap_or(ITERATIONS[1]),
             tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
             until_open: None,
         };
         let begun = map.clone();
-        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, planar: false };
+        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Sphere };
         let (problem, map, status) = floors::descend(&surface, problem, map, &options, history, observer);
         match self.is_bijective(&map) {
             true => (problem, map, status),

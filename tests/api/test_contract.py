@@ -264,7 +264,7 @@ def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
     ("option", "value", "words"),
     [
         ("method", "newton", f'method must be {DISK_METHODS}, but is "newton"'),
-        ("boundary", "free", 'boundary must be "sliding" or "arc_length", but is "free"'),
+        ("boundary", "none", 'boundary must be "sliding", "arc_length" or "free", but is "none"'),
         ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
         ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
         ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),

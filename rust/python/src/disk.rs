@@ -77,9 +77,10 @@ impl DiskMap {
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
 ///     The optimiser.
-/// boundary : {"sliding", "arc_length"}
-///     Whether boundary vertices slide along the circle in their order, or stay at arcs proportional to the
-///     edge lengths as in the papers.
+/// boundary : {"sliding", "arc_length", "free"}
+///     Whether boundary vertices slide along the circle in their order, stay at arcs proportional to the edge
+///     lengths as in the papers, or take any outline that does not cross itself, the whole scaled into the unit
+///     disk. A free boundary is for "gauss_newton"; with an `angle_weight` it spares both angles and areas.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
@@ -89,8 +90,8 @@ impl DiskMap {
 ///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop.
 ///     Default: harmonic, then five fixed-point steps.
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes, 12 where those leave area ratios a deviation of 1 %, up
-///     to 60 else; for the papers' methods 50, as in the paper's tables. On top come up to five fixed-point
+///     Default for "gauss_newton": as many as it takes, a few where those leave area ratios a deviation of less
+///     than 1 %, up to 60 else; for the papers' methods 50, as in the paper's tables. On top come up to five fixed-point
 ///     steps, and where the start folds or the result is uneven steps that unfold it or a second descent.
 /// tolerance : float, optional
 ///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/π), falls below it, default
@@ -181,8 +182,9 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
     match boundary {
         "arc_length" => Ok(Boundary::ArcLength),
         "sliding" => Ok(Boundary::Sliding),
+        "free" => Ok(Boundary::Free),
         other => Err(PyValueError::new_err(format!(
-            "boundary must be \"sliding\" or \"arc_length\", but is {other:?}"
+            "boundary must be \"sliding\", \"arc_length\" or \"free\", but is {other:?}"
         ))),
     }
 }

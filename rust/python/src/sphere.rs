@@ -91,8 +91,8 @@ impl SphereMap {
 ///     A start map, outward oriented, no row zero; rows are normalised. Default: the spherical conformal map,
 ///     and but for "fixed_point" itself up to ten fixed-point steps from it.
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes, 12 where those leave area ratios a deviation of 1 %, up
-///     to 60 else; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps
+///     Default for "gauss_newton": as many as it takes, a few where those leave area ratios a deviation of less
+///     than 1 %, up to 60 else; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps
 ///     before a descent, and where folds were mended or the result is uneven a second descent. 0 with
 ///     "fixed_point" returns the start map.
 /// tolerance : float, optional

@@ -12,14 +12,15 @@ import authalic
 
 from . import domains, messages, polygons, projection, spherical, triangulation
 from .domains import Unsuitable
-from .job import Cancelled
 from .results import Island, Mapping, Measurement, Refusal, SphereShape, UnwrapSettings
+from .solver import Solver
 
 __all__ = (
     "Island",
     "Mapping",
     "Measurement",
     "Refusal",
+    "Solver",
     "SphereShape",
     "Unsuitable",
     "UnwrapSettings",
@@ -29,9 +30,10 @@ __all__ = (
     "unwrap",
 )
 
-# A standard deviation of area ratios that comes of long limbs or of large polygons on a sphere.
-_UNEVEN = 0.5
-_CANCELLED = "cancelled, nothing was changed"
+# A standard deviation of area ratios that comes of long limbs or of large polygons on a sphere, and one that
+# a solver that could not go on should have left behind.
+_UNEVEN, _STALLED = 0.5, 0.05
+_NOT_REACHED = "was not reached before the end"
 
 
 def _keep_going(_fraction, _message):
@@ -41,17 +43,21 @@ def _keep_going(_fraction, _message):
 def unwrap(surfaces, settings, progress=_keep_going):
     """Maps every island of every surface (`mesh_io.Surface`) to UVs of its own, by a disk or by a sphere.
 
-    Raises `Cancelled` when `progress` returns False. Islands that cannot be mapped are refused, not raised.
+    When `progress` returns False the island at hand is kept as it is by then, and later ones are refused.
+    Islands that cannot be mapped are refused, not raised.
     """
     result = Mapping()
     pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
     total = sum(len(piece.patch.faces) for piece in pieces)
     done = 0
-    for piece in pieces:
+    listen = _noting_the_end(progress, result)
+    for number, piece in enumerate(pieces):
         share = len(piece.patch.faces)
-        if progress(done / total, f"island {len(result.islands) + 1} of {len(pieces)}") is False:
-            raise Cancelled(_CANCELLED)
-        step = _sub_progress(progress, done / total, share / total)
+        message = f"Island {number + 1} of {len(pieces)}"
+        if result.ended_early or not listen(done / total, message):
+            result.refusals.append(Refusal(piece.name, piece.polygon, _NOT_REACHED))
+            continue
+        step = _sub_progress(listen, done / total, share / total, message)
         try:
             result.islands.append(_map(piece, settings, step))
         except (Unsuitable, authalic.MeshError, authalic.SolverError) as error:
@@ -101,18 +107,19 @@ def measure(surfaces):
     )
 
 
-def sphere_shape(surface, iterations=100, progress=_keep_going):
+def sphere_shape(surface, solver=None, progress=_keep_going):
     """The vertices of a closed mesh (`mesh_io.Surface`) on the sphere of its area, about its area's centre.
 
-    Raises `Unsuitable`, in the words of an artist, where there is no such map; `Cancelled` when `progress`
-    returns False.
+    When `progress` returns False, as they are by then. Raises `Unsuitable`, in the words of an artist, where
+    there is no such map.
     """
+    solver = solver or Solver()
     mesh = triangulation.sound(surface)
     vertices = np.append(np.arange(len(surface.positions)), np.full(len(mesh.positions), -1))
     try:
         used, patches = _whole(mesh)
         domains.check_closed_mesh(used, len(surface.positions), patches)
-        found, positions, turned = _sphere_map(mesh.positions, mesh.triangles, iterations, progress)
+        found, positions, turned = _sphere_map(mesh.positions, mesh.triangles, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
         raise Unsuitable(messages.in_mesh_terms(str(error), mesh.polygons, vertices)) from error
     centre = spherical.centroid(mesh.positions, mesh.triangles)
@@ -132,7 +139,9 @@ def sphere_shape(surface, iterations=100, progress=_keep_going):
         radius=float(radius),
         deviation=float(figures.area_ratio_std),
         flips=len(figures.folded),
-        uneven=float(figures.area_ratio_std) if figures.area_ratio_std > _UNEVEN else _uneven(found),
+        angle=float(figures.angle_distortion_mean),
+        uneven=_uneven(found, solver, figures.area_ratio_std),
+        ended_early=found.status == "cancelled",
     )
 
 
@@ -203,22 +212,27 @@ def _map(piece, settings, progress):
 
 def _by_disk(piece, settings, progress):
     faces = np.asarray(piece.patch.faces)
-    found = authalic.disk_map(
-        piece.points,
-        faces,
-        max_iterations=settings.iterations,
-        fill_holes=settings.fill_holes,
-        progress=progress,
-    )
-    if found.status == "cancelled":
-        raise Cancelled(_CANCELLED)
+    found = _disk_map(piece.points, faces, settings, progress)
     turned = spherical.turned(faces, np.asarray(found.faces))
-    return _island(piece, found, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+    island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+    island.uneven = _uneven(found, settings.solver)
+    island.may_turn = settings.solver.weighs_angles
+    return island
+
+
+def _disk_map(points, faces, settings, progress):
+    """A disk map; symmetric coarse meshes may stall Gauss-Newton half-way, and the gradient finds on."""
+    options = {"fill_holes": settings.fill_holes, "progress": progress}
+    found = authalic.disk_map(points, faces, **options, **settings.solver.disk_options())
+    if found.status != "stalled" or _uneven(found, settings.solver) is None:
+        return found
+    other = authalic.disk_map(points, faces, **options, method="conjugate_gradient")
+    return min(found, other, key=lambda map_: map_.distortion.authalic_energy)
 
 
 def _by_sphere(piece, settings, progress):
     faces = np.asarray(piece.patch.faces)
-    found, positions, turned = _sphere_map(piece.points, faces, settings.iterations, progress)
+    found, positions, turned = _sphere_map(piece.points, faces, settings.solver, progress)
     try:
         uv = projection.project(
             positions,
@@ -237,20 +251,18 @@ def _by_sphere(piece, settings, progress):
         ) from problem
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
-    island = _island(piece, found, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
+    island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
     image, area = np.abs(triangulation.signed_areas(uv)), triangulation.areas(piece.points[faces])
-    deviation = float((image / area).std() * area.sum() / image.sum())
-    if deviation > _UNEVEN:
-        island.uneven = deviation
+    deviation = (image / area).std() * area.sum() / image.sum()
+    island.uneven = _uneven(found, settings.solver, deviation)
     return island
 
 
-def _sphere_map(points, faces, iterations, progress):
+def _sphere_map(points, faces, solver, progress):
     """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
-    found = authalic.sphere_map(points, faces, max_iterations=iterations, progress=progress)
-    if found.status == "cancelled":
-        raise Cancelled(_CANCELLED)
-    if found.status == "stalled" or _is_thin(found):  # coarse meshes may come out worse than the start
+    found = authalic.sphere_map(points, faces, progress=progress, **solver.sphere_options())
+    is_poor = found.status == "stalled" and not solver.weighs_angles
+    if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
         start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
         found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
     oriented = np.asarray(found.faces)
@@ -262,7 +274,7 @@ def _is_thin(found):
     return spherical.is_thin(np.asarray(found.positions), np.asarray(found.faces))
 
 
-def _island(piece, found, uv, faces, turned, points):
+def _island(piece, uv, faces, turned, points):
     """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
     real = piece.corners >= 0
     return Island(
@@ -275,17 +287,29 @@ def _island(piece, found, uv, faces, turned, points):
         corner_point=faces.ravel()[real],
         uv=uv,
         turned=np.unique(piece.polygons[turned]),
-        uneven=_uneven(found),
     )
 
 
-def _uneven(found):
-    return float(found.distortion.area_ratio_std) if found.status == "stalled" else None
+def _uneven(found, solver, deviation=None):
+    """The deviation of area ratios, if not the map's own, where it is more than areas alone should leave."""
+    deviation = found.distortion.area_ratio_std if deviation is None else deviation
+    limit = _STALLED if found.status == "stalled" else _UNEVEN
+    return float(deviation) if deviation > limit and not solver.weighs_angles else None
 
 
-def _sub_progress(progress, start, share):
+def _noting_the_end(progress, result):
+    """The progress callback, which also notes in a `Mapping` that it was asked to end."""
+
+    def listen(fraction, message):
+        result.ended_early |= progress(fraction, message) is False
+        return not result.ended_early
+
+    return listen
+
+
+def _sub_progress(progress, start, share, name):
     """A part of the whole as a progress callback of its own."""
-    return lambda fraction, message: progress(start + share * fraction, message)
+    return lambda fraction, message: progress(start + share * fraction, f"{name}: {message}")
 
 
 def _vertices(surfaces):

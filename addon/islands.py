@@ -5,6 +5,9 @@ import numpy as np
 
 from . import triangulation
 
+# Angles tried at a time, and directions in which the outermost points stand for an outline.
+_TURNS, _DIRECTIONS = 60, 120
+
 
 def scale_to_one_density(islands):
     """Scales islands so that the UV area of each is its share of the whole surface's area."""
@@ -18,3 +21,30 @@ def box(uv):
     """The corners (4, 2), counter-clockwise, of the bounding box of points (n, 2)."""
     (left, low), (right, high) = uv.min(axis=0), uv.max(axis=0)
     return np.array([[left, low], [right, low], [right, high], [left, high]])
+
+
+def upright(uv):
+    """Points (n, 2) turned so that their bounding box is as small as can be, its long side horizontal."""
+    outline, angles = _outline(uv), np.linspace(0, np.pi / 2, _TURNS, endpoint=False)
+    angle = _tightest(outline, angles)
+    angle = _tightest(outline, angle + np.linspace(-angles[1], angles[1], _TURNS))
+    width, height = np.ptp(_turned(outline, angle), axis=0)
+    return _turned(uv, angle + np.pi / 2 if height > width else angle)
+
+
+def _tightest(points, angles):
+    """The one of the angles (k,) by which points are turned into the smallest bounding box."""
+    sizes = [np.ptp(_turned(points, angle), axis=0).prod() for angle in angles]
+    return angles[int(np.argmin(sizes))]
+
+
+def _turned(points, angle):
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return points @ np.array([[cosine, sine], [-sine, cosine]])
+
+
+def _outline(uv):
+    """The outermost of the points (n, 2) in a good many directions."""
+    u, v = np.ascontiguousarray(uv.T)
+    angles = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)
+    return uv[np.unique([np.argmax(np.cos(angle) * u + np.sin(angle) * v) for angle in angles])]

@@ -11,13 +11,14 @@ class Cancelled(Exception):
 class Job:
     """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
 
-    `work` must not touch bpy; `progress(fraction, message)` is False once the job is cancelled.
+    `work` must not touch bpy; `progress(fraction, message)` is False once the job is to end. What `work`
+    returns then counts if the job was to end early, and not if it was cancelled.
     """
 
     def __init__(self, work, finish=lambda result: result):
         self._work, self._finish = work, finish
         self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
-        self._cancel = threading.Event()
+        self._cancel, self._end = threading.Event(), threading.Event()
         self._state = (0.0, "")
         self._result = self._error = None
 
@@ -32,6 +33,11 @@ class Job:
     def cancel(self):
         """Asks the computation to stop; `apply` will raise `Cancelled` and change nothing."""
         self._cancel.set()
+        self._end.set()
+
+    def end_early(self):
+        """Asks the computation to stop; `apply` will write the best that it has by then."""
+        self._end.set()
 
     def apply(self):
         """Waits for the end of the computation and hands its result to `finish`."""
@@ -62,4 +68,4 @@ class Job:
 
     def _report(self, fraction, message):
         self._state = (fraction, message)
-        return not self._cancel.is_set()
+        return not self._end.is_set()

@@ -71,6 +71,17 @@ def read(obj, *, selected_only=False, uv_layer=None):
     return surface
 
 
+def has_corners(obj, count):
+    """Whether an object is there still and its mesh has so many corners."""
+    try:
+        mesh = obj.data
+    except ReferenceError:
+        return False
+    if mesh.is_editmode:
+        return sum(len(face.loops) for face in bmesh.from_edit_mesh(mesh).faces) == count
+    return len(mesh.loops) == count
+
+
 def read_uv(mesh, layer):
     """The UVs (c, 2) of a layer of a mesh that is not in edit mode, float32."""
     uv = np.empty(2 * len(mesh.loops), np.float32)

@@ -5,17 +5,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .solver import Solver
+
 
 @dataclass
 class UnwrapSettings:
-    """How islands are mapped; the solver stops earlier where it has converged.
+    """How islands are mapped.
 
-    `domain` is "AUTO", "DISK" or "SPHERE". The others after `iterations` are of spheres: the layout "LAMBERT"
-    or "OCTAHEDRAL", the axis "X", "Y" or "Z" of the poles, and the angle of the seam about it.
+    `domain` is "AUTO", "DISK" or "SPHERE". The others after it are of spheres: the layout "LAMBERT" or
+    "OCTAHEDRAL", the axis "X", "Y" or "Z" of the poles, and the angle of the seam about it.
     """
 
     fill_holes: bool = True
-    iterations: int = 100
+    solver: Solver = field(default_factory=Solver)
     domain: str = "AUTO"
     layout: str = "LAMBERT"
     pole_axis: str = "Z"
@@ -28,8 +30,8 @@ class Island:
 
     A point of the surface is there once for each of its UVs. Those of the mesh corners `corners` (k,) are the
     UVs of the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the
-    rest; they are mirrored in the map. `uneven` is the standard deviation of the area ratios where the solver
-    could not go on to make them even, else None.
+    rest; they are mirrored in the map. `uneven` is the standard deviation of the area ratios where these
+    should have been even and are not, else None. `may_turn` says that the outline has no upper side.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Island:
     uv: np.ndarray
     turned: np.ndarray
     uneven: float | None = None
+    may_turn: bool = False
 
 
 @dataclass
@@ -59,10 +62,11 @@ class Refusal:
 
 @dataclass
 class Mapping:
-    """What `unwrap` found."""
+    """What `unwrap` found; `ended_early` where it was asked to make do with what it had."""
 
     islands: list[Island] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
+    ended_early: bool = False
 
 
 @dataclass
@@ -84,11 +88,13 @@ class Measurement:
 class SphereShape:
     """A closed mesh's vertices (n, 3) on the sphere with its area, in single precision, and figures of that.
 
-    `uneven` is as for islands.
+    `angle` is the mean angle distortion, `uneven` as for islands, `ended_early` as for a mapping.
     """
 
     positions: np.ndarray
     radius: float
     deviation: float
     flips: int
+    angle: float
     uneven: float | None
+    ended_early: bool

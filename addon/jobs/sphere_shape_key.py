@@ -2,10 +2,10 @@
 """The sphere shape keys of a context's objects: the one path of the operator and of scripts."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .. import bridge, mesh_io, messages, shape_keys
-from ..job import Cancelled, Job
+from ..job import Job
 from . import targets
 
 NAME = "Authalic Sphere"
@@ -19,7 +19,7 @@ class CannotMap(Exception):
 class Settings:
     """All options."""
 
-    iterations: int = 100
+    solver: bridge.Solver = field(default_factory=bridge.Solver)
 
 
 @dataclass
@@ -58,6 +58,7 @@ def job(context, settings):
         return _shapes([surface for _, surface in chosen], settings, progress)
 
     def finish(found):
+        _check_unchanged(chosen)
         done = [
             (obj, shape)
             for (obj, _), shape in zip(chosen, found, strict=True)
@@ -74,6 +75,14 @@ def job(context, settings):
     return Job(work, finish)
 
 
+def _check_unchanged(chosen):
+    """Meshes may have changed since they were read, where a window was alive meanwhile."""
+    for obj, surface in chosen:
+        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
+        if not is_there or len(obj.data.vertices) != len(surface.positions):
+            raise CannotMap(f"{surface.name} has changed meanwhile; nothing was written")
+
+
 def _why_not(obj):
     if len(obj.data.polygons) == 0:
         return "has no faces"
@@ -86,15 +95,16 @@ def _shapes(surfaces, settings, progress):
     for surface in surfaces:
         start, share = before / total, len(surface.triangles) / total
         if progress(start, surface.name) is False:
-            raise Cancelled("cancelled, nothing was changed")
-        found.append(_shape(surface, settings, _part(progress, start, share)))
+            found.append(bridge.Refusal(surface.name, None, "was not reached before the end"))
+        else:
+            found.append(_shape(surface, settings, _part(progress, start, share)))
         before += len(surface.triangles)
     return found
 
 
 def _shape(surface, settings, progress):
     try:
-        return bridge.sphere_shape(surface, settings.iterations, progress)
+        return bridge.sphere_shape(surface, settings.solver, progress)
     except bridge.Unsuitable as reason:
         return bridge.Refusal(surface.name, None, str(reason))
 
@@ -105,11 +115,15 @@ def _part(progress, start, share):
 
 def _figures(shape):
     flips = messages.count(shape.flips, "flip")
-    return f"area ratio SD {shape.deviation:.3g}, {flips}, radius {shape.radius:.3g}"
+    return (
+        f"area ratio SD {shape.deviation:.3g}, {flips}, angle distortion {shape.angle:.2f}, "
+        f"radius {shape.radius:.3g}"
+    )
 
 
 def _notes(done):
     """What was written but may not be what was wanted."""
+    early = [messages.ENDED_EARLY] if any(shape.ended_early for _, shape in done) else []
     notes = [
         f"{obj.name}: uneven; its limbs may be too long or too thin, or its n-gons too large (poke them)"
         for obj, shape in done
@@ -125,4 +139,4 @@ def _notes(done):
         for obj, _ in done
         if obj.data.users > 1
     ]
-    return [*notes, *scaled, *shared]
+    return [*early, *notes, *scaled, *shared]

@@ -45,6 +45,7 @@ class Report:
             parts += [
                 f"area ratio SD {self.figures.deviation:.3g}",
                 messages.count(self.figures.flips, "flip"),
+                f"angle distortion {self.figures.angle:.2f}",
             ]
         line = ", ".join([*parts, f"{self.seconds:.2f} s"])
         left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
@@ -74,9 +75,12 @@ def job(context, settings):
 
     def finish(mapping):
         mapping.refusals[:0] = refusals
+        _check_unchanged(chosen)
         figures = _write(chosen, mapping, settings.packing)
         seconds = time.perf_counter() - started
         notes = _notes(chosen, mapping.islands, figures)
+        if mapping.ended_early:
+            notes.insert(0, messages.ENDED_EARLY)
         return Report(len(mapping.islands), figures, mapping.refusals, notes, seconds)
 
     return Job(work, finish)
@@ -103,6 +107,13 @@ def _why_nothing(selected_only, refusals):
     return "No faces are selected" if selected_only else "The selected objects have no faces"
 
 
+def _check_unchanged(chosen):
+    """Meshes may have changed since they were read, where a window was alive meanwhile."""
+    for obj, _, surface in chosen:
+        if not mesh_io.has_corners(obj, len(surface.corner_vertex)):
+            raise CannotUnwrap(f"{surface.name} has changed meanwhile; nothing was written")
+
+
 def _write(chosen, mapping, settings):
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
     _place(mapping, settings)
@@ -119,6 +130,9 @@ def _write(chosen, mapping, settings):
 
 def _place(mapping, settings):
     """Packs the islands, without those that would fold over where they come to lie: these are refused."""
+    for island in mapping.islands:
+        if island.may_turn:
+            island.uv = shapes.upright(island.uv)
     while mapping.islands:
         shapes.scale_to_one_density(mapping.islands)
         pack(mapping.islands, settings)

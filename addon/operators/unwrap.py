@@ -4,12 +4,13 @@
 import math
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import bridge, packing
-from ..job import Cancelled
-from ..jobs import targets, unwrap
-from . import poll
+from ..jobs import unwrap
+from . import poll, solving
+from .modal import Modal
+from .solving import Solving
 
 
 def _layer_names(_operator, context, _text):
@@ -17,12 +18,13 @@ def _layer_names(_operator, context, _text):
     return [layer.name for layer in obj.data.uv_layers] if obj and obj.type == "MESH" else []
 
 
-class AUTHALIC_OT_unwrap(bpy.types.Operator):
+class AUTHALIC_OT_unwrap(Modal, Solving, bpy.types.Operator):
     """Unwrap so that every face gets the share of the texture that its area is of the surface"""
 
     bl_idname = "authalic.unwrap"
     bl_label = "Authalic Unwrap"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
+    refused = (unwrap.CannotUnwrap,)
 
     domain: EnumProperty(
         name="Domain",
@@ -46,13 +48,6 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
         name="Fill Holes",
         description="Virtually fill holes in the mesh before unwrapping, all but the longest boundary",
         default=True,
-    )
-    iterations: IntProperty(
-        name="Iterations",
-        description="Most iterations of the solver. More share the areas out more evenly, fewer are faster",
-        min=1,
-        soft_max=1000,
-        default=100,
     )
     sphere_layout: EnumProperty(
         name="Layout",
@@ -117,17 +112,11 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
     def poll(cls, context):
         return poll.has_meshes(cls, context)
 
-    def execute(self, context):
-        try:
-            report = unwrap.job(context, self._settings()).execute()
-        except targets.NothingToDo as problem:
-            self.report({"WARNING"}, str(problem))
-            return {"CANCELLED"}
-        except (unwrap.CannotUnwrap, Cancelled) as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
-        self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, f"Unwrapped {report}")
-        return {"FINISHED"}
+    def job(self, context):
+        return unwrap.job(context, self._settings())
+
+    def line(self, report):
+        return f"Unwrapped {report}"
 
     def draw(self, _context):
         self.layout.use_property_split = True
@@ -139,7 +128,7 @@ class AUTHALIC_OT_unwrap(bpy.types.Operator):
             uv_layer=self.uv_layer,
             mapping=bridge.UnwrapSettings(
                 fill_holes=self.fill_holes,
-                iterations=self.iterations,
+                solver=self.solver(),
                 domain=self.domain,
                 layout=self.sphere_layout,
                 pole_axis=self.pole_axis,
@@ -156,7 +145,7 @@ def draw_options(layout, properties):
     row = column.row()
     row.active = properties.domain != "SPHERE"
     row.prop(properties, "fill_holes")
-    column.prop(properties, "iterations")
+    solving.draw_options(column, properties)
     column.prop(properties, "uv_layer", placeholder="Active")
     layout.label(text="Closed Islands")
     column = layout.column()

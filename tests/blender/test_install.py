@@ -51,9 +51,16 @@ def test_defaults_are_declared():
         "seam_direction": 0.0,
         "uv_layer": "",
         "margin_method": "SCALED",
+        "method": "GAUSS_NEWTON",
+        "angle_weight": 0.0,
+        "iterations": 0,
     }
     assert {key: properties[key].default for key in expected} == expected
-    assert bpy.ops.authalic.sphere_shape_key.get_rna_type().properties["iterations"].default == 100
+    assert next(iter(properties["method"].enum_items)).name == "Gauss-Newton"
+    of_the_key = bpy.ops.authalic.sphere_shape_key.get_rna_type().properties
+    assert all(
+        of_the_key[name].default == expected[name] for name in ("method", "angle_weight", "iterations")
+    )
     for name in ("unwrap", "sphere_shape_key"):
         properties = getattr(bpy.ops.authalic, name).get_rna_type().properties
         named = [p for p in properties if p.identifier != "rna_type"]
@@ -62,4 +69,5 @@ def test_defaults_are_declared():
 
 def test_sidebar_has_options_before_the_first_use():
     options = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
-    assert options.iterations == 100 and options.fill_holes
+    assert options.iterations == 0 and options.fill_holes
+    assert (options.method, options.angle_preset) == ("GAUSS_NEWTON", "AUTHALIC")

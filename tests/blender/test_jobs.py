@@ -41,7 +41,8 @@ def test_cancelled_job_writes_nothing():
     obj, bridge, unwrap = meshes.suzanne(), part("bridge"), part("jobs.unwrap")
     obj.data.uv_layers.active.name = "Old"
     before = meshes.uv(obj)
-    settings = unwrap.Settings(uv_layer="New", mapping=bridge.UnwrapSettings(iterations=100000))
+    solver = bridge.Solver("GRADIENT_DESCENT", iterations=100000)
+    settings = unwrap.Settings(uv_layer="New", mapping=bridge.UnwrapSettings(solver=solver))
     job = unwrap.job(bpy.context, settings).start()
     time.sleep(0.1)
     started = time.perf_counter()

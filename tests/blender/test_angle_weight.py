@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The slider between areas and angles, its presets, and the islands that come of it."""
+
+import importlib
+import time
+
+import bpy
+import conftest
+import meshes
+import numpy as np
+import pytest
+
+PRESETS = ("AUTHALIC", "BALANCED", "SOFT")
+
+
+def part(name):
+    return importlib.import_module(f"{conftest.MODULE}.{name}")
+
+
+def report_of(**solver):
+    """What a job says of the selected meshes."""
+    unwrap, bridge = part("jobs.unwrap"), part("bridge")
+    settings = unwrap.Settings(mapping=bridge.UnwrapSettings(solver=bridge.Solver(**solver)))
+    return unwrap.job(bpy.context, settings).execute()
+
+
+def seamed_suzanne():
+    """Suzanne with the seams of her own UV map."""
+    obj = meshes.suzanne(0)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.select_all(action="SELECT")
+    bpy.ops.uv.seams_from_islands()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return meshes.subdivided(obj, 2)
+
+
+def test_presets_trade_areas_for_angles():
+    obj = seamed_suzanne()
+    solver, figures = part("solver"), []
+    for name in PRESETS:
+        report = report_of(angle_weight=solver.PRESETS[name])
+        assert not report.refusals and not report.notes
+        assert report.figures.flips == 0 and (meshes.area_ratios(obj) > 0).all()
+        figures.append((report.figures.deviation, report.figures.angle))
+    deviations, angles = zip(*figures, strict=True)
+    assert list(deviations) == sorted(deviations) and list(angles) == sorted(angles, reverse=True)
+    assert deviations[0] <= 0.005 and deviations[1] < 0.05 and deviations[2] < 0.1
+    assert angles[2] < 1.4 < angles[1] < 1.5
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 3), reason="Minimum Stretch came with Blender 4.3")
+def test_the_whole_slider_beats_minimum_stretch():
+    seamed_suzanne()
+    ours = report_of(angle_weight=1.0).figures
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.unwrap(method="MINIMUM_STRETCH", fill_holes=True, iterations=10, margin=0.001)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    theirs = part("jobs.measure").job(bpy.context).execute()
+    assert ours.flips == 0
+    assert ours.angle < theirs.angle and ours.deviation < theirs.deviation
+
+
+def test_islands_with_outlines_of_their_own_are_packed_apart():
+    obj = meshes.suzanne()
+    report_of(angle_weight=0.8)
+    uv = meshes.uv(obj)
+    assert uv.min() >= 0 and uv.max() <= 1 and np.ptp(uv, axis=0).max() > 0.9
+    label, (corners, _, _) = meshes.islands(obj), meshes.triangles(obj)
+    boxes = [uv[corners[label == island]].reshape(-1, 2) for island in range(label.max() + 1)]
+    boxes = np.array([[box.min(axis=0), box.max(axis=0)] for box in boxes])
+    gap = np.maximum(boxes[:, None, 0] - boxes[None, :, 1], boxes[None, :, 0] - boxes[:, None, 1]).max(axis=2)
+    assert (gap[~np.eye(len(boxes), dtype=bool)] > 0).all()
+
+
+def test_a_long_island_lies_along_the_square():
+    side, rows = np.linspace(0, 8, 41), np.linspace(0, 1, 6)
+    x, y = (a.ravel() for a in np.meshgrid(side, rows))
+    first = (np.arange(5)[:, None] * 41 + np.arange(40)).ravel()
+    faces = np.stack([first, first + 1, first + 42, first + 41], axis=1)
+    turn = np.array([[0.8, 0.6], [-0.6, 0.8]])
+    obj = meshes.add(np.column_stack([np.stack([x, y], axis=1) @ turn, 0 * x]), faces)
+    report_of(angle_weight=0.8)
+    width, height = np.ptp(meshes.uv(obj), axis=0)
+    assert width == pytest.approx(1, abs=0.02) and height == pytest.approx(1 / 8, abs=0.02)
+    assert report_of(angle_weight=0.8).figures.angle < 1.05
+
+
+@pytest.mark.parametrize("aspect", [1, 1.7, 5])
+def test_upright_finds_the_smallest_box(aspect):
+    rng = np.random.default_rng(5)
+    points = np.concatenate([rng.random((3000, 2)), [[0, 0], [1, 0], [1, 1], [0, 1]]]) * [1, aspect]
+    for angle in rng.uniform(0, 2 * np.pi, 5):
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turned = part("islands").upright(points @ np.array([[cosine, sine], [-sine, cosine]]))
+        np.testing.assert_allclose(np.ptp(turned, axis=0), [aspect, 1], rtol=3e-3)
+        sides = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        np.testing.assert_allclose(np.linalg.norm(np.diff(turned, axis=0), axis=1), sides)
+        (a, b, c), (p, q, r) = points[:3], turned[:3]
+        before, after = (
+            np.linalg.det([two - one, three - one]) for one, two, three in ((a, b, c), (p, q, r))
+        )
+        assert before == pytest.approx(after)
+
+
+def test_upright_is_quick():
+    points = np.random.default_rng(5).standard_normal((300_000, 2))
+    started = time.perf_counter()
+    part("islands").upright(points)
+    assert time.perf_counter() - started < 2
+
+
+def test_spheres_take_the_slider_too():
+    obj = meshes.bumpy(meshes.icosphere(4))
+    even, soft = (report_of(angle_weight=weight).figures for weight in (0.0, 0.9))
+    assert soft.angle < even.angle - 0.5 and soft.flips == 0
+    assert (meshes.area_ratios(obj) > 0).all()
+    key = part("jobs.sphere_shape_key")
+    shapes = [
+        key.job(bpy.context, key.Settings(part("bridge").Solver(angle_weight=weight))).execute().shapes[0][1]
+        for weight in (0.0, 0.9)
+    ]
+    assert shapes[0].deviation < 0.01 < shapes[1].deviation and shapes[1].angle < shapes[0].angle
+    assert shapes[0].flips == shapes[1].flips == 0
+
+
+@pytest.mark.parametrize("method", ["GRADIENT_DESCENT", "FIXED_POINT"])
+@pytest.mark.parametrize("make", [meshes.add_grid, lambda: meshes.bumpy(meshes.icosphere(3))])
+def test_other_methods_leave_angles_alone(make, method):
+    obj = make()
+    assert bpy.ops.authalic.unwrap(method=method, angle_weight=0.9) == {"FINISHED"}
+    weighed = meshes.uv(obj)
+    assert bpy.ops.authalic.unwrap(method=method) == {"FINISHED"}
+    assert (meshes.uv(obj) == weighed).all()
+    assert bpy.ops.authalic.unwrap() == {"FINISHED"}
+    assert (meshes.uv(obj) != weighed).any()
+
+
+def test_iterations_limit_every_method():
+    meshes.suzanne(1)
+    for method in ("GAUSS_NEWTON", "GRADIENT_DESCENT", "FIXED_POINT"):
+        few, all_ = (report_of(method=method, iterations=n).figures.deviation for n in (1, 0))
+        assert all_ < 0.7 * few
+
+
+# The preset of the redo panel, which moves with the slider
+
+
+def operator_properties():
+    """Properties of the operator as the redo panel and the sidebar show them."""
+    return bpy.context.window_manager.operator_properties_last("authalic.unwrap")
+
+
+def test_choosing_a_preset_sets_the_slider():
+    properties, solver = operator_properties(), part("solver")
+    for name in (*PRESETS, *reversed(PRESETS)):
+        properties.angle_preset = name
+        assert properties.angle_preset == name
+        assert properties.angle_weight == pytest.approx(solver.PRESETS[name])
+    properties.angle_weight = 0.5
+    assert properties.angle_preset == "CUSTOM"
+    properties.angle_preset = "CUSTOM"
+    assert properties.angle_weight == 0.5
+    properties.angle_preset = "AUTHALIC"
+
+
+@pytest.mark.parametrize("name", ["unwrap", "sphere_shape_key"])
+def test_scripts_may_name_a_preset(name):
+    obj = meshes.bumpy(meshes.icosphere(3))
+    operator = getattr(bpy.ops.authalic, name)
+
+    def written():
+        if name == "unwrap":
+            return meshes.uv(obj)
+        points = np.empty(3 * len(obj.data.vertices), np.float32)
+        obj.data.shape_keys.key_blocks["Authalic Sphere"].points.foreach_get("co", points)
+        return points
+
+    operator(angle_preset="SOFT")
+    by_name = written()
+    operator(angle_weight=part("solver").PRESETS["SOFT"])
+    assert (written() == by_name).all()
+    operator(angle_weight=part("solver").PRESETS["SOFT"], angle_preset="CUSTOM")
+    assert (written() == by_name).all()
+    operator()
+    assert (written() != by_name).any()
+
+
+def test_the_slider_spans_the_useful_weights():
+    solver = part("solver")
+    assert solver.weight(0) == 0
+    assert solver.weight(solver.PRESETS["BALANCED"]) == pytest.approx(0.03, rel=0.01)
+    assert solver.weight(solver.PRESETS["SOFT"]) == pytest.approx(0.3, rel=0.01)
+    weights = [solver.weight(slider) for slider in np.linspace(0, 1, 20)]
+    assert weights == sorted(weights) and weights[1] < 1e-4 and weights[-1] > 3
+
+
+@pytest.mark.parametrize("weight", [0.0, 0.5])
+def test_what_it_says_has_the_angles(weight, capfd):
+    meshes.suzanne(1)
+    bpy.ops.authalic.unwrap(angle_weight=weight)
+    said = capfd.readouterr().out
+    assert "Info: Unwrapped 3 islands, area ratio SD 0." in said and "0 flips, angle distortion " in said

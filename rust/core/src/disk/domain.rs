@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 
 use super::boundary::{self, ArcBarrier};
 use super::{Boundary, Map, certificate};
+use crate::control::Watch;
 use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
@@ -27,8 +28,8 @@ struct Block {
 }
 
 impl Block {
-    fn analyse(laplacian: Laplacian) -> Result<Self, Error> {
-        let factor = Cholesky::analyse(laplacian.matrix())?;
+    fn analyse(mesh: &TriangleMesh, laplacian: Laplacian) -> Result<Self, Error> {
+        let factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
         Ok(Self { laplacian, factor })
     }
 }
@@ -58,11 +59,11 @@ pub(super) struct DiskDomain<'a> {
 impl<'a> DiskDomain<'a> {
     /// Analyses the systems of the domain; the preconditioner must be set before it is used.
     pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
-        let interior = Block::analyse(Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
+        let interior = Block::analyse(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
             Boundary::ArcLength | Boundary::Free => None,
             Boundary::Sliding => {
-                let block = Block::analyse(Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
+                let block = Block::analyse(mesh, Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
                 Some(SlidingBoundary { block, barrier: ArcBarrier::new(mesh) })
             }
         };
@@ -71,10 +72,15 @@ impl<'a> DiskDomain<'a> {
     }
 
     /// Solves L_II f_I = −L_IB f_B in place for one weight per corner, the boundary held.
-    pub(super) fn solve_dirichlet(&mut self, weights: &[f64], map: &mut [[f64; 2]]) -> Result<(), Error> {
+    pub(super) fn solve_dirichlet(
+        &mut self,
+        weights: &[f64],
+        map: &mut [[f64; 2]],
+        watch: &Watch<'_>,
+    ) -> Result<(), Error> {
         self.preconditioned_at.clear();
         let Block { laplacian, factor } = &mut self.interior;
-        solve_dirichlet(self.mesh, laplacian, factor, weights, map)
+        solve_dirichlet(self.mesh, laplacian, factor, weights, map, watch)
     }
 
     /// From now on a map with a folded face has an infinite objective, and one near to folding a large one.
@@ -85,7 +91,7 @@ impl<'a> DiskDomain<'a> {
     }
 
     /// Sets M = 2 I₂ ⊗ L_S(f) at f = `map`.
-    pub(super) fn set_preconditioner(&mut self, map: &[[f64; 2]]) -> Result<(), Error> {
+    pub(super) fn set_preconditioner(&mut self, map: &[[f64; 2]], watch: &Watch<'_>) -> Result<(), Error> {
         if self.preconditioned_at == map {
             return Ok(());
         }
@@ -94,11 +100,11 @@ impl<'a> DiskDomain<'a> {
         let mut weights = self.energy.laplacian_weights(map);
         parallel::fill_with_old(&mut weights, |_, weight| scale * weight);
         self.interior.laplacian.assemble(self.mesh, &weights);
-        self.interior.factor.refactor(self.interior.laplacian.matrix())?;
+        self.interior.factor.refactor_while(self.interior.laplacian.matrix(), watch)?;
         if let Some(SlidingBoundary { block: Block { laplacian, factor }, .. }) = &mut self.boundary {
             let cosine = |i: usize, j: usize| map[i][0] * map[j][0] + map[i][1] * map[j][1];
             laplacian.assemble_scaled(self.mesh, &weights, cosine);
-            factor.refactor(laplacian.matrix())?;
+            factor.refactor_while(laplacian.matrix(), watch)?;
         }
         self.preconditioned_at = map.to_vec();
         Ok(())

@@ -11,9 +11,12 @@
 
 use super::Map;
 use super::domain::DiskDomain;
-use crate::control::{History, Observer, Status};
+use crate::control::{History, Observer, Status, Watch};
+use crate::error::Error;
 use crate::optimize::{Domain, Stopping};
 use crate::parallel;
+
+const MESSAGE: &str = "Fixed-point iteration";
 
 /// Halvings of a step before it is given up.
 const HALVINGS: i32 = 20;
@@ -34,8 +37,11 @@ pub(super) fn fixed_point(
         if energies.authalic_energy < best.0 {
             best = (energies.authalic_energy, map.clone());
         }
-        if domain.set_preconditioner(&map).is_err() {
-            return (best.1, Status::Stalled);
+        let fraction = done as f64 / stopping.max_iterations.max(1) as f64;
+        match domain.set_preconditioner(&map, &Watch::new(observer, fraction.min(1.0), MESSAGE)) {
+            Ok(()) => {}
+            Err(Error::CancelledEarly) => return (best.1, Status::Cancelled),
+            Err(_) => return (best.1, Status::Stalled),
         }
         let correction = domain.precondition(&map, &gradient);
         let norm = parallel::dot(&gradient, &correction).max(0.0).sqrt();
@@ -44,7 +50,7 @@ pub(super) fn fixed_point(
             _ => history.push(energies.authalic_energy, step, norm),
         }
         // 2. Enough?
-        if let Some(status) = stopping.verdict(done, norm, "Fixed-point iteration", observer) {
+        if let Some(status) = stopping.verdict(done, norm, MESSAGE, observer) {
             return (best.1, status);
         }
         // 3. The unit step

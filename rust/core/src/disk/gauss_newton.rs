@@ -12,16 +12,18 @@
 use super::domain::DiskDomain;
 use super::fixed_point::fixed_point;
 use super::run::Run;
-use super::{Boundary, certificate, start, unfold};
-use crate::control::{History, Observer, Phase, Status};
+use super::{Boundary, DiskMapOptions, certificate, start, unfold};
+use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::embedding::{Stop, progressive_disk};
 use crate::energy::authalic::Codomain;
 use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::Vector;
+use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
 use crate::optimize::{Stopping, floors};
+use crate::sparse::{Order, elimination_order};
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;
@@ -50,16 +52,48 @@ const TOLERANCE: f64 = 2e-4;
 /// Up to so many vertices a cancelled run computes an embedding where it has none yet.
 const QUICK: usize = 50_000;
 
+const MESSAGE: &str = "Start map";
+
 /// A map in the plane z = 1.
 type Map = Vec<Vector>;
 
 impl Run<'_> {
+    /// An area-preserving map without folds, computed on the mesh in elimination order.
+    ///
+    /// # Errors
+    /// As [`Self::gauss_newton`].
+    pub(super) fn renumbered(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(super::Map, Status), Error> {
+        let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
+        let by_order = Renumbered::new(self.mesh, order);
+        let targets = by_order.of_faces(self.targets);
+        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
+        let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let run = Run { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
+        let (map, status) = run.gauss_newton(history, observer).map_err(|error| match error {
+            Error::NoEmbedding { folded } => {
+                Error::NoEmbedding { folded: self.given_faces(&by_order, folded) }
+            }
+            error => error,
+        })?;
+        Ok((by_order.given(&map), status))
+    }
+
+    /// Faces of the renumbered mesh by their given indices.
+    fn given_faces(&self, by_order: &Renumbered, folded: Elements) -> Elements {
+        let given = |face: &usize| self.given_face(by_order.faces[*face] as usize);
+        Elements { first: folded.first.iter().map(given).collect(), ..folded }
+    }
+
     /// An area-preserving map without folds.
     ///
     /// # Errors
     /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
     /// there was a map without folds.
-    pub(super) fn gauss_newton(
+    fn gauss_newton(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -67,7 +101,7 @@ impl Run<'_> {
         // 1. Targets of slivers raised to a floor
         let floor = floors::floors(self.targets)[0];
         let energy = floors::energy(self.mesh, self.targets, self.codomain(), floor);
-        let problem = Problem::new(energy, self.motions())?.with_outline(self.outline());
+        let problem = Problem::new(energy, self.motions(), Order::AsGiven)?.with_outline(self.outline());
         // 2. The quick start; what folds is unfolded by an unguarded descent
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (quick, status) = self.quick_start(&problem, history, &mut phase);
@@ -145,8 +179,10 @@ impl Run<'_> {
     ) -> (Option<Map>, Status) {
         // 1. Fixed-point steps, or the map given
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
-        let Ok((stepped, status)) = self.fixed_point_steps(problem, history, &mut phase) else {
-            return (None, Status::Stalled);
+        let (stepped, status) = match self.fixed_point_steps(problem, history, &mut phase) {
+            Ok(reached) => reached,
+            Err(Error::CancelledEarly) => return (None, Status::Cancelled),
+            Err(_) => return (None, Status::Stalled),
         };
         let is_embedding = problem.energy.is_embedding(&stepped);
         if status == Status::Cancelled || (is_embedding && self.options.initial.is_some()) {
@@ -192,7 +228,7 @@ impl Run<'_> {
             other => other,
         };
         let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), boundary)?;
-        let start = start::start(self.mesh, &mut domain)?;
+        let start = start::start(self.mesh, &mut domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let stopping = Stopping { max_iterations: FIXED_POINT_STEPS, tolerance: NEAR };
         let (map, status) = fixed_point(&mut domain, start, &stopping, history, observer);
         Ok((lifted(map), status))
@@ -209,7 +245,13 @@ impl Run<'_> {
             return Err(Error::CancelledEarly);
         }
         let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), Boundary::ArcLength)?;
-        let tutte = start::tutte(self.mesh, &mut domain).map(lifted);
+        let mut silent = Silent;
+        let watch = match status {
+            // a run already cancelled has no one to ask
+            Status::Cancelled => Watch::new(&mut silent, 0.0, MESSAGE),
+            _ => Watch::new(observer, 0.0, MESSAGE),
+        };
+        let tutte = start::tutte(self.mesh, &mut domain, &watch).map(lifted);
         let holds = |map: &Map| problem.energy.is_embedding(map);
         if let Some(tutte) = tutte.iter().find(|map| holds(map) && self.has_not_collapsed(problem, map)) {
             return Ok((tutte.clone(), status));
@@ -224,7 +266,7 @@ impl Run<'_> {
     /// Any map without folds, however small its faces.
     fn last_resort(&self, tutte: Map) -> Result<Map, Error> {
         let folded = certificate::folded(self.mesh, &flat(&tutte));
-        match Elements::collect(folded.into_iter().map(|face| self.given_face(face))) {
+        match Elements::collect(folded) {
             None => Ok(tutte),
             Some(folded) => Err(Error::NoEmbedding { folded }),
         }

@@ -136,9 +136,12 @@ pub fn disk_map(
         _ => Some(holes::fill_holes(mesh, &given)?),
     };
     let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
-    // 3. Minimise the stretch energy, unfold what folded
-    let (mut uv, status) = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() }
-        .solve(&mut history, observer)?;
+    // 3. Minimise the energy, unfold what folded
+    let run = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() };
+    let (mut uv, status) = match options.method {
+        Method::GaussNewton => run.renumbered(&mut history, observer)?,
+        Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
+    };
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }

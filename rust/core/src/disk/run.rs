@@ -7,7 +7,7 @@
 use super::domain::DiskDomain;
 use super::fixed_point::fixed_point;
 use super::{DiskMapOptions, Map, Method, certificate, start, unfold};
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::optimize::nonlinear_cg::{CgOptions, minimize};
@@ -18,6 +18,8 @@ const FIXED_POINT_STEPS: usize = 5;
 
 /// Conjugate gradient iterations with one preconditioner, the paper's 50.
 const ROUND: usize = 50;
+
+const MESSAGE: &str = "Minimising the stretch energy";
 
 /// One computation on a surface with one boundary loop.
 #[derive(Clone, Copy)]
@@ -30,15 +32,12 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Our own method, or the papers' and then whatever it takes to have no folded face.
+    /// The papers' method, then whatever it takes to have no folded face.
     pub(super) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        if self.options.method == Method::GaussNewton {
-            return self.gauss_newton(history, observer);
-        }
         let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
         let (map, status) = self.as_published(&mut domain, history, observer)?;
@@ -72,7 +71,7 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        let tutte = start::tutte(self.mesh, domain)?;
+        let tutte = start::tutte(self.mesh, domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let folded = certificate::folded(self.mesh, &tutte);
         match (Elements::collect(folded.into_iter().map(|face| self.given_face(face))), mended) {
             (Some(folded), None) => Err(Error::NoEmbedding { folded }),
@@ -97,8 +96,9 @@ impl Run<'_> {
         let (map, status) = match (self.options.initial, self.options.method) {
             (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
             (initial, method) => {
-                let start =
-                    initial.map_or_else(|| start::start(self.mesh, domain), |map| Ok(map.to_vec()))?;
+                let watch = Watch::new(observer, 0.0, MESSAGE);
+                let begin = || start::start(self.mesh, domain, &watch);
+                let start = initial.map_or_else(begin, |map| Ok(map.to_vec()))?;
                 let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
                 let mut phase = Phase { whole: observer, from: 0.0, to };
                 fixed_point(domain, start, &self.fixed_point_stopping(), history, &mut phase)
@@ -132,8 +132,10 @@ impl Run<'_> {
             let options =
                 CgOptions { stopping: Stopping { max_iterations: budget, ..whole }, ..CgOptions::default() };
             let mut round = Phase { whole: observer, from: part(done), to: part(done + budget) };
-            if domain.set_preconditioner(&map).is_err() {
-                return (map, Status::Stalled);
+            match domain.set_preconditioner(&map, &Watch::new(&mut round, 0.0, MESSAGE)) {
+                Ok(()) => {}
+                Err(Error::CancelledEarly) => return (map, Status::Cancelled),
+                Err(_) => return (map, Status::Stalled),
             }
             let (reached, status) = minimize(domain, map, &options, history, &mut round);
             let advanced = history.iterations() - begun > done;

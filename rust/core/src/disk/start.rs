@@ -7,30 +7,47 @@
 
 use super::domain::DiskDomain;
 use super::{Map, boundary};
+use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::corner_cotangents;
 
 /// The harmonic map, or Tutte's where slivers make the cotangents too large for the harmonic system.
-pub(super) fn start(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
-    harmonic(mesh, domain).or_else(|_| tutte(mesh, domain))
+pub(super) fn start(
+    mesh: &TriangleMesh,
+    domain: &mut DiskDomain<'_>,
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
+    harmonic(mesh, domain, watch).or_else(|error| match error {
+        Error::CancelledEarly => Err(error),
+        _ => tutte(mesh, domain, watch),
+    })
 }
 
 /// The harmonic map with an arc-length boundary.
-fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
+fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>, watch: &Watch<'_>) -> Result<Map, Error> {
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let weights: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
-    solve(mesh, domain, &weights)
+    solve(mesh, domain, &weights, watch)
 }
 
 /// Tutte's map with an arc-length boundary.
-pub(super) fn tutte(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>) -> Result<Map, Error> {
+pub(super) fn tutte(
+    mesh: &TriangleMesh,
+    domain: &mut DiskDomain<'_>,
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
     // half an edge's weight per face, so that every interior edge has weight 1
-    solve(mesh, domain, &vec![0.5; 3 * mesh.n_faces()])
+    solve(mesh, domain, &vec![0.5; 3 * mesh.n_faces()], watch)
 }
 
-fn solve(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>, weights: &[f64]) -> Result<Map, Error> {
+fn solve(
+    mesh: &TriangleMesh,
+    domain: &mut DiskDomain<'_>,
+    weights: &[f64],
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
     let mut map = boundary::arc_length(mesh);
-    domain.solve_dirichlet(weights, &mut map)?;
+    domain.solve_dirichlet(weights, &mut map, watch)?;
     Ok(map)
 }

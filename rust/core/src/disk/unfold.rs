@@ -67,7 +67,8 @@ mod tests {
 
     fn tutte(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
         let mut domain = DiskDomain::new(mesh, mesh.face_areas(), Boundary::ArcLength).unwrap();
-        start::tutte(mesh, &mut domain).unwrap()
+        let mut silent = crate::Silent;
+        start::tutte(mesh, &mut domain, &crate::control::Watch::new(&mut silent, 0.0, "")).unwrap()
     }
 
     #[test]

@@ -9,6 +9,7 @@ pub(crate) mod decimation;
 pub mod geometry;
 pub mod orientation;
 pub(crate) mod polygon;
+pub(crate) mod renumbering;
 mod soup;
 mod topology;
 mod validate;
@@ -47,6 +48,8 @@ pub struct TriangleMesh {
     corners: VertexCorners,
     on_boundary: Vec<bool>,
     topology: Topology,
+    /// Whether a factorisation may eliminate the vertices as they come.
+    in_elimination_order: bool,
 }
 
 impl TriangleMesh {
@@ -82,7 +85,18 @@ impl TriangleMesh {
         let flipped = flipped_indices(&orientation);
         let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
         let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
-        Ok(Self { points, scale, faces, flipped, areas, opposite, corners, on_boundary, topology })
+        Ok(Self {
+            points,
+            scale,
+            faces,
+            flipped,
+            areas,
+            opposite,
+            corners,
+            on_boundary,
+            topology,
+            in_elimination_order: false,
+        })
     }
 
     /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
@@ -157,6 +171,11 @@ impl TriangleMesh {
     /// The number of handles, summed over the components.
     pub fn genus(&self) -> usize {
         self.topology.genus.unwrap_or(0)
+    }
+
+    /// Whether the vertices come in an order that keeps factors sparse.
+    pub(crate) fn in_elimination_order(&self) -> bool {
+        self.in_elimination_order
     }
 
     /// What kind of surface the mesh is.

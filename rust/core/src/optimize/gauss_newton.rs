@@ -28,7 +28,7 @@ use crate::error::Error;
 use crate::mesh::geometry::Vector;
 use crate::mesh::polygon::is_simple_polygon;
 use crate::parallel;
-use crate::sparse::{Analysis, Factor, Failure};
+use crate::sparse::{Analysis, Factor, Failure, Order};
 
 /// A map of the vertices, in space.
 pub(crate) type Map = Vec<Vector>;
@@ -105,10 +105,10 @@ impl Problem {
         Self { energy, ..self }
     }
 
-    /// Orders and analyses the system of the energy.
-    pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>) -> Result<Self, Error> {
+    /// Analyses the system of the energy, its vertices in an order to be found or as they come.
+    pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>, order: Order) -> Result<Self, Error> {
         let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
-        let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns)?;
+        let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns, order)?;
         Ok(Self { energy, motions, outline: Vec::new(), analysis })
     }
 

@@ -12,6 +12,7 @@ use crate::control::Watch;
 use crate::energy::authalic::Weights;
 use crate::energy::motion::Motion;
 use crate::parallel;
+use crate::sparse::Order;
 
 /// The worst faces are taken until they carry this part of the energy of areas,
 const WORST: f64 = 0.8;
@@ -101,7 +102,7 @@ fn cut_out(problem: &Problem, faces: &[u32]) -> Option<Patch> {
     let motion =
         |vertex: &u32| if is_free(vertex) { problem.motions[*vertex as usize] } else { Motion::Held };
     let motions: Vec<Motion> = vertices.iter().map(motion).collect();
-    let problem = Problem::new(patch, motions).ok()?;
+    let problem = Problem::new(patch, motions, Order::Sparse).ok()?;
     (!faces.is_empty()).then_some(Patch { problem, vertices })
 }
 

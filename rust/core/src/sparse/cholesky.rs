@@ -7,9 +7,10 @@
 
 use sprs::CsMat;
 
-use super::multifrontal::{Element, Factor, Failure, NONE, Place, Symbolic};
+use super::multifrontal::{Element, Factor, Failure, NONE, Order, Place, Symbolic};
 use crate::Error;
 use crate::control::{Silent, Watch};
+use crate::mesh::TriangleMesh;
 
 /// A Cholesky factorisation `P A Pᵀ = L Lᵀ` with a fill-reducing ordering P.
 #[derive(Debug)]
@@ -25,13 +26,26 @@ impl Cholesky {
     /// # Errors
     /// [`Error::FactorizationFailed`] where the matrix is too large for 32-bit indices.
     pub fn analyse(upper: &CsMat<f64>) -> Result<Self, Error> {
+        Self::analyse_in(Order::Sparse, upper)
+    }
+
+    /// The same for the system of some vertices of a mesh, in ascending order; what is known of their order is used.
+    ///
+    /// # Errors
+    /// As [`Self::analyse`].
+    pub(crate) fn analyse_on(mesh: &TriangleMesh, upper: &CsMat<f64>) -> Result<Self, Error> {
+        let order = if mesh.in_elimination_order() { Order::AsGiven } else { Order::Sparse };
+        Self::analyse_in(order, upper)
+    }
+
+    fn analyse_in(order: Order, upper: &CsMat<f64>) -> Result<Self, Error> {
         assert!(upper.is_csc(), "the factorisations take compressed columns");
         let entry = |(_, (row, column)): (&f64, (usize, usize))| match row == column {
             true => [row as u32, NONE, NONE],
             false => [row as u32, column as u32, NONE],
         };
         let entries: Vec<[u32; 3]> = upper.iter().map(entry).collect();
-        let symbolic = Symbolic::new(&entries, &vec![1; upper.cols()])?;
+        let symbolic = Symbolic::new(&entries, &vec![1; upper.cols()], order)?;
         let factor = Factor::of(&symbolic);
         Ok(Self { symbolic, factor })
     }
@@ -41,15 +55,23 @@ impl Cholesky {
     /// # Errors
     /// [`Error::FactorizationFailed`] where the matrix is not positive definite to working precision.
     pub fn refactor(&mut self, upper: &CsMat<f64>) -> Result<(), Error> {
+        let mut silent = Silent;
+        self.refactor_while(upper, &Watch::new(&mut silent, 0.0, ""))
+    }
+
+    /// The same, ended early by the watch.
+    ///
+    /// # Errors
+    /// As [`Self::refactor`], and [`Error::CancelledEarly`].
+    pub(crate) fn refactor_while(&mut self, upper: &CsMat<f64>, watch: &Watch<'_>) -> Result<(), Error> {
         let values = upper.data();
         let assemble = |at: &Element, place: &mut Place<'_, f64>| {
             let other = if at.rows[1] == NONE { at.rows[0] } else { at.rows[1] };
             place.add(at.rows[0] as usize, other as usize, values[at.index as usize]);
         };
-        let mut silent = Silent;
-        let watch = Watch::new(&mut silent, 0.0, "");
-        self.factor.refactor_by(&self.symbolic, &assemble, &watch).map_err(|failure| match failure {
-            Failure::NotPositiveDefinite | Failure::Cancelled => Error::FactorizationFailed {
+        self.factor.refactor_by(&self.symbolic, &assemble, watch).map_err(|failure| match failure {
+            Failure::Cancelled => Error::CancelledEarly,
+            Failure::NotPositiveDefinite => Error::FactorizationFailed {
                 what: format!("a system of {} unknowns is not positive definite", upper.cols()),
             },
         })

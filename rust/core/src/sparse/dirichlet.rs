@@ -2,6 +2,7 @@
 //! Planar harmonic maps with some vertices held.
 
 use super::{Cholesky, Laplacian};
+use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 
@@ -9,16 +10,18 @@ use crate::mesh::TriangleMesh;
 /// `factor` must have analysed its pattern.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where L_II is not positive definite to working precision.
+/// [`Error::FactorizationFailed`] where L_II is not positive definite to working precision, [`Error::CancelledEarly`]
+/// by the watch.
 pub(crate) fn solve_dirichlet(
     mesh: &TriangleMesh,
     laplacian: &mut Laplacian,
     factor: &mut Cholesky,
     weights: &[f64],
     map: &mut [[f64; 2]],
+    watch: &Watch<'_>,
 ) -> Result<(), Error> {
     laplacian.assemble(mesh, weights);
-    factor.refactor(laplacian.matrix())?;
+    factor.refactor_while(laplacian.matrix(), watch)?;
     let mut correction = laplacian.residual(mesh, weights, map);
     factor.solve(&mut correction);
     let n = laplacian.free().len();

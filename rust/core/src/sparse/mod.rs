@@ -12,4 +12,4 @@ pub(crate) use dirichlet::solve_dirichlet;
 pub use factor::solve_general;
 pub(crate) use factor::top_eigenvector;
 pub use laplacian::Laplacian;
-pub(crate) use multifrontal::{Analysis, Factor, Failure};
+pub(crate) use multifrontal::{Analysis, Factor, Failure, Order, elimination_order};

@@ -9,6 +9,7 @@
 //! tangent planes.
 
 use super::Map;
+use crate::control::Watch;
 use crate::energy::SpatialStretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
@@ -57,20 +58,20 @@ impl<'a> SphereDomain<'a> {
     ///
     /// # Errors
     /// [`Error::FactorizationFailed`] where the weights are too far apart.
-    pub(super) fn set_preconditioner(&mut self, map: &[Vector]) -> Result<(), Error> {
+    pub(super) fn set_preconditioner(&mut self, map: &[Vector], watch: &Watch<'_>) -> Result<(), Error> {
         let mut weights = self.energy.laplacian_weights(map);
         parallel::fill_with_old(&mut weights, |_, weight| 2.0 * weight);
         let (mut laplacian, mut factor) = match self.preconditioner.take() {
             Some(block) => block,
             None => {
                 let laplacian = Laplacian::new(self.mesh, |_| true);
-                let factor = Cholesky::analyse(laplacian.matrix())?;
+                let factor = Cholesky::analyse_on(self.mesh, laplacian.matrix())?;
                 (laplacian, factor)
             }
         };
         laplacian.assemble(self.mesh, &weights);
         laplacian.shift_diagonal(SHIFT);
-        factor.refactor(laplacian.matrix())?;
+        factor.refactor_while(laplacian.matrix(), watch)?;
         self.preconditioner = Some((laplacian, factor));
         Ok(())
     }

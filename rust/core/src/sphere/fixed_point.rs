@@ -21,7 +21,7 @@
 use super::Map;
 use super::domain::SphereDomain;
 use super::stereographic::{Chart, weighted_median};
-use crate::control::{History, Observer, Status};
+use crate::control::{History, Observer, Status, Watch};
 use crate::error::Error;
 use crate::optimize::Domain;
 use crate::parallel;
@@ -29,6 +29,8 @@ use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
 /// r of the algorithm: modulus up to which a chart's vertices are solved for.
 const RADIUS: f64 = 1.2;
+
+const MESSAGE: &str = "Fixed-point iteration";
 
 /// When the iteration ends.
 #[derive(Debug, Clone, Copy)]
@@ -58,13 +60,17 @@ pub(super) fn fixed_point(
         if done >= stopping.max_iterations {
             return (map, Status::MaxIterations);
         }
-        if !observer.progress(done as f64 / stopping.max_iterations as f64, "Fixed-point iteration") {
+        let fraction = done as f64 / stopping.max_iterations as f64;
+        if !observer.progress(fraction, MESSAGE) {
             return (map, Status::Cancelled);
         }
         // 2. The other hemisphere's chart, solved and rescaled
         chart = chart.inverted();
-        let Ok(moved) = iterate(domain, weights, &map, chart) else {
-            return (map, Status::Stalled);
+        let watch = Watch::new(observer, fraction, MESSAGE);
+        let moved = match iterate(domain, weights, &map, chart, &watch) {
+            Ok(moved) => moved,
+            Err(Error::CancelledEarly) => return (map, Status::Cancelled),
+            Err(_) => return (map, Status::Stalled),
         };
         // 3. δ = E_S(g) − E_S(f)
         let delta = energy - stretch(&moved);
@@ -81,14 +87,20 @@ pub(super) fn fixed_point(
 }
 
 /// One step of the iteration in one chart.
-fn iterate(domain: &SphereDomain<'_>, weights: &[f64], map: &Map, chart: Chart) -> Result<Map, Error> {
+fn iterate(
+    domain: &SphereDomain<'_>,
+    weights: &[f64],
+    map: &Map,
+    chart: Chart,
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
     let (mesh, by_corner) = (domain.mesh(), domain.energy().laplacian_weights(map));
     let mut plane = chart.project_all(map);
     let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
     // 1. Solve for the vertices inside
     let mut laplacian = Laplacian::new(mesh, |vertex| modulus(plane[vertex]) < RADIUS);
-    let mut factor = Cholesky::analyse(laplacian.matrix())?;
-    solve_dirichlet(mesh, &mut laplacian, &mut factor, &by_corner, &mut plane)?;
+    let mut factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
+    solve_dirichlet(mesh, &mut laplacian, &mut factor, &by_corner, &mut plane, watch)?;
     // 2. Divide by the median modulus
     let scale = weighted_median(&parallel::map(plane.len(), |v| modulus(plane[v])), weights);
     parallel::fill_with_old(&mut plane, |_, z| [z[0] / scale, z[1] / scale]);

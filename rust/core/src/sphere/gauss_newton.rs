@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
 use super::run::Run;
-use super::{Map, normalized, start, unfold};
+use super::{Map, SphereMapOptions, normalized, start, unfold};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
@@ -22,9 +22,11 @@ use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::{cross, dot, triangle};
+use crate::mesh::renumbering::Renumbered;
 use crate::optimize::floors;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem};
 use crate::parallel;
+use crate::sparse::{Order, elimination_order};
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;
@@ -45,12 +47,37 @@ const UNEVEN: f64 = 0.02;
 const TOLERANCE: f64 = 2e-4;
 
 impl Run<'_> {
+    /// An area-preserving map without folds, computed on the mesh in elimination order.
+    ///
+    /// # Errors
+    /// As [`Self::gauss_newton`].
+    pub(super) fn renumbered(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
+        let by_order = Renumbered::new(self.mesh, order);
+        let (targets, weights) = (by_order.of_faces(self.targets), by_order.of_vertices(self.weights));
+        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
+        let options = SphereMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let run = Run { mesh: &by_order.mesh, targets: &targets, weights: &weights, options: &options };
+        let (map, status) = run.gauss_newton(history, observer).map_err(|error| match error {
+            Error::NoEmbedding { folded: Elements { first, count, arity } } => {
+                let first = first.iter().map(|&face| by_order.faces[face] as usize).collect();
+                Error::NoEmbedding { folded: Elements { first, count, arity } }
+            }
+            error => error,
+        })?;
+        Ok((by_order.given(&map), status))
+    }
+
     /// An area-preserving map without folds.
     ///
     /// # Errors
     /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
     /// there was a map without folds.
-    pub(super) fn gauss_newton(
+    fn gauss_newton(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -58,7 +85,7 @@ impl Run<'_> {
         // 1. Targets of slivers raised to a floor
         let floor = floors::floors(self.targets)[0];
         let energy = floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
-        let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()])?;
+        let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()], Order::AsGiven)?;
         // 2. A start without folds
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (quick, status) = self.quick_start(&problem, history, &mut phase)?;
@@ -95,8 +122,10 @@ impl Run<'_> {
         }
         // 2. The conformal start and fixed-point steps
         let targets = problem.energy.targets();
-        let Ok(start) = start::start(self.mesh, targets, self.weights) else {
-            return Ok((None, Status::Stalled));
+        let start = match start::start(self.mesh, targets, self.weights, observer) {
+            Ok(start) => start,
+            Err(Error::CancelledEarly) => return Err(Error::CancelledEarly),
+            Err(_) => return Ok((None, Status::Stalled)),
         };
         let domain = SphereDomain::new(self.mesh, targets);
         let stopping =
@@ -116,7 +145,7 @@ impl Run<'_> {
             Err(Stop::Cancelled) => return Err(Error::CancelledEarly),
             _ => {}
         }
-        let start = start::start(self.mesh, self.targets, self.weights)?;
+        let start = start::start(self.mesh, self.targets, self.weights, observer)?;
         match Elements::collect(folded_on_sphere(self.mesh.faces(), &start)) {
             None => Ok(start),
             Some(folded) => Err(Error::NoEmbedding { folded }),

@@ -139,9 +139,12 @@ pub fn sphere_map(
         None => mesh.face_areas().into(),
     };
     let weights = vertex_weights(mesh, &targets);
-    // 3. Minimise the stretch energy, unfold what folded
+    // 3. Minimise the energy, unfold what folded
     let run = Run { mesh, targets: &targets, weights: &weights, options };
-    let (map, status) = run.solve(&mut history, observer)?;
+    let (map, status) = match options.method {
+        SphereMethod::GaussNewton => run.renumbered(&mut history, observer)?,
+        SphereMethod::FixedPoint | SphereMethod::GradientDescent => run.solve(&mut history, observer)?,
+    };
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }

@@ -7,9 +7,9 @@
 use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
 use super::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::folded_on_sphere;
-use crate::embedding::{progressive_sphere, relaxed};
+use crate::embedding::{Stop, progressive_sphere, relaxed};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::optimize::gradient_descent::{DescentOptions, minimize};
@@ -42,18 +42,15 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Our own method, or the papers' and then whatever it takes to have no folded face.
+    /// The papers' method, then whatever it takes to have no folded face.
     pub(super) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        if self.options.method == SphereMethod::GaussNewton {
-            return self.gauss_newton(history, observer);
-        }
         let mut domain = SphereDomain::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
-        let start = self.start()?;
+        let start = self.start(observer)?;
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
         // 2. The correction that the paper makes here
@@ -122,21 +119,28 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        let unfolded =
-            [unfold::unfold(self.mesh, map), progressive_sphere(self.mesh, self.targets, observer).ok()];
-        let (mut best, mut status) = (None, Status::MaxIterations);
-        for (half, map) in unfolded.into_iter().enumerate() {
-            let (Some(map), true) = (map, status != Status::Cancelled) else { continue };
-            let from = 0.5 * half as f64;
-            let mut phase = Phase { whole: observer, from, to: from + 0.5 };
-            let (map, ended) = relaxed(self.mesh, self.targets, map, &mut phase);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let progressive = progressive_sphere(self.mesh, self.targets, &mut phase);
+        let is_cancelled = progressive.as_ref().is_err_and(|stop| *stop == Stop::Cancelled);
+        let mut status = if is_cancelled { Status::Cancelled } else { Status::MaxIterations };
+        let unfolded = [unfold::unfold(self.mesh, map), progressive.ok()];
+        let mut best = None;
+        for (half, mut map) in unfolded.into_iter().flatten().enumerate() {
+            if status != Status::Cancelled {
+                let from = 0.4 + 0.3 * half as f64;
+                let mut phase = Phase { whole: observer, from, to: from + 0.3 };
+                (map, status) = relaxed(self.mesh, self.targets, map, &mut phase);
+            }
             let value = domain.objective(&map);
             if value.is_finite() && best.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
                 best = Some((value, map));
             }
-            status = ended;
         }
-        let map = best.map_or_else(|| self.conformal(), |(_, map)| Ok(map))?;
+        let map = match best {
+            Some((_, map)) => map,
+            None if status == Status::Cancelled => return Err(Error::CancelledEarly),
+            None => self.conformal(observer)?,
+        };
         Ok((recorded(domain, map, history), status))
     }
 
@@ -190,12 +194,14 @@ impl Run<'_> {
         let whole = self.stopping();
         let mut done = 0;
         while done < whole.max_iterations {
-            if domain.set_preconditioner(&map).is_err() {
-                return (map, Status::Stalled);
-            }
             let budget = ROUND.min(whole.max_iterations - done);
             let part = |done: usize| done as f64 / whole.max_iterations as f64;
             let mut phase = Phase { whole: observer, from: part(done), to: part(done + budget) };
+            match domain.set_preconditioner(&map, &Watch::new(&mut phase, 0.0, "Evening out areas")) {
+                Ok(()) => {}
+                Err(Error::CancelledEarly) => return (map, Status::Cancelled),
+                Err(_) => return (map, Status::Stalled),
+            }
             let stopping = Stopping { max_iterations: budget, ..whole };
             let begun = history.iterations();
             let options = DescentOptions { stopping, ..DescentOptions::default() };
@@ -210,16 +216,16 @@ impl Run<'_> {
     }
 
     /// The start map given, or the conformal one.
-    fn start(&self) -> Result<Map, Error> {
+    fn start(&self, observer: &mut dyn Observer) -> Result<Map, Error> {
         match self.options.initial {
             Some(initial) => Ok(initial.iter().filter_map(|&x| normalized(x)).collect()),
-            None => self.conformal(),
+            None => self.conformal(observer),
         }
     }
 
     /// A start map without folds.
-    fn conformal(&self) -> Result<Map, Error> {
-        start::start(self.mesh, self.targets, self.weights)
+    fn conformal(&self, observer: &mut dyn Observer) -> Result<Map, Error> {
+        start::start(self.mesh, self.targets, self.weights, observer)
     }
 
     fn folded(&self, map: &Map) -> Vec<usize> {

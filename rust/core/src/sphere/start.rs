@@ -16,9 +16,9 @@ use std::f64::consts::PI;
 
 use super::stereographic::{Chart, weighted_median};
 use super::{Map, unfold};
-use crate::control::Silent;
+use crate::control::{Observer, Watch};
 use crate::distortion::folded_on_sphere;
-use crate::embedding::progressive_sphere;
+use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
@@ -41,18 +41,31 @@ const COLLAPSED: f64 = 1e-9;
 /// conformal map's E_A; a conformal map turns such a surface about for nothing.
 const ROUND: f64 = 0.1;
 
+const MESSAGE: &str = "Start map";
+
 /// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
 /// the progressive one where parts of that have collapsed; on a sphere the surface itself.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where both fold in double precision.
-pub(super) fn start(mesh: &TriangleMesh, targets: &[f64], weights: &[f64]) -> Result<Map, Error> {
+/// [`Error::NoEmbedding`] where both fold in double precision, [`Error::CancelledEarly`] by the observer.
+pub(super) fn start(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    weights: &[f64],
+    observer: &mut dyn Observer,
+) -> Result<Map, Error> {
     // 1. The conformal map where it is of use, else the progressive one
-    let conformal = conformal(mesh, weights);
+    let conformal = conformal(mesh, weights, &Watch::new(observer, 0.0, MESSAGE));
+    if matches!(conformal, Err(Error::CancelledEarly)) {
+        return conformal;
+    }
     let mended = conformal.as_ref().ok().and_then(|map| unfold::unfold(mesh, map));
     let (map, part) = match mended.clone().filter(|map| !has_collapsed(mesh, targets, map)) {
         Some(map) => (Some(map), ROUND),
-        None => (progressive_sphere(mesh, targets, &mut Silent).ok(), 1.0),
+        None => match progressive_sphere(mesh, targets, observer) {
+            Err(Stop::Cancelled) => return mended.ok_or(Error::CancelledEarly),
+            map => (map.ok(), 1.0),
+        },
     };
     // 2. On a sphere the surface itself
     let energy = |map: &Map| SpatialStretchEnergy::new(mesh, targets).value(map).authalic_energy;
@@ -94,11 +107,11 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
 ///
 /// # Errors
 /// [`Error::FactorizationFailed`] where slivers make the cotangents too large.
-fn conformal(mesh: &TriangleMesh, weights: &[f64]) -> Result<Map, Error> {
+fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let by_corner: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
     let removed = roundest_face(mesh);
-    let mut plane = harmonic(mesh, removed, &by_corner)?;
+    let mut plane = harmonic(mesh, removed, &by_corner, watch)?;
     normalise(&mut plane, weights);
     let map = centred(Chart::South.lift_all(&plane), weights);
     Ok(upright(map, mesh.faces()[removed]))
@@ -134,15 +147,20 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
 ///
 /// The held triangle has that face's shape and is run through clockwise, so that all other faces run
 /// counter-clockwise inside it.
-fn harmonic(mesh: &TriangleMesh, removed: usize, by_corner: &[f64]) -> Result<Vec<[f64; 2]>, Error> {
+fn harmonic(
+    mesh: &TriangleMesh,
+    removed: usize,
+    by_corner: &[f64],
+    watch: &Watch<'_>,
+) -> Result<Vec<[f64; 2]>, Error> {
     let held = mesh.faces()[removed];
     let mut plane = vec![[0.0; 2]; mesh.n_vertices()];
     for (vertex, place) in held.into_iter().zip(mirrored_triangle(triangle(mesh.points(), held))) {
         plane[vertex as usize] = place;
     }
     let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&(vertex as u32)));
-    let mut factor = Cholesky::analyse(laplacian.matrix())?;
-    solve_dirichlet(mesh, &mut laplacian, &mut factor, by_corner, &mut plane)?;
+    let mut factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
+    solve_dirichlet(mesh, &mut laplacian, &mut factor, by_corner, &mut plane, watch)?;
     Ok(plane)
 }
 

@@ -40,6 +40,25 @@ pub(crate) enum Failure {
     Cancelled,
 }
 
+/// In which order to eliminate nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// In one that is looked for, to keep the factor sparse.
+    Sparse,
+    /// As they come: those of a mesh in [`elimination_order`], or some of them.
+    AsGiven,
+}
+
+/// The vertices of a mesh in an order that keeps factors sparse, every subtree of the elimination tree contiguous.
+///
+/// # Errors
+/// [`Error::FactorizationFailed`] where the mesh is too large for 32-bit indices.
+pub(crate) fn elimination_order(n_vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<u32>, Error> {
+    let graph = Graph::of_cliques(n_vertices, faces);
+    let order = fill_reducing_order(&graph)?;
+    Ok(Elimination::new(&graph, &order, &vec![1; n_vertices]).order)
+}
+
 /// The pattern of the factor for one mesh and the unknowns of its vertices.
 #[derive(Debug, Clone)]
 pub(crate) struct Analysis {
@@ -55,7 +74,12 @@ impl Analysis {
     ///
     /// # Errors
     /// [`Error::FactorizationFailed`] where the mesh is too large for 32-bit indices.
-    pub(crate) fn new(n_vertices: usize, faces: &[[u32; 3]], dofs: &[u8]) -> Result<Self, Error> {
+    pub(crate) fn new(
+        n_vertices: usize,
+        faces: &[[u32; 3]],
+        dofs: &[u8],
+        order: Order,
+    ) -> Result<Self, Error> {
         debug_assert_eq!(n_vertices, dofs.len());
         let mut first_unknown = vec![0; n_vertices + 1];
         let mut node_of = vec![NONE; n_vertices];
@@ -69,7 +93,7 @@ impl Analysis {
         }
         let cliques: Vec<[u32; 3]> =
             faces.iter().map(|face| face.map(|vertex| node_of[vertex as usize])).collect();
-        Ok(Self { first_unknown, symbolic: Symbolic::new(&cliques, &node_dofs)? })
+        Ok(Self { first_unknown, symbolic: Symbolic::new(&cliques, &node_dofs, order)? })
     }
 
     /// How many unknowns there are.
@@ -93,9 +117,12 @@ pub(super) struct Symbolic {
 
 impl Symbolic {
     /// Orders and analyses the sum of matrices over cliques of nodes; [`NONE`] is no node.
-    pub(super) fn new(cliques: &[[u32; 3]], dofs: &[u8]) -> Result<Self, Error> {
+    pub(super) fn new(cliques: &[[u32; 3]], dofs: &[u8], order: Order) -> Result<Self, Error> {
         let graph = Graph::of_cliques(dofs.len(), cliques);
-        let order = fill_reducing_order(&graph)?;
+        let order = match order {
+            Order::Sparse => fill_reducing_order(&graph)?,
+            Order::AsGiven => (0..dofs.len() as u32).collect(),
+        };
         let tree = Elimination::new(&graph, &order, dofs);
         let fronts = Fronts::new(&graph, &tree, dofs, cliques);
         Ok(Self { fronts, unknowns: unknowns_in_order(&tree.order, dofs) })

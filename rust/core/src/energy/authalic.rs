@@ -616,6 +616,80 @@ mod tests {
     }
 
     #[test]
+    fn in_the_plane_the_energy_is_made_of_area_ratios_and_singular_values() {
+        let (mesh, _, map) = open();
+        let targets = vec![0.3, 0.5, 0.4];
+        let energy = AuthalicEnergy::new(&mesh, targets.clone(), Codomain::Disk, 0.0);
+        let flat: Vec<[f64; 2]> = map.iter().map(|x| [x[0], x[1]]).collect();
+        let image = crate::distortion::Image::Plane(&flat);
+        let figures = crate::distortion::distortion(mesh.points(), mesh.faces(), image, &targets).unwrap();
+        let mut expected = 0.0;
+        for (face, target) in targets.iter().enumerate() {
+            let target = WEIGHTS.scale * target;
+            let (ratio, sigma) = (energy.areas(&map)[face] / target, figures.angle_distortion[face]);
+            let excess = 0.5 * (sigma + 1.0 / sigma) - 1.0;
+            expected += target * 0.5 * (ratio - 1.0).powi(2) * (1.0 + 1.0 / ratio);
+            expected += WEIGHTS.angle * target * (excess + 0.05 * excess * excess);
+        }
+        let value = energy.value(&map, &WEIGHTS);
+        assert!((value - expected).abs() < 1e-12 * expected, "{value} {expected}");
+        assert!((energy.sums(&map).authalic_energy - figures.authalic_energy).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_faces_of_a_patch_cost_what_they_cost_in_the_whole() {
+        let (mesh, motions, map) = closed();
+        let energy = AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6], Codomain::Sphere, 0.0);
+        let one = |face: u32| {
+            let corners = mesh.faces()[face as usize];
+            let local = |vertex: u32| corners.iter().position(|&corner| corner == vertex).unwrap() as u32;
+            let part: Vec<Vector> = corners.iter().map(|&vertex| map[vertex as usize]).collect();
+            energy.patch(&[face], 3, local).value(&part, &WEIGHTS)
+        };
+        let value = energy.value(&map, &WEIGHTS);
+        assert!(((0..4).map(one).sum::<f64>() - value).abs() < 1e-12 * value);
+        // in the patch of all faces the gradient is that of the whole
+        let all = energy.patch(&[0, 1, 2, 3], 4, |vertex| vertex);
+        let frames = frames(&motions, &map);
+        assert_eq!(all.gradient(&map, &frames, &WEIGHTS), energy.gradient(&map, &frames, &WEIGHTS));
+    }
+
+    #[test]
+    fn the_second_order_correction_carries_back_what_areas_miss_of_their_prediction() {
+        for ((mesh, motions, map), codomain) in [(closed(), Codomain::Sphere), (open(), Codomain::Disk)] {
+            let targets = vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].to_vec();
+            let energy = AuthalicEnergy::new(&mesh, targets.clone(), codomain, 0.0);
+            let frames = frames(&motions, &map);
+            let mut direction = directions(map.len());
+            direction.iter_mut().for_each(|d| *d = d.map(|c| 0.1 * c));
+            let after = moved(&motions, &map, &direction, 1.0);
+            // areas along one unknown, by differences
+            let slopes = |along: &[[f64; 2]]| -> Vec<f64> {
+                let at = |step: f64| energy.areas(&moved(&motions, &map, along, step));
+                at(1e-6).iter().zip(at(-1e-6)).map(|(there, back)| (there - back) / 2e-6).collect()
+            };
+            let (before, beyond, predicted) = (energy.areas(&map), energy.areas(&after), slopes(&direction));
+            let correction = energy.curvature(&map, &after, &frames, &direction, &WEIGHTS);
+            for vertex in 0..map.len() {
+                for axis in 0..2 {
+                    let mut unit = vec![[0.0; 2]; map.len()];
+                    unit[vertex][axis] = 1.0;
+                    let expected: f64 = slopes(&unit)
+                        .iter()
+                        .enumerate()
+                        .map(|(face, slope)| {
+                            let target = WEIGHTS.scale * targets[face];
+                            let stiffness = (1.0 + (before[face] / target).powi(-3)) / target;
+                            -stiffness * (beyond[face] - before[face] - predicted[face]) * slope
+                        })
+                        .sum();
+                    assert!((correction[vertex][axis] - expected).abs() < 1e-7, "{vertex} {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_folded_face_is_infinitely_expensive() {
         let (mesh, _, mut map) = open();
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], Codomain::Disk, 0.0);

@@ -50,6 +50,8 @@ fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -79,5 +81,42 @@ mod tests {
         };
         assert!(is_simple_polygon(&star(1, 0.2)));
         assert!(!is_simple_polygon(&star(3, 0.9)));
+    }
+
+    /// Whether no two edges meet, by integers and by comparing every pair.
+    fn is_simple_by_pairs(corners: &[[i64; 2]]) -> bool {
+        let n = corners.len();
+        let at = |k: usize| corners[k % n];
+        let to = |[a, b]: [i64; 2], [c, d]: [i64; 2]| [c - a, d - b];
+        let cross = |a, b, c| to(a, b)[0] * to(a, c)[1] - to(a, b)[1] * to(a, c)[0];
+        let dot = |a, b, c| to(a, b)[0] * to(a, c)[0] + to(a, b)[1] * to(a, c)[1];
+        let lies_on = |a, b, x| cross(a, b, x) == 0 && dot(x, a, b) <= 0;
+        let opposite = |a, b, c, d| cross(a, b, c).signum() * cross(a, b, d).signum() < 0;
+        let meet = |a, b, c, d| {
+            (opposite(a, b, c, d) && opposite(c, d, a, b))
+                || lies_on(a, b, c)
+                || lies_on(a, b, d)
+                || lies_on(c, d, a)
+                || lies_on(c, d, b)
+        };
+        let turns_back = |k: usize| {
+            let [before, here, next] = [at(k + n - 1), at(k), at(k + 1)];
+            here == before || here == next || (cross(here, before, next) == 0 && dot(here, before, next) > 0)
+        };
+        let pairs = (0..n).flat_map(|one| (one + 2..n).map(move |other| (one, other)));
+        let mut apart = pairs.filter(|&(one, other)| one + n != other + 1);
+        !(0..n).any(turns_back)
+            && apart.all(|(one, other)| !meet(at(one), at(one + 1), at(other), at(other + 1)))
+    }
+
+    proptest! {
+        /// Corners on a coarse lattice, so that edges often touch and overlap.
+        #[test]
+        fn random_polygons_are_told_as_by_comparing_all_pairs(
+            corners in prop::collection::vec([0i64..6, 0i64..6], 3..9),
+        ) {
+            let places: Vec<[f64; 2]> = corners.iter().map(|corner| corner.map(|c| c as f64)).collect();
+            prop_assert_eq!(is_simple_polygon(&places), is_simple_by_pairs(&corners));
+        }
     }
 }

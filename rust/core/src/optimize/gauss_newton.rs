@@ -48,8 +48,8 @@ const SHORT: f64 = 0.3;
 /// μ, the damping of a face that is wholly off its target.
 const DAMPING: f64 = 0.02;
 
-/// What every face is damped by in units of the deviation of its area ratio.
-const LEAST_DEVIATION: f64 = 5e-3;
+/// What every face is damped by at the most, in units of the deviation of its area ratio.
+pub(super) const LEAST_DEVIATION: f64 = 5e-3;
 
 /// Deviations count up to this.
 const MOST_DEVIATION: f64 = 1e3;
@@ -174,17 +174,20 @@ pub(crate) fn minimize(
         // 1. Targets on the scale of the image, λ in balance
         let weights = descent.balance(&sums);
         energies.push(sums.authalic_energy);
-        history.push_start(sums.authalic_energy, f64::NAN);
         if let Some(status) = descent.verdict(done, &sums, &energies, observer) {
+            history.push_start(sums.authalic_energy, 0.0);
             return (map, status);
         }
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
-        let newton = match descent.linearised.direction(problem, &map, &weights, descent.damping, &watch) {
+        let damping = descent.damping_of(&sums);
+        let newton = match descent.linearised.direction(problem, &map, &weights, damping, &watch) {
             Ok(newton) => newton,
             Err(Failure::Cancelled) => return (map, Status::Cancelled),
             Err(Failure::NotPositiveDefinite) => return (map, Status::Stalled),
         };
+        let norm = (-newton.slope).max(0.0).sqrt();
+        history.push_start(sums.authalic_energy, norm);
         // 3. A step along it that lowers the energy and folds nothing
         let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
             return (map, Status::Stalled);
@@ -192,7 +195,7 @@ pub(crate) fn minimize(
         map = next;
         sums = problem.energy.sums(&map);
         descent.adapt(step);
-        history.push(sums.authalic_energy, step, (-newton.slope).max(0.0).sqrt());
+        history.push(sums.authalic_energy, step, norm);
     }
     unreachable!("the verdict ends the loop")
 }
@@ -343,6 +346,13 @@ impl<'a> Descent<'a> {
         self.problem.moved(map, &newton.frames, &direction)
     }
 
+    /// The damping at a map.
+    fn damping_of(&self, sums: &Sums) -> Damping {
+        // in proportion to the residual near the minimum, so that the damping does not decide how fast it is reached
+        let deviation = (sums.authalic_energy / sums.area).sqrt();
+        Damping { whole: self.damping, least: LEAST_DEVIATION.min(deviation) }
+    }
+
     /// A short step asks for more damping, a long one for less.
     fn adapt(&mut self, step: f64) {
         self.last_step = step;
@@ -382,6 +392,15 @@ fn shrinkage(change: f64, promised: f64) -> f64 {
     }
 }
 
+/// How much a face is damped.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Damping {
+    /// μ, for a face that is wholly off its target.
+    pub whole: f64,
+    /// What every face is damped by in units of the deviation of its area ratio.
+    pub least: f64,
+}
+
 /// The factor of the Hessian at a map, in single precision while that holds.
 #[derive(Default)]
 pub(super) struct Linearised {
@@ -397,7 +416,7 @@ impl Linearised {
         problem: &Problem,
         map: &[Vector],
         weights: &Weights,
-        damping: f64,
+        damping: Damping,
         watch: &Watch<'_>,
     ) -> Result<Newton, Failure> {
         let (energy, frames) = (&problem.energy, frames(&problem.motions, map));
@@ -475,10 +494,10 @@ fn damped_element(
     map: &[Vector],
     frames: &[Frame],
     weights: &Weights,
-    damping: f64,
+    damping: Damping,
     face: usize,
 ) -> Element {
-    let damping = |deviation: f64| damping * (deviation.min(MOST_DEVIATION) + LEAST_DEVIATION);
+    let damping = |deviation: f64| damping.whole * (deviation.min(MOST_DEVIATION) + damping.least);
     let mut element = energy.element(map, frames, weights, damping, face);
     for (k, row) in element.iter_mut().enumerate() {
         row[k] += 1e-10 * row[k] + 1e-14;

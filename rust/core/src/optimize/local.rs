@@ -7,7 +7,7 @@
 //!
 //! Damping after Nielsen (1999): by a third after a good step, by growing factors after a bad one.
 
-use super::gauss_newton::{Linearised, Map, Problem};
+use super::gauss_newton::{Damping, LEAST_DEVIATION, Linearised, Map, Problem};
 use crate::control::Watch;
 use crate::energy::authalic::Weights;
 use crate::energy::motion::Motion;
@@ -118,7 +118,8 @@ fn descend(problem: &Problem, mut map: Map, weights: &Weights, watch: &Watch<'_>
     let begun = problem.energy.value(&map, weights);
     let mut value = begun;
     for _ in 0..STEPS {
-        let Ok(newton) = linearised.direction(problem, &map, weights, damping, watch) else { break };
+        let face_damping = Damping { whole: damping, least: LEAST_DEVIATION };
+        let Ok(newton) = linearised.direction(problem, &map, weights, face_damping, watch) else { break };
         let trial = problem.moved(&map, &newton.frames, &newton.direction);
         let lowered = problem.energy.value(&trial, weights);
         if lowered < value {

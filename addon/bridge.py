@@ -4,7 +4,8 @@
 `unwrap`, `folds`, `measure` and `sphere_shape` are ordinary functions on numpy arrays.
 """
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,6 +34,8 @@ __all__ = (
 # A standard deviation of area ratios that comes of long limbs or of large polygons on a sphere, and one that
 # a solver that could not go on should have left behind.
 _UNEVEN, _STALLED = 0.5, 0.05
+# Where the slider has to stand for shapes that a layout of the sphere does not fold.
+_FIT_TO_LAY_FLAT = 0.9
 _NOT_REACHED = "was not reached before the end"
 
 
@@ -231,24 +234,33 @@ def _disk_map(points, faces, settings, progress):
 
 
 def _by_sphere(piece, settings, progress):
-    faces = np.asarray(piece.patch.faces)
-    found, positions, turned = _sphere_map(piece.points, faces, settings.solver, progress)
+    """By the sphere map asked for, or by one with better shapes where its faces are too thin to lay flat."""
     try:
-        uv = projection.project(
-            positions,
-            np.where(turned[:, None], faces[:, ::-1], faces),
-            polygons=piece.polygons,
-            areas=triangulation.areas(piece.points[faces]),
-            movable=piece.vertices >= 0,
-            layout=settings.layout,
-            axis=settings.pole_axis,
-            seam=settings.seam_direction,
-        )
+        return _laid_flat(piece, settings, settings.solver, progress)
     except projection.CannotProject as problem:
+        if settings.solver.method == "GAUSS_NEWTON" and settings.solver.angle_weight < _FIT_TO_LAY_FLAT:
+            with suppress(projection.CannotProject):
+                solver = replace(settings.solver, angle_weight=_FIT_TO_LAY_FLAT)
+                return _laid_flat(piece, settings, solver, progress)
         raise Unsuitable(
-            f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; "
-            "try another Layout or Pole Axis, poke its n-gons, subdivide the mesh or mark seams"
+            f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; try "
+            "another Layout, Pole Axis or Angle Weight, poke its n-gons, subdivide the mesh or mark seams"
         ) from problem
+
+
+def _laid_flat(piece, settings, solver, progress):
+    faces = np.asarray(piece.patch.faces)
+    found, positions, turned = _sphere_map(piece.points, faces, solver, progress)
+    uv = projection.project(
+        positions,
+        np.where(turned[:, None], faces[:, ::-1], faces),
+        polygons=piece.polygons,
+        areas=triangulation.areas(piece.points[faces]),
+        movable=piece.vertices >= 0,
+        layout=settings.layout,
+        axis=settings.pole_axis,
+        seam=settings.seam_direction,
+    )
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
     island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])

@@ -40,6 +40,9 @@ const GUARDED_ITERATIONS: [usize; 2] = [4, 60];
 /// On surfaces with fewer vertices three times as many cost next to nothing.
 const SMALL: usize = 10_000;
 
+/// On surfaces with more vertices twice as many are worth it beside the ordering.
+const LARGE: usize = 500_000;
+
 /// A map whose smallest face has less than this part of its target has collapsed for all that a descent can see.
 const COLLAPSED: f64 = 1e-9;
 
@@ -321,8 +324,10 @@ impl Run<'_> {
             return (map, status);
         }
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let Ok(other) = progressive_disk(self.mesh, problem.energy.targets(), &mut phase).map(lifted) else {
-            return (map, status);
+        let other = match progressive_disk(self.mesh, problem.energy.targets(), &mut phase) {
+            Ok(other) => lifted(other),
+            Err(Stop::Cancelled) => return (map, Status::Cancelled),
+            Err(Stop::NoRoom) => return (map, status),
         };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (problem, other, ended) = self.guarded_descent(problem, other, status, history, &mut phase);
@@ -338,15 +343,22 @@ impl Run<'_> {
         areas.iter().zip(targets).all(|(area, target)| *area > least * target)
     }
 
+    /// Iterations after which a deviation of 1 % is enough for those who asked for nothing else.
+    fn usual_iterations(&self) -> usize {
+        let [usual, ..] = GUARDED_ITERATIONS;
+        match self.mesh.n_vertices() {
+            _ if self.options.max_iterations.is_some() || self.options.tolerance.is_some() => usize::MAX,
+            0..SMALL => 3 * usual,
+            SMALL..LARGE => usual,
+            _ => 2 * usual,
+        }
+    }
+
     fn gauss_newton_options(&self) -> GaussNewtonOptions {
         GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: self.options.angle_weight,
-            usual_iterations: if self.mesh.n_vertices() < SMALL {
-                3 * GUARDED_ITERATIONS[0]
-            } else {
-                GUARDED_ITERATIONS[0]
-            },
+            usual_iterations: self.usual_iterations(),
             most_iterations: self.options.max_iterations.unwrap_or(GUARDED_ITERATIONS[1]),
             tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
             until_open: None,

@@ -87,9 +87,10 @@ impl Run<'_> {
         let energy = floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
         let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()], Order::AsGiven)?;
         // 2. A start without folds
-        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let (quick, status) = self.quick_start(&problem, history, &mut phase)?;
         let is_quick = quick.is_some();
+        let mut phase = Phase { whole: observer, from: 0.3, to: 0.4 };
         let map = match quick {
             Some(map) => map,
             None => self.progressive_start(&problem, &mut phase)?,
@@ -122,7 +123,8 @@ impl Run<'_> {
         }
         // 2. The conformal start and fixed-point steps
         let targets = problem.energy.targets();
-        let start = match start::start(self.mesh, targets, self.weights, observer) {
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+        let start = match start::start(self.mesh, targets, self.weights, &mut phase) {
             Ok(start) => start,
             Err(Error::CancelledEarly) => return Err(Error::CancelledEarly),
             Err(_) => return Ok((None, Status::Stalled)),
@@ -130,8 +132,9 @@ impl Run<'_> {
         let domain = SphereDomain::new(self.mesh, targets);
         let stopping =
             FixedPointStopping { max_iterations: FIXED_POINT_STEPS, tolerance: FIXED_POINT_TOLERANCE };
+        let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (stepped, status) =
-            fixed_point(&domain, self.weights, start.clone(), &stopping, history, observer);
+            fixed_point(&domain, self.weights, start.clone(), &stopping, history, &mut phase);
         // 3. Either of them, where it is not far off
         let candidates = [stepped, start].into_iter().filter(holds);
         let best = candidates.min_by(|a, b| unevenness(problem, a).total_cmp(&unevenness(problem, b)));
@@ -145,7 +148,8 @@ impl Run<'_> {
             Err(Stop::Cancelled) => return Err(Error::CancelledEarly),
             _ => {}
         }
-        let start = start::start(self.mesh, self.targets, self.weights, observer)?;
+        let mut phase = Phase { whole: observer, from: 1.0, to: 1.0 };
+        let start = start::start(self.mesh, self.targets, self.weights, &mut phase)?;
         match Elements::collect(folded_on_sphere(self.mesh.faces(), &start)) {
             None => Ok(start),
             Some(folded) => Err(Error::NoEmbedding { folded }),
@@ -164,10 +168,12 @@ impl Run<'_> {
         if status == Status::Cancelled {
             return (problem, map, status);
         }
+        // who asks for a tolerance gets it
+        let is_asked = self.options.max_iterations.is_some() || self.options.tolerance.is_some();
         let options = GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: self.options.angle_weight,
-            usual_iterations: ITERATIONS[0],
+            usual_iterations: if is_asked { usize::MAX } else { ITERATIONS[0] },
             most_iterations: self.options.max_iterations.unwrap_or(ITERATIONS[1]),
             tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
             until_open: None,
@@ -193,7 +199,11 @@ impl Run<'_> {
     ) -> (Map, Status) {
         let first = unevenness(&problem, &map);
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let Ok(other) = self.progressive_start(&problem, &mut phase) else { return (map, status) };
+        let other = match self.progressive_start(&problem, &mut phase) {
+            Ok(other) => other,
+            Err(Error::CancelledEarly) => return (map, Status::Cancelled),
+            Err(_) => return (map, status),
+        };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (problem, other, ended) = self.descend(problem, other, status, history, &mut phase);
         match unevenness(&problem, &other) < first {

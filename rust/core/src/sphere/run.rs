@@ -50,8 +50,8 @@ impl Run<'_> {
     ) -> Result<(Map, Status), Error> {
         let mut domain = SphereDomain::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
-        let start = self.start(observer)?;
-        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.1 })?;
+        let mut phase = Phase { whole: observer, from: 0.1, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
         // 2. The correction that the paper makes here
         let stepped = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
@@ -139,7 +139,7 @@ impl Run<'_> {
         let map = match best {
             Some((_, map)) => map,
             None if status == Status::Cancelled => return Err(Error::CancelledEarly),
-            None => self.conformal(observer)?,
+            None => self.conformal(&mut Phase { whole: observer, from: 1.0, to: 1.0 })?,
         };
         Ok((recorded(domain, map, history), status))
     }

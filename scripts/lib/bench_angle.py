@@ -25,7 +25,7 @@ STIFFER = (1000, 300, 100, 30, 10)
 """Further weights for the islands, so that the curve reaches the angles of Minimum Stretch."""
 MODELS = ("spot_2930", "david_10671", "chineselion_17334")
 SUZANNE = "suzanne"
-ISLANDS = {"fill_holes": True}
+ISLANDS = {"fill_holes": True, "boundary": "free"}
 """How the islands are mapped, apart from the weight."""
 COLUMNS = ("mesh", "V", "angle_weight", "SD", "E_A", "folds", "σ₁/σ₂", "σ₁/σ₂ p99", "s", "remark")
 BESIDE_COLUMNS = (
@@ -39,7 +39,7 @@ for every weight."""
 BESIDE_NOTE = """\
 Suzanne, subdivided twice, with the seams of her own UV map, unwrapped by Blender's operator (seconds for
 all islands together: {seconds}). Her islands are mapped by `disk_map`, holes filled. Between two weights
-the curve is interpolated: log SD over σ₁/σ₂. The boundary is free in Blender's methods, a circle in ours."""
+the curve is interpolated: log SD over σ₁/σ₂. The boundary is free in both."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ use authalic::mesh::TriangleMesh;
 use authalic::{Boundary, DiskMap, DiskMapOptions, Error, Method, Silent, Status, disk_map, folded_in_plane};
 use proptest::prelude::*;
 
-const METHODS: [Method; 2] = [Method::FixedPoint, Method::ConjugateGradient];
+const METHODS: [Method; 3] = [Method::FixedPoint, Method::ConjugateGradient, Method::GaussNewton];
 const BOUNDARIES: [Boundary; 2] = [Boundary::ArcLength, Boundary::Sliding];
 
 fn mapped(mesh: &TriangleMesh, options: DiskMapOptions<'_>) -> DiskMap {
@@ -84,7 +84,8 @@ fn the_same_bits_for_any_number_of_threads() {
     let mesh = common::bumpy_disk(30).mesh();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| mapped(&mesh, DiskMapOptions::default()).uv)
+        let run = |method| mapped(&mesh, DiskMapOptions { method, ..Default::default() }).uv;
+        pool.install(|| METHODS.map(run))
     };
     let one = on(1);
     assert_eq!(one, on(2));
@@ -146,13 +147,18 @@ fn a_hole_without_area_is_filled_too() {
 #[test]
 fn a_start_map_is_improved_and_a_folded_one_unfolded() {
     let mesh = common::bumpy_disk(10).mesh();
-    let first = mapped(&mesh, DiskMapOptions { max_iterations: Some(5), ..Default::default() });
-    let further = mapped(&mesh, DiskMapOptions { initial: Some(&first.uv), ..Default::default() });
-    assert!(further.distortion.authalic_energy < first.distortion.authalic_energy);
+    let options =
+        DiskMapOptions { max_iterations: Some(5), method: Method::FixedPoint, ..Default::default() };
+    let first = mapped(&mesh, options);
     let mut folded = first.uv.clone();
     (0..folded.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| folded[v] = [0.0, 0.0]);
-    let unfolded = mapped(&mesh, DiskMapOptions { initial: Some(&folded), ..Default::default() });
-    assert_bijective(&mesh, &unfolded);
+    for method in METHODS {
+        let further =
+            mapped(&mesh, DiskMapOptions { initial: Some(&first.uv), method, ..Default::default() });
+        assert!(further.distortion.authalic_energy < first.distortion.authalic_energy, "{method:?}");
+        let unfolded = mapped(&mesh, DiskMapOptions { initial: Some(&folded), method, ..Default::default() });
+        assert_bijective(&mesh, &unfolded);
+    }
 }
 
 #[test]
@@ -178,31 +184,43 @@ fn a_start_map_off_the_circle_is_refused() {
 #[test]
 fn a_cancelled_run_returns_a_sound_map() {
     let mesh = common::bumpy_disk(12).mesh();
-    for after in [0, 1, 3, 7, 20] {
-        let mut calls = 0;
-        let mut observer = |fraction: f64, _: &str| {
-            assert!((0.0..=1.0).contains(&fraction));
-            calls += 1;
-            calls <= after
+    for method in METHODS {
+        let options = DiskMapOptions { method, ..Default::default() };
+        let mut reports = 0;
+        let mut count = |_: f64, _: &str| {
+            reports += 1;
+            true
         };
-        let map = disk_map(&mesh, &DiskMapOptions::default(), &mut observer).unwrap();
-        assert_eq!(map.status, Status::Cancelled);
-        assert_bijective(&mesh, &map);
+        disk_map(&mesh, &options, &mut count).unwrap();
+        // the last report tells that the run is done
+        for after in 0..reports - 1 {
+            let mut calls = 0;
+            let mut observer = |fraction: f64, _: &str| {
+                assert!((0.0..=1.0).contains(&fraction));
+                calls += 1;
+                calls <= after
+            };
+            let map = disk_map(&mesh, &options, &mut observer).unwrap();
+            assert_eq!((map.status, calls), (Status::Cancelled, after + 1), "{method:?}");
+            assert_bijective(&mesh, &map);
+        }
     }
 }
 
 #[test]
 fn progress_never_goes_back() {
     let mesh = common::bumpy_disk(12).mesh();
-    let mut last = 0.0;
-    let mut observer = |fraction: f64, _: &str| {
-        assert!(fraction >= last);
-        last = fraction;
-        true
-    };
-    disk_map(&mesh, &DiskMapOptions { max_iterations: Some(120), ..Default::default() }, &mut observer)
-        .unwrap();
-    assert!(last > 0.5);
+    for method in METHODS {
+        let mut last = 0.0;
+        let mut observer = |fraction: f64, _: &str| {
+            assert!(fraction >= last, "{method:?}: {fraction} after {last}");
+            last = fraction;
+            true
+        };
+        let options = DiskMapOptions { max_iterations: Some(120), method, ..Default::default() };
+        disk_map(&mesh, &options, &mut observer).unwrap();
+        assert_eq!(last, 1.0);
+    }
 }
 
 #[test]

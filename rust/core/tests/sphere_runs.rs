@@ -19,7 +19,8 @@ type Point = [f64; 3];
 #[test]
 fn a_start_map_is_improved_and_keeps_its_rotation() {
     let mesh = bumpy();
-    let first = mapped(&mesh, SphereMapOptions { max_iterations: Some(3), ..Default::default() }).positions;
+    let options = SphereMapOptions { max_iterations: Some(3), ..with(SphereMethod::FixedPoint) };
+    let first = mapped(&mesh, options).positions;
     let turn = rotation([0.3, 0.8, -0.2, 0.4]);
     let turned: Vec<Point> = first.iter().map(|x| turn.map(|row| dot(row, *x))).collect();
     for method in METHODS {
@@ -171,8 +172,11 @@ fn the_limit_of_iterations_is_kept() {
 #[test]
 fn gradient_descent_stops_at_its_tolerance() {
     let mesh = bumpy();
-    let options =
-        SphereMapOptions { tolerance: Some(3e-2), max_iterations: Some(2000), ..Default::default() };
+    let options = SphereMapOptions {
+        tolerance: Some(3e-2),
+        max_iterations: Some(2000),
+        ..with(SphereMethod::GradientDescent)
+    };
     let map = mapped(&mesh, options);
     let records = map.history.records();
     let [before, last] = [records.len() - 2, records.len() - 1].map(|i| records[i].gradient_norm);

@@ -99,6 +99,36 @@ pub fn capsule(rows: u32, columns: u32) -> TestMesh {
     })
 }
 
+/// A tube with round ends, `aspect` times longer than wide, its faces about equilateral.
+pub fn round_tube(aspect: f64, columns: u32) -> TestMesh {
+    let (round, straight) = (1 + columns / 4, (aspect - 1.0).max(0.0));
+    let cells = (2.0 * straight * f64::from(columns) / TAU).ceil() as u32;
+    revolved("capsule", 2 * round + cells, columns, |i| {
+        let polar = 0.5 * PI / f64::from(round);
+        match i {
+            i if i < round => [(polar * f64::from(i)).sin(), straight + (polar * f64::from(i)).cos()],
+            i if i <= round + cells => {
+                [1.0, straight * (1.0 - 2.0 * f64::from(i - round) / f64::from(cells.max(1)))]
+            }
+            i => {
+                let polar = polar * f64::from(2 * round + cells - i);
+                [polar.sin(), -straight - polar.cos()]
+            }
+        }
+    })
+}
+
+/// A tube of constant width with flat ends, `length` times longer than wide, its faces about equilateral.
+pub fn flat_tube(length: f64, columns: u32) -> TestMesh {
+    let cells = (2.0 * length * f64::from(columns) / TAU).ceil() as u32;
+    let height = move |i: u32| length * (1.0 - 2.0 * f64::from(i - 1) / f64::from(cells));
+    revolved("tube", cells + 2, columns, |i| match i {
+        0 => [0.0, length],
+        i if i == cells + 2 => [0.0, -length],
+        i => [1.0, height(i)],
+    })
+}
+
 /// The surface of revolution about z of a profile [radius, height] from the upper pole to the lower one.
 fn revolved(name: &'static str, rows: u32, columns: u32, profile: impl Fn(u32) -> [f64; 2]) -> TestMesh {
     let poles = (rows - 1) * columns;

@@ -3,6 +3,8 @@
 #![allow(dead_code)] // each test binary uses its own part
 
 pub mod closed;
+pub mod planar;
+pub mod random;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};

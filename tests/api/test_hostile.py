@@ -176,7 +176,7 @@ def test_huge_and_tiny_coordinates_work(scale, boundary):
     plain = authalic.disk_map(*CAP, boundary=boundary)
     result = authalic.disk_map(scale * CAP.vertices, CAP.faces, boundary=boundary)
     oracle.assert_disk_embedding(result)
-    assert np.abs(result.uv - plain.uv).max() < 1e-3
+    assert np.abs(result.uv - plain.uv).max() < 1e-2
 
 
 def test_coordinates_up_to_the_largest_number():

@@ -65,7 +65,12 @@ fn factored<T: Scalar>(analysis: &Analysis) -> Factor<T> {
 
 /// The largest |A x − b| for two right-hand sides.
 fn residual<T: Scalar>(n: usize, faces: &[[u32; 3]], dofs: &[u8]) -> f64 {
-    let analysis = Analysis::new(n, faces, dofs).unwrap();
+    let residuals = [Order::Sparse, Order::AsGiven].map(|order| residual_in::<T>(order, n, faces, dofs));
+    residuals[0].max(residuals[1])
+}
+
+fn residual_in<T: Scalar>(order: Order, n: usize, faces: &[[u32; 3]], dofs: &[u8]) -> f64 {
+    let analysis = Analysis::new(n, faces, dofs, order).unwrap();
     let factor = factored::<T>(&analysis);
     let b: [Vec<f64>; 2] = [1, 2].map(|k| (0..analysis.n_unknowns()).map(|i| noise(i, k)).collect());
     let mut x = b.concat();
@@ -108,7 +113,7 @@ fn bits<T: Scalar>(analysis: &Analysis, threads: usize) -> (Vec<u64>, Vec<u64>) 
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
     let (n, faces) = grid(150);
-    let analysis = Analysis::new(n, &faces, &mixed_dofs(n)).unwrap();
+    let analysis = Analysis::new(n, &faces, &mixed_dofs(n), Order::Sparse).unwrap();
     let (double, single) = (bits::<f64>(&analysis, 1), bits::<f32>(&analysis, 1));
     for threads in [2, 2, 2, 7, 7] {
         assert!(bits::<f64>(&analysis, threads) == double);
@@ -136,7 +141,7 @@ fn tiny_systems_and_none_at_all_are_solved() {
         assert!(residual::<f64>(3, &face, &dofs) < 1e-12, "{dofs:?}");
     }
     assert_eq!(residual::<f64>(0, &[], &[]), 0.0);
-    let analysis = Analysis::new(3, &face, &[1, 0, 2]).unwrap();
+    let analysis = Analysis::new(3, &face, &[1, 0, 2], Order::Sparse).unwrap();
     assert_eq!(analysis.n_unknowns(), 3);
     assert_eq!([0, 1, 2].map(|vertex| analysis.first_unknown(vertex)), [0, 1, 1]);
 }
@@ -145,7 +150,7 @@ fn tiny_systems_and_none_at_all_are_solved() {
 fn indefinite_singular_and_broken_matrices_are_refused() {
     for size in [2, 60] {
         let (n, faces) = grid(size);
-        let analysis = Analysis::new(n, &faces, &vec![2; n]).unwrap();
+        let analysis = Analysis::new(n, &faces, &vec![2; n], Order::Sparse).unwrap();
         // the only face of one corner of the grid
         let lonely = 2 * (size - 2);
         for wrong in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
@@ -163,7 +168,7 @@ fn indefinite_singular_and_broken_matrices_are_refused() {
 #[test]
 fn a_factorisation_can_be_cancelled_and_done_again() {
     let (n, faces) = grid(400);
-    let analysis = Analysis::new(n, &faces, &vec![2; n]).unwrap();
+    let analysis = Analysis::new(n, &faces, &vec![2; n], Order::Sparse).unwrap();
     let mut factor = Factor::<f64>::new(&analysis);
     let mut asked: Option<std::time::Instant> = None;
     let mut cancel = |_: f64, _: &str| {
@@ -187,7 +192,7 @@ fn times() {
     let (n, faces) = read_obj(&path);
     for dofs in [1_u8, 2] {
         let began = std::time::Instant::now();
-        let analysis = Analysis::new(n, &faces, &vec![dofs; n]).unwrap();
+        let analysis = Analysis::new(n, &faces, &vec![dofs; n], Order::Sparse).unwrap();
         let fronts = &analysis.symbolic.fronts;
         let largest = (0..fronts.len()).map(|f| fronts.front(f).height()).max().unwrap();
         println!(

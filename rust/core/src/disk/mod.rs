@@ -76,7 +76,7 @@ pub struct DiskMapOptions<'a> {
     /// map where `None`.
     pub initial: Option<&'a [[f64; 2]]>,
     /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it takes,
-    /// 4 to 12 by the surface's size where those leave the area ratio a deviation of 1 %, up to 60 else; the papers' methods: 50, as in the paper's tables. The five fixed-point steps
+    /// 4 to 24 by the surface's size where those leave the area ratio a deviation of 1 %, up to 60 else; the papers' methods: 50, as in the paper's tables. The five fixed-point steps
     /// that come first, the unguarded steps that unfold (12 at the most) and a descent that follows where folds were
     /// mended come on top.
     pub max_iterations: Option<usize>,

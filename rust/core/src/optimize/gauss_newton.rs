@@ -73,6 +73,9 @@ const LEAST_GAIN: f64 = 0.05;
 /// With λ held, the descent ends when the slope promises less than this part of the energy.
 const LEAST_SLOPE: f64 = 1e-3;
 
+/// An energy below this part of the area is as good as none.
+const NOTHING: f64 = 1e-12;
+
 /// A surface, how its vertices may move, and the energy of its maps.
 pub(crate) struct Problem {
     pub energy: AuthalicEnergy,
@@ -308,7 +311,7 @@ impl<'a> Descent<'a> {
     ) -> Option<(Map, f64)> {
         let problem = self.problem;
         let value = problem.energy.value(map, weights);
-        self.flat = -newton.slope <= LEAST_SLOPE * value;
+        self.flat = -newton.slope <= LEAST_SLOPE * value || value <= NOTHING * self.scale * self.total_target;
         // 1. The longest step allowed, straight and corrected to second order
         let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
         let longest = squares.fold(0.0, f64::max).sqrt();

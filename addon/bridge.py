@@ -224,13 +224,8 @@ def _by_disk(piece, settings, progress):
 
 
 def _disk_map(points, faces, settings, progress):
-    """A disk map; symmetric coarse meshes may stall Gauss-Newton half-way, and the gradient finds on."""
     options = {"fill_holes": settings.fill_holes, "progress": progress}
-    found = authalic.disk_map(points, faces, **options, **settings.solver.disk_options())
-    if found.status != "stalled" or _uneven(found, settings.solver) is None:
-        return found
-    other = authalic.disk_map(points, faces, **options, method="conjugate_gradient")
-    return min(found, other, key=lambda map_: map_.distortion.authalic_energy)
+    return authalic.disk_map(points, faces, **options, **settings.solver.disk_options())
 
 
 def _by_sphere(piece, settings, progress):

@@ -78,7 +78,7 @@ pub(crate) fn descend(
             problem = problem.with_energy(energy(mesh, targets, codomain, floor));
             let [usual, most] = ITERATIONS;
             let is_last = k + 1 == floors.len();
-            options.usual_iterations = if is_last { options.usual_iterations.min(most) } else { usual };
+            options.usual_iterations = if is_last { (options.usual_iterations / 2).min(most) } else { usual };
             options.most_iterations = options.most_iterations.min(most);
         }
         let to = if floors.len() == 1 { 1.0 } else { part(k + 1) };

@@ -51,6 +51,11 @@ const DAMPING: f64 = 0.02;
 /// What every face is damped by at the most, in units of the deviation of its area ratio.
 pub(super) const LEAST_DEVIATION: f64 = 5e-3;
 
+/// And at the least, on meshes of fewer and of more than [`LARGE`] vertices: single precision does not factor them
+/// with less.
+const SINGLE_PRECISION: [f64; 2] = [1e-3, 2e-3];
+const LARGE: usize = 500_000;
+
 /// Deviations count up to this.
 const MOST_DEVIATION: f64 = 1e3;
 
@@ -172,12 +177,12 @@ pub(crate) fn minimize(
     let mut descent = Descent::new(problem, *options);
     let mut map = start;
     let mut sums = problem.energy.sums(&map);
-    let mut energies = Vec::new();
+    let mut trend = Trend::default();
     for done in 0.. {
         // 1. Targets on the scale of the image, λ in balance
         let weights = descent.balance(&sums);
-        energies.push(sums.authalic_energy);
-        if let Some(status) = descent.verdict(done, &sums, &energies, observer) {
+        trend.energies.push(sums.authalic_energy);
+        if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
             history.push_start(sums.authalic_energy, 0.0);
             return (map, status);
         }
@@ -186,11 +191,15 @@ pub(crate) fn minimize(
         let damping = descent.damping_of(&sums);
         let newton = match descent.linearised.direction(problem, &map, &weights, damping, &watch) {
             Ok(newton) => newton,
-            Err(Failure::Cancelled) => return (map, Status::Cancelled),
-            Err(Failure::NotPositiveDefinite) => return (map, Status::Stalled),
+            Err(failure) => {
+                history.push_start(sums.authalic_energy, 0.0);
+                let is_cancelled = failure == Failure::Cancelled;
+                return (map, if is_cancelled { Status::Cancelled } else { Status::Stalled });
+            }
         };
         let norm = (-newton.slope).max(0.0).sqrt();
         history.push_start(sums.authalic_energy, norm);
+        trend.norms.push(norm);
         // 3. A step along it that lowers the energy and folds nothing
         let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
             return (map, Status::Stalled);
@@ -204,6 +213,23 @@ pub(crate) fn minimize(
 }
 
 const MESSAGE: &str = "Evening out areas";
+
+/// The energies and gradient norms of the iterations so far.
+#[derive(Default)]
+struct Trend {
+    energies: Vec<f64>,
+    norms: Vec<f64>,
+}
+
+impl Trend {
+    /// Whether the last iterations gained next to nothing, and were not about to leave a saddle.
+    fn is_slow(&self) -> bool {
+        let Some(before) = self.norms.len().checked_sub(PATIENCE) else { return false };
+        let [then, now] = [before, self.norms.len()].map(|k| self.energies[k]);
+        let is_leaving = self.norms[self.norms.len() - 1] > self.norms[before];
+        now > (1.0 - LEAST_GAIN) * then && !is_leaving
+    }
+}
 
 /// What the iterations hand on.
 struct Descent<'a> {
@@ -269,14 +295,12 @@ impl<'a> Descent<'a> {
         &self,
         done: usize,
         sums: &Sums,
-        energies: &[f64],
+        trend: &Trend,
         observer: &mut dyn Observer,
     ) -> Option<Status> {
         let options = &self.options;
         let is_held = options.angle_weight > 0.0 && self.angle_weight <= options.angle_weight;
-        let is_slow = done >= PATIENCE
-            && energies[done] > (1.0 - LEAST_GAIN) * energies[done - PATIENCE]
-            && options.angle_weight == 0.0;
+        let is_slow = options.angle_weight == 0.0 && trend.is_slow();
         let deviation = (sums.authalic_energy / sums.area).sqrt();
         let is_even =
             deviation <= options.tolerance || (deviation <= EVEN_ENOUGH && done >= options.usual_iterations);
@@ -353,7 +377,9 @@ impl<'a> Descent<'a> {
     fn damping_of(&self, sums: &Sums) -> Damping {
         // in proportion to the residual near the minimum, so that the damping does not decide how fast it is reached
         let deviation = (sums.authalic_energy / sums.area).sqrt();
-        Damping { whole: self.damping, least: LEAST_DEVIATION.min(deviation) }
+        let is_large = self.problem.motions.len() >= LARGE;
+        let least = SINGLE_PRECISION[usize::from(is_large)];
+        Damping { whole: self.damping, least: deviation.clamp(least, LEAST_DEVIATION) }
     }
 
     /// A short step asks for more damping, a long one for less.

@@ -39,7 +39,7 @@ class Solving:
                 "Gradient Descent",
                 "As in the papers: conjugate gradients on disks, gradient descent on spheres. Less even",
             ),
-            ("FIXED_POINT", "Fixed Point", "As in the papers. The least even, and quick for a first look"),
+            ("FIXED_POINT", "Fixed Point", "As in the papers. The least even"),
         ),
         default="GAUSS_NEWTON",
     )

@@ -95,11 +95,11 @@ impl Observer for Silent {
 /// Why a run ended. The map it returns is sound whatever the status says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// The gradient norm fell below the tolerance.
+    /// The tolerance was reached, or nothing is left to gain.
     Converged,
     /// The iterations asked for were done.
     MaxIterations,
-    /// No step along the search direction lowers the energy any more.
+    /// The energy hardly falls any more, or no step lowers it.
     Stalled,
     /// The observer asked to stop.
     Cancelled,

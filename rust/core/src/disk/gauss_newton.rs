@@ -71,7 +71,8 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(super::Map, Status), Error> {
-        if !observer.progress(0.0, "Ordering") && self.mesh.n_vertices() > QUICK {
+        let is_cancelled = !observer.progress(0.0, "Ordering");
+        if is_cancelled && self.mesh.n_vertices() > QUICK {
             return Err(Error::CancelledEarly);
         }
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
@@ -80,12 +81,13 @@ impl Run<'_> {
         let initial = self.options.initial.map(|map| by_order.of_vertices(map));
         let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
         let run = Run { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
-        let (map, status) = run.gauss_newton(history, observer).map_err(|error| match error {
-            Error::NoEmbedding { folded } => {
-                Error::NoEmbedding { folded: self.given_faces(&by_order, folded) }
-            }
-            error => error,
-        })?;
+        let (map, status) =
+            run.gauss_newton(is_cancelled, history, observer).map_err(|error| match error {
+                Error::NoEmbedding { folded } => {
+                    Error::NoEmbedding { folded: self.given_faces(&by_order, folded) }
+                }
+                error => error,
+            })?;
         Ok((by_order.given(&map), status))
     }
 
@@ -102,6 +104,7 @@ impl Run<'_> {
     /// there was a map without folds.
     fn gauss_newton(
         &self,
+        is_cancelled: bool,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(super::Map, Status), Error> {
@@ -111,7 +114,10 @@ impl Run<'_> {
         let problem = Problem::new(energy, self.motions(), Order::AsGiven)?.with_outline(self.outline());
         // 2. The quick start; what folds is unfolded by an unguarded descent
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
-        let (quick, status) = self.quick_start(&problem, history, &mut phase);
+        let (quick, status) = match is_cancelled {
+            true => (None, Status::Cancelled),
+            false => self.quick_start(&problem, history, &mut phase),
+        };
         // 3. Where that fails, an embedding that holds on any disk
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.5 };
         let (map, status) = match quick {
@@ -142,7 +148,7 @@ impl Run<'_> {
         }
     }
 
-    /// A map with a free boundary moved and scaled to touch the unit circle from inside.
+    /// A map with a free boundary moved and scaled into the unit disk.
     fn within_the_disk(&self, map: super::Map) -> super::Map {
         if self.options.boundary != Boundary::Free {
             return map;
@@ -150,14 +156,11 @@ impl Run<'_> {
         let extreme =
             |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
         let centre = [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)));
-        let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
-        let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
-        // a power of two keeps every face's orientation bit for bit, a shift need not
-        let scale = (1.0 / radius).log2().floor().exp2();
-        let moved: super::Map = map.iter().map(|x| offset(x).map(|c| scale * c)).collect();
+        let moved = scaled_into_the_disk(&map, centre);
         match certificate::folded(self.mesh, &moved).is_empty() {
             true => moved,
-            false => map,
+            // the rounding of the shift folded a face that is next to nothing
+            false => scaled_into_the_disk(&map, [0.0; 2]),
         }
     }
 
@@ -221,7 +224,8 @@ impl Run<'_> {
         }
         let unfolded =
             if status == Status::Cancelled { None } else { unfold::unfold(self.mesh, &flat(&open)) };
-        (unfolded.map(lifted).filter(|map| self.has_not_collapsed(problem, map)), status)
+        let is_good = |map: &Map| problem.energy.is_embedding(map) && self.has_not_collapsed(problem, map);
+        (unfolded.map(lifted).filter(is_good), status)
     }
 
     /// The harmonic map and fixed-point steps from it, or the map given.
@@ -275,7 +279,10 @@ impl Run<'_> {
         }
         match progressive_disk(self.mesh, problem.energy.targets(), observer).map(lifted) {
             Ok(map) if holds(&map) => Ok((map, status)),
-            Err(Stop::Cancelled) => Err(Error::CancelledEarly),
+            Err(Stop::Cancelled) => match tutte.and_then(|tutte| self.last_resort(tutte)) {
+                Ok(map) => Ok((map, Status::Cancelled)),
+                Err(_) => Err(Error::CancelledEarly),
+            },
             _ => tutte.and_then(|tutte| self.last_resort(tutte)).map(|map| (map, status)),
         }
     }
@@ -345,10 +352,15 @@ impl Run<'_> {
             Err(Stop::Cancelled) => return (map, Status::Cancelled),
             Err(Stop::NoRoom) => return (map, status),
         };
+        if !problem.energy.is_embedding(&other) {
+            // an arc of more than half the circle, for one
+            return (map, status);
+        }
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (problem, other, ended) = self.guarded_descent(problem, other, status, history, &mut phase);
         match unevenness(&problem, &other) < first {
             true => (other, ended),
+            false if ended == Status::Cancelled => (map, ended),
             false => (map, status),
         }
     }
@@ -380,6 +392,14 @@ impl Run<'_> {
             until_open: None,
         }
     }
+}
+
+/// The map around `centre`, scaled by a power of two, which keeps the orientation of every face bit for bit.
+fn scaled_into_the_disk(map: &super::Map, centre: [f64; 2]) -> super::Map {
+    let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
+    let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
+    let scale = (1.0 / radius).log2().floor().exp2();
+    map.iter().map(|x| offset(x).map(|c| scale * c)).collect()
 }
 
 fn lifted(map: super::Map) -> Map {

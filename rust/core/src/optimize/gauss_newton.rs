@@ -10,7 +10,7 @@
 //! 3. the same factor gives the direction d and a second-order correction for what the areas miss of their linear
 //!    prediction;
 //! 4. the step is accepted where the energy falls, after the few faces that carry most of it were solved by themselves
-//!    ([`local`](super::local)).
+//!    ([`local`]).
 //!
 //! With [`Profile::Barrier`] an accepted map has no folded face: the energy of every trial is infinite where a face is
 //! not positive by more than rounding. [`Profile::Stretch`] drops the barrier and the angles (Levenberg–Marquardt on
@@ -178,13 +178,17 @@ pub(crate) fn minimize(
     let mut map = start;
     let mut sums = problem.energy.sums(&map);
     let mut trend = Trend::default();
+    let mut best = (f64::INFINITY, Map::new());
     for done in 0.. {
         // 1. Targets on the scale of the image, λ in balance
         let weights = descent.balance(&sums);
         trend.energies.push(sums.authalic_energy);
+        if sums.authalic_energy < best.0 && descent.keeps_the_best() {
+            best = (sums.authalic_energy, map.clone());
+        }
         if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
             history.push_start(sums.authalic_energy, 0.0);
-            return (map, status);
+            return (descent.best_of(best, sums.authalic_energy, map), status);
         }
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
@@ -194,7 +198,8 @@ pub(crate) fn minimize(
             Err(failure) => {
                 history.push_start(sums.authalic_energy, 0.0);
                 let is_cancelled = failure == Failure::Cancelled;
-                return (map, if is_cancelled { Status::Cancelled } else { Status::Stalled });
+                let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
+                return (descent.best_of(best, sums.authalic_energy, map), status);
             }
         };
         let norm = (-newton.slope).max(0.0).sqrt();
@@ -202,7 +207,8 @@ pub(crate) fn minimize(
         trend.norms.push(norm);
         // 3. A step along it that lowers the energy and folds nothing
         let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
-            return (map, Status::Stalled);
+            let status = if descent.flat { Status::Converged } else { Status::Stalled };
+            return (descent.best_of(best, sums.authalic_energy, map), status);
         };
         map = next;
         sums = problem.energy.sums(&map);
@@ -273,6 +279,16 @@ impl<'a> Descent<'a> {
         }
     }
 
+    /// Whether E_A alone decides which map is the best: it may rise where a barrier or angles count on the way.
+    fn keeps_the_best(&self) -> bool {
+        self.options.angle_weight == 0.0 && self.options.profile == Profile::Barrier
+    }
+
+    /// The map with the lowest E_A met, where that decides, else the last.
+    fn best_of(&self, best: (f64, Map), energy: f64, last: Map) -> Map {
+        if self.keeps_the_best() && best.0 < energy { best.1 } else { last }
+    }
+
     /// The weights of the next iteration.
     fn balance(&mut self, sums: &Sums) -> Weights {
         let [least, most] = ANGLE_WEIGHTS;
@@ -300,7 +316,7 @@ impl<'a> Descent<'a> {
     ) -> Option<Status> {
         let options = &self.options;
         let is_held = options.angle_weight > 0.0 && self.angle_weight <= options.angle_weight;
-        let is_slow = options.angle_weight == 0.0 && trend.is_slow();
+        let is_slow = !is_held && trend.is_slow();
         let deviation = (sums.authalic_energy / sums.area).sqrt();
         let is_even =
             deviation <= options.tolerance || (deviation <= EVEN_ENOUGH && done >= options.usual_iterations);
@@ -308,7 +324,9 @@ impl<'a> Descent<'a> {
         if (is_even && !is_held) || is_open || (is_held && self.flat) {
             Some(Status::Converged)
         } else if is_slow {
-            Some(if deviation <= EVEN_ENOUGH { Status::Converged } else { Status::Stalled })
+            // who asked for a tolerance is not told that it was reached
+            let is_good = deviation <= EVEN_ENOUGH && options.usual_iterations < usize::MAX;
+            Some(if is_good { Status::Converged } else { Status::Stalled })
         } else if done >= options.most_iterations {
             Some(Status::MaxIterations)
         } else if observer.progress(self.fraction(done), MESSAGE) {
@@ -354,7 +372,7 @@ impl<'a> Descent<'a> {
             if trial.value.is_finite() {
                 trial.repair(problem, weights, watch);
             }
-            if trial.value <= value + SUFFICIENT * step * newton.slope {
+            if trial.value.is_finite() && trial.value <= value + SUFFICIENT * step * newton.slope {
                 return Some((trial.map, step));
             }
             step *= shrinkage(trial.value - value, step * newton.slope);

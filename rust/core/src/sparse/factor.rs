@@ -20,7 +20,7 @@ use sprs::CsMat;
 use crate::Error;
 
 /// Solves `A x = b` in place for a general square matrix by LU with column ordering; `rhs` as in
-/// [`Cholesky::solve`].
+/// [`Cholesky::solve`](super::Cholesky::solve).
 ///
 /// # Errors
 /// [`Error::FactorizationFailed`] where the matrix is singular to working precision.

@@ -128,7 +128,8 @@ impl Run<'_> {
         if let Some(initial) = self.options.initial {
             let map: Map = initial.iter().filter_map(|&x| normalized(x)).collect();
             let map = if holds(&map) { Some(map) } else { unfold::unfold(self.mesh, &map).filter(holds) };
-            return Ok((map, Status::MaxIterations));
+            // a map that covers the sphere twice folds nowhere either
+            return Ok((map.filter(|map| self.is_bijective(map)), Status::MaxIterations));
         }
         // 2. The conformal start and fixed-point steps
         let targets = problem.energy.targets();
@@ -219,6 +220,7 @@ impl Run<'_> {
         let (problem, other, ended) = self.descend(problem, other, status, history, &mut phase);
         match unevenness(&problem, &other) < first {
             true => (other, ended),
+            false if ended == Status::Cancelled => (map, ended),
             false => (map, status),
         }
     }

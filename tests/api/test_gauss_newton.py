@@ -178,6 +178,11 @@ def test_disks_with_tiny_faces_are_mapped(power, boundary):
 @pytest.mark.parametrize("length", [5, 20, 60])
 def test_fingers_of_any_length_are_mapped(length, boundary):
     mesh = meshes.tube_disk(8, 6 * length, radius=3 / length)
+    if boundary == "arc_length" and length == 60:
+        # a held boundary leaves only Tutte's embedding, which collapses below double precision
+        with pytest.raises(authalic.SolverError, match="no map without folds"):
+            authalic.disk_map(*mesh, boundary=boundary)
+        return
     oracle.assert_disk_embedding(authalic.disk_map(*mesh, boundary=boundary))
 
 

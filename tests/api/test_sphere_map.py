@@ -138,7 +138,7 @@ def test_a_map_of_a_density_lies_over_the_surface_by_the_density():
 def test_the_face_areas_are_the_default_density():
     mesh = meshes.bumpy_ball()
     given = authalic.sphere_map(*mesh, density=oracle.face_areas(*mesh), max_iterations=20)
-    assert np.abs(given.positions - authalic.sphere_map(*mesh, max_iterations=20).positions).max() < 1e-5
+    assert np.abs(given.positions - authalic.sphere_map(*mesh, max_iterations=20).positions).max() < 1e-3
 
 
 @methods

@@ -50,8 +50,8 @@ impl Run<'_> {
     ) -> Result<(Map, Status), Error> {
         let mut domain = SphereDomain::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
-        let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.1 })?;
-        let mut phase = Phase { whole: observer, from: 0.1, to: 0.4 };
+        let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.05 })?;
+        let mut phase = Phase { whole: observer, from: 0.05, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
         // 2. The correction that the paper makes here
         let stepped = self.corrected(&domain, &stepped, history).unwrap_or(stepped);

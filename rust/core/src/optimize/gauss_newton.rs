@@ -188,7 +188,7 @@ pub(crate) fn minimize(
         }
         if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
             history.push_start(sums.authalic_energy, 0.0);
-            return (descent.best_of(best, sums.authalic_energy, map), status);
+            return (descent.best_of(best, sums.authalic_energy, map, history), status);
         }
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
@@ -199,7 +199,7 @@ pub(crate) fn minimize(
                 history.push_start(sums.authalic_energy, 0.0);
                 let is_cancelled = failure == Failure::Cancelled;
                 let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
-                return (descent.best_of(best, sums.authalic_energy, map), status);
+                return (descent.best_of(best, sums.authalic_energy, map, history), status);
             }
         };
         let norm = (-newton.slope).max(0.0).sqrt();
@@ -208,7 +208,7 @@ pub(crate) fn minimize(
         // 3. A step along it that lowers the energy and folds nothing
         let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
             let status = if descent.flat { Status::Converged } else { Status::Stalled };
-            return (descent.best_of(best, sums.authalic_energy, map), status);
+            return (descent.best_of(best, sums.authalic_energy, map, history), status);
         };
         map = next;
         sums = problem.energy.sums(&map);
@@ -285,8 +285,13 @@ impl<'a> Descent<'a> {
     }
 
     /// The map with the lowest E_A met, where that decides, else the last.
-    fn best_of(&self, best: (f64, Map), energy: f64, last: Map) -> Map {
-        if self.keeps_the_best() && best.0 < energy { best.1 } else { last }
+    fn best_of(&self, best: (f64, Map), energy: f64, last: Map, history: &mut History) -> Map {
+        if !self.keeps_the_best() || best.0 >= energy {
+            return last;
+        }
+        // the history ends with the map that is returned
+        history.push(best.0, 0.0, 0.0);
+        best.1
     }
 
     /// The weights of the next iteration.

@@ -12,7 +12,7 @@ import numpy as np
 from . import triangulation
 from .charts import develop
 from .layouts import LAYOUTS
-from .relaxation import relax
+from .relaxation import even_out, relax
 from .twist import rotation, twist
 from .untangle import folded, folded_when_rounded, untangle
 
@@ -87,7 +87,11 @@ def _straighten(chart, areas, movable):
     if 0 < len(folded(chart.uv())) <= _hopeless(chart.faces):
         untangle(chart, areas, movable)
         relax(chart, areas, movable)
-    return len(folded_when_rounded(chart.uv()))
+    bad = len(folded_when_rounded(chart.uv()))
+    if bad == 0:
+        even_out(chart, areas, movable)
+        bad = len(folded_when_rounded(chart.uv()))
+    return bad
 
 
 def _hopeless(faces):

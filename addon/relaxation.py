@@ -12,6 +12,11 @@ from . import triangulation
 from .untangle import folded
 
 _STEPS = 3
+# Steps where areas are off by more than this even then, as where limbs are a face wide, and how stiff they get.
+_MORE_STEPS = 30
+_EVEN = 0.03
+_STIFFEST = 100.0
+_COARSE = 2000
 _ITERATIONS = 20
 _DAMPING = 1e-2
 _HALVINGS = 20
@@ -25,12 +30,34 @@ def relax(chart, areas, movable):
     Vertices that are not in the mask `movable` (n,) stay. Folded faces may unfold; no other one folds over.
     """
     for _ in range(_STEPS):
-        before = chart.places
-        energy = _energy(chart, areas)
-        _move(chart, _step(chart, areas, movable), areas, movable)
-        if not _energy(chart, areas) < energy:
-            chart.places = before
+        if not _descend(chart, areas, movable, _DAMPING):
             return
+
+
+def even_out(chart, areas, movable):
+    """Goes on where `relax` has left areas far from proportional to `areas` (m,), with damping that adapts.
+
+    Not in coarse meshes such as UV spheres, whose rows are to stay rows.
+    """
+    if len(chart.faces) < _COARSE:
+        return
+    areas = areas * (triangulation.signed_areas(chart.uv()).sum() / areas.sum())
+    damping = _DAMPING
+    for _ in range(_MORE_STEPS):
+        if damping > _STIFFEST or _energy(chart, areas) < _EVEN**2 * areas.sum():
+            return
+        lower = _descend(chart, areas, movable, damping)
+        damping = max(damping / 3, _DAMPING) if lower else 10 * damping
+
+
+def _descend(chart, areas, movable, damping):
+    """One step, unless it does not lower the energy; returns whether it does."""
+    before, energy = chart.places, _energy(chart, areas)
+    _move(chart, _step(chart, areas, movable, damping), areas, movable)
+    if _energy(chart, areas) < energy:
+        return True
+    chart.places = before
+    return False
 
 
 def _energy(chart, areas):
@@ -57,7 +84,7 @@ def _move(chart, step, areas, movable):
     chart.places = start
 
 
-def _step(chart, areas, movable):
+def _step(chart, areas, movable, damping):
     """The movement (n, 2) of the places by one damped Gauss-Newton step."""
     uv, faces, count = chart.uv(), chart.faces, len(chart.places)
     gradient = _area_gradients(uv)
@@ -77,7 +104,7 @@ def _step(chart, areas, movable):
 
     def product(step):
         change = (gradient * step[faces]).sum(axis=(1, 2))
-        return gathered(gradient * (change / areas)[:, None, None]) + _DAMPING * diagonal * step
+        return gathered(gradient * (change / areas)[:, None, None]) + damping * diagonal * step
 
     residual = (areas - triangulation.signed_areas(uv)) / areas
     return _conjugate_gradients(product, gathered(gradient * residual[:, None, None]), diagonal)

@@ -24,8 +24,8 @@ pub struct DiskMap {
     /// Iterations done, fixed-point steps included.
     iterations: usize,
     /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start
-    /// first. gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; NaN for a start
-    /// of "gauss_newton".
+    /// first. gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start
+    /// that "gauss_newton" keeps.
     history: Py<PyAny>,
     /// The figures of the map.
     distortion: Py<Distortion>,

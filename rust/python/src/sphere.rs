@@ -26,8 +26,8 @@ pub struct SphereMap {
     iterations: usize,
     /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm,
     /// seconds; the start first, and a record of step 0 where a mended map took the place of a folded one.
-    /// gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; NaN for a start of
-    /// "gauss_newton".
+    /// gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start that
+    /// "gauss_newton" keeps.
     history: Py<PyAny>,
     /// The figures of the map.
     distortion: Py<Distortion>,
@@ -89,7 +89,7 @@ impl SphereMap {
 ///     .03 is a balance, .3 keeps shapes and lets areas go. For "gauss_newton" only.
 /// initial : (n, 3) real array, optional
 ///     A start map, outward oriented, no row zero; rows are normalised. Default: the spherical conformal map,
-///     and but for "fixed_point" itself up to ten fixed-point steps from it.
+///     and but for "fixed_point" itself fixed-point steps from it, up to five for "gauss_newton" and ten else.
 /// max_iterations : int, optional
 ///     Default for "gauss_newton": as many as it takes, a few where those leave area ratios a deviation of less
 ///     than 1 %, up to 60 else; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps

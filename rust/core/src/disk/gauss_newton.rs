@@ -21,7 +21,7 @@ use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::Vector;
 use crate::mesh::renumbering::Renumbered;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even};
 use crate::optimize::{Stopping, floors};
 use crate::sparse::{Order, elimination_order};
 
@@ -84,17 +84,13 @@ impl Run<'_> {
         let (map, status) =
             run.gauss_newton(is_cancelled, history, observer).map_err(|error| match error {
                 Error::NoEmbedding { folded } => {
-                    Error::NoEmbedding { folded: self.given_faces(&by_order, folded) }
+                    let folded = by_order.given_faces(folded);
+                    let first = folded.first.iter().map(|&face| self.given_face(face)).collect();
+                    Error::NoEmbedding { folded: Elements { first, ..folded } }
                 }
                 error => error,
             })?;
         Ok((by_order.given(&map), status))
-    }
-
-    /// Faces of the renumbered mesh by their given indices.
-    fn given_faces(&self, by_order: &Renumbered, folded: Elements) -> Elements {
-        let given = |face: &usize| self.given_face(by_order.faces[*face] as usize);
-        Elements { first: folded.first.iter().map(given).collect(), ..folded }
     }
 
     /// An area-preserving map without folds.
@@ -268,6 +264,7 @@ impl Run<'_> {
         };
         let tutte = start::tutte(self.mesh, &mut domain, &watch).map(lifted);
         let holds = |map: &Map| problem.energy.is_embedding(map);
+        let last_resort = |tutte: Result<Map, Error>| tutte.and_then(|tutte| self.last_resort(tutte));
         let is_held = self.options.boundary == Boundary::ArcLength;
         let is_good = |map: &&Map| holds(map) && (is_held || self.has_not_collapsed(problem, map));
         if let Some(tutte) = tutte.iter().find(is_good) {
@@ -275,15 +272,15 @@ impl Run<'_> {
         }
         if is_held {
             // the progressive embedding has a boundary of its own
-            return tutte.and_then(|tutte| self.last_resort(tutte)).map(|map| (map, status));
+            return Ok((last_resort(tutte)?, status));
         }
         match progressive_disk(self.mesh, problem.energy.targets(), observer).map(lifted) {
             Ok(map) if holds(&map) => Ok((map, status)),
-            Err(Stop::Cancelled) => match tutte.and_then(|tutte| self.last_resort(tutte)) {
-                Ok(map) => Ok((map, Status::Cancelled)),
-                Err(_) => Err(Error::CancelledEarly),
-            },
-            _ => tutte.and_then(|tutte| self.last_resort(tutte)).map(|map| (map, status)),
+            Err(Stop::Cancelled) => {
+                let map = last_resort(tutte).map_err(|_| Error::CancelledEarly)?;
+                Ok((map, Status::Cancelled))
+            }
+            _ => Ok((last_resort(tutte)?, status)),
         }
     }
 
@@ -335,11 +332,7 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
-        let unevenness = |problem: &Problem, map: &Map| {
-            let sums = problem.energy.sums(map);
-            sums.authalic_energy / sums.area
-        };
-        let first = unevenness(&problem, &map);
+        let first = problem.unevenness(&map);
         // the progressive embedding has a boundary of its own
         let is_held = self.options.boundary == Boundary::ArcLength;
         let is_given = is_held || self.options.initial.is_some() || self.options.angle_weight > 0.0;
@@ -358,11 +351,7 @@ impl Run<'_> {
         }
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (problem, other, ended) = self.guarded_descent(problem, other, status, history, &mut phase);
-        match unevenness(&problem, &other) < first {
-            true => (other, ended),
-            false if ended == Status::Cancelled => (map, ended),
-            false => (map, status),
-        }
+        more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
     fn has_not_collapsed(&self, problem: &Problem, map: &Map) -> bool {

@@ -14,8 +14,9 @@
 use std::f64::consts::{PI, TAU};
 
 use super::kernel::kernel_centroid;
-use super::star::{Chart, Star, angle, rotated};
+use super::star::{Star, angle};
 use crate::control::{Observer, Phase, Status};
+use crate::energy::motion::{Motion, rotated};
 use crate::mesh::TriangleMesh;
 use crate::mesh::decimation::{Collapse, Decimation};
 use crate::mesh::geometry::{Vector, distance};
@@ -198,16 +199,16 @@ impl<'a> Embedding<'a> {
     /// Places a vertex that has come back, and moves it and its neighbours.
     fn insert(&mut self, collapse: Collapse) -> Option<()> {
         let Collapse { vertex, onto } = collapse;
-        let chart = self.chart(vertex);
+        let motion = self.motion(vertex);
         self.fill_star(vertex);
         // 1. A place
-        let mut place = match chart {
-            Chart::Circle => self.place_on_arc()?,
-            chart => self.place_in_kernel(self.places[onto as usize], chart)?,
+        let mut place = match motion {
+            Motion::Circle => self.place_on_arc()?,
+            motion => self.place_in_kernel(self.places[onto as usize], motion)?,
         };
         // 2. To lower energy
         for _ in 0..NEWTON_STEPS {
-            let Some(better) = self.star.improved(place, chart, self.shape) else { break };
+            let Some(better) = self.star.improved(place, motion, self.shape) else { break };
             place = better;
         }
         self.places[vertex as usize] = place;
@@ -223,11 +224,11 @@ impl<'a> Embedding<'a> {
     }
 
     /// A place inside the polygon around a vertex that went onto the one at `centre`.
-    fn place_in_kernel(&mut self, centre: Vector, chart: Chart) -> Option<Vector> {
-        let basis = chart.basis(centre);
-        let centroid = kernel_centroid(centre, basis, self.star.edges(), &mut self.room);
+    fn place_in_kernel(&mut self, centre: Vector, motion: Motion) -> Option<Vector> {
+        let frame = motion.frame(centre);
+        let centroid = kernel_centroid(centre, frame.axes, self.star.edges(), &mut self.room);
         // towards the vertex it went onto, where the kernel is
-        let mut places = (0..12).map(|k| chart.moved(centre, basis, centroid.map(|x| 0.1f64.powi(k) * x)));
+        let mut places = (0..12).map(|k| motion.moved(centre, &frame, centroid.map(|x| 0.1f64.powi(k) * x)));
         places.find(|&place| self.star.energy(place, self.shape).is_some())
     }
 
@@ -259,16 +260,16 @@ impl<'a> Embedding<'a> {
     fn relax(&mut self, vertex: u32) {
         self.fill_star(vertex);
         let place = &mut self.places[vertex as usize];
-        if let Some(better) = self.star.improved(*place, self.chart(vertex), self.shape) {
+        if let Some(better) = self.star.improved(*place, self.motion(vertex), self.shape) {
             self.places[vertex as usize] = better;
         }
     }
 
-    fn chart(&self, vertex: u32) -> Chart {
+    fn motion(&self, vertex: u32) -> Motion {
         match (self.travelled.is_empty(), self.mesh.is_boundary(vertex as usize)) {
-            (true, _) => Chart::Sphere,
-            (false, false) => Chart::Plane,
-            (false, true) => Chart::Circle,
+            (true, _) => Motion::Sphere,
+            (false, false) => Motion::Plane,
+            (false, true) => Motion::Circle,
         }
     }
 

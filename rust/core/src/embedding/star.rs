@@ -13,7 +13,8 @@
 //!
 //! Cost: about a hundred operations for each face and step.
 
-use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub};
+use crate::energy::motion::{Frame, Motion};
+use crate::mesh::geometry::{Vector, add, cross, dot, scaled, sub};
 
 /// D counts as positive where it is larger than this times the size of the products it is made of; their
 /// rounding is a tenth of that.
@@ -27,17 +28,6 @@ const LONGEST: f64 = 0.5;
 
 /// A step that would lower the energy by less than this part of the star's measure is not worth it.
 const WORTH: f64 = 1e-6;
-
-/// Where a vertex may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Chart {
-    /// On the unit sphere.
-    Sphere,
-    /// In the plane z = 1.
-    Plane,
-    /// On the unit circle in that plane.
-    Circle,
-}
 
 /// The polygon around a vertex.
 #[derive(Debug, Default)]
@@ -133,16 +123,16 @@ impl Star {
 
     /// The place of the vertex after one Newton step from x that lowers its energy and folds no face; `None`
     /// where there is no such step or it is not worth it.
-    pub(super) fn improved(&self, x: Vector, chart: Chart, shape: f64) -> Option<Vector> {
-        let basis = chart.basis(x);
-        let (energy, derivatives) = self.derivatives(x, chart, basis, shape)?;
+    pub(super) fn improved(&self, x: Vector, motion: Motion, shape: f64) -> Option<Vector> {
+        let frame = motion.frame(x);
+        let (energy, derivatives) = self.derivatives(x, motion, &frame, shape)?;
         let (direction, slope) = derivatives.newton_direction()?;
         if -slope < WORTH * self.measure {
             return None;
         }
         let mut step = (LONGEST / direction[0].hypot(direction[1])).min(1.0);
         for _ in 0..12 {
-            let moved = chart.moved(x, basis, direction.map(|d| step * d));
+            let moved = motion.moved(x, &frame, direction.map(|d| step * d));
             if self.energy(moved, shape).is_some_and(|now| now <= energy + 1e-4 * step * slope) {
                 return Some(moved);
             }
@@ -154,8 +144,8 @@ impl Star {
     fn derivatives(
         &self,
         x: Vector,
-        chart: Chart,
-        basis: [Vector; 2],
+        motion: Motion,
+        frame: &Frame,
         shape: f64,
     ) -> Option<(f64, Derivatives)> {
         let (mut energy, mut gradient, mut hessian) = (0.0, [0.0; 3], [0.0; 3]);
@@ -173,29 +163,27 @@ impl Star {
             for k in 0..3 {
                 gradient[k] += on_d * face.normal[k] + on_q * spoke[k];
             }
-            let [n, s] = [face.normal, spoke].map(|z| basis.map(|axis| dot(axis, z)));
+            let [n, s] = [face.normal, spoke].map(|z| frame.axes.map(|axis| dot(axis, z)));
             hessian[0] += (on_dd * n[0] + 2.0 * on_dq * s[0]) * n[0] + on_q;
             hessian[1] += on_dd * n[0] * n[1] + on_dq * (n[0] * s[1] + s[0] * n[1]);
             hessian[2] += (on_dd * n[1] + 2.0 * on_dq * s[1]) * n[1] + on_q;
         }
-        let along = basis.map(|axis| dot(axis, gradient));
+        let along = frame.axes.map(|axis| dot(axis, gradient));
         let mut sum = (energy, Derivatives { gradient: along, hessian });
-        self.bend(x, chart, gradient, &mut sum);
+        self.bend(x, motion, dot(gradient, frame.outward), &mut sum);
         Some(sum)
     }
 
     /// Adds what a step along the sphere or the circle bends towards its centre, and the arcs.
-    fn bend(&self, x: Vector, chart: Chart, gradient: Vector, (energy, sum): &mut (f64, Derivatives)) {
-        match chart {
-            Chart::Plane => {}
-            Chart::Sphere => {
-                let bend = dot(gradient, x);
+    fn bend(&self, x: Vector, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
+        match motion {
+            Motion::Held | Motion::Plane => {}
+            Motion::Sphere => {
                 sum.hessian[0] -= bend;
                 sum.hessian[2] -= bend;
             }
-            Chart::Circle => {
+            Motion::Circle => {
                 let arcs = self.arcs.map_or([0.0; 3], |arcs| arc_energy(x, arcs));
-                let bend = gradient[0] * x[0] + gradient[1] * x[1];
                 *energy += arcs[0];
                 sum.gradient = [sum.gradient[0] + arcs[1], 0.0];
                 sum.hessian = [sum.hessian[0] - bend + arcs[2], 0.0, 1.0];
@@ -222,38 +210,6 @@ impl Derivatives {
     }
 }
 
-impl Chart {
-    /// Two unit vectors along which a vertex at x may move, the first only on the circle.
-    pub(super) fn basis(self, x: Vector) -> [Vector; 2] {
-        match self {
-            Self::Sphere => tangent_basis(x),
-            Self::Plane => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            Self::Circle => [[-x[1], x[0], 0.0], [0.0; 3]],
-        }
-    }
-
-    /// The point that is reached from x by a step.
-    pub(super) fn moved(self, x: Vector, basis: [Vector; 2], [a, b]: [f64; 2]) -> Vector {
-        let along = |a: f64| add(x, add(scaled(basis[0], a), scaled(basis[1], b)));
-        match self {
-            Self::Sphere => {
-                let moved = along(a);
-                scaled(moved, 1.0 / norm(moved))
-            }
-            Self::Plane => along(a),
-            Self::Circle => rotated(x, a),
-        }
-    }
-}
-
-/// A point of the circle rotated by an angle.
-pub(super) fn rotated([u, v, _]: Vector, angle: f64) -> Vector {
-    let (sine, cosine) = angle.sin_cos();
-    let (u, v) = (u * cosine - v * sine, u * sine + v * cosine);
-    let length = (u * u + v * v).sqrt();
-    [u / length, v / length, 1.0]
-}
-
 /// The angle from one point of the circle to another, counter-clockwise, in (0, 2π].
 pub(super) fn angle(from: Vector, to: Vector) -> f64 {
     let angle = (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
@@ -271,37 +227,33 @@ fn arc_energy(x: Vector, [(before, share), (behind, other)]: [(Vector, f64); 2])
     ]
 }
 
-/// Two unit vectors that make an orthonormal frame with the unit vector `x` (Duff et al. 2017).
-fn tangent_basis([x, y, z]: Vector) -> [Vector; 2] {
-    let sign = 1f64.copysign(z);
-    let a = -1.0 / (sign + z);
-    let b = x * y * a;
-    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::motion::rotated;
+    use crate::mesh::geometry::norm;
 
     /// A polygon around the vertex at x: on the sphere and in the plane closed, on the circle a fan.
-    fn star(chart: Chart) -> (Star, Vector) {
-        let corner = |k: usize| match chart {
-            Chart::Sphere => {
+    fn star(motion: Motion) -> (Star, Vector) {
+        let corner = |k: usize| match motion {
+            Motion::Sphere => {
                 let angle = 1.2 * k as f64;
                 let x = [0.3 * angle.cos(), 0.5 * angle.sin(), 1.0];
                 scaled(x, 1.0 / norm(x))
             }
-            Chart::Plane => [0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0],
-            Chart::Circle => [[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k],
+            Motion::Held | Motion::Plane => {
+                [0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0]
+            }
+            Motion::Circle => [[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k],
         };
         let mut star = Star::default();
-        let n = if chart == Chart::Circle { 3 } else { 5 };
-        let next = |k: usize| if chart == Chart::Circle { k + 1 } else { (k + 1) % n };
+        let n = if motion == Motion::Circle { 3 } else { 5 };
+        let next = |k: usize| if motion == Motion::Circle { k + 1 } else { (k + 1) % n };
         (0..n).for_each(|k| star.push(corner(k), corner(next(k)), 0.02 + 0.01 * k as f64));
-        match chart {
-            Chart::Sphere => (star, [0.0, 0.0, 1.0]),
-            Chart::Plane => (star, [0.2, 0.05, 1.0]),
-            Chart::Circle => {
+        match motion {
+            Motion::Sphere => (star, [0.0, 0.0, 1.0]),
+            Motion::Held | Motion::Plane => (star, [0.2, 0.05, 1.0]),
+            Motion::Circle => {
                 star.arcs = Some([(corner(3), 0.4), (corner(0), 0.9)]);
                 (star, rotated([0.0, -1.0, 1.0], -0.1))
             }
@@ -310,12 +262,13 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_finite_differences() {
-        for chart in [Chart::Sphere, Chart::Plane, Chart::Circle] {
-            let (star, x) = star(chart);
-            let basis = chart.basis(x);
-            let (energy, Derivatives { gradient, hessian }) = star.derivatives(x, chart, basis, 0.3).unwrap();
-            let at = |a: f64, b: f64| star.energy(chart.moved(x, basis, [a, b]), 0.3).unwrap();
-            assert!((energy - at(0.0, 0.0)).abs() < 1e-12, "{chart:?}");
+        for motion in [Motion::Sphere, Motion::Plane, Motion::Circle] {
+            let (star, x) = star(motion);
+            let frame = motion.frame(x);
+            let (energy, Derivatives { gradient, hessian }) =
+                star.derivatives(x, motion, &frame, 0.3).unwrap();
+            let at = |a: f64, b: f64| star.energy(motion.moved(x, &frame, [a, b]), 0.3).unwrap();
+            assert!((energy - at(0.0, 0.0)).abs() < 1e-12, "{motion:?}");
             let h = 1e-4;
             let slopes = [(at(h, 0.0) - at(-h, 0.0)) / (2.0 * h), (at(0.0, h) - at(0.0, -h)) / (2.0 * h)];
             let bends = [
@@ -323,25 +276,25 @@ mod tests {
                 (at(h, h) + at(-h, -h) - at(h, -h) - at(-h, h)) / (4.0 * h * h),
                 (at(0.0, h) + at(0.0, -h) - 2.0 * energy) / (h * h),
             ];
-            let n = if chart == Chart::Circle { 1 } else { 2 };
+            let n = if motion == Motion::Circle { 1 } else { 2 };
             let close = |a: f64, b: f64| (a - b).abs() < 1e-4 * (1.0 + b.abs());
-            assert!((0..n).all(|k| close(slopes[k], gradient[k])), "{chart:?}: {slopes:?} {gradient:?}");
-            assert!((0..2 * n - 1).all(|k| close(bends[k], hessian[k])), "{chart:?}: {bends:?} {hessian:?}");
+            assert!((0..n).all(|k| close(slopes[k], gradient[k])), "{motion:?}: {slopes:?} {gradient:?}");
+            assert!((0..2 * n - 1).all(|k| close(bends[k], hessian[k])), "{motion:?}: {bends:?} {hessian:?}");
         }
     }
 
     #[test]
     fn a_step_lowers_the_energy_and_folds_nothing() {
-        for chart in [Chart::Sphere, Chart::Plane, Chart::Circle] {
-            let (star, mut x) = star(chart);
+        for motion in [Motion::Sphere, Motion::Plane, Motion::Circle] {
+            let (star, mut x) = star(motion);
             for _ in 0..20 {
-                let Some(better) = star.improved(x, chart, 0.3) else { break };
-                assert!(star.energy(better, 0.3).unwrap() < star.energy(x, 0.3).unwrap(), "{chart:?}");
+                let Some(better) = star.improved(x, motion, 0.3) else { break };
+                assert!(star.energy(better, 0.3).unwrap() < star.energy(x, 0.3).unwrap(), "{motion:?}");
                 x = better;
             }
-            let basis = chart.basis(x);
-            let (_, Derivatives { gradient, .. }) = star.derivatives(x, chart, basis, 0.3).unwrap();
-            assert!(gradient[0].hypot(gradient[1]) < 1e-2, "{chart:?}: {gradient:?}");
+            let frame = motion.frame(x);
+            let (_, Derivatives { gradient, .. }) = star.derivatives(x, motion, &frame, 0.3).unwrap();
+            assert!(gradient[0].hypot(gradient[1]) < 1e-2, "{motion:?}: {gradient:?}");
         }
     }
 }

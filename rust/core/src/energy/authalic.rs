@@ -20,7 +20,7 @@
 use super::motion::Frame;
 use super::psd::clamp_negative_eigenvalues;
 use super::stretch::Profile;
-use crate::mesh::geometry::{Vector, add, cross, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::{Vector, add, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
 use crate::mesh::{TriangleMesh, VertexCorners};
 use crate::parallel;
 
@@ -112,7 +112,8 @@ struct Outer {
 }
 
 impl AuthalicEnergy {
-    /// The energy of maps of `mesh` to `targets` (m,) on any common scale; Rest triangles flatter than `flattest` (height over longest edge) count as that flat.
+    /// The energy of maps of `mesh` to `targets` (m,) on any common scale. Rest triangles flatter than `flattest` (height
+    /// over longest edge) count as that flat.
     pub(crate) fn new(mesh: &TriangleMesh, targets: Vec<f64>, codomain: Codomain, flattest: f64) -> Self {
         let cotangents = parallel::map(mesh.n_faces(), |face| {
             rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), flattest)
@@ -354,10 +355,7 @@ impl Triangle {
         };
         let quadratic =
             0.5 * (cotangents[0] * dot(r, r) + cotangents[1] * dot(q, q) + cotangents[2] * dot(p, p));
-        let size = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
-        // rounding of the differences, of the products and of their sum, generously
-        let rounding =
-            2e-15 * (x[0][0].abs() * size(1, 2) + x[0][1].abs() * size(2, 0) + x[0][2].abs() * size(0, 1));
+        let rounding = determinant_rounding(x[0], p, q);
         Self { x, determinant, doubled_area, normal, quadratic, rounding }
     }
 

@@ -5,7 +5,7 @@
 //! positive exactly where a face is not folded, in either domain. A vertex has two unknowns, one or none, its
 //! coordinates along the [`Frame`] at its place; [`Motion::moved`] takes them back to the domain.
 
-use crate::mesh::geometry::{Vector, add, cross, norm, scaled};
+use crate::mesh::geometry::{Vector, add, norm, scaled};
 use crate::parallel;
 
 /// What one vertex may do.
@@ -56,12 +56,7 @@ impl Motion {
         let [a, b] = unknowns;
         match self {
             Self::Held => x,
-            Self::Circle => {
-                let (sine, cosine) = a.sin_cos();
-                let [u, v] = [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]];
-                let length = (u * u + v * v).sqrt();
-                [u / length, v / length, 1.0]
-            }
+            Self::Circle => rotated(x, a),
             Self::Plane => [x[0] + a, x[1] + b, 1.0],
             Self::Sphere => {
                 let moved = add(x, add(scaled(frame.axes[0], a), scaled(frame.axes[1], b)));
@@ -76,19 +71,26 @@ pub(crate) fn frames(motions: &[Motion], map: &[Vector]) -> Vec<Frame> {
     parallel::map(map.len(), |vertex| motions[vertex].frame(map[vertex]))
 }
 
-/// Two unit vectors that make an orthonormal frame with the unit vector `x`.
-pub(crate) fn tangent_axes(x: Vector) -> [Vector; 2] {
-    let smallest = (0..3).min_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs())).expect("three axes");
-    let axis: Vector = std::array::from_fn(|k| if k == smallest { 1.0 } else { 0.0 });
-    let first = cross(x, axis);
-    let first = scaled(first, 1.0 / norm(first));
-    [first, cross(x, first)]
+/// A point of the circle rotated by an angle.
+pub(crate) fn rotated([u, v, _]: Vector, angle: f64) -> Vector {
+    let (sine, cosine) = angle.sin_cos();
+    let (u, v) = (u * cosine - v * sine, u * sine + v * cosine);
+    let length = (u * u + v * v).sqrt();
+    [u / length, v / length, 1.0]
+}
+
+/// Two unit vectors that make an orthonormal frame with the unit vector `x` (Duff et al. 2017).
+fn tangent_axes([x, y, z]: Vector) -> [Vector; 2] {
+    let sign = 1f64.copysign(z);
+    let a = -1.0 / (sign + z);
+    let b = x * y * a;
+    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::{dot, sub};
+    use crate::mesh::geometry::{cross, dot, sub};
 
     #[test]
     fn paths_start_along_the_frame_and_bend_away_from_outward() {

@@ -53,6 +53,14 @@ pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
     scaled(cross(sub(b, a), sub(c, a)), 0.5)
 }
 
+/// A bound of the rounding error of det(a, b, c) = a · (p × q) from p = b − a and q = c − a: of the differences, of the
+/// products and of their sum, generously.
+#[inline]
+pub(crate) fn determinant_rounding(a: Vector, p: Vector, q: Vector) -> f64 {
+    let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+    2e-15 * (a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1))
+}
+
 /// The area of a triangle.
 pub fn area(corners: [Vector; 3]) -> f64 {
     norm(area_vector(corners))

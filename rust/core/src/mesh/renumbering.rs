@@ -6,6 +6,7 @@
 
 use super::topology::{NO_CORNER, VertexCorners};
 use super::{TriangleMesh, mark_boundary};
+use crate::error::Elements;
 use crate::parallel;
 
 /// A renumbered mesh with the way back.
@@ -42,6 +43,12 @@ impl Renumbered {
     /// Values at the renumbered vertices, from values at the given ones.
     pub(crate) fn of_vertices<T: Copy>(&self, values: &[T]) -> Vec<T> {
         self.vertices.iter().map(|&vertex| values[vertex as usize]).collect()
+    }
+
+    /// Renumbered faces by their given indices.
+    pub(crate) fn given_faces(&self, faces: Elements) -> Elements {
+        let first = faces.first.iter().map(|&face| self.faces[face] as usize).collect();
+        Elements { first, ..faces }
     }
 
     /// Values of the renumbered faces, from values of the given ones.

@@ -141,6 +141,12 @@ impl Problem {
         is_simple_polygon(&corners)
     }
 
+    /// E_A of a map over the area of its image.
+    pub(crate) fn unevenness(&self, map: &[Vector]) -> f64 {
+        let sums = self.energy.sums(map);
+        sums.authalic_energy / sums.area
+    }
+
     /// The map reached from `map` by `direction` along the frames.
     pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> Map {
         parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
@@ -166,7 +172,18 @@ impl Problem {
     }
 }
 
-/// Lowers the energy from `start` and returns the last map with the status.
+/// The more even of two results, each with how uneven it is; a second run that was cancelled says so.
+pub(crate) fn more_even(first: (f64, Map, Status), second: (f64, Map, Status)) -> (Map, Status) {
+    let ((unevenness, map, status), (other_unevenness, other, ended)) = (first, second);
+    match other_unevenness < unevenness {
+        true => (other, ended),
+        false if ended == Status::Cancelled => (map, ended),
+        false => (map, status),
+    }
+}
+
+/// Lowers the energy from `start` and returns the last map with the status, or where the weight of angles is 0 behind
+/// the barrier the one with the lowest E_A.
 pub(crate) fn minimize(
     problem: &Problem,
     start: Map,
@@ -421,9 +438,7 @@ impl Trial {
     fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
         Self { value: problem.value(&map, weights), map }
     }
-}
 
-impl Trial {
     /// Solves the worst faces by themselves, unless the outline would cross itself.
     fn repair(&mut self, problem: &Problem, weights: &Weights, watch: &Watch<'_>) {
         let mut repaired = self.map.clone();

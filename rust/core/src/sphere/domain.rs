@@ -14,7 +14,7 @@ use crate::energy::SpatialStretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, cross, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::{Vector, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
 use crate::optimize::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
@@ -131,10 +131,7 @@ fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector]) -> bool {
 }
 
 /// Whether det(a, b, c) is positive by more than its rounding error.
-pub(super) fn is_clearly_positive([a, b, c]: [Vector; 3]) -> bool {
+fn is_clearly_positive([a, b, c]: [Vector; 3]) -> bool {
     let (p, q) = (sub(b, a), sub(c, a));
-    let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
-    let size = a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1);
-    // rounding of the differences, of the products and of their sum, generously
-    dot(a, cross(p, q)) > 2e-15 * size
+    dot(a, cross(p, q)) > determinant_rounding(a, p, q)
 }

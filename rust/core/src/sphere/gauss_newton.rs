@@ -24,7 +24,7 @@ use crate::error::{Elements, Error};
 use crate::mesh::geometry::{cross, dot, triangle};
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::floors;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem};
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even};
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
 
@@ -72,10 +72,7 @@ impl Run<'_> {
         let options = SphereMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
         let run = Run { mesh: &by_order.mesh, targets: &targets, weights: &weights, options: &options };
         let (map, status) = run.gauss_newton(history, observer).map_err(|error| match error {
-            Error::NoEmbedding { folded: Elements { first, count, arity } } => {
-                let first = first.iter().map(|&face| by_order.faces[face] as usize).collect();
-                Error::NoEmbedding { folded: Elements { first, count, arity } }
-            }
+            Error::NoEmbedding { folded } => Error::NoEmbedding { folded: by_order.given_faces(folded) },
             error => error,
         })?;
         Ok((by_order.given(&map), status))
@@ -109,7 +106,7 @@ impl Run<'_> {
         let (problem, map, status) = self.descend(problem, map, status, history, &mut phase);
         // 4. Another one from the progressive embedding where the result is uneven
         let is_final = !is_quick || self.options.initial.is_some() || self.options.angle_weight > 0.0;
-        if is_final || status == Status::Cancelled || unevenness(&problem, &map) <= UNEVEN {
+        if is_final || status == Status::Cancelled || problem.unevenness(&map) <= UNEVEN {
             return Ok((map, status));
         }
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
@@ -147,8 +144,8 @@ impl Run<'_> {
             fixed_point(&domain, self.weights, start.clone(), &stopping, history, &mut phase);
         // 3. Either of them, where it is not far off
         let candidates = [stepped, start].into_iter().filter(holds);
-        let best = candidates.min_by(|a, b| unevenness(problem, a).total_cmp(&unevenness(problem, b)));
-        let is_good = |map: &Map| status == Status::Cancelled || unevenness(problem, map) <= BAD_START;
+        let best = candidates.min_by(|a, b| problem.unevenness(a).total_cmp(&problem.unevenness(b)));
+        let is_good = |map: &Map| status == Status::Cancelled || problem.unevenness(map) <= BAD_START;
         Ok((best.filter(is_good), status))
     }
 
@@ -209,7 +206,7 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
-        let first = unevenness(&problem, &map);
+        let first = problem.unevenness(&map);
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let other = match self.progressive_start(&problem, &mut phase) {
             Ok(other) => other,
@@ -218,11 +215,7 @@ impl Run<'_> {
         };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (problem, other, ended) = self.descend(problem, other, status, history, &mut phase);
-        match unevenness(&problem, &other) < first {
-            true => (other, ended),
-            false if ended == Status::Cancelled => (map, ended),
-            false => (map, status),
-        }
+        more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
     /// Whether no face is folded and the faces cover the sphere once.
@@ -233,10 +226,4 @@ impl Run<'_> {
         });
         (covered - 4.0 * PI).abs() < 1.0 && folded_on_sphere(self.mesh.faces(), map).is_empty()
     }
-}
-
-/// E_A over the area of the image.
-fn unevenness(problem: &Problem, map: &Map) -> f64 {
-    let sums = problem.energy.sums(map);
-    sums.authalic_energy / sums.area
 }

@@ -10,6 +10,7 @@ mod interpolation;
 pub mod line_search;
 mod local;
 pub mod nonlinear_cg;
+pub(crate) mod rotation;
 
 use crate::control::{Observer, Status};
 use crate::error::Error;

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only module that talks to the native library: plain data in, plain data out, no bpy.
 
-`unwrap`, `folds`, `measure` and `sphere_shape` are ordinary functions on numpy arrays.
+`unwrap`, `folds`, `measure`, `sphere_shape`, `register`, `kept`, `morphed` and `pull` are ordinary functions
+on numpy arrays.
 """
 
 from contextlib import suppress
@@ -11,10 +12,10 @@ import numpy as np
 
 import authalic
 
-from . import domains, messages, polygons, projection, spherical, triangulation
+from . import domains, messages, polygons, projection, registering, spherical, triangulation
 from .domains import Unsuitable
 from .results import Island, Mapping, Measurement, Refusal, SphereShape, UnwrapSettings
-from .solver import Solver
+from .solver import Solver, weight
 
 __all__ = (
     "Island",
@@ -26,7 +27,11 @@ __all__ = (
     "Unsuitable",
     "UnwrapSettings",
     "folds",
+    "kept",
     "measure",
+    "morphed",
+    "pull",
+    "register",
     "sphere_shape",
     "unwrap",
 )
@@ -37,6 +42,7 @@ _UNEVEN, _STALLED = 0.5, 0.05
 # Where the slider has to stand for shapes that a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
 _NOT_REACHED = "was not reached before the end"
+_registrations = registering.Kept()
 
 
 def _keep_going(_fraction, _message):
@@ -146,6 +152,59 @@ def sphere_shape(surface, solver=None, progress=_keep_going):
         uneven=_uneven(found, solver, figures.area_ratio_std),
         ended_early=found.status == "cancelled",
     )
+
+
+def register(source, target, pairs, settings, progress=_keep_going):
+    """The `registering.Registered` of two `Side`s by pairs (name, source vertex, target vertex).
+
+    One that was made before is not made again. When `progress` returns False, as it is by then. Raises
+    `Unsuitable`, in the words of an artist, where there is none.
+    """
+    key = registering.key(source, target, pairs)
+    found = _registrations.get(key, settings)
+    if found is None:
+        try:
+            found = _registered(source, target, pairs, settings, progress)
+        except (authalic.MeshError, authalic.SolverError) as error:
+            raise Unsuitable(registering.in_mesh_terms(str(error), source, target)) from error
+        _registrations.put(key, settings, found)
+    _registrations.touch(key, settings)
+    return found
+
+
+def kept(source, target, pairs):
+    """The latest registration of these meshes by these pairs in this session, or None."""
+    return _registrations.get(registering.key(source, target, pairs), None)
+
+
+def morphed(registered, align):
+    """Where the source's points (u, 3) go on the target; with `align` the target is laid over the source."""
+    if not align:
+        return registered.images
+    return np.asarray(authalic.homotopy(registered.source.points, registered.native, 1.0, align=True))
+
+
+def pull(registered, values):
+    """The target's values by points (u, ...) or corners (m, 3, ...) as those of the source's."""
+    return np.asarray(registered.native.pull(np.ascontiguousarray(values, float)))
+
+
+def _registered(source, target, pairs, settings, progress):
+    sides = source, target
+    patches = [authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces) for one in sides]
+    shape = registering.domain(sides, patches, settings.domain)
+    borders = [np.concatenate([np.empty(0, int), *registering.boundaries(part)]) for part in patches]
+    landmarks = registering.check_landmarks(sides, pairs, shape, borders)
+    make = authalic.register_disks if shape == "DISK" else authalic.register_spheres
+    native = make(
+        *((one.points, one.faces) for one in sides),
+        source_landmarks=landmarks[0],
+        target_landmarks=landmarks[1],
+        weight=settings.weight,
+        angle_weight=weight(settings.angle_weight),
+        progress=progress,
+    )
+    return registering.registered(native, sides, shape, landmarks, [name for name, _, _ in pairs])
 
 
 def _whole(mesh):

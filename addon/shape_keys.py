@@ -12,11 +12,19 @@ def read(obj):
     """The surface of an object in the coordinates of its mesh, or of its first shape key."""
     surface, mesh = mesh_io.read(obj), obj.data
     if mesh.shape_keys is None:
-        positions = np.empty(3 * len(mesh.vertices), np.float32)
-        mesh.vertices.foreach_get("co", positions)
+        values = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", values)
+        positions = values.reshape(-1, 3).astype(float)
     else:
-        positions = _coordinates(mesh.shape_keys.reference_key)
-    return replace(surface, positions=positions.reshape(-1, 3).astype(float))
+        positions = coordinates(mesh.shape_keys.reference_key)
+    return replace(surface, positions=positions)
+
+
+def coordinates(key):
+    """Those of a shape key, (n, 3)."""
+    values = np.empty(3 * len(key.points), np.float32)
+    key.points.foreach_get("co", values)
+    return values.reshape(-1, 3).astype(float)
 
 
 def why_not(mesh, name):
@@ -45,9 +53,3 @@ def write(obj, name, positions):
     key.value = 0.0  # Blender 5 starts with 1
     obj.active_shape_key_index = keys.key_blocks.find(name)
     obj.data.update()
-
-
-def _coordinates(key):
-    values = np.empty(3 * len(key.points), np.float32)
-    key.points.foreach_get("co", values)
-    return values

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The transfer of layers from the target to the active object, through their registration."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import bridge, cargo, messages, registering, transferring
+from ..job import Job
+from . import register, targets
+from .register import CannotRegister
+
+_PLURALS = {kind: f"{kind}s" for kind in (cargo.UV_MAP, cargo.GROUP, cargo.COLOUR, cargo.KEY)}
+
+
+@dataclass
+class Settings:
+    """What to transfer, and how to register; `registration` None is the latest of the session."""
+
+    uv_maps: bool = True
+    active_uv_only: bool = False
+    vertex_groups: bool = True
+    colour_attributes: bool = True
+    shape_keys: bool = True
+    align: bool = False
+    registration: registering.Settings | None = None
+
+
+@dataclass
+class Report:
+    """What was written: (kind, name) of each layer, and what could not be."""
+
+    source: str
+    target: str
+    written: list
+    refusals: list
+    notes: list
+    seconds: float
+
+    def __str__(self):
+        kinds = dict.fromkeys(kind for kind, _ in self.written)
+        parts = [_listed(kind, [name for own, name in self.written if own == kind]) for kind in kinds]
+        line = f"{', '.join(parts)} from {self.target} to {self.source}, {self.seconds:.2f} s"
+        left = [f"left out: {messages.listed(self.refusals)}"] if self.refusals else []
+        return "; ".join([line, *left, *self.notes])
+
+
+def job(context, settings):
+    """A `Job` that transfers to the active object; its `apply` writes the layers and returns a `Report`.
+
+    Raises `targets.NothingToDo` or `CannotRegister` before anything is computed.
+    """
+    started = time.perf_counter()
+    couple = register.chosen(context)
+    items, refusals = cargo.writable(couple.source, _read(couple, settings))
+    if not items:
+        raise _nothing(couple, refusals)
+    to_world, from_world = np.array(couple.target.matrix_world)[:3, :3], couple.to_source[:3, :3]
+
+    def work(progress):
+        registered = _registration(couple, settings.registration, progress)
+        turn = _turn(registered) if settings.align else np.identity(3)
+        return registered, [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
+
+    def finish(found):
+        registered, pulled = found
+        register.check_unchanged(couple)
+        for item, (elements, values) in zip(items, pulled, strict=True):
+            cargo.write(couple.source, item, elements, values)
+        return Report(
+            source=couple.source.name,
+            target=couple.target.name,
+            written=[(item.kind, item.name) for item in items],
+            refusals=refusals,
+            notes=register.warnings(registered),
+            seconds=time.perf_counter() - started,
+        )
+
+    return Job(work, finish)
+
+
+def _read(couple, settings):
+    """The target's layers that are wanted."""
+    items = []
+    if settings.uv_maps:
+        items += cargo.uv_maps(couple.target, settings.active_uv_only)
+    if settings.vertex_groups:
+        items += cargo.vertex_groups(couple.target)
+    if settings.colour_attributes:
+        items += cargo.colour_attributes(couple.target)
+    if settings.shape_keys:
+        morphs = {register.key_name(obj) for obj in (couple.source, couple.target)}
+        items += cargo.keys(couple.target, but=morphs)
+    return items
+
+
+def _nothing(couple, refusals):
+    if refusals:
+        return CannotRegister(messages.listed(refusals))
+    return targets.NothingToDo(f"{couple.target.name} has nothing of what is to be transferred")
+
+
+def _registration(couple, settings, progress):
+    """The one with the settings, or without any the latest of these meshes and landmarks."""
+    if settings is None:
+        found = bridge.kept(*couple.sides, couple.pairs)
+        if found is not None:
+            return found
+    return register.registration(couple, settings or registering.Settings(), progress)
+
+
+def _turn(registered):
+    """How the target is turned and scaled when it is laid over the source."""
+    return transferring.turn_and_scale(registered.images, bridge.morphed(registered, align=True))
+
+
+def _pulled(registered, item, to_source):
+    """The elements of the source's mesh (k,) and their values (k, d)."""
+    spread, gather = transferring.by_points, transferring.from_points
+    if item.of_corners:
+        spread, gather = transferring.by_corners, transferring.from_corners
+    values = bridge.pull(registered, spread(registered.target, item.values))
+    elements, values = gather(registered.source, values)
+    return elements, values @ to_source.T if item.kind == cargo.KEY else values
+
+
+def _listed(kind, names):
+    noun = kind if len(names) == 1 else _PLURALS[kind]
+    return f"{len(names)} {noun} ({messages.listed(names)})"

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.register: a slider that morphs the active object into its target, landmarks onto landmarks."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from .. import landmarks, registering
+from ..jobs import register as registration
+from .modal import Modal
+
+
+class Registering:
+    """Properties of registrations and their part of a panel."""
+
+    domain: EnumProperty(
+        name="Domain",
+        description="The shape by way of which the two surfaces are registered",
+        items=(
+            ("AUTO", "Automatic", "A disk for surfaces with a boundary, a sphere for closed ones"),
+            ("DISK", "Disk", "Both surfaces must have one boundary"),
+            ("SPHERE", "Sphere", "Both surfaces must be closed"),
+        ),
+        default="AUTO",
+    )
+    angle_weight: FloatProperty(
+        name="Angle Weight",
+        description="How much angles count against areas. 0 keeps shares of the area as well as can be, "
+        "higher values skew less",
+        min=0.0,
+        max=1.0,
+        precision=3,
+        default=0.0,
+    )
+    weight: FloatProperty(
+        name="Landmark Weight",
+        description="How hard landmarks are pulled at first; it grows until they meet",
+        min=1e-6,
+        soft_max=100.0,
+        default=1.0,
+    )
+
+    def registration(self):
+        return registering.Settings(self.domain, self.weight, self.angle_weight)
+
+
+class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
+    """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
+
+    Faces keep their shares of the area as well as the landmarks allow, and the map folds none of them over"""
+
+    bl_idname = "authalic.register"
+    bl_label = "Register and Morph"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
+    refused = (registration.CannotRegister,)
+
+    align: BoolProperty(
+        name="Align",
+        description="Move, turn and scale the target onto the object, so that the shape does not travel "
+        "while it morphs. Off, it ends where the target is",
+        default=False,
+    )
+    target_uv: BoolProperty(
+        name="UV Map on Target",
+        description="Open surfaces: write the map under which both coincide as a UV map of the target too",
+        default=False,
+    )
+    animate: BoolProperty(name="Animate", description="Key-frame the shape key from 0 to 1", default=False)
+    frame_start: IntProperty(name="Start Frame", description="Where the shape key is 0", default=1)
+    frame_end: IntProperty(name="End Frame", description="Where the shape key is 1", default=100)
+
+    @classmethod
+    def poll(cls, context):
+        return has_target(cls, context)
+
+    def job(self, context):
+        frames = (self.frame_start, self.frame_end) if self.animate else None
+        settings = registration.Settings(self.registration(), self.align, self.target_uv, frames)
+        return registration.job(context, settings)
+
+    def line(self, report):
+        return str(report)
+
+    def draw(self, _context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        draw_options(self.layout, self)
+
+
+def has_target(operator, context):
+    """Object mode, an active mesh and a target for it; else tells the user what is missing."""
+    obj = landmarks.source(context)
+    if context.mode != "OBJECT":
+        operator.poll_message_set("Only in Object Mode")
+    elif obj is None or obj.type != "MESH":
+        operator.poll_message_set("Make the mesh that is to change the active object")
+    elif landmarks.target_problem(obj):
+        operator.poll_message_set(f"{obj.name}: {landmarks.target_problem(obj)}")
+    else:
+        return True
+    return False
+
+
+def draw_options(layout, properties):
+    """The options, in the redo panel and in the sidebar."""
+    column = layout.column()
+    for name in ("domain", "angle_weight", "weight", "align", "target_uv", "animate"):
+        column.prop(properties, name, slider=name == "angle_weight")
+    frames = column.column(align=True)
+    frames.active = properties.animate
+    frames.prop(properties, "frame_start")
+    frames.prop(properties, "frame_end", text="End")
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_OT_register)
+
+
+def unregister():
+    bpy.utils.unregister_class(AUTHALIC_OT_register)

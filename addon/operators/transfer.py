@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.transfer: UV maps, vertex groups, colours and shape keys from the target to the active object."""
+
+import bpy
+from bpy.props import BoolProperty
+
+from ..jobs import transfer
+from ..jobs.register import CannotRegister
+from .modal import Modal
+from .register import Registering, has_target
+
+_OF_REGISTRATION = ("domain", "angle_weight", "weight")
+_KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "shape_keys", "align")
+
+
+class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
+    """Copy UV maps, vertex groups, colours and shape keys from the target to the active object.
+
+    Through their registration, landmarks onto landmarks. Layers of the same names are replaced"""
+
+    bl_idname = "authalic.transfer"
+    bl_label = "Transfer from Target"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
+    refused = (CannotRegister,)
+
+    uv_maps: BoolProperty(name="UV Maps", description="By face corner, seams stay seams", default=True)
+    active_uv_only: BoolProperty(
+        name="Active UV Map Only", description="Of the UV maps only the target's active one", default=False
+    )
+    vertex_groups: BoolProperty(name="Vertex Groups", description="With their weights", default=True)
+    colour_attributes: BoolProperty(
+        name="Color Attributes", description="Those of vertices and of face corners", default=True
+    )
+    shape_keys: BoolProperty(
+        name="Shape Keys",
+        description="As displacements from what they are relative to. Morphs between the two are left out",
+        default=True,
+    )
+    align: BoolProperty(
+        name="Align Shape Keys",
+        description="Turn and scale displacements as the target has to be to lie over the object. Off, they "
+        "keep their directions and lengths in the world",
+        default=False,
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return has_target(cls, context)
+
+    def job(self, context):
+        # Without any of these set, the registration that there is serves.
+        is_set = any(self.properties.is_property_set(name) for name in _OF_REGISTRATION)
+        return transfer.job(
+            context,
+            transfer.Settings(
+                **{name: getattr(self, name) for name in _KINDS},
+                registration=self.registration() if is_set else None,
+            ),
+        )
+
+    def line(self, report):
+        return f"Transferred {report}"
+
+    def draw(self, _context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        draw_options(self.layout, self)
+
+
+def draw_options(layout, properties):
+    """The options, in the redo panel and in the sidebar."""
+    column = layout.column()
+    for name in _KINDS:
+        row = column.row()
+        row.active = _DEPENDS.get(name) is None or getattr(properties, _DEPENDS[name])
+        row.prop(properties, name)
+
+
+_DEPENDS = {"active_uv_only": "uv_maps", "align": "shape_keys"}
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_OT_transfer)
+
+
+def unregister():
+    bpy.utils.unregister_class(AUTHALIC_OT_transfer)

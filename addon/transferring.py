@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Data of a mesh's vertices and corners on the triangles of a registration's side. Plain numpy, no bpy."""
+
+import numpy as np
+
+
+def by_points(side, values):
+    """Values (n, d) of a mesh's vertices as those of a side's points (u, d).
+
+    The centre of a divided polygon has the mean of its corners.
+    """
+    real = side.vertices >= 0
+    result = np.empty((len(side.points), values.shape[1]))
+    result[real] = values[side.vertices[real]]
+    if not real.all():
+        result[~real] = _means(side, result[side.faces])[~real]
+    return result
+
+
+def by_corners(side, values):
+    """Values (c, d) of a mesh's corners as those of a side's triangles (m, 3, d); centres as for points."""
+    result = np.zeros((*side.corners.shape, values.shape[1]))
+    real = side.corners >= 0
+    result[real] = values[side.corners[real]]
+    if not real.all():
+        result[~real] = _means(side, result)[side.faces[~real]]
+    return result
+
+
+def from_points(side, values):
+    """The vertices (k,) of the mesh that are points of a side, and their values (k, d)."""
+    real = side.vertices >= 0
+    return side.vertices[real], values[real]
+
+
+def from_corners(side, values):
+    """The corners (k,) of the mesh that a side's triangles have, and their values (k, d).
+
+    Of a corner that several triangles of its polygon share, the one in the first of these.
+    """
+    corners, first = np.unique(side.corners, return_index=True)
+    real = corners >= 0
+    return corners[real], values.reshape(-1, values.shape[-1])[first[real]]
+
+
+def turn_and_scale(points, images):
+    """The linear part (3, 3) of the similarity that takes points (n, 3) to their images (n, 3)."""
+    points, images = points - points.mean(axis=0), images - images.mean(axis=0)
+    u, _, vt = np.linalg.svd(images.T @ points)
+    u[:, -1] *= np.sign(np.linalg.det(u @ vt))
+    return np.linalg.norm(images) / np.linalg.norm(points) * (u @ vt)
+
+
+def _means(side, values):
+    """At the centres of divided polygons the means (u, d) of values (m, 3, d) around them."""
+    centre = side.corners < 0
+    fan = centre.any(axis=1)
+    at = side.faces[fan][centre[fan]]
+    around = values[fan][~centre[fan]].reshape(len(at), 2, -1).mean(axis=1)
+    result = np.zeros((len(side.points), values.shape[2]))
+    np.add.at(result, at, around)
+    return result / np.maximum(np.bincount(at, minlength=len(side.points)), 1)[:, None]

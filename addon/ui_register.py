@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The part of the registration panel below the landmarks: the two buttons and their options."""
+
+from .operators import register, transfer
+
+
+def draw_register(layout, context):
+    """What the buttons were used with last, and will be used with next, is below either."""
+    last = context.window_manager.operator_properties_last
+    for operator, module, icon in (("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")):
+        column = layout.column()
+        row = column.row()
+        row.scale_y = 1.5 if operator == "register" else 1.0
+        row.operator(f"authalic.{operator}", icon=icon)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        module.draw_options(column, last(f"authalic.{operator}"))

@@ -1,0 +1,492 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.register: the morph it writes, where it ends, what it says and what it refuses."""
+
+import re
+import time
+import types
+
+import bpy
+import meshes
+import numpy as np
+import pairs
+import pytest
+import spheres
+from mathutils import Matrix, Vector
+from mathutils.bvhtree import BVHTree
+from pairs import SQUEEZED, TILTED, part
+
+KEY = "Morph → Twin"
+UV_MAP = "Authalic Registered"
+CORNERS = [(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0), (0, 0, 1)]
+
+
+def register(**options):
+    return bpy.ops.authalic.register(**options)
+
+
+def sheets(matrix=None, n=8):
+    """A bumpy grid and its copy, with landmarks on the bump."""
+    source = meshes.add_grid("Sheet", n=n)
+    target = pairs.twin(source, matrix)
+    return pairs.pair(source, target, pairs.nearest(source, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)]))
+
+
+def balls(matrix=None):
+    """A bumpy sphere and its copy, with landmarks all around."""
+    source = meshes.bumpy(meshes.icosphere(3))
+    target = pairs.twin(source, matrix)
+    return pairs.pair(source, target, pairs.nearest(source, CORNERS))
+
+
+def onto_another_sphere():
+    """A cube's sphere of quads and a bumpy one of triangles."""
+    source, target = meshes.cube_sphere(3), meshes.bumpy(meshes.icosphere(4), 0.15)
+    target.name = "Twin"
+    target.matrix_world = TILTED
+    ends = zip(pairs.nearest(source, CORNERS), pairs.nearest(target, CORNERS), strict=True)
+    return pairs.pair(source, target, {f"Corner {number}": both for number, both in enumerate(ends)})
+
+
+def assert_near(points, expected):
+    """As near as maps of surfaces that differ in more than rounding come to each other."""
+    np.testing.assert_allclose(points, expected, atol=0.02 * pairs.size(expected))
+
+
+@pytest.mark.parametrize("make", [sheets, balls])
+def test_a_copy_is_found_again(make):
+    source, target = make()
+    before = pairs.positions(source)
+    assert register() == {"FINISHED"}
+    blocks = source.data.shape_keys.key_blocks
+    assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0
+    assert (pairs.positions(source) == before).all() and target.data.shape_keys is None
+    np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=1e-6 * pairs.size(before))
+
+
+@pytest.mark.parametrize("make", [sheets, balls])
+@pytest.mark.parametrize("source_matrix", [Matrix.Identity(4), SQUEEZED])
+def test_the_morph_ends_where_the_target_is(make, source_matrix):
+    source, target = make(TILTED)
+    source.matrix_world = TILTED @ source_matrix
+    target.data.transform(source_matrix)
+    bpy.context.view_layer.update()
+    assert register() == {"FINISHED"}
+    expected = pairs.moved(pairs.positions(target), source.matrix_world.inverted() @ target.matrix_world)
+    np.testing.assert_allclose(pairs.positions(source, KEY), expected, atol=3e-5 * pairs.size(expected))
+
+
+@pytest.mark.parametrize("make", [sheets, balls])
+def test_mirrored_by_its_scale(make):
+    source, target = make()
+    mirror = Matrix.Scale(-1, 4, (1, 0, 0))
+    target.data.transform(mirror)
+    target.data.flip_normals()
+    target.matrix_world = mirror
+    bpy.context.view_layer.update()
+    assert register() == {"FINISHED"}
+    assert_near(pairs.positions(source, KEY), pairs.positions(source))
+
+
+def test_align_does_not_travel():
+    source, _ = balls(TILTED)
+    before = pairs.positions(source)
+    register(align=True)
+    assert_near(pairs.positions(source, KEY), before)
+    register()
+    assert np.linalg.norm(pairs.positions(source, KEY) - before, axis=1).min() > 0.5
+
+
+def test_another_surface(capfd):
+    source, target = onto_another_sphere()
+    assert register() == {"FINISHED"}
+    said = capfd.readouterr().out
+    goal = pairs.moved(pairs.positions(source, KEY), target.matrix_world.inverted())
+    tree = BVHTree.FromObject(target, bpy.context.evaluated_depsgraph_get())
+    extent = pairs.size(pairs.positions(target))
+    assert max(tree.find_nearest(Vector(point))[3] for point in goal) < 1e-5 * extent
+    for number, landmark in enumerate(part("landmarks").pairs(source)):
+        missed = goal[landmark.source_vertex] - pairs.positions(target)[landmark.target_vertex]
+        assert np.linalg.norm(missed) < 5e-3 * extent
+        error = source.authalic_landmarks[number].error
+        assert error == pytest.approx(100 * np.linalg.norm(missed) / extent, abs=1e-3)
+    assert re.search(
+        rf"Info: {KEY} on Cube: 5 landmark pairs, landmark error mean 0\.\d+ % and max 0\.\d+ %", said
+    )
+    assert re.search(r"of the size of Twin, 0 folds, authalic energy [\d.e-]+, \w+, \d+\.\d+ s", said)
+    assert not source.data.uv_layers.get(UV_MAP)
+
+
+def test_disks_get_the_registered_map():
+    source, target = sheets()
+    source.data.uv_layers.new(name="Own")
+    assert register(target_uv=True) == {"FINISHED"}
+    for obj in (source, target):
+        assert (meshes.uv_areas(meshes.uv(obj, UV_MAP)[meshes.triangles(obj)[0]]) > 0).all()
+        assert meshes.uv(obj, UV_MAP).min() >= 0 and meshes.uv(obj, UV_MAP).max() <= 1
+    np.testing.assert_allclose(meshes.uv(source, UV_MAP), meshes.uv(target, UV_MAP), atol=1e-5)
+    assert source.data.uv_layers.active.name == "Own"
+    register()
+    assert [layer.name for layer in source.data.uv_layers] == ["Own", UV_MAP]
+
+
+def test_the_target_gets_no_uv_map_by_default():
+    _, target = sheets()
+    register()
+    assert not target.data.uv_layers
+
+
+def test_no_room_for_the_uv_map(capfd):
+    source, _ = sheets()
+    for number in range(8):
+        source.data.uv_layers.new(name=f"Map {number}")
+    assert register() == {"FINISHED"}
+    assert "Sheet has no room for the UV map Authalic Registered" in capfd.readouterr().out
+    assert KEY in source.data.shape_keys.key_blocks
+
+
+def test_again_replaces_the_key():
+    source, target = balls()
+    register()
+    source.data.shape_keys.key_blocks[KEY].value = 0.5
+    target.matrix_world = Matrix.Translation((5, 0, 0))
+    bpy.context.view_layer.update()
+    assert register() == {"FINISHED"}
+    blocks = source.data.shape_keys.key_blocks
+    assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0
+    assert pairs.positions(source, KEY)[:, 0].mean() > 4
+
+
+def test_long_names():
+    source, target = balls()
+    target.name = "A head with a name as long as a name may be in Blender, so long"
+    register()
+    register()
+    assert len(source.data.shape_keys.key_blocks) == 2
+
+
+def test_first_shape_keys_count():
+    source, target = balls()
+    expected = pairs.positions(target)
+    for obj in (source, target):
+        obj.shape_key_add(name="Basis", from_mix=False)
+        key = obj.shape_key_add(name="Larger", from_mix=False)
+        key.points.foreach_set("co", (2 * pairs.positions(obj)).astype(np.float32).ravel())
+        key.value = 1.0
+    assert register() == {"FINISHED"}
+    np.testing.assert_allclose(pairs.positions(source, KEY), expected, atol=1e-5)
+
+
+def test_loose_vertices_stay():
+    vertices, faces = meshes.grid()
+    source = meshes.add([(9, 9, 9), *vertices, (5, 5, 5)], np.asarray(faces) + 1, "Dusty")
+    pairs.pair(source, pairs.twin(source, TILTED), [17, 25, 33])
+    assert register() == {"FINISHED"}
+    key = pairs.positions(source, KEY)
+    assert (key[[0, -1]] == [(9, 9, 9), (5, 5, 5)]).all()
+    assert_near(key[1:-1], pairs.moved(vertices, TILTED))
+
+
+def test_n_gons():
+    bpy.ops.mesh.primitive_cylinder_add(vertices=12)
+    source = bpy.context.object
+    pairs.pair(source, pairs.twin(source, TILTED), [0, 9, 16])
+    assert register() == {"FINISHED"}
+    assert_near(pairs.positions(source, KEY), pairs.moved(pairs.positions(source), TILTED))
+
+
+def curve_points(obj):
+    """(frame, value) of the key frames of the morph."""
+    curves = [curve for found in part("animation")._curves(obj.data.shape_keys) for curve in found]
+    assert [curve.data_path for curve in curves] == [f'key_blocks["{KEY}"].value']
+    return [tuple(point.co) for point in curves[0].keyframe_points]
+
+
+def test_animate():
+    source, _ = balls()
+    assert register(animate=True, frame_start=10, frame_end=50) == {"FINISHED"}
+    assert curve_points(source) == [(10, 0), (50, 1)]
+    key = source.data.shape_keys.key_blocks[KEY]
+    assert key.value == 0
+    for frame, value in ((10, 0), (50, 1), (70, 1)):
+        bpy.context.scene.frame_set(frame)
+        assert key.value == value
+    bpy.context.scene.frame_set(30)
+    assert 0.2 < key.value < 0.8
+    register(animate=True, frame_start=1, frame_end=20)
+    assert curve_points(source) == [(1, 0), (20, 1)] and key.value == 1
+
+
+def test_animation_of_other_keys_stays():
+    source, _ = balls()
+    source.shape_key_add(name="Basis")
+    other = source.shape_key_add(name="Other")
+    other.keyframe_insert("value", frame=5)
+    register(animate=True)
+    curves = [curve for found in part("animation")._curves(source.data.shape_keys) for curve in found]
+    assert [curve.data_path for curve in curves] == [
+        'key_blocks["Other"].value',
+        f'key_blocks["{KEY}"].value',
+    ]
+
+
+def test_frames_in_the_wrong_order():
+    balls()
+    refusal("The morph has to end after frame 20", animate=True, frame_start=20, frame_end=20)
+
+
+def test_the_registration_is_kept(monkeypatch):
+    _, target = balls()
+    register()
+    bridge, made = part("bridge"), []
+    monkeypatch.setattr(bridge, "_registered", lambda *_: made.append(1))
+    register(align=True)
+    register(animate=True)
+    assert not made
+    target.data.vertices[3].co.x += 0.1
+    with pytest.raises(AttributeError):
+        part("jobs.register").job(bpy.context, part("jobs.register").Settings()).execute()
+    assert made
+
+
+def refusal(pattern, obj=None, **options):
+    """The operator changes nothing, and its message matches."""
+    obj = obj or bpy.context.object
+    with pytest.raises(RuntimeError, match=pattern):
+        register(**options)
+    assert obj.data.shape_keys is None and not obj.data.uv_layers.get(UV_MAP)
+
+
+def test_poll():
+    source, target = balls()
+    source.authalic_target = None
+    refusal("there is no target object, choose one")
+    source.authalic_target = target
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Only in Object Mode"):
+        register()
+
+
+def test_open_and_closed():
+    source, target = meshes.add_grid("Sail"), meshes.icosphere(2)
+    pairs.pair(source, target, {"One": (24, 1), "Two": (25, 2)})
+    refusal("Sail is open and Icosphere is closed; both must be open or both closed: fill the hole of Sail")
+
+
+@pytest.mark.parametrize(
+    ("make", "domain", "pattern"),
+    [
+        (sheets, "SPHERE", "Sheet: has a boundary, which a sphere has not; fill it or set Domain"),
+        (balls, "DISK", "Icosphere: is closed, a disk has a boundary; set Domain to Automatic"),
+    ],
+)
+def test_wanted_domain(make, domain, pattern):
+    make()
+    refusal(pattern, domain=domain)
+
+
+def test_holes_are_named():
+    vertices, faces = meshes.grid(n=8)
+    holed = meshes.add(
+        vertices, [face for number, face in enumerate(faces) if number not in (18, 45)], "Holed"
+    )
+    pairs.pair(holed, meshes.add_grid("Sheet", n=8), [40, 41])
+    refusal(
+        r"Holed: has 3 boundaries where one is allowed; fill the one of 4 edges at vertex \d+; the one of 4 "
+        r"edges at vertex \d+ \(select a boundary edge, Select Boundary Loop, F\)"
+    )
+
+
+def test_handle():
+    torus = meshes.torus()
+    pairs.pair(torus, pairs.twin(torus), [0, 50])
+    refusal("Torus: has a handle, like a torus; close it up or remesh it")
+
+
+def test_several_pieces_of_the_target():
+    first, second = spheres.icosphere(1), spheres.icosphere(1)
+    target = meshes.add(*meshes.together(first, (second[0] + [4, 0, 0], second[1])), "Couple")
+    source = meshes.add(*spheres.icosphere(1), "One")
+    pairs.pair(source, target, [0, 5])
+    refusal("Couple: consists of 2 pieces where one is allowed")
+
+
+def test_surfaces_that_meet():
+    vertices, faces = meshes.tetrahedron()
+    fin = meshes.add([*vertices, (3, 3, -3)], [*faces, [0, 1, 4]], "Fin")
+    pairs.pair(fin, meshes.icosphere(1), [0, 1])
+    refusal("Fin: has edges or vertices where surfaces meet", fin)
+
+
+def test_empty_target():
+    source = meshes.icosphere(1)
+    source.authalic_target = meshes.add([], [], "Empty")
+    meshes.select(source)
+    refusal("Empty has no faces")
+
+
+def test_faces_without_area():
+    _, target = balls()
+    target.data.vertices.foreach_set("co", np.zeros(3 * len(target.data.vertices), np.float32))
+    refusal("Twin: .*area")
+
+
+def test_bad_coordinate_of_the_target():
+    _, target = balls()
+    target.data.vertices[7].co.y = float("nan")
+    refusal("Twin: .*vertex 7")
+
+
+def test_flattened_object():
+    source, _ = balls()
+    source.scale = (1, 1, 0)
+    bpy.context.view_layer.update()
+    refusal("Icosphere is scaled to nothing along an axis")
+
+
+@pytest.mark.parametrize(
+    ("make", "count", "pattern"),
+    [(sheets, 0, "Sheet needs a landmark pair"), (balls, 1, "Icosphere needs at least two landmark pairs")],
+)
+def test_too_few_landmarks(make, count, pattern):
+    source, _ = make()
+    while len(source.authalic_landmarks) > count:
+        part("landmarks").remove(source, 0)
+    refusal(pattern)
+
+
+def test_landmark_on_the_boundary():
+    source, _ = sheets()
+    part("landmarks").add(source, 3, 40, "Rim")
+    refusal('Landmark "Rim" is on the boundary of Sheet, which becomes a circle; pick a vertex inside')
+
+
+def test_landmark_on_a_loose_vertex():
+    source = meshes.add([*spheres.icosphere(1)[0], (5, 0, 0)], spheres.icosphere(1)[1], "Dusty")
+    pairs.pair(source, meshes.icosphere(2), {"Dust": (42, 1), "Nose": (3, 5)})
+    refusal('Landmark "Dust" is on a loose vertex of Dusty')
+
+
+def test_lost_landmark():
+    source, target = balls()
+    name = source.authalic_landmarks[1].name
+    meshes.edit(target)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    target.data.vertices[source.authalic_landmarks[1].target_vertex].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.dissolve_verts()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    meshes.select(source)
+    refusal(f'Landmark "{name}": its vertex on Twin is gone')
+
+
+def test_pairs_that_cannot_meet_are_named(capfd):
+    source, _ = sheets()
+    triangle = [vertex.index for vertex in sorted(source.data.vertices, key=lambda one: one.co.length)[:3]]
+    swapped = dict(
+        zip("ABC", zip(triangle, [triangle[1], triangle[0], triangle[2]], strict=True), strict=True)
+    )
+    pairs.pair(source, source.authalic_target, swapped)
+    assert register() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Warning: " in said and "0 folds" in said and "landmarks missed" in said
+    assert re.search(r"pairs that do not meet without a fold: [ABC]", said)
+    assert "the normals of the two may face opposite ways" in said
+
+
+def test_absolute_keys():
+    source, _ = balls()
+    source.shape_key_add(name="Basis")
+    source.data.shape_keys.use_relative = False
+    with pytest.raises(RuntimeError, match="its shape keys are absolute"):
+        register()
+
+
+def test_shared_mesh(capfd):
+    source, _ = balls()
+    bpy.context.collection.objects.link(bpy.data.objects.new("Second", source.data))
+    assert register() == {"FINISHED"}
+    assert "shares its mesh, all 2 users have the key" in capfd.readouterr().out
+
+
+def test_undo_and_redo():
+    source, _ = sheets()
+    bpy.ops.ed.undo_push(message="Start")
+    name = source.name
+    bpy.ops.authalic.register("EXEC_DEFAULT", True)
+    assert KEY in source.data.shape_keys.key_blocks
+    bpy.ops.ed.undo()
+    assert bpy.data.objects[name].data.shape_keys is None and not bpy.data.objects[name].data.uv_layers
+    bpy.ops.ed.redo()
+    assert KEY in bpy.data.objects[name].data.shape_keys.key_blocks
+
+
+def test_cancelled_writes_nothing():
+    source, _ = balls()
+    registration = part("jobs.register")
+    job = registration.job(bpy.context, registration.Settings()).start()
+    job.cancel()
+    with pytest.raises(part("job").Cancelled):
+        job.apply()
+    assert source.data.shape_keys is None
+
+
+def test_what_there_is_can_be_kept():
+    source, target = meshes.bumpy(meshes.icosphere(6)), meshes.bumpy(meshes.cube_sphere(7), 0.2)
+    ends = zip(pairs.nearest(source, CORNERS), pairs.nearest(target, CORNERS), strict=True)
+    pairs.pair(source, target, {f"Corner {number}": both for number, both in enumerate(ends)})
+    registration = part("jobs.register")
+    job = registration.job(bpy.context, registration.Settings()).start()
+    time.sleep(0.3)
+    job.end_early()
+    report = job.apply()
+    assert "ended early" in str(report) and report.registered.folds == 0
+    assert np.isfinite(pairs.positions(source, report.key)).all()
+
+
+@pytest.mark.parametrize("change", ["remove", "subdivide", "landmarks"])
+def test_changed_meanwhile(change):
+    source, target = balls()
+    registration = part("jobs.register")
+    job = registration.job(bpy.context, registration.Settings()).start()
+    job._thread.join()
+    if change == "remove":
+        bpy.data.objects.remove(target)
+        bpy.context.view_layer.update()
+    elif change == "subdivide":
+        meshes.select(target)
+        meshes.subdivided(target, 1)
+    else:
+        part("landmarks").remove(source, 0)
+    with pytest.raises(registration.CannotRegister, match="changed meanwhile; nothing was written"):
+        job.apply()
+    assert source.data.shape_keys is None
+
+
+def test_progress_rises_and_says_what_it_does():
+    balls()
+    registration, seen = part("jobs.register"), []
+    couple = registration.chosen(bpy.context)
+
+    def listen(fraction, message):
+        seen.append((fraction, message))
+        return True
+
+    registration.registration(couple, part("registering").Settings(weight=2.0), listen)
+    fractions = [fraction for fraction, _ in seen]
+    assert len(seen) > 3 and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1
+
+
+def test_options_reach_the_library(monkeypatch):
+    balls()
+    bridge, given = part("bridge"), {}
+
+    def stop(*_, **options):
+        given.update(options)
+        raise bridge.Unsuitable("seen")
+
+    library = types.SimpleNamespace(**vars(bridge.authalic))
+    library.register_spheres = stop
+    monkeypatch.setattr(bridge, "authalic", library)
+    refusal("seen", weight=3.0, angle_weight=1.0)
+    assert given["weight"] == 3.0 and given["angle_weight"] == pytest.approx(10**0.5)

@@ -1,0 +1,334 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.transfer: what it copies from the target, how well, and what it leaves alone."""
+
+import bpy
+import meshes
+import numpy as np
+import pairs
+import pytest
+from mathutils import Matrix
+from pairs import TILTED, part
+
+KINDS = ("uv_maps", "vertex_groups", "colour_attributes", "shape_keys")
+
+
+def transfer(**options):
+    return bpy.ops.authalic.transfer(**options)
+
+
+def only(kind, **options):
+    return transfer(**{name: name == kind for name in KINDS}, **options)
+
+
+def copies(matrix=None):
+    """A bumpy grid and its copy, tied by landmarks."""
+    source = meshes.add_grid("Sheet", n=8)
+    target = pairs.twin(source, matrix)
+    return pairs.pair(source, target, pairs.nearest(source, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)]))
+
+
+def coarse_and_fine():
+    """Two grids of one shape, the target with three times as many vertices along a side."""
+    source, target = meshes.add_grid("Sheet", n=10), meshes.add_grid("Twin", n=30)
+    spots = [(0.4, 0.4, 0.4), (-0.4, 0, 0.4), (0.2, -0.6, 0), (-0.6, 0.6, 0)]
+    ends = zip(pairs.nearest(source, spots), pairs.nearest(target, spots), strict=True)
+    return pairs.pair(source, target, {f"Spot {number}": both for number, both in enumerate(ends)})
+
+
+def random_uv(obj, name, seed=1):
+    obj.data.uv_layers.new(name=name)
+    values = np.random.default_rng(seed).random((len(obj.data.loops), 2))
+    meshes.set_uv(obj, values, name)
+    return values
+
+
+def colours(obj, name):
+    values = np.empty(4 * len(obj.data.color_attributes[name].data), np.float32)
+    obj.data.color_attributes[name].data.foreach_get("color", values)
+    return values.reshape(-1, 4)
+
+
+def add_colours(obj, name, kind, domain):
+    attribute = obj.data.color_attributes.new(name, kind, domain)
+    values = np.random.default_rng(2).random((len(attribute.data), 4), np.float32)
+    attribute.data.foreach_set("color", values.ravel())
+    return colours(obj, name)
+
+
+def weights(obj, name):
+    group = obj.vertex_groups[name].index
+    found = np.full(len(obj.data.vertices), np.nan)
+    for vertex in obj.data.vertices:
+        for entry in vertex.groups:
+            if entry.group == group:
+                found[vertex.index] = entry.weight
+    return found
+
+
+def add_group(obj, name, values):
+    group = obj.vertex_groups.new(name=name)
+    for vertex, weight in enumerate(values):
+        if weight > 0:
+            group.add([vertex], float(weight), "REPLACE")
+
+
+def add_key(obj, name, displacement, relative_to=None):
+    if obj.data.shape_keys is None:
+        obj.shape_key_add(name="Basis", from_mix=False)
+    key = obj.shape_key_add(name=name, from_mix=False)
+    base = pairs.positions(obj, relative_to or "Basis")
+    key.points.foreach_set("co", (base + displacement).astype(np.float32).ravel())
+    key.relative_key = obj.data.shape_keys.key_blocks[relative_to or "Basis"]
+    return key
+
+
+def test_uv_maps_of_a_copy(capfd):
+    source, target = copies()
+    first, second = random_uv(target, "First", 1), random_uv(target, "Second", 2)
+    assert only("uv_maps") == {"FINISHED"}
+    assert [layer.name for layer in source.data.uv_layers] == ["First", "Second"]
+    # Every corner has a value of its own: all edges are seams.
+    np.testing.assert_allclose(meshes.uv(source, "First"), first, atol=1e-5)
+    np.testing.assert_allclose(meshes.uv(source, "Second"), second, atol=1e-5)
+    said = capfd.readouterr().out
+    assert "Transferred 2 UV maps (First; Second) from Twin to Sheet" in said
+
+
+def test_only_the_active_uv_map():
+    source, target = copies()
+    random_uv(target, "First")
+    random_uv(target, "Second")
+    target.data.uv_layers.active = target.data.uv_layers["Second"]
+    only("uv_maps", active_uv_only=True)
+    assert [layer.name for layer in source.data.uv_layers] == ["Second"]
+
+
+def test_an_existing_map_is_replaced_and_others_stay():
+    source, target = copies()
+    own, _ = random_uv(source, "Own", 5), random_uv(source, "Shared", 6)
+    wanted = random_uv(target, "Shared", 7)
+    source.data.uv_layers.active = source.data.uv_layers["Own"]
+    only("uv_maps")
+    assert [layer.name for layer in source.data.uv_layers] == ["Own", "Shared"]
+    np.testing.assert_allclose(meshes.uv(source, "Shared"), wanted, atol=1e-5)
+    assert (meshes.uv(source, "Own") == own.astype(np.float32)).all()
+    assert source.data.uv_layers.active.name == "Own"
+
+
+def test_linear_uvs_between_tessellations():
+    source, target = coarse_and_fine()
+    target.data.uv_layers.new(name="Plan")
+    corner = [loop.vertex_index for loop in target.data.loops]
+    meshes.set_uv(target, pairs.positions(target)[corner, :2], "Plan")
+    only("uv_maps")
+    corner = [loop.vertex_index for loop in source.data.loops]
+    np.testing.assert_allclose(meshes.uv(source, "Plan"), pairs.positions(source)[corner, :2], atol=0.06)
+
+
+def test_a_seam_stays_a_seam():
+    """The halves of a sheet apart by 5: no face of the source has corners on both sides."""
+    source, target = copies()
+    target.data.uv_layers.new(name="Halves")
+    where = pairs.positions(target)[[loop.vertex_index for loop in target.data.loops]]
+    right = np.repeat(
+        [where[face.loop_start : face.loop_start + 4, 0].mean() > 0 for face in target.data.polygons], 4
+    )
+    meshes.set_uv(target, where[:, :2] + np.outer(right, [5, 0]), "Halves")
+    only("uv_maps")
+    spread = np.ptp(meshes.uv(source, "Halves")[:, 0].reshape(-1, 4), axis=1)
+    assert spread.max() < 0.3
+
+
+@pytest.mark.parametrize("matrix", [None, TILTED])
+def test_vertex_groups(matrix):
+    source, target = copies(matrix)
+    values = np.clip(pairs.positions(target)[:, 0], 0, 1)
+    add_group(target, "Right", values)
+    add_group(target, "Empty", [])
+    add_group(source, "Before", [0.5])
+    add_group(source, "Right", np.full(len(values), 0.25))
+    assert only("vertex_groups") == {"FINISHED"}
+    assert [group.name for group in source.vertex_groups] == ["Before", "Right", "Empty"]
+    found = weights(source, "Right")
+    np.testing.assert_allclose(np.nan_to_num(found), values, atol=1e-5 if matrix is None else 0.05)
+    assert np.isnan(found).sum() > len(values) / 4 and np.isnan(weights(source, "Empty")).all()
+    assert weights(source, "Before")[0] == 0.5
+
+
+@pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
+@pytest.mark.parametrize("domain", ["POINT", "CORNER"])
+def test_colours(kind, domain):
+    source, target = copies()
+    wanted = add_colours(target, "Paint", kind, domain)
+    assert only("colour_attributes") == {"FINISHED"}
+    found = source.data.color_attributes["Paint"]
+    assert (found.data_type, found.domain) == (kind, domain)
+    np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5 if kind == "FLOAT_COLOR" else 0.01)
+
+
+def test_colours_of_another_kind_are_replaced():
+    source, target = copies()
+    wanted = add_colours(target, "Paint", "FLOAT_COLOR", "CORNER")
+    add_colours(source, "Paint", "BYTE_COLOR", "POINT")
+    only("colour_attributes")
+    np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5)
+
+
+def test_shape_keys_turn_with_the_spaces():
+    source, target = copies(TILTED)
+    source.matrix_world = Matrix.Rotation(0.7, 4, "X")
+    bpy.context.view_layer.update()
+    smile = np.outer(pairs.positions(target)[:, 0], [0, 0.1, 0.5])
+    key = add_key(target, "Smile", smile)
+    key.slider_min, key.slider_max, key.value = -0.5, 2.0, 0.7
+    assert only("shape_keys") == {"FINISHED"}
+    blocks = source.data.shape_keys.key_blocks
+    assert [block.name for block in blocks] == ["Basis", "Smile"]
+    found = pairs.positions(source, "Smile") - pairs.positions(source)
+    linear = np.array(source.matrix_world.inverted() @ target.matrix_world)[:3, :3]
+    np.testing.assert_allclose(found, smile @ linear.T, atol=0.05)
+    assert (
+        blocks["Smile"].value == 0 and blocks["Smile"].slider_max == 2 and blocks["Smile"].slider_min == -0.5
+    )
+
+
+def test_aligned_shape_keys_keep_their_direction_on_the_surface():
+    source, target = copies(TILTED)
+    smile = np.outer(pairs.positions(target)[:, 0], [0, 0.1, 0.5])
+    add_key(target, "Smile", smile)
+    only("shape_keys", align=True)
+    np.testing.assert_allclose(pairs.positions(source, "Smile") - pairs.positions(source), smile, atol=0.03)
+
+
+def test_keys_relative_to_other_keys_and_other_keys_stay():
+    source, target = copies()
+    add_key(target, "Wide", np.full(3, 0.25))
+    add_key(target, "Wider", np.full(3, 0.5), "Wide")
+    add_key(source, "Own", np.full(3, 2.0))
+    add_key(source, "Wide", np.full(3, 9.0))
+    source.active_shape_key_index = 1
+    only("shape_keys")
+    assert [key.name for key in source.data.shape_keys.key_blocks] == ["Basis", "Own", "Wide", "Wider"]
+    for name, by in (("Own", 2.0), ("Wide", 0.25), ("Wider", 0.5)):
+        np.testing.assert_allclose(pairs.positions(source, name) - pairs.positions(source), by, atol=1e-5)
+    assert source.active_shape_key_index == 1
+
+
+def test_morphs_between_the_two_are_left_out():
+    source, target = copies()
+    add_key(target, "Morph → Sheet", np.ones(3))
+    add_key(target, "Smile", np.ones(3))
+    only("shape_keys")
+    assert [key.name for key in source.data.shape_keys.key_blocks] == ["Basis", "Smile"]
+
+
+def test_everything_at_once_and_closed(capfd):
+    source = meshes.bumpy(meshes.cube_sphere(2))
+    target = pairs.twin(source)
+    while target.data.uv_layers:
+        target.data.uv_layers.remove(target.data.uv_layers[0])
+    pairs.pair(source, target, pairs.nearest(source, [(1, 1, 1), (-1, 1, 0), (0, -1, 0), (1, 0, -1)]))
+    wanted = random_uv(target, "Map")
+    add_group(target, "Group", np.full(len(target.data.vertices), 0.5))
+    paint = add_colours(target, "Paint", "FLOAT_COLOR", "POINT")
+    add_key(target, "Key", np.ones(3))
+    assert transfer() == {"FINISHED"}
+    np.testing.assert_allclose(meshes.uv(source, "Map"), wanted, atol=1e-4)
+    np.testing.assert_allclose(weights(source, "Group"), 0.5, atol=1e-6)
+    np.testing.assert_allclose(colours(source, "Paint"), paint, atol=1e-4)
+    assert "1 UV map (Map), 1 vertex group (Group), 1 colour attribute (Paint), 1 shape key (Key)" in (
+        capfd.readouterr().out
+    )
+
+
+def test_n_gons_and_loose_vertices():
+    """Polygons that are divided from their centre, on both sides."""
+    bpy.ops.mesh.primitive_cylinder_add(vertices=12)
+    made = bpy.context.object
+    target = meshes.add(
+        [*pairs.positions(made), (9, 9, 9)], [list(face.vertices) for face in made.data.polygons], "Twin"
+    )
+    source = pairs.twin(target, name="Can")
+    pairs.pair(source, target, [0, 9, 16])
+    wanted = random_uv(target, "Map")
+    values = np.linspace(0.1, 1, 25)
+    add_group(target, "Group", values)
+    add_group(source, "Group", np.full(25, 0.5))
+    transfer()
+    np.testing.assert_allclose(meshes.uv(source, "Map"), wanted, atol=1e-4)
+    np.testing.assert_allclose(weights(source, "Group")[:24], values[:24], atol=1e-4)
+    assert weights(source, "Group")[24] == 0.5
+
+
+def test_what_cannot_be_written_is_named(capfd):
+    source, target = copies()
+    for number in range(8):
+        source.data.uv_layers.new(name=f"Map {number}")
+    random_uv(target, "More")
+    random_uv(target, "Map 3")
+    add_group(target, "Map 4", [1.0])
+    assert transfer() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Warning: Transferred 1 UV map (Map 3)" in said
+    assert "UV map More: Sheet has no room for more UV maps" in said
+    assert "vertex group Map 4: Sheet has another attribute of this name; rename that" in said
+
+
+def test_nothing_to_transfer(capfd):
+    source, _ = copies()
+    assert transfer() == {"CANCELLED"}
+    assert "Twin has nothing of what is to be transferred" in capfd.readouterr().out
+    assert source.data.shape_keys is None
+
+
+def test_the_registration_is_used_again(monkeypatch):
+    source, target = copies()
+    random_uv(target, "Map")
+    bpy.ops.authalic.register(angle_weight=0.8)
+    bridge, made = part("bridge"), []
+    really = bridge._registered
+    monkeypatch.setattr(bridge, "_registered", lambda *given: made.append(given[3]) or really(*given))
+    only("uv_maps")
+    only("uv_maps", angle_weight=0.8)
+    assert not made
+    only("uv_maps", angle_weight=0.4)
+    assert [settings.angle_weight for settings in made] == [pytest.approx(0.4)]
+    part("landmarks").remove(source, 0)
+    only("uv_maps")
+    assert len(made) == 2 and made[1].angle_weight == 0
+
+
+def test_problems_are_those_of_registration():
+    source, target = copies()
+    random_uv(target, "Map")
+    part("landmarks").clear(source)
+    with pytest.raises(RuntimeError, match="Sheet needs a landmark pair"):
+        transfer()
+    source.authalic_target = None
+    with pytest.raises(RuntimeError, match="there is no target object"):
+        transfer()
+    assert not source.data.uv_layers
+
+
+def test_cancelled_writes_nothing():
+    source, target = copies()
+    random_uv(target, "Map")
+    job = part("jobs.transfer").job(bpy.context, part("jobs.transfer").Settings()).start()
+    job.cancel()
+    with pytest.raises(part("job").Cancelled):
+        job.apply()
+    assert not source.data.uv_layers
+
+
+def test_undo():
+    source, target = copies()
+    random_uv(target, "Map")
+    before = random_uv(source, "Map", 9)
+    add_group(target, "Group", [1.0])
+    bpy.ops.ed.undo_push(message="Start")
+    bpy.ops.authalic.transfer("EXEC_DEFAULT", True)
+    assert "Group" in source.vertex_groups
+    bpy.ops.ed.undo()
+    source = bpy.data.objects["Sheet"]
+    assert not source.vertex_groups
+    assert (meshes.uv(source, "Map") == before.astype(np.float32)).all()

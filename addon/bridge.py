@@ -177,11 +177,15 @@ def kept(source, target, pairs):
     return _registrations.get(registering.key(source, target, pairs), None)
 
 
-def morphed(registered, align):
-    """Where the source's points (u, 3) go on the target; with `align` the target is laid over the source."""
+def morphed(registered, source, target, align):
+    """Where the source's points (u, 3) go in the world: onto the target, with `align` laid over the source.
+
+    The sides are those of today, which may have moved since they were registered.
+    """
     if not align:
-        return registered.images
-    return np.asarray(authalic.homotopy(registered.source.points, registered.native, 1.0, align=True))
+        return registering.moved(np.asarray(registered.native.positions), target.matrix)
+    over = authalic.homotopy(source.points, registered.native, 1.0, align=True)
+    return registering.moved(np.asarray(over), source.matrix)
 
 
 def pull(registered, values):

@@ -11,6 +11,7 @@ from . import domains, messages, triangulation
 from .domains import Unsuitable
 
 _KEPT = 4
+_UNIFORM = 1e-5  # matrices have single precision
 _FEWEST = {"DISK": 1, "SPHERE": 2}
 
 
@@ -28,14 +29,16 @@ class Settings:
 
 @dataclass
 class Side:
-    """The triangles of one of the two meshes in the world, without its loose vertices.
+    """The triangles of one of the two meshes, without its loose vertices.
 
+    They have the shape that they have in the world, but the place and the size of the mesh: whatever moves,
+    turns or scales the object makes no difference. `matrix` (4, 4) leads from there into the world.
     `faces` (m, 3) are between `points` (u, 3); `vertices` (u,) and `corners` (m, 3) are those of the mesh,
-    -1 at the centre of a divided polygon, `polygons` (m,) the polygons. `count` is how many vertices the mesh
-    has.
+    -1 at the centre of a divided polygon, `polygons` (m,) the polygons. The mesh has `count` vertices.
     """
 
     name: str
+    matrix: np.ndarray
     points: np.ndarray
     faces: np.ndarray
     vertices: np.ndarray
@@ -60,7 +63,7 @@ class Side:
 class Registered:
     """The library's registration of `source` onto `target` and figures of it.
 
-    `images` (u, 3) are the source's points on the target, `plane` (u, 2) and `target_plane` those of either
+    `plane` (u, 2) and `target_plane` those of either
     in the unit disk, None for spheres. `errors` (k,) are the distances of the landmarks, as parts of the
     target's size, `missed` the names of pairs that do not meet.
     """
@@ -69,7 +72,6 @@ class Registered:
     source: Side
     target: Side
     domain: str
-    images: np.ndarray
     plane: np.ndarray | None
     target_plane: np.ndarray | None
     names: list[str]
@@ -86,10 +88,13 @@ class Registered:
 
 
 def side(surface, matrix):
-    """The `Side` of a `mesh_io.Surface` in the mesh's own coordinates, moved by a matrix (4, 4).
+    """The `Side` of a `mesh_io.Surface` in the mesh's own coordinates, with a matrix (4, 4) into the world.
 
     A matrix that mirrors turns the faces over, as Blender does, so that fronts stay fronts.
     """
+    shape = _shape_of(matrix[:3, :3])
+    to_world = np.array(matrix, float)
+    to_world[:3, :3] = matrix[:3, :3] @ np.linalg.inv(shape)
     mesh = triangulation.sound(surface)
     used, faces = np.unique(mesh.triangles, return_inverse=True)
     faces, corners = faces.reshape(-1, 3), mesh.corners
@@ -98,13 +103,23 @@ def side(surface, matrix):
     count = len(surface.positions)
     return Side(
         name=surface.name,
-        points=moved(mesh.positions[used], matrix),
+        matrix=to_world,
+        points=mesh.positions[used] @ shape.T,
         faces=np.ascontiguousarray(faces),
         vertices=np.where(used < count, used, -1),
         corners=np.ascontiguousarray(corners),
         polygons=mesh.polygons,
         count=count,
     )
+
+
+def _shape_of(linear):
+    """What a linear map (3, 3) does but to turn and to scale: to squeeze, and maybe to mirror."""
+    u, scale, vt = np.linalg.svd(linear)
+    squeeze = (vt.T * (scale / scale.max())) @ vt
+    if scale.min() > (1 - _UNIFORM) * scale.max():
+        squeeze = np.identity(3)
+    return squeeze * [[-1], [1], [1]] if np.linalg.det(u @ vt) < 0 else squeeze
 
 
 def moved(points, matrix):
@@ -223,14 +238,13 @@ def key(source, target, pairs):
 def registered(native, sides, shape, landmarks, names):
     """The figures of a registration (`authalic.Registration`) of two sides by landmarks (2, k)."""
     source, target = sides
-    images, is_disk = np.asarray(native.positions), shape == "DISK"
-    apart = np.linalg.norm(images[landmarks[0]] - target.points[landmarks[1]], axis=1)
+    is_disk, images = shape == "DISK", np.asarray(native.positions)[landmarks[0]]
+    apart = np.linalg.norm(images - target.points[landmarks[1]], axis=1)
     return Registered(
         native=native,
         source=source,
         target=target,
         domain=shape,
-        images=images,
         plane=np.asarray(native.registered) if is_disk else None,
         target_plane=np.asarray(native.target_registered) if is_disk else None,
         names=names,

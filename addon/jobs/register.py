@@ -31,7 +31,7 @@ class Settings:
 
 @dataclass
 class Couple:
-    """The two objects, both surfaces in their meshes' coordinates and in the world, and the landmarks."""
+    """The two objects, both surfaces as they were read and as sides of a registration, and the landmarks."""
 
     source: object
     target: object
@@ -172,7 +172,7 @@ def _pairs(source):
 def _positions(couple, registered, align):
     """All vertices (n, 3) of the source's mesh where the morph ends; loose ones stay."""
     positions, own = couple.surfaces[0].positions.copy(), registered.source.vertices
-    images = registering.moved(bridge.morphed(registered, align), couple.to_source)
+    images = registering.moved(bridge.morphed(registered, *couple.sides, align), couple.to_source)
     positions[own[own >= 0]] = images[own >= 0]
     if not np.isfinite(positions.astype(np.float32)).all():
         raise CannotRegister("The morph is not finite; nothing was changed")

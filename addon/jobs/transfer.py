@@ -60,7 +60,7 @@ def job(context, settings):
 
     def work(progress):
         registered = _registration(couple, settings.registration, progress)
-        turn = _turn(registered) if settings.align else np.identity(3)
+        turn = _turn(registered, couple) if settings.align else np.identity(3)
         return registered, [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
 
     def finish(found):
@@ -110,9 +110,10 @@ def _registration(couple, settings, progress):
     return register.registration(couple, settings or registering.Settings(), progress)
 
 
-def _turn(registered):
-    """How the target is turned and scaled when it is laid over the source."""
-    return transferring.turn_and_scale(registered.images, bridge.morphed(registered, align=True))
+def _turn(registered, couple):
+    """How the target is turned and scaled in the world when it is laid over the source."""
+    ends = [bridge.morphed(registered, *couple.sides, align) for align in (False, True)]
+    return transferring.turn_and_scale(*ends)
 
 
 def _pulled(registered, item, to_source):

@@ -26,7 +26,15 @@ CORE_ROOMS = (
 CORE_RANK = {room: rank for rank, rooms in enumerate(CORE_ROOMS) for room in rooms}
 
 # The same for the add-on; every module that is not named here is pure logic below the operators.
-ADDON_RANK = {"bridge": 1, "jobs": 2, "operators": 3, "ui": 4, "registration": 5, "__init__": 5}
+ADDON_RANK = {
+    "bridge": 1,
+    "jobs": 2,
+    "operators": 3,
+    "ui": 4,
+    "ui_register": 4,
+    "ui_landmarks": 5,
+    "__init__": 6,
+}
 
 
 def rust_files(folder: Path) -> list[Path]:

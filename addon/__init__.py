@@ -1,11 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Authalic: UVs in which every face has its fair share of the texture."""
+"""Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
 
-from . import ui
-from .operators import measure, sphere_shape_key, unwrap
+from . import landmarks, markers, ui, ui_landmarks
+from .operators import landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
+from .operators import landmarks as landmark_operators
+from .operators import register as register_operator
 
 # In this order; unregistered in the reverse one.
-_MODULES = (unwrap, sphere_shape_key, measure, ui)
+_MODULES = (
+    landmarks,
+    markers,
+    unwrap,
+    sphere_shape_key,
+    measure,
+    landmark_operators,
+    landmark_pick,
+    landmark_files,
+    register_operator,
+    transfer,
+    ui,
+    ui_landmarks,
+)
 
 
 def register():

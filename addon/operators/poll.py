@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When commands can be used."""
 
+from .. import landmarks
+
 
 def has_meshes(operator, context):
     """Object or edit mode with a mesh to work on; else tells the user what is missing."""
@@ -19,3 +21,34 @@ def has_meshes_in_object_mode(operator, context):
         operator.poll_message_set("Only in Object Mode")
         return False
     return has_meshes(operator, context)
+
+
+def has_source(operator, context):
+    """Object or edit mode with an active mesh, whose landmarks are meant."""
+    if context.mode not in {"OBJECT", "EDIT_MESH"}:
+        operator.poll_message_set("Only in Object Mode and in Edit Mode of a mesh")
+        return False
+    if context.object is None or context.object.type != "MESH":
+        operator.poll_message_set("Make a mesh object the active one")
+        return False
+    return True
+
+
+def has_target(operator, context):
+    """The same, and a target for it."""
+    if not has_source(operator, context):
+        return False
+    problem = landmarks.target_problem(landmarks.source(context))
+    if problem:
+        operator.poll_message_set(problem[:1].upper() + problem[1:])
+    return not problem
+
+
+def has_landmarks(operator, context):
+    """An active mesh that has landmarks."""
+    if not has_source(operator, context):
+        return False
+    if not landmarks.source(context).authalic_landmarks:
+        operator.poll_message_set("There are no landmarks yet")
+        return False
+    return True

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The vertex that the cursor is on, by the geometry of a view. Needs no window.
+
+Under the cursor lies a triangle, and the nearest of its vertices is meant; beside the surface, the nearest
+vertex some pixels away. Vertices behind a surface are never meant.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from mathutils import Matrix, Vector
+from mathutils.bvhtree import BVHTree
+
+# A hit this much nearer than a vertex, as a part of its distance, hides it.
+_HIDING = 1e-4
+
+
+@dataclass
+class View:
+    """A view of `width` by `height` pixels through the matrix (4, 4) from the world to clip space."""
+
+    matrix: np.ndarray
+    width: int
+    height: int
+
+    def project(self, points):
+        """Pixels (k, 2) of points (k, 3) in the world; not a number for those behind the eye."""
+        clip = points @ self.matrix[:, :3].T + self.matrix[:, 3]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            flat = clip[:, :2] / clip[:, 3:]
+        flat[clip[:, 3] <= 0] = np.nan
+        return (flat + 1) / 2 * (self.width, self.height)
+
+    def ray(self, pixel):
+        """The origin, on the near side of what is seen, and the direction of the ray through a pixel."""
+        x, y = 2 * np.asarray(pixel, float) / (self.width, self.height) - 1
+        ends = np.array([[x, y, -1, 1], [x, y, 1, 1]]) @ np.linalg.inv(self.matrix).T
+        near, far = ends[:, :3] / ends[:, 3:]
+        return near, (far - near) / np.linalg.norm(far - near)
+
+
+class Surface:
+    """Triangles (t, 3) of points (n, 3) under a matrix (4, 4) to the world, ready for rays."""
+
+    def __init__(self, points, triangles, matrix):
+        self.points, self.triangles = np.asarray(points, float), np.asarray(triangles)
+        self._tree = BVHTree.FromPolygons(self.points.tolist(), self.triangles.tolist(), all_triangles=True)
+        self._used = np.zeros(len(self.points), bool)
+        self._used[self.triangles.ravel()] = True
+        self.place(matrix)
+
+    def place(self, matrix):
+        """Moves the surface."""
+        self.matrix = Matrix(matrix)
+        self._inverse = self.matrix.inverted_safe()
+
+    def world(self, vertices=slice(None)):
+        """The points of some vertices, (k, 3), in the world."""
+        matrix = np.array(self.matrix)
+        return self.points[vertices] @ matrix[:3, :3].T + matrix[:3, 3]
+
+    def candidates(self, view, pixel, radius):
+        """The vertices of faces at most so many pixels away, the nearest first."""
+        away = np.linalg.norm(view.project(self.world()) - pixel, axis=1)
+        near = np.flatnonzero((away <= radius) & self._used)
+        return near[np.argsort(away[near], kind="stable")], np.sort(away[near])
+
+    def hit(self, origin, direction):
+        """The distance and the triangle (3,) that a ray hits first, or infinity and None."""
+        start = self._inverse @ Vector(origin)
+        towards = self._inverse.to_3x3() @ Vector(direction)
+        point, _, triangle, _ = self._tree.ray_cast(start, towards)
+        if point is None:
+            return np.inf, None
+        return (self.matrix @ point - Vector(origin)).length, self.triangles[triangle]
+
+
+def pick(surfaces, view, pixel, *, radius=20.0, blocked=np.inf):
+    """(which of the surfaces, vertex) at a pixel, or None; `blocked` is how far away what hides them is."""
+    origin, direction = view.ray(pixel)
+    hits = [surface.hit(origin, direction) for surface in surfaces]
+    which = int(np.argmin([distance for distance, _ in hits])) if hits else 0
+    distance, triangle = hits[which] if hits else (np.inf, None)
+    if min(distance, blocked) < np.inf:
+        return _corner(surfaces, which, triangle, view, pixel) if distance <= blocked else None
+    return _beside(surfaces, view, pixel, radius)
+
+
+def _corner(surfaces, which, triangle, view, pixel):
+    """The nearest visible corner of the triangle under the cursor."""
+    away = np.linalg.norm(view.project(surfaces[which].world(triangle)) - pixel, axis=1)
+    for vertex in triangle[np.argsort(away)]:
+        if _is_visible(surfaces, which, vertex, view):
+            return which, int(vertex)
+    return None
+
+
+def _beside(surfaces, view, pixel, radius):
+    """The nearest visible vertex, where no surface is under the cursor."""
+    found = []
+    for which, surface in enumerate(surfaces):
+        vertices, away = surface.candidates(view, pixel, radius)
+        found.extend((d, which, int(vertex)) for d, vertex in zip(away, vertices, strict=True))
+    for _, which, vertex in sorted(found):
+        if _is_visible(surfaces, which, vertex, view):
+            return which, vertex
+    return None
+
+
+def _is_visible(surfaces, which, vertex, view):
+    point = surfaces[which].world([vertex])
+    pixel = view.project(point)[0]
+    if not np.isfinite(pixel).all():
+        return False
+    origin, _ = view.ray(pixel)
+    distance = np.linalg.norm(point[0] - origin)
+    direction = (point[0] - origin) / max(distance, 1e-30)
+    for other, surface in enumerate(surfaces):
+        reached, triangle = surface.hit(origin, direction)
+        own = other == which and triangle is not None and vertex in triangle
+        if reached < distance * (1 - _HIDING) and not own:
+            return False
+    return True

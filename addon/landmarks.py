@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmark pairs: a vertex of a source object and the vertex of its target object that it corresponds to.
+
+They live on the source object, as `authalic_landmarks` with the target in `authalic_target`, and are saved
+with it. What a pair keeps are marks (see `vertex_marks`), so that its vertices are found again after the
+meshes were edited. `pairs` is the one truth on which vertices those are today, and where they are lost.
+"""
+
+from typing import NamedTuple
+
+import bpy
+from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from . import landmark_undo, vertex_marks
+
+NONE = -1
+
+
+class CannotPair(Exception):
+    """The landmarks are as they were; says why."""
+
+
+class Pair(NamedTuple):
+    """A landmark pair as it is today; -1 for a vertex that is not certain, and then the problem in words."""
+
+    name: str
+    source_vertex: int
+    target_vertex: int
+    problem: str | None
+
+
+def _getter(side):
+    return lambda landmark: _vertex(landmark, side)
+
+
+def _setter(side):
+    return lambda landmark, vertex: _bind(landmark, side, vertex)
+
+
+class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
+    """One pair. Its vertices are numbers of today, whatever was edited since they were set."""
+
+    name: StringProperty(name="Name", description="The name of this pair of landmarks")
+    source_vertex: IntProperty(
+        name="Source Vertex",
+        description="The vertex on this object, -1 if it was lost",
+        get=_getter("source"),
+        set=_setter("source"),
+    )
+    target_vertex: IntProperty(
+        name="Target Vertex",
+        description="The vertex on the target object, -1 if it was lost",
+        get=_getter("target"),
+        set=_setter("target"),
+    )
+    source_mark: IntProperty(options={"HIDDEN"})
+    target_mark: IntProperty(options={"HIDDEN"})
+    # A vertex that was set before there was a target to find it on.
+    waiting: IntProperty(default=NONE, options={"HIDDEN"})
+    error: FloatProperty(
+        name="Error",
+        description="How far the last registration missed this pair, in percent of the target's size. "
+        "Negative if there was none",
+        default=-1.0,
+    )
+
+
+def pairs(source, *, drawing=False):
+    """All pairs of a source object, as a list of `Pair`, with what is wrong with each in words.
+
+    With `drawing`, large meshes in edit mode are not searched anew unless they have changed visibly.
+    """
+    target, without_target = source.authalic_target, target_problem(source)
+    on_source = _found(source, source, "source", drawing)
+    on_target = {} if without_target else _found(source, target, "target", drawing)
+    listed, taken = [], {}
+    for landmark in source.authalic_landmarks:
+        vertex, problem = _where(landmark.source_mark, on_source, source)
+        if without_target:
+            listed.append(Pair(landmark.name, vertex, NONE, problem or without_target))
+            continue
+        goal, lost = _where(landmark.target_mark, on_target, target)
+        problem = problem or lost or _repeated(taken, landmark.name, (vertex, goal), (source, target))
+        listed.append(Pair(landmark.name, vertex, goal, problem))
+    return listed
+
+
+def source(context):
+    """The object whose landmarks are meant: the active one, or the one selected whose target that is."""
+    active = context.object
+    if active is None or active.type != "MESH" or active.authalic_target is not None:
+        return active
+    chosen = {*context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
+    aiming = [obj for obj in chosen if obj.type == "MESH" and obj.authalic_target == active]
+    return aiming[0] if len(aiming) == 1 else active
+
+
+def target_problem(source):
+    """Why a source object has no target to work with, or None."""
+    target = source.authalic_target
+    if target is None:
+        return "there is no target object, choose one"
+    if target == source or target.type != "MESH":
+        return f"{target.name} cannot be the target, choose another mesh object"
+    if not target.users_scene:
+        return f"the target object {target.name} was deleted, choose another one"
+    return None
+
+
+def add(source, source_vertex, target_vertex, name=""):
+    """Adds a pair and makes it the active one; returns it. Raises `CannotPair` and then changes nothing."""
+    _check_new(source, source_vertex, target_vertex)
+    landmark = source.authalic_landmarks.add()
+    landmark.name = name or _free_name(source)
+    landmark.source_vertex, landmark.target_vertex = source_vertex, target_vertex
+    source.authalic_landmark_index = len(source.authalic_landmarks) - 1
+    return landmark
+
+
+def replace(source, wanted):
+    """Puts pairs (name, source vertex, target vertex) in place of all there are, or of none of them.
+
+    Raises `CannotPair` and then changes nothing.
+    """
+    _check_target(source)
+    for side, obj in ((1, source), (2, source.authalic_target)):
+        first = {}
+        for pair in wanted:
+            name, vertex = pair[0], pair[side]
+            _check_vertex(obj, vertex)
+            if vertex in first:
+                raise CannotPair(
+                    f'vertex {vertex} of {obj.name} is in two pairs, "{first[vertex]}", "{name}"'
+                )
+            first[vertex] = name
+    clear(source)
+    for name, source_vertex, target_vertex in wanted:
+        add(source, source_vertex, target_vertex, name)
+
+
+def remove(source, index):
+    """Removes the pair of an index; the one that takes its place is the active one."""
+    gone = source.authalic_landmarks[index]
+    landmark_undo.remember(source, index)
+    marks = (source, gone.source_mark), (source.authalic_target, gone.target_mark)
+    source.authalic_landmarks.remove(index)
+    for obj, mark in marks:
+        # In another mode the mark would stay away when the step is undone.
+        if obj is not None and obj.data.is_editmode == source.data.is_editmode:
+            _release(obj, mark)
+    last = len(source.authalic_landmarks) - 1
+    source.authalic_landmark_index = max(min(source.authalic_landmark_index, last), 0)
+
+
+def clear(source):
+    """Removes all pairs."""
+    for index in reversed(range(len(source.authalic_landmarks))):
+        remove(source, index)
+
+
+def _check_new(source, source_vertex, target_vertex):
+    _check_target(source)
+    there = pairs(source)
+    for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
+        _check_vertex(obj, vertex)
+        other = next((pair for pair in there if pair[side] == vertex), None)
+        if other is not None:
+            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{other.name}" already')
+
+
+def _check_target(source):
+    problem = target_problem(source)
+    if problem:
+        raise CannotPair(f"{source.name}: {problem}")
+    for obj in (source, source.authalic_target):
+        if not obj.data.is_editable:
+            raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
+
+
+def _check_vertex(obj, vertex):
+    count = vertex_marks.vertex_count(obj.data)
+    if not 0 <= vertex < count:
+        raise CannotPair(f"{obj.name} has no vertex {vertex}, its {count} vertices are 0 to {count - 1}")
+
+
+def _free_name(source):
+    taken = {landmark.name for landmark in source.authalic_landmarks}
+    number = len(source.authalic_landmarks)  # as its marker will have it
+    while f"Landmark {number}" in taken:
+        number += 1
+    return f"Landmark {number}"
+
+
+def _found(source, obj, side, drawing):
+    wanted = [getattr(landmark, f"{side}_mark") for landmark in source.authalic_landmarks]
+    return vertex_marks.find(obj.data, wanted=wanted if drawing else None)
+
+
+def _where(mark, found, obj):
+    """The vertex that has a mark, or -1 and the problem."""
+    vertices = found.get(mark, ())
+    if len(vertices) == 1:
+        return vertices[0], None
+    if vertices:
+        return NONE, f"{len(vertices)} vertices of {obj.name} are copies of the chosen one"
+    return NONE, f"its vertex on {obj.name} is gone"
+
+
+def _repeated(taken, name, vertices, objects):
+    """What is wrong if an earlier pair has one of the vertices; else remembers them in `taken`."""
+    for vertex, obj, side in zip(vertices, objects, ("source", "target"), strict=True):
+        if vertex != NONE and (side, vertex) in taken:
+            return f'has vertex {vertex} of {obj.name}, as "{taken[side, vertex]}" has'
+        taken[side, vertex] = name
+    return None
+
+
+def _release(obj, mark):
+    """Takes a mark off a mesh if no pair of any object needs it."""
+    for other in bpy.data.objects:
+        for landmark in other.authalic_landmarks:
+            if mark in (landmark.source_mark, landmark.target_mark):
+                return
+    if obj.data.is_editable:
+        vertex_marks.clear(obj.data, mark)
+
+
+def _object(landmark, side):
+    source = landmark.id_data
+    if side == "source":
+        return source
+    return None if target_problem(source) else source.authalic_target
+
+
+def _vertex(landmark, side):
+    obj, mark = _object(landmark, side), getattr(landmark, f"{side}_mark")
+    if side == "target" and landmark.waiting != NONE:
+        return landmark.waiting
+    if obj is None or obj.type != "MESH":
+        return NONE
+    return _where(mark, vertex_marks.find(obj.data, wanted=[mark]), obj)[0]
+
+
+def _bind(landmark, side, vertex):
+    """Marks the vertex; one that the mesh does not have is no vertex."""
+    obj, mark = _object(landmark, side), 0
+    if side == "target":
+        landmark.waiting = vertex if obj is None else NONE
+    if obj is not None and obj.type == "MESH" and 0 <= vertex < vertex_marks.vertex_count(obj.data):
+        mark = vertex_marks.put(obj.data, vertex)
+    setattr(landmark, f"{side}_mark", mark)
+    landmark.error = -1.0
+
+
+def _may_be_target(source, obj):
+    return obj.type == "MESH" and obj != source
+
+
+def _target_changed(source, _context):
+    for landmark in source.authalic_landmarks:
+        landmark.error = -1.0
+        if landmark.waiting != NONE and target_problem(source) is None:
+            _bind(landmark, "target", landmark.waiting)
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_PG_landmark)
+    landmark_undo.register()
+    bpy.types.Object.authalic_landmarks = CollectionProperty(
+        type=AUTHALIC_PG_landmark, name="Landmarks", description="Pairs of vertices, here and on the target"
+    )
+    bpy.types.Object.authalic_landmark_index = IntProperty(
+        name="Active Landmark", description="The pair of landmarks that is selected in the list", min=0
+    )
+    bpy.types.Object.authalic_target = PointerProperty(
+        type=bpy.types.Object,
+        name="Target",
+        description="The mesh object that this one is registered with",
+        poll=_may_be_target,
+        update=_target_changed,
+    )
+
+
+def unregister():
+    del bpy.types.Object.authalic_target
+    del bpy.types.Object.authalic_landmark_index
+    del bpy.types.Object.authalic_landmarks
+    landmark_undo.unregister()
+    bpy.utils.unregister_class(AUTHALIC_PG_landmark)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.landmark_export and authalic.landmark_import: pairs of landmarks as JSON files."""
+
+from pathlib import Path
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from .. import landmark_files, landmarks, messages
+from . import poll
+
+
+class _File:
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+
+    def execute(self, context):
+        try:
+            return self.run(landmarks.source(context), self._path())
+        except (landmarks.CannotPair, landmark_files.CannotRead, OSError, UnicodeDecodeError) as problem:
+            name = Path(self.filepath).name
+            text = problem.strerror if isinstance(problem, OSError) and problem.strerror else problem
+            self.report({"ERROR"}, f"{name}: {text}" if name else str(text))
+            return {"CANCELLED"}
+
+    def _path(self):
+        if not self.filepath:
+            raise landmarks.CannotPair("No file is named")
+        return Path(bpy.path.abspath(self.filepath))
+
+
+class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):
+    """Write the pairs of landmarks to a JSON file, with the numbers of their vertices"""
+
+    bl_idname = "authalic.landmark_export"
+    bl_label = "Export Landmarks"
+
+    @classmethod
+    def poll(cls, context):
+        return poll.has_landmarks(cls, context)
+
+    def run(self, source, path):
+        listed = landmarks.pairs(source)
+        sound = [pair[:3] for pair in listed if pair.problem is None]
+        left = [f"{pair.name}: {pair.problem}" for pair in listed if pair.problem is not None]
+        if not sound:
+            raise landmarks.CannotPair(f"nothing was written, {messages.listed(left)}")
+        content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound)
+        path.write_text(landmark_files.to_text(content), encoding="utf-8")
+        done = f"Wrote {messages.count(len(sound), 'landmark')} to {path.name}"
+        self.report(*(({"WARNING"}, f"{done}, not {messages.listed(left)}") if left else ({"INFO"}, done)))
+        return {"FINISHED"}
+
+
+class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
+    """Read the pairs of landmarks from a JSON file, in place of those there are.
+
+    Where there is no target yet, the mesh object that the file names becomes it"""
+
+    bl_idname = "authalic.landmark_import"
+    bl_label = "Import Landmarks"
+
+    @classmethod
+    def poll(cls, context):
+        return poll.has_source(cls, context)
+
+    def run(self, source, path):
+        found = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))
+        named = bpy.data.objects.get(found.target)
+        before = source.authalic_target
+        if before is None and named is not None and named != source and named.type == "MESH":
+            source.authalic_target = named
+        try:
+            landmarks.replace(source, found.pairs)
+        except landmarks.CannotPair:
+            source.authalic_target = before
+            raise
+        target = source.authalic_target.name
+        done = f"Read {messages.count(len(found.pairs), 'landmark')} of {source.name} and {target}"
+        others = (found.source, found.target) != (source.name, target)
+        note = f', in the file those of "{found.source}" and "{found.target}"' if others else ""
+        self.report({"INFO"}, done + note)
+        return {"FINISHED"}
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_OT_landmark_export)
+    bpy.utils.register_class(AUTHALIC_OT_landmark_import)
+
+
+def unregister():
+    bpy.utils.unregister_class(AUTHALIC_OT_landmark_import)
+    bpy.utils.unregister_class(AUTHALIC_OT_landmark_export)

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.landmark_pick: pairs of landmarks by clicking on the two objects in a 3D view."""
+
+import bpy
+import numpy as np
+from bpy.props import IntProperty
+
+from .. import landmark_picking, landmarks, markers, vertex_points
+from . import poll
+
+# Looking around; mouse buttons and keys that do something else are held back.
+_NAVIGATION = {
+    *("MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "WHEELINMOUSE", "WHEELOUTMOUSE", "TRACKPADPAN"),
+    *("TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "HOME"),
+    *(f"NUMPAD_{key}" for key in (*range(10), "PERIOD", "SLASH", "PLUS", "MINUS")),
+}
+_SIDES = ("source", "target")
+_SKIPPED = 16  # wires before the surface
+
+
+class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
+    """Pick pairs of landmarks: click a point on the object and the same one on its target, either first"""
+
+    bl_idname = "authalic.landmark_pick"
+    bl_label = "Pick Landmarks"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+    running = False
+
+    source_vertex: IntProperty(
+        name="Source Vertex",
+        description="The vertex on this object",
+        min=landmarks.NONE,
+        default=landmarks.NONE,
+        options={"SKIP_SAVE"},
+    )
+    target_vertex: IntProperty(
+        name="Target Vertex",
+        description="The vertex on the target",
+        min=landmarks.NONE,
+        default=landmarks.NONE,
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        if AUTHALIC_OT_landmark_pick.running:
+            cls.poll_message_set("Landmarks are being picked already")
+            return False
+        return poll.has_target(cls, context)
+
+    def execute(self, context):
+        """The last pair again, with other numbers; or a pair for scripts."""
+        if landmarks.NONE in (self.source_vertex, self.target_vertex):
+            self.report({"ERROR"}, "Picking needs a window, or the numbers of two vertices")
+            return {"CANCELLED"}
+        source = landmarks.source(context)
+        try:
+            landmarks.add(source, self.source_vertex, self.target_vertex)
+        except landmarks.CannotPair as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def invoke(self, context, _event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        source = landmarks.source(context)
+        self._names = source.name, source.authalic_target.name
+        self._chosen, self._steps, self._pushed, self._surfaces = {}, [], [], None
+        AUTHALIC_OT_landmark_pick.running = True
+        self._say(context, "")
+        context.window.cursor_modal_set("CROSSHAIR")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        objects = self._objects(context)
+        if objects is None or context.mode not in {"OBJECT", "EDIT_MESH"}:
+            self.report({"WARNING"}, "Picking has ended: its objects or their mode have changed")
+            return self._end(context)
+        if event.type in _NAVIGATION or event.type.startswith(("TIMER", "NDOF")):
+            return {"PASS_THROUGH"}
+        if event.value == "PRESS" and event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"}:
+            return self._end(context)
+        if event.value == "PRESS" and _takes_back(event):
+            self._take_back(context, objects)
+            return {"RUNNING_MODAL"}
+        view = _view_under(context, event)
+        if view is None or (event.type == "LEFTMOUSE" and event.alt):  # a panel, a menu; Alt orbits
+            self._hover(context, None)
+            return {"PASS_THROUGH"}
+        if event.type == "MOUSEMOVE":
+            self._hover(context, self._under(context, objects, view))
+        elif event.type == "LEFTMOUSE" and event.value in {"PRESS", "DOUBLE_CLICK"}:
+            self._click(context, objects, self._under(context, objects, view))
+        return {"PASS_THROUGH" if event.type == "MOUSEMOVE" else "RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._end(context)
+
+    def _objects(self, context):
+        """The source and its target, or None if one is gone or is another one now."""
+        found = [context.view_layer.objects.get(name) for name in self._names]
+        return found if None not in found and found[0].authalic_target == found[1] else None
+
+    def _under(self, context, objects, view):
+        """(side, vertex) under the cursor, or None."""
+        area, region, pixel = view
+        if self._surfaces is None:
+            self._surfaces = [_surface(obj, context) for obj in objects]
+        shown = [k for k, obj in enumerate(objects) if obj.visible_get(viewport=area.spaces.active)]
+        for k in shown:
+            self._surfaces[k].place(objects[k].matrix_world)
+        matrix = np.array(region.data.perspective_matrix)
+        seen = landmark_picking.View(matrix, region.width, region.height)
+        found = landmark_picking.pick(
+            [self._surfaces[k] for k in shown], seen, pixel, blocked=_blocked(context, objects, seen, pixel)
+        )
+        return found and (_SIDES[shown[found[0]]], found[1])
+
+    def _hover(self, context, found):
+        source = context.view_layer.objects.get(self._names[0])
+        number = str(len(source.authalic_landmarks) + 1) if source else ""
+        hints = [self._hint(side, vertex, number) for side, vertex in self._chosen.items()]
+        if found is not None:
+            hints.append(self._hint(*found, number))
+        if hints != markers.hints:
+            markers.hints[:] = hints
+            markers.redraw(context)
+
+    def _hint(self, side, vertex, text):
+        return markers.Marker(self._names[_SIDES.index(side)], vertex, text, side, is_active=True)
+
+    def _click(self, context, objects, found):
+        if found is None:
+            self._say(context, "No vertex of the two objects is there")
+            return
+        side, vertex = found
+        self._chosen[side] = vertex
+        if len(self._chosen) == 2:
+            self._pair(context, objects[0])
+        else:
+            self._say(context, f"{side.capitalize()} vertex {vertex}")
+        self._hover(context, None)
+
+    def _pair(self, context, source):
+        vertices = self._chosen["source"], self._chosen["target"]
+        try:
+            if self._steps != self._pushed:  # a step of undo for each pair; the last one Blender itself makes
+                bpy.ops.ed.undo_push(message=self.bl_label)
+                self._pushed = list(self._steps)
+            added = landmarks.add(source, *vertices)
+        except landmarks.CannotPair as problem:
+            self._say(context, str(problem)[:1].upper() + str(problem)[1:])
+        else:
+            self._steps.append((added.name, *vertices))
+            self.source_vertex, self.target_vertex = vertices
+            self._say(context, f"Added {added.name}")
+        self._chosen.clear()
+
+    def _take_back(self, context, objects):
+        """Undoes the last click that has not made a pair yet, else the last pair of this run."""
+        if self._chosen:
+            self._chosen.popitem()
+            self._say(context, "")
+        elif self._steps:
+            (name, *_), listed = self._steps.pop(), objects[0].authalic_landmarks
+            if listed and listed[-1].name == name:
+                landmarks.remove(objects[0], len(listed) - 1)
+            self._say(context, f"Removed {name}")
+        self._hover(context, None)
+        markers.redraw(context)
+
+    def _say(self, context, text):
+        missing = [side for side in _SIDES if side not in self._chosen]
+        where = "the source or the target" if len(missing) == 2 else f"the {missing[0]}" if missing else ""
+        names = dict(zip(_SIDES, self._names, strict=True))
+        named = f" ({names[missing[0]]})" if len(missing) == 1 else ""
+
+        def draw(header, _context):
+            layout = header.layout
+            layout.label(text=f"Pick on {where}{named}", icon="MOUSE_LMB")
+            layout.label(text="Take Back", icon=_backspace())
+            layout.label(text="Done", icon="EVENT_ESC")
+            layout.label(text=text, translate=False)
+
+        if context.workspace is not None:
+            context.workspace.status_text_set(draw)
+        markers.redraw(context)
+
+    def _end(self, context):
+        AUTHALIC_OT_landmark_pick.running = False
+        markers.hints.clear()
+        if context.window is not None:
+            context.window.cursor_modal_restore()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        markers.redraw(context)
+        if not self._steps and not self._pushed:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Picked {len(self._steps)} landmarks of {self._names[0]} and {self._names[1]}")
+        return {"FINISHED"}
+
+
+def _takes_back(event):
+    return event.type == "BACK_SPACE" or (event.type == "Z" and (event.ctrl or event.oskey))
+
+
+def _backspace():
+    """The icon of the key, which 4.2 has not."""
+    icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+    return "EVENT_BACKSPACE" if "EVENT_BACKSPACE" in icons else "LOOP_BACK"
+
+
+def _view_under(context, event):
+    """(area, region, pixel) of the 3D view that the mouse is in, or None if a panel is there."""
+    x, y = event.mouse_x, event.mouse_y
+    for area in context.window.screen.areas:
+        if area.type == "VIEW_3D" and _contains(area, x, y):
+            inside = [region for region in area.regions if _contains(region, x, y)]
+            views = [region for region in inside if region.type == "WINDOW"]
+            if views and len(views) == len(inside):
+                return area, views[0], (x - views[0].x, y - views[0].y)
+    return None
+
+
+def _contains(place, x, y):
+    return place.x <= x < place.x + place.width and place.y <= y < place.y + place.height
+
+
+def _surface(obj, context):
+    points, triangles = vertex_points.triangles(obj, context.evaluated_depsgraph_get())
+    return landmark_picking.Surface(points, triangles, obj.matrix_world)
+
+
+def _blocked(context, objects, view, pixel):
+    """How far away another object lies that hides what is behind it."""
+    origin, direction = view.ray(pixel)
+    start = origin
+    for _ in range(_SKIPPED):
+        hit, point, _, _, obj, _ = context.scene.ray_cast(
+            context.evaluated_depsgraph_get(), origin=start, direction=direction
+        )
+        if not hit or obj.original in objects:
+            return np.inf
+        away = np.linalg.norm(np.array(point) - origin)
+        if obj.display_type not in {"WIRE", "BOUNDS"}:
+            return away
+        start = origin + direction * away * (1 + 1e-5)
+    return np.inf
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_OT_landmark_pick)
+
+
+def unregister():
+    bpy.utils.unregister_class(AUTHALIC_OT_landmark_pick)

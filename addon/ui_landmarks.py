@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The registration panel of the 3D view: the target, the list of landmarks, and what is done with them."""
+
+import textwrap
+
+import bpy
+
+from . import landmarks, ui_register
+
+_LETTER = 7.5  # pixels that a letter takes on average
+_shown = []  # the pairs of the list that is being drawn
+
+
+class AUTHALIC_UL_landmarks(bpy.types.UIList):
+    """Number, name and the two vertices of each pair, and a warning where one was lost."""
+
+    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, index=0):
+        pair = _shown[index] if index < len(_shown) else None
+        row = layout.row(align=True)
+        number = row.row()
+        number.ui_units_x = 1.1
+        number.label(text=str(index + 1), translate=False)
+        row.prop(item, "name", text="", emboss=False)
+        if pair is None:
+            return
+        if pair.problem is not None:
+            row.label(icon="ERROR")
+        vertices = row.row()
+        vertices.alignment = "RIGHT"
+        vertices.active = False
+        vertices.label(text=f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}", translate=False)
+
+
+class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
+    bl_label = "Registration"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Authalic"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "MESH"
+
+    def draw(self, context):
+        layout, source = self.layout, landmarks.source(context)
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        split = column.split(factor=0.4)
+        title = split.row()
+        title.alignment = "RIGHT"
+        title.label(text="Source")
+        split.label(text=source.name, icon="OBJECT_DATA", translate=False)
+        column.prop(source, "authalic_target")
+        _draw_landmarks(layout, source, context)
+        layout.separator()
+        ui_register.draw_register(layout, context)
+
+
+class AUTHALIC_MT_landmarks(bpy.types.Menu):
+    bl_label = "Landmarks"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("authalic.landmark_import", icon="IMPORT")
+        layout.operator("authalic.landmark_export", icon="EXPORT")
+        layout.separator()
+        layout.operator("authalic.landmark_clear", icon="X")
+
+
+def _draw_landmarks(layout, source, context):
+    _shown[:] = landmarks.pairs(source, drawing=True)
+    row = layout.row(align=True)
+    row.label(text="Landmarks")
+    row.prop(context.scene, "authalic_show_landmarks", text="", icon="HIDE_OFF", emboss=False)
+    row = layout.row()
+    row.template_list(
+        "AUTHALIC_UL_landmarks",
+        "",
+        source,
+        "authalic_landmarks",
+        source,
+        "authalic_landmark_index",
+        rows=4 if _shown else 3,
+    )
+    column = row.column(align=True)
+    column.operator("authalic.landmark_add", text="", icon="ADD")
+    column.operator("authalic.landmark_remove", text="", icon="REMOVE")
+    column.separator()
+    column.menu("AUTHALIC_MT_landmarks", text="", icon="DOWNARROW_HLT")
+    layout.operator("authalic.landmark_pick", icon="EYEDROPPER")
+    row = layout.row(align=True)
+    row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
+    row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"
+    _draw_problems(layout, source, context)
+
+
+def _draw_problems(layout, source, context):
+    """The active pair's problem in words, or how many there are elsewhere in the list."""
+    if target := landmarks.target_problem(source):
+        lines = [target] if source.authalic_target is not None or _shown else []
+    else:
+        lines = _problems(source.authalic_landmark_index)
+    if not lines:
+        return
+    box = layout.box().column(align=True)
+    width = int(context.region.width / (_LETTER * context.preferences.system.ui_scale)) - 8
+    for number, line in enumerate(textwrap.wrap("; ".join(lines), max(width, 16))):
+        box.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
+
+
+def _problems(active):
+    bad = [number for number, pair in enumerate(_shown) if pair.problem is not None]
+    if active in bad:
+        return [f"{_shown[active].name}: {_shown[active].problem}; remove the pair and pick it again"]
+    return [f"{len(bad)} of the pairs cannot be used"] if bad else []
+
+
+def _number(vertex):
+    return "?" if vertex == landmarks.NONE else str(vertex)
+
+
+_CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_registration_view3d)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The vertex under the cursor by geometry alone, and the picking operator with events that are made up."""
+
+import importlib
+import types
+
+import bpy
+import conftest
+import meshes
+import numpy as np
+import pytest
+
+
+def part(name):
+    return importlib.import_module(f"{conftest.MODULE}.{name}")
+
+
+WIDTH, HEIGHT = 800, 600
+
+
+def perspective(eye=(0, 0, 10), lens=1.5):
+    """A view from the eye straight down, +Y upwards."""
+    near, far, aspect = 0.1, 100.0, WIDTH / HEIGHT
+    depth = [(far + near) / (near - far), 2 * far * near / (near - far)]
+    projection = [[lens, 0, 0, 0], [0, lens * aspect, 0, 0], [0, 0, *depth], [0, 0, -1, 0]]
+    away = np.eye(4)
+    away[:3, 3] = -np.array(eye, float)
+    return part("landmark_picking").View(np.array(projection, float) @ away, WIDTH, HEIGHT)
+
+
+def orthographic(size=3.0):
+    aspect = WIDTH / HEIGHT
+    matrix = np.diag([1 / size, aspect / size, -1e-2, 1.0])
+    return part("landmark_picking").View(matrix, WIDTH, HEIGHT)
+
+
+def surface(obj):
+    points, triangles = part("vertex_points").triangles(obj, bpy.context.evaluated_depsgraph_get())
+    return part("landmark_picking").Surface(points, triangles, obj.matrix_world)
+
+
+def pick(surfaces, view, pixel, **options):
+    return part("landmark_picking").pick(surfaces, view, pixel, **options)
+
+
+@pytest.mark.parametrize("view", [perspective, orthographic])
+def test_rays_and_pixels_belong_together(view):
+    seen = view()
+    origin, direction = seen.ray((123.0, 456.0))
+    along = origin + np.outer([0.5, 5.0], direction)
+    assert np.allclose(seen.project(along), [123, 456], atol=1e-6)
+    assert direction[2] < 0 and np.isclose(np.linalg.norm(direction), 1)
+
+
+def test_what_is_behind_the_eye_has_no_pixel():
+    assert np.isnan(perspective().project(np.array([[0.0, 0, 11]]))).all()
+
+
+@pytest.mark.parametrize("view", [perspective, orthographic])
+@pytest.mark.parametrize("in_edit", [False, True])
+def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view, in_edit):
+    obj = meshes.add_grid(n=5)
+    obj.matrix_world = [(0.9, 0.3, 0, 0.5), (-0.3, 1.4, 0, 0.1), (0, 0, 2, -1), (0, 0, 0, 1)]
+    if in_edit:
+        meshes.edit(obj)
+    one, seen = surface(obj), view()
+    pixels = seen.project(one.world())
+    assert [pick([one], seen, pixel + 0.4) for pixel in pixels] == [(0, k) for k in range(36)]
+
+
+def test_the_far_side_is_not_picked():
+    one, seen = surface(meshes.icosphere(3)), perspective()
+    points = one.world()
+    for pixel in seen.project(points):
+        which, vertex = pick([one], seen, pixel)
+        assert which == 0 and points[vertex][2] > -0.1
+
+
+def test_the_nearer_object_is_picked():
+    far, near = meshes.add_grid("Far"), meshes.add_grid("Near")
+    near.location.z = 2
+    bpy.context.view_layer.update()
+    found = pick([surface(far), surface(near)], perspective(), (400, 300))
+    assert found == (1, 24)
+    assert pick([surface(far), surface(near)], perspective(), (400, 300), blocked=3.0) is None
+    assert pick([surface(far), surface(near)], perspective(), (400, 300), blocked=9.0) == (1, 24)
+
+
+def test_beside_the_surface_the_nearest_vertex_within_some_pixels():
+    one, seen = surface(meshes.add_grid()), perspective()
+    corner = seen.project(one.world([0]))[0]
+    assert pick([one], seen, corner - 10) == (0, 0)
+    assert pick([one], seen, corner - 30) is None
+    assert pick([one], seen, (5, 5)) is None
+    assert pick([], seen, (5, 5)) is None
+
+
+def test_a_vertex_beside_an_edge_but_behind_another_object_is_not_picked():
+    far, near = meshes.add_grid("Far"), meshes.add_grid("Near", n=1)
+    near.location.z = 5
+    near.scale = (0.2, 0.2, 0.2)
+    bpy.context.view_layer.update()
+    surfaces, seen = [surface(far), surface(near)], perspective()
+    which, vertex = pick(surfaces, seen, (400, 300))
+    assert which == 1
+    # Right beside the near square, the far vertex in the middle is hidden by it.
+    edge = seen.project(surfaces[1].world())[:, 0].max()
+    which, vertex = pick(surfaces, seen, (edge + 2, 300))
+    assert (which, vertex) != (0, 24)
+
+
+def test_hidden_faces_are_not_picked():
+    obj = meshes.add_grid()
+    meshes.edit(obj)
+    meshes.select_faces(obj, lambda index: False, {14, 15, 20, 21})
+    assert pick([surface(obj)], perspective(), (400, 300)) is None
+
+
+class Session:
+    """The operator on two grids in one view, with events that are made up."""
+
+    def __init__(self):
+        self.source, self.target = meshes.add_grid("Head A"), meshes.add_grid("Head B")
+        self.source.location.x, self.target.location.x = -1.5, 1.5
+        self.source.authalic_target = self.target
+        meshes.select(self.source, self.target)
+        bpy.context.view_layer.update()
+        self.view, self.said = perspective(), []
+        module = part("operators.landmark_pick")
+        own = {
+            name: value for name, value in vars(module.AUTHALIC_OT_landmark_pick).items() if callable(value)
+        }
+        self.operator = type("Plain", (), {**own, "bl_label": "Pick", "report": self._report})()
+        self.operator._names = "Head A", "Head B"
+        self.operator._chosen, self.operator._surfaces = {}, None
+        self.operator._steps, self.operator._pushed = [], []
+        self.module, self.seen = module, module._view_under
+        module._view_under = lambda context, event: self._under(event)
+        self.context = types.SimpleNamespace(
+            **{name: getattr(bpy.context, name) for name in ("mode", "view_layer", "scene", "object")},
+            window=None,
+            workspace=None,
+            window_manager=types.SimpleNamespace(windows=()),
+            evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
+        )
+
+    def close(self):
+        self.module._view_under = self.seen
+        part("markers").hints.clear()
+
+    def _report(self, kinds, text):
+        self.said.append(text)
+
+    def _under(self, event):
+        data = types.SimpleNamespace(perspective_matrix=self.view.matrix)
+        region = types.SimpleNamespace(data=data, width=WIDTH, height=HEIGHT)
+        area = types.SimpleNamespace(spaces=types.SimpleNamespace(active=None))
+        return None if event.pixel is None else (area, region, event.pixel)
+
+    def send(self, kind, pixel=None, value="PRESS", ctrl=False):
+        event = types.SimpleNamespace(
+            type=kind, value=value, ctrl=ctrl, oskey=False, alt=False, shift=False, pixel=pixel
+        )
+        return self.operator.modal(self.context, event)
+
+    def at(self, obj, vertex):
+        return self.view.project(np.array([obj.matrix_world @ obj.data.vertices[vertex].co]))[0]
+
+    def click(self, obj, vertex):
+        return self.send("LEFTMOUSE", self.at(obj, vertex))
+
+    def listed(self):
+        return [pair[1:] for pair in part("landmarks").pairs(self.source)]
+
+
+@pytest.fixture
+def session():
+    made = Session()
+    yield made
+    made.close()
+
+
+def test_clicks_make_pairs(session):
+    assert session.click(session.source, 10) == {"RUNNING_MODAL"}
+    assert session.listed() == []
+    session.click(session.target, 11)
+    session.click(session.target, 20)
+    session.click(session.target, 21)  # thought better of it
+    session.click(session.source, 30)
+    assert session.listed() == [(10, 11, None), (30, 21, None)]
+    assert session.send("ESC") == {"FINISHED"}
+    assert session.said == ["Picked 2 landmarks of Head A and Head B"]
+
+
+def test_nothing_picked_is_nothing_done(session):
+    session.click(session.source, 10)
+    session.send("LEFTMOUSE", (2.0, 2.0))
+    assert session.send("RIGHTMOUSE") == {"CANCELLED"} and session.listed() == []
+
+
+@pytest.mark.parametrize("key", [{"kind": "BACK_SPACE"}, {"kind": "Z", "ctrl": True}])
+def test_taking_back(session, key):
+    for k in (10, 20):
+        session.click(session.source, k)
+        session.click(session.target, k)
+    session.click(session.source, 30)
+    session.send(**key)
+    assert len(session.listed()) == 2 and not session.operator._chosen
+    session.send(**key)
+    assert session.listed() == [(10, 10, None)]
+    session.send(**key)
+    session.send(**key)
+    # The second pair had made the first one a step of undo; the end is one too.
+    assert session.listed() == [] and session.send("ESC") == {"FINISHED"}
+
+
+def test_a_vertex_is_not_picked_twice(session):
+    for k in (10, 11):
+        session.click(session.source, 10)
+        session.click(session.target, k)
+    assert session.listed() == [(10, 10, None)]
+
+
+def test_hovering_shows_the_vertex(session):
+    assert session.send("MOUSEMOVE", session.at(session.target, 12)) == {"PASS_THROUGH"}
+    ((name, vertex, *_),) = part("markers").shown(bpy.context)
+    assert (name, vertex) == ("Head B", 12)
+    session.send("MOUSEMOVE", (2.0, 2.0))
+    assert part("markers").hints == []
+
+
+def test_navigation_and_panels_are_left_to_blender(session):
+    for kind in ("MIDDLEMOUSE", "WHEELUPMOUSE", "NUMPAD_1", "TRACKPADPAN", "NDOF_MOTION", "TIMER"):
+        assert session.send(kind, (400, 300)) == {"PASS_THROUGH"}
+    assert session.send("LEFTMOUSE", None) == {"PASS_THROUGH"}
+    for kind in ("G", "X", "TAB", "Z"):
+        assert session.send(kind, (400, 300)) == {"RUNNING_MODAL"}
+
+
+@pytest.mark.parametrize("lost", ["source", "target"])
+def test_a_deleted_object_ends_it(session, lost):
+    session.click(session.source, 10)
+    bpy.data.objects.remove(getattr(session, lost))
+    bpy.context.view_layer.update()
+    assert session.send("MOUSEMOVE", (400, 300)) == {"CANCELLED"}
+    assert "have changed" in session.said[0] and part("markers").hints == []

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Point location: the triangle of a map in which a point lies, and where in it.
+//!
+//! Maps live in space as in [`motion`](crate::energy::motion): in the plane z = 1, or on the sphere around the origin.
+//! A point x lies in the triangle (a, b, c) where det(a, b, x), det(b, c, x) and det(c, a, x) are not negative, decided
+//! by exact predicates, so that no point falls between two triangles. The same three determinants are its barycentric
+//! coordinates up to a factor: on the sphere those of its central projection onto the flat triangle.
+//!
+//! Input: a map all of whose faces are positively oriented, of a disk into the plane or onto the whole sphere. Cost:
+//! O(m log² m) for the tree, O(log m) for a point.
+
+mod bvh;
+
+use robust::{Coord3D, orient3d};
+
+use crate::control::Watch;
+use crate::mesh::geometry::{
+    Vector, add, cross, determinant_rounding, distance, dot, norm, scaled, sub, triangle,
+};
+use crate::parallel;
+use bvh::{Bounds, Tree};
+
+/// How many points are located between two questions whether to go on.
+const BETWEEN_QUESTIONS: usize = 64;
+
+/// A place on a surface: a triangle, and coordinates in it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Location {
+    /// The face.
+    pub triangle: u32,
+    /// The weights of its corners: not negative, and 1 in sum.
+    pub barycentric: [f64; 3],
+}
+
+/// Finds points in a map.
+pub(crate) struct Locator<'a> {
+    positions: &'a [Vector],
+    faces: &'a [[u32; 3]],
+    /// Whether the map lies in the plane z = 1.
+    in_plane: bool,
+    tree: Tree,
+}
+
+impl<'a> Locator<'a> {
+    /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on the sphere.
+    pub(crate) fn new(positions: &'a [Vector], faces: &'a [[u32; 3]]) -> Self {
+        let in_plane = positions.iter().all(|position| position[2] == 1.0);
+        let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
+            flat if in_plane => flat.into_iter().fold(Bounds::default(), Bounds::with),
+            spherical => spherical_bounds(spherical),
+        });
+        Self { positions, faces, in_plane, tree: Tree::new(&bounds) }
+    }
+
+    /// The triangle of the lowest index that contains `x`; where there is none, the nearest point of the nearest one.
+    ///
+    /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction counts.
+    /// In a vertex, its coordinates are exactly 1 and 0.
+    pub(crate) fn locate(&self, x: Vector) -> Location {
+        let at = if self.in_plane { x } else { scaled(x, 1.0 / norm(x)) };
+        let mut found: Option<(u32, [f64; 3])> = None;
+        self.tree.visit(at, |face| {
+            let Some(weights) = self.weights(face, x) else { return false };
+            if found.is_none_or(|(lowest, _)| face < lowest) {
+                found = Some((face, weights));
+            }
+            // inside, and so in no other
+            weights.iter().all(|&weight| weight > 0.0)
+        });
+        match found {
+            Some((triangle, weights)) => Location { triangle, barycentric: normalized(weights) },
+            None => self.nearest(at),
+        }
+    }
+
+    /// The locations of many points; `None` where the watch was told to stop.
+    pub(crate) fn locate_all(&self, points: &[Vector], watch: &Watch<'_>) -> Option<Vec<Location>> {
+        let locations =
+            parallel::map(points.len(), |i| match i % BETWEEN_QUESTIONS == 0 && !watch.goes_on() {
+                true => Location::default(),
+                false => self.locate(points[i]),
+            });
+        watch.goes_on().then_some(locations)
+    }
+
+    /// Whether a triangle, its edges included, contains `x`.
+    pub(super) fn contains(&self, face: u32, x: Vector) -> bool {
+        self.weights(face, x).is_some()
+    }
+
+    /// The place in a given triangle that is meant by `x` near to it: negative coordinates become 0.
+    pub(super) fn clamped(&self, triangle: u32, x: Vector) -> Location {
+        let corners = self.corners(triangle);
+        let weights = determinants(corners, x).map(|weight| weight.max(0.0));
+        let barycentric = match weights.iter().sum::<f64>() > 0.0 {
+            true => normalized(weights),
+            false => nearest_on_edges(corners, x).1,
+        };
+        Location { triangle, barycentric }
+    }
+
+    /// The length of the longest edge of a triangle.
+    pub(super) fn longest_edge(&self, face: u32) -> f64 {
+        let [a, b, c] = self.corners(face);
+        distance(a, b).max(distance(b, c)).max(distance(c, a))
+    }
+
+    fn corners(&self, face: u32) -> [Vector; 3] {
+        triangle(self.positions, self.faces[face as usize])
+    }
+
+    /// The coordinates of `x` in a face that contains it, up to a factor.
+    fn weights(&self, face: u32, x: Vector) -> Option<[f64; 3]> {
+        let weights = determinants(self.corners(face), x);
+        let is_inside =
+            weights.iter().all(|&weight| weight >= 0.0) && weights.iter().any(|&weight| weight > 0.0);
+        is_inside.then_some(weights)
+    }
+
+    /// The point nearest to one that lies outside every triangle.
+    fn nearest(&self, x: Vector) -> Location {
+        let triangle = self.tree.nearest(x, |face| nearest_on_edges(self.corners(face), x).0);
+        Location { triangle, barycentric: nearest_on_edges(self.corners(triangle), x).1 }
+    }
+}
+
+/// A box that contains a flat triangle and its central projection onto the unit sphere.
+fn spherical_bounds(corners: [Vector; 3]) -> Bounds {
+    let [a, b, c] = corners.map(|x| scaled(x, 1.0 / norm(x)));
+    let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+    // |q|² = 1 − Σ λ_i λ_j |x_i − x_j|² for q = Σ λ_i x_i, and Σ λ_i λ_j ≤ 1/3: as far as q moves out to the sphere
+    let height = 1.0 - (1.0 - longest * longest / 3.0).max(0.0).sqrt();
+    [a, b, c].into_iter().fold(Bounds::default(), Bounds::with).padded(height + 1e-12)
+}
+
+/// det(b, c, x), det(c, a, x) and det(a, b, x), each with its exact sign.
+fn determinants([a, b, c]: [Vector; 3], x: Vector) -> [f64; 3] {
+    [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)]
+}
+
+/// det(p, q, x) with its exact sign: as x · (p − x) × (q − x), whose rounding falls with the distances.
+fn determinant(p: Vector, q: Vector, x: Vector) -> f64 {
+    if p == x || q == x {
+        return 0.0;
+    }
+    let (to_p, to_q) = (sub(p, x), sub(q, x));
+    let rounded = dot(x, cross(to_p, to_q));
+    if rounded.abs() > determinant_rounding(x, to_p, to_q) {
+        return rounded;
+    }
+    let [p, q, x] = [p, q, x].map(|[x, y, z]| Coord3D { x, y, z });
+    orient3d(p, q, x, Coord3D { x: 0.0, y: 0.0, z: 0.0 })
+}
+
+fn normalized(weights: [f64; 3]) -> [f64; 3] {
+    let sum: f64 = weights.iter().sum();
+    weights.map(|weight| weight / sum)
+}
+
+/// The point of a triangle's edges that is nearest to `x`: the square of its distance, and its coordinates.
+fn nearest_on_edges(corners: [Vector; 3], x: Vector) -> (f64, [f64; 3]) {
+    let on_edges = (0..3).map(|k| {
+        let (from, to) = ((k + 1) % 3, (k + 2) % 3);
+        let edge = sub(corners[to], corners[from]);
+        let part = dot(sub(x, corners[from]), edge) / dot(edge, edge);
+        let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+        let mut barycentric = [0.0; 3];
+        (barycentric[from], barycentric[to]) = (1.0 - part, part);
+        let away = sub(x, add(scaled(corners[from], 1.0 - part), scaled(corners[to], part)));
+        (dot(away, away), barycentric)
+    });
+    on_edges.reduce(|best, other| if other.0 < best.0 { other } else { best }).expect("three edges")
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A tree of boxes, to find the few elements among many that a point may lie in or near to.
+//!
+//! Built by halving the elements along the longest side of their centres' box, so that it is as deep as log₂ of their
+//! number whatever their shapes. Cost: O(n log² n) to build, O(log n) for a point in boxes that overlap little.
+
+use crate::mesh::geometry::Vector;
+
+/// Elements in a leaf at the most.
+const LEAF: usize = 3;
+
+/// Nodes that can wait at once: one for each level of a tree of 2³² elements, and some.
+const STACK: usize = 40;
+
+/// A box with sides along the axes, its faces included.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    pub low: Vector,
+    pub high: Vector,
+}
+
+impl Default for Bounds {
+    /// The empty box.
+    fn default() -> Self {
+        Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
+    }
+}
+
+impl Bounds {
+    /// The smallest box that has this one and a point in it.
+    pub(super) fn with(self, point: Vector) -> Self {
+        self.union(Self { low: point, high: point })
+    }
+
+    /// Every side moved outward.
+    pub(super) fn padded(self, by: f64) -> Self {
+        Self { low: self.low.map(|x| x - by), high: self.high.map(|x| x + by) }
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    fn centre(&self) -> Vector {
+        std::array::from_fn(|k| 0.5 * self.low[k] + 0.5 * self.high[k])
+    }
+
+    fn longest_axis(&self) -> usize {
+        let side = |k: usize| self.high[k] - self.low[k];
+        (1..3).fold(0, |longest, k| if side(k) > side(longest) { k } else { longest })
+    }
+
+    fn contains(&self, point: Vector) -> bool {
+        (0..3).all(|k| self.low[k] <= point[k] && point[k] <= self.high[k])
+    }
+
+    /// The square of the distance of a point; 0 inside.
+    fn squared_distance(&self, point: Vector) -> f64 {
+        (0..3).map(|k| (self.low[k] - point[k]).max(point[k] - self.high[k]).max(0.0).powi(2)).sum()
+    }
+}
+
+/// A leaf over `order[first..first + count]`; with `count` 0 a fork whose children are the next node and `first`.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    bounds: Bounds,
+    first: u32,
+    count: u32,
+}
+
+/// The tree over elements `0..n`, each known by its box.
+#[derive(Debug)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    order: Vec<u32>,
+}
+
+impl Tree {
+    /// Builds the tree over at least one box.
+    pub(super) fn new(boxes: &[Bounds]) -> Self {
+        let centres: Vec<Vector> = boxes.iter().map(Bounds::centre).collect();
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut nodes = Vec::with_capacity(boxes.len());
+        branch(boxes, &centres, &mut order, 0, &mut nodes);
+        Self { nodes, order }
+    }
+
+    /// Calls `visit` with every element whose leaf's box contains the point, in no particular order, until it says
+    /// that this is enough.
+    pub(super) fn visit(&self, point: Vector, mut visit: impl FnMut(u32) -> bool) {
+        let mut waiting = Stack::default();
+        let mut next = Some(0);
+        while let Some(index) = next {
+            let node = &self.nodes[index as usize];
+            if !node.bounds.contains(point) {
+                next = waiting.pop();
+            } else if node.count == 0 {
+                waiting.push(node.first);
+                next = Some(index + 1);
+            } else if self.elements(node).iter().any(|&element| visit(element)) {
+                return;
+            } else {
+                next = waiting.pop();
+            }
+        }
+    }
+
+    /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals.
+    ///
+    /// Element 0 where nothing compares.
+    pub(super) fn nearest(&self, point: Vector, squared_distance: impl Fn(u32) -> f64) -> u32 {
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        let mut waiting = Stack::default();
+        let mut next = Some(0);
+        while let Some(index) = next {
+            let node = &self.nodes[index as usize];
+            if node.bounds.squared_distance(point) > least {
+                next = waiting.pop();
+                continue;
+            }
+            for &element in self.elements(node) {
+                let distance = squared_distance(element);
+                if distance < least || (distance == least && element < nearest) {
+                    (nearest, least) = (element, distance);
+                }
+            }
+            next = match node.count {
+                0 => Some(self.nearer_child(index, point, &mut waiting)),
+                _ => waiting.pop(),
+            };
+        }
+        nearest
+    }
+
+    /// The child nearer to the point; the other one waits.
+    fn nearer_child(&self, index: u32, point: Vector, waiting: &mut Stack) -> u32 {
+        let [one, other] = [index + 1, self.nodes[index as usize].first];
+        let distance = |child: u32| self.nodes[child as usize].bounds.squared_distance(point);
+        let (near, far) = if distance(other) < distance(one) { (other, one) } else { (one, other) };
+        waiting.push(far);
+        near
+    }
+
+    /// The elements of a leaf; none for a fork.
+    fn elements(&self, node: &Node) -> &[u32] {
+        if node.count == 0 {
+            &[]
+        } else {
+            &self.order[node.first as usize..(node.first + node.count) as usize]
+        }
+    }
+}
+
+/// Adds the nodes over `order`, which begins at `first` in the tree's order; returns their box.
+fn branch(
+    boxes: &[Bounds],
+    centres: &[Vector],
+    order: &mut [u32],
+    first: usize,
+    nodes: &mut Vec<Node>,
+) -> Bounds {
+    let index = nodes.len();
+    if order.len() <= LEAF {
+        let bounds = order.iter().fold(Bounds::default(), |all, &e| all.union(boxes[e as usize]));
+        nodes.push(Node { bounds, first: first as u32, count: order.len() as u32 });
+        return bounds;
+    }
+    nodes.push(Node { bounds: Bounds::default(), first: 0, count: 0 });
+    // the index decides between equal centres: one order on every machine
+    let axis = order.iter().fold(Bounds::default(), |all, &e| all.with(centres[e as usize])).longest_axis();
+    let place = |element: &u32| centres[*element as usize][axis];
+    let middle = order.len() / 2;
+    order.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
+    let (left, right) = order.split_at_mut(middle);
+    let on_the_left = branch(boxes, centres, left, first, nodes);
+    nodes[index].first = nodes.len() as u32;
+    let on_the_right = branch(boxes, centres, right, first + middle, nodes);
+    nodes[index].bounds = on_the_left.union(on_the_right);
+    nodes[index].bounds
+}
+
+/// The nodes still to be looked at.
+struct Stack {
+    nodes: [u32; STACK],
+    height: usize,
+}
+
+impl Default for Stack {
+    fn default() -> Self {
+        Self { nodes: [0; STACK], height: 0 }
+    }
+}
+
+impl Stack {
+    fn push(&mut self, node: u32) {
+        self.nodes[self.height] = node;
+        self.height += 1;
+    }
+
+    fn pop(&mut self) -> Option<u32> {
+        self.height = self.height.checked_sub(1)?;
+        Some(self.nodes[self.height])
+    }
+}

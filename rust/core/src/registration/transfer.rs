@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Data of the target carried to the source: by vertices, by corners of faces, and labels.
+//!
+//! Data have a number of columns, their width, and one row per vertex, or three per face for corners. What a vertex of
+//! the source gets is interpolated in the triangle of the target in which it lies. The corners of faces around a vertex
+//! may lie on different sides of a seam of the data, as of a UV map: each takes the value of the side on which its face
+//! lies. Which that is says a point moved from the vertex a little into the face.
+
+use super::location::{Location, Locator};
+use crate::mesh::geometry::{Vector, add, distance, scaled, sub, triangle};
+use crate::parallel;
+
+/// How far a corner is moved into its face to find its side: this part of the way to the face's centroid, or of the
+/// longest edge of the target's triangle there where that is shorter.
+const INWARD: f64 = 1e-2;
+
+/// Per-vertex data of the target at the vertices of the source.
+///
+/// `values` are rows of `width` numbers, one per vertex of the target, `faces` its faces, and `locations` (n,) say where
+/// on them the vertices of the source lie. Returns (n, width).
+///
+/// # Panics
+/// Where `values` are too few for the indices in `faces`.
+///
+/// ```
+/// use authalic::registration::{Location, pull_vertices};
+///
+/// let middle = Location { triangle: 0, barycentric: [0.5, 0.25, 0.25] };
+/// assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2]], &[middle]), [2.5]);
+/// ```
+pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations: &[Location]) -> Vec<f64> {
+    rows(locations.len(), width, |row, column| {
+        let location = locations[row];
+        let face = faces[location.triangle as usize];
+        interpolated(location, |corner| values[face[corner] as usize * width + column])
+    })
+}
+
+/// Per-corner data of the target at the corners of the source's faces.
+///
+/// `values` are rows of `width` numbers, three per face of the target; `locations` (n,) say where the vertices of the
+/// source lie, `sides` (3 m,) are those of [`corner_sides`]. Where no seam of the data runs near a corner it gets the
+/// value at its vertex. Returns (3 m, width).
+///
+/// # Panics
+/// Where `values` are too few for the locations, or `sides` are not three per face.
+pub fn pull_corners(
+    values: &[f64],
+    width: usize,
+    source_faces: &[[u32; 3]],
+    target_faces: &[[u32; 3]],
+    locations: &[Location],
+    sides: &[Location],
+) -> Vec<f64> {
+    let vertices = source_faces.as_flattened();
+    assert_eq!(vertices.len(), sides.len(), "one side per corner of the source's faces");
+    let places = parallel::map(sides.len(), |corner| {
+        let (side, vertex) = (sides[corner], locations[vertices[corner] as usize]);
+        match is_seamless(values, width, target_faces, side.triangle, vertex.triangle) {
+            true => vertex,
+            false => side,
+        }
+    });
+    rows(sides.len(), width, |row, column| {
+        let place = places[row];
+        interpolated(place, |corner| values[(3 * place.triangle as usize + corner) * width + column])
+    })
+}
+
+/// The vertex of the target nearest to each vertex of the source, (n,): that of the largest weight in its triangle, the
+/// first of equals.
+pub fn nearest_vertices(faces: &[[u32; 3]], locations: &[Location]) -> Vec<u32> {
+    parallel::map(locations.len(), |vertex| {
+        let location = locations[vertex];
+        faces[location.triangle as usize][heaviest(location)]
+    })
+}
+
+/// The corner of the target's faces nearest to each corner of the source's, (3 m,): corner `3 * face + k`, on the side
+/// on which the source's face lies.
+pub fn nearest_corners(sides: &[Location]) -> Vec<u32> {
+    parallel::map(sides.len(), |corner| 3 * sides[corner].triangle + heaviest(sides[corner]) as u32)
+}
+
+/// The given rows of data of any type: labels by [`nearest_vertices`] or [`nearest_corners`].
+///
+/// # Panics
+/// Where a row is out of range.
+pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[u32]) -> Vec<T> {
+    let row = |row: u32| &values[row as usize * width..][..width];
+    rows.iter().flat_map(|&index| row(index)).copied().collect()
+}
+
+/// Where the corners of the source's faces lie in the target: as their vertices, but in a triangle on that side of the
+/// vertex on which the face lies, (3 m,).
+///
+/// `registered` and `target_registered` are the vertices of both in the domain, either on the unit sphere or in the
+/// plane z = 1, and `locations` (n,) say where in the target the vertices of the source lie. Cost: O(log m) for a corner.
+pub fn corner_sides(
+    source_faces: &[[u32; 3]],
+    registered: &[Vector],
+    target_faces: &[[u32; 3]],
+    target_registered: &[Vector],
+    locations: &[Location],
+) -> Vec<Location> {
+    let target = Locator::new(target_registered, target_faces);
+    let mut sides = vec![[Location::default(); 3]; source_faces.len()];
+    parallel::fill(&mut sides, |face| {
+        let corners = triangle(registered, source_faces[face]);
+        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        let vertices = source_faces[face];
+        std::array::from_fn(|k| corner_side(&target, locations[vertices[k] as usize], corners[k], centroid))
+    });
+    sides.into_flattened()
+}
+
+/// Where a corner at `x` lies on the side of `inner`.
+fn corner_side(target: &Locator<'_>, at_vertex: Location, x: Vector, inner: Vector) -> Location {
+    let here = at_vertex.triangle;
+    let part = INWARD * (target.longest_edge(here) / distance(x, inner)).min(1.0);
+    let moved = add(x, scaled(sub(inner, x), part));
+    if target.contains(here, moved) {
+        return at_vertex;
+    }
+    match target.locate(moved).triangle {
+        there if there == here => at_vertex,
+        there => target.clamped(there, x),
+    }
+}
+
+/// Whether the data of two triangles agree where they meet.
+fn is_seamless(values: &[f64], width: usize, faces: &[[u32; 3]], one: u32, other: u32) -> bool {
+    let row = |face: u32, k: usize| &values[(3 * face as usize + k) * width..][..width];
+    let [ours, theirs] = [faces[one as usize], faces[other as usize]];
+    let pairs = (0..9).map(|pair| (pair / 3, pair % 3));
+    let mut shared = pairs.filter(|&(i, j)| ours[i] == theirs[j]).peekable();
+    shared.peek().is_some() && shared.all(|(i, j)| row(one, i) == row(other, j))
+}
+
+/// The corner of the largest weight, the first of equals.
+fn heaviest(Location { barycentric, .. }: Location) -> usize {
+    (1..3).fold(0, |best, k| if barycentric[k] > barycentric[best] { k } else { best })
+}
+
+/// Σ λ_k value(k).
+fn interpolated(Location { barycentric, .. }: Location, value: impl Fn(usize) -> f64) -> f64 {
+    // a corner without weight has no say, not even by a value that is not finite
+    (0..3).filter(|&k| barycentric[k] > 0.0).map(|k| barycentric[k] * value(k)).sum()
+}
+
+fn rows(n: usize, width: usize, value: impl Fn(usize, usize) -> f64 + Sync + Send) -> Vec<f64> {
+    parallel::map(n * width, |i| value(i / width, i % width))
+}
+
+#[cfg(test)]
+mod tests;

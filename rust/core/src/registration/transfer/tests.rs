@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+use super::*;
+use crate::mesh::geometry::norm;
+use crate::registration::location::tests::{Map, number, octasphere, rings};
+
+fn located(target: &Map, points: &[Vector]) -> Vec<Location> {
+    let locator = Locator::new(&target.0, &target.1);
+    points.iter().map(|&x| locator.locate(x)).collect()
+}
+
+fn sides(target: &Map, source: &Map, locations: &[Location]) -> Vec<Location> {
+    corner_sides(&source.1, &source.0, &target.1, &target.0, locations)
+}
+
+/// A source that shares hardly a vertex with `rings`, inside its polygon.
+fn turned_rings(n: u32) -> Map {
+    let (points, faces) = rings(n);
+    let (sine, cosine) = 0.123f64.sin_cos();
+    (
+        points
+            .into_iter()
+            .map(|[u, v, w]| [0.8 * (cosine * u - sine * v), 0.8 * (sine * u + cosine * v), w])
+            .collect(),
+        faces,
+    )
+}
+
+fn by_corner(faces: &[[u32; 3]], value: impl Fn(u32) -> f64) -> Vec<f64> {
+    faces.as_flattened().iter().map(|&vertex| value(vertex)).collect()
+}
+
+#[test]
+fn linear_functions_are_reproduced() {
+    let (target, source) = (rings(7), turned_rings(5));
+    let linear = |[u, v, _]: Vector| [2.0 * u - v + 0.5, 7.0 * v];
+    let values: Vec<f64> = target.0.iter().flat_map(|&x| linear(x)).collect();
+    let locations = located(&target, &source.0);
+    let pulled = pull_vertices(&values, 2, &target.1, &locations);
+    for (vertex, &x) in source.0.iter().enumerate() {
+        (0..2).for_each(|k| assert!((pulled[2 * vertex + k] - linear(x)[k]).abs() < 1e-14));
+    }
+    // data by corner without a seam are the same
+    let corners: Vec<f64> =
+        target.1.as_flattened().iter().flat_map(|&v| linear(target.0[v as usize])).collect();
+    let sides = sides(&target, &source, &locations);
+    let pulled_corners = pull_corners(&corners, 2, &source.1, &target.1, &locations, &sides);
+    for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
+        assert_eq!(pulled_corners[2 * corner..][..2], pulled[2 * vertex as usize..][..2]);
+    }
+}
+
+#[test]
+fn a_mesh_gets_its_own_data_back_to_the_bit() {
+    for map in [rings(4), octasphere(2)] {
+        let locations = located(&map, &map.0);
+        let sides = sides(&map, &map, &locations);
+        // every corner of every face has a value of its own: each edge is a seam
+        let values: Vec<f64> = (0..3 * map.1.len()).map(number).collect();
+        assert_eq!(pull_corners(&values, 1, &map.1, &map.1, &locations, &sides), values);
+        let own: Vec<u32> = (0..3 * map.1.len() as u32).collect();
+        assert_eq!(nearest_corners(&sides), own);
+        let vertices: Vec<u32> = (0..map.0.len() as u32).collect();
+        assert_eq!(nearest_vertices(&map.1, &locations), vertices);
+    }
+}
+
+#[test]
+fn the_side_of_a_seam_is_that_of_the_face() {
+    // the line v = 0 is a chain of edges in both, but of edges of different lengths; above it the data jump by 10
+    let (target, source) = (rings(6), rings(4));
+    let is_above =
+        |points: &[Vector], face: [u32; 3]| triangle(points, face).iter().map(|x| x[1]).sum::<f64>() > 0.0;
+    let on_target = |face: usize| if is_above(&target.0, target.1[face]) { 10.0 } else { 0.0 };
+    let values: Vec<f64> = (0..3 * target.1.len())
+        .map(|corner| on_target(corner / 3) + target.0[target.1.as_flattened()[corner] as usize][0])
+        .collect();
+    // and a little noise: registrations are not exact
+    for noise in [0.0, 1e-9, 1e-7] {
+        let shaken: Vec<Vector> = (0..source.0.len())
+            .map(|v| add(source.0[v], [noise * number(2 * v), noise * number(2 * v + 1), 0.0]))
+            .collect();
+        let source = (shaken, source.1.clone());
+        let locations = located(&target, &source.0);
+        let sides = sides(&target, &source, &locations);
+        let pulled = pull_corners(&values, 1, &source.1, &target.1, &locations, &sides);
+        let labels: Vec<u8> = (0..values.len()).map(|corner| u8::from(on_target(corner / 3) > 0.0)).collect();
+        let pulled_labels = pull_rows(&labels, 1, &nearest_corners(&sides));
+        for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
+            let above = is_above(&source.0, source.1[corner / 3]);
+            assert_eq!(pulled_labels[corner], u8::from(above));
+            let expected = if above { 10.0 } else { 0.0 } + source.0[vertex as usize][0];
+            // beyond the chords the nearest point of the rim counts
+            let inside = norm(source.0[vertex as usize]) < 1.4;
+            assert!((pulled[corner] - expected).abs() < if inside { 1e-6 } else { 1e-2 });
+        }
+    }
+}
+
+#[test]
+fn labels_come_from_the_nearest_corner() {
+    let target: Map = (vec![[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]], vec![[0, 1, 2]]);
+    let locations = located(&target, &[[0.6, 0.3, 1.0], [0.1, 0.7, 1.0], [0.5, 0.0, 1.0]]);
+    let nearest = nearest_vertices(&target.1, &locations);
+    assert_eq!(nearest, [1, 2, 0]);
+    assert_eq!(pull_rows(&["a", "b", "c", "d", "e", "f"], 2, &nearest), ["c", "d", "e", "f", "a", "b"]);
+}
+
+#[test]
+fn a_value_that_is_not_finite_stays_where_it_is() {
+    let target = rings(1);
+    let mut values = by_corner(&[[0, 1, 2]], f64::from);
+    values.extend([4.0, 5.0, 6.0, f64::NAN]);
+    let locations = located(&target, &target.0[..6]);
+    assert_eq!(pull_vertices(&values, 1, &target.1, &locations), [0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
+}

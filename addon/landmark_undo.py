@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Undo of landmarks in edit mode, where Blender takes back changes of meshes alone.
 
-The list of pairs is a part of the object, and stays as it is when a step in edit mode is undone or redone;
-the marks on the vertices come and go with the steps. Where marks of a pair have gone although the mesh has as
-many vertices as before, it is the adding of the pair that was undone, or its removal that was done again:
-it leaves the list, and is remembered. Where they have come back, it returns to its place.
+The list of pairs is a part of the object: when a step of edit mode is undone or redone, it stays as it is, or
+becomes what it was when edit mode was entered. The marks on the vertices come and go with the steps. So the
+list is made to follow the marks: a pair returns whose mark is there again, and one leaves whose mark went
+away, or that has come without. A pair whose vertex was deleted, which changes the number of vertices, stays.
 """
 
 import bpy
@@ -12,44 +12,59 @@ from bpy.app.handlers import persistent
 
 from . import vertex_marks
 
-# Pairs that left lists: (session id of the source, its mark) -> (place, the values of the pair).
-_gone = {}
-# What the meshes in edit mode had before the step: session id of the mesh -> (counts, marks).
+# All pairs seen of late: (session id of the source, mark there) -> (place in the list, the pair's values).
+_known = {}
+# Before the step: session id of a source -> marks in its list, size of its mesh in edit mode, marks there.
 _before = {}
 _KEPT = ("name", "source_mark", "target_mark", "waiting", "error")
 
 
 def remember(source, index):
-    """To be called before a pair is removed."""
+    """To be called before a pair is removed, the mark of which goes too."""
     landmark = source.authalic_landmarks[index]
     values = {name: getattr(landmark, name) for name in _KEPT}
-    _gone[source.session_uid, landmark.source_mark] = index, values
+    _known[source.session_uid, landmark.source_mark] = index, values
+
+
+def forget(source, mark):
+    """The same if the mark stays, for the sake of another pair: it says nothing about this one."""
+    _known.pop((source.session_uid, mark), None)
 
 
 @persistent
 def _look(_scene, *_):
     _before.clear()
-    _before.update({mesh.session_uid: _state(mesh) for mesh in _edited()})
+    for source in _sources():
+        for index in range(len(source.authalic_landmarks)):
+            remember(source, index)
+        size, marks = _state(source.data)
+        _before[source.session_uid] = _listed(source), size, marks
 
 
 @persistent
 def _follow(_scene, *_):
-    for source in bpy.data.objects:
-        mesh = source.data if source.type == "MESH" else None
-        if mesh is None or not mesh.is_editmode or mesh.session_uid not in _before:
-            continue
-        (counts, marks), (new_counts, new_marks) = _before[mesh.session_uid], _state(mesh)
-        if counts == new_counts:
-            _drop(source, marks - new_marks)
-            _restore(source, new_marks - marks)
+    for source in _sources():
+        if source.data.is_editmode:
+            listed, size, marks = _before.get(source.session_uid, (set(), None, set()))
+            new_size, new_marks = _state(source.data)
+            went = marks - new_marks if size == new_size else set()
+            came = _listed(source) - listed - new_marks
+            _drop(source, went | came)
+            _restore(source, new_marks)
     _before.clear()
 
 
-def _edited():
-    return [mesh for mesh in bpy.data.meshes if mesh.is_editmode]
+def _sources():
+    return [obj for obj in bpy.data.objects if obj.type == "MESH"]
+
+
+def _listed(source):
+    return {landmark.source_mark for landmark in source.authalic_landmarks}
 
 
 def _state(mesh):
+    if not mesh.is_editmode:
+        return None, set()
     return vertex_marks.element_counts(mesh), set(vertex_marks.find(mesh))
 
 
@@ -61,8 +76,8 @@ def _drop(source, marks):
 
 
 def _restore(source, marks):
-    there = {landmark.source_mark for landmark in source.authalic_landmarks}
-    back = [_gone[source.session_uid, mark] for mark in marks - there if (source.session_uid, mark) in _gone]
+    missing = [(source.session_uid, mark) for mark in marks - _listed(source)]
+    back = [_known[key] for key in missing if key in _known]
     for index, values in sorted(back, key=lambda one: one[0]):
         landmark = source.authalic_landmarks.add()
         for name, value in values.items():
@@ -86,5 +101,5 @@ def register():
 def unregister():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
-    _gone.clear()
+    _known.clear()
     _before.clear()

@@ -140,14 +140,16 @@ def replace(source, wanted):
 
 def remove(source, index):
     """Removes the pair of an index; the one that takes its place is the active one."""
-    gone = source.authalic_landmarks[index]
     landmark_undo.remember(source, index)
-    marks = (source, gone.source_mark), (source.authalic_target, gone.target_mark)
+    gone = source.authalic_landmarks[index]
+    source_mark, target_mark = gone.source_mark, gone.target_mark
     source.authalic_landmarks.remove(index)
-    for obj, mark in marks:
-        # In another mode the mark would stay away when the step is undone.
-        if obj is not None and obj.data.is_editmode == source.data.is_editmode:
-            _release(obj, mark)
+    if not _release(source, source_mark):
+        landmark_undo.forget(source, source_mark)
+    target = source.authalic_target
+    # In another mode the mark would stay away when the step is undone.
+    if target is not None and target.data.is_editmode == source.data.is_editmode:
+        _release(target, target_mark)
     last = len(source.authalic_landmarks) - 1
     source.authalic_landmark_index = max(min(source.authalic_landmark_index, last), 0)
 
@@ -216,13 +218,14 @@ def _repeated(taken, name, vertices, objects):
 
 
 def _release(obj, mark):
-    """Takes a mark off a mesh if no pair of any object needs it."""
+    """Takes a mark off a mesh if no pair of any object needs it; whether that was so."""
     for other in bpy.data.objects:
         for landmark in other.authalic_landmarks:
             if mark in (landmark.source_mark, landmark.target_mark):
-                return
-    if obj.data.is_editable:
+                return False
+    if obj.type == "MESH" and obj.data.is_editable:
         vertex_marks.clear(obj.data, mark)
+    return True
 
 
 def _object(landmark, side):

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from bpy.props import IntProperty
 
-from .. import landmark_picking, landmarks, markers, vertex_points
+from .. import landmark_picking, landmarks, markers, vertex_marks, vertex_points
 from . import poll
 
 # Looking around; mouse buttons and keys that do something else are held back.
@@ -14,6 +14,7 @@ _NAVIGATION = {
     *("TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "HOME"),
     *(f"NUMPAD_{key}" for key in (*range(10), "PERIOD", "SLASH", "PLUS", "MINUS")),
 }
+_DONE = {"ESC", "RET", "NUMPAD_ENTER"}
 _SIDES = ("source", "target")
 _SKIPPED = 16  # wires before the surface
 
@@ -80,12 +81,12 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             return self._end(context)
         if event.type in _NAVIGATION or event.type.startswith(("TIMER", "NDOF")):
             return {"PASS_THROUGH"}
-        if event.value == "PRESS" and event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"}:
+        view = _view_under(context, event)
+        if event.value == "PRESS" and (event.type in _DONE or (event.type == "RIGHTMOUSE" and view)):
             return self._end(context)
         if event.value == "PRESS" and _takes_back(event):
             self._take_back(context, objects)
             return {"RUNNING_MODAL"}
-        view = _view_under(context, event)
         if view is None or (event.type == "LEFTMOUSE" and event.alt):  # a panel, a menu; Alt orbits
             self._hover(context, None)
             return {"PASS_THROUGH"}
@@ -107,7 +108,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     def _under(self, context, objects, view):
         """(side, vertex) under the cursor, or None."""
         area, region, pixel = view
-        if self._surfaces is None:
+        if self._surfaces is None or not all(map(_fits, self._surfaces, objects)):
             self._surfaces = [_surface(obj, context) for obj in objects]
         shown = [k for k, obj in enumerate(objects) if obj.visible_get(viewport=area.spaces.active)]
         for k in shown:
@@ -146,6 +147,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
 
     def _pair(self, context, source):
         vertices = self._chosen["source"], self._chosen["target"]
+        self._chosen.clear()
         try:
             if self._steps != self._pushed:  # a step of undo for each pair; the last one Blender itself makes
                 bpy.ops.ed.undo_push(message=self.bl_label)
@@ -157,7 +159,6 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._steps.append((added.name, *vertices))
             self.source_vertex, self.target_vertex = vertices
             self._say(context, f"Added {added.name}")
-        self._chosen.clear()
 
     def _take_back(self, context, objects):
         """Undoes the last click that has not made a pair yet, else the last pair of this run."""
@@ -227,6 +228,10 @@ def _view_under(context, event):
 
 def _contains(place, x, y):
     return place.x <= x < place.x + place.width and place.y <= y < place.y + place.height
+
+
+def _fits(surface, obj):
+    return len(surface.points) == vertex_marks.vertex_count(obj.data)
 
 
 def _surface(obj, context):

@@ -195,7 +195,7 @@ def test_clicks_make_pairs(session):
 def test_nothing_picked_is_nothing_done(session):
     session.click(session.source, 10)
     session.send("LEFTMOUSE", (2.0, 2.0))
-    assert session.send("RIGHTMOUSE") == {"CANCELLED"} and session.listed() == []
+    assert session.send("RIGHTMOUSE", (2.0, 2.0)) == {"CANCELLED"} and session.listed() == []
 
 
 @pytest.mark.parametrize("key", [{"kind": "BACK_SPACE"}, {"kind": "Z", "ctrl": True}])

@@ -384,6 +384,29 @@ def test_undo_of_deleting_a_vertex_in_edit_mode(heads):
     assert listed() == []
 
 
+def test_undo_back_into_edit_mode(heads):
+    """Blender then starts from the list as it was when edit mode was entered."""
+    add(1, 2)
+    add(3, 4)
+    edit_both()
+    add(20, 30)
+    step("added")
+    bpy.ops.authalic.landmark_remove(index=0)
+    step("removed")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    step("object mode")
+    states = ([(3, 4), (20, 30)], [(3, 4), (20, 30)], [(1, 2), (3, 4), (20, 30)], [(1, 2), (3, 4)])
+    for expected in states[1:]:
+        bpy.ops.ed.undo()
+        assert [pair[1:3] for pair in listed()] == expected and bpy.context.mode == "EDIT_MESH"
+    bpy.ops.ed.undo()
+    assert [pair[1:3] for pair in listed()] == states[-1] and bpy.context.mode == "OBJECT"
+    for expected in (states[3], states[2], states[1], states[0]):
+        bpy.ops.ed.redo()
+        assert [pair[1:3] for pair in listed()] == expected
+    assert bpy.context.mode == "OBJECT" and not any(problem for *_, problem in listed())
+
+
 def test_jump_selects_the_vertex(heads):
     add(20, 30)
     add(21, 31)

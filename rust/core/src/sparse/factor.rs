@@ -45,6 +45,19 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     }
 }
 
+/// Solves `A x = b` in place for a dense symmetric positive definite matrix, of which only the lower triangle is read;
+/// it is overwritten by its Cholesky factor. False, and `rhs` undefined, where a pivot is not positive and finite.
+pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bool {
+    let n = rhs.len();
+    if !cholesky_in_place(block(matrix, n, n)) {
+        return false;
+    }
+    let lower = block_ref(matrix, n, n);
+    triangular_solve::solve_lower_triangular_in_place(lower, block(rhs, n, 1), Par::Seq);
+    triangular_solve::solve_upper_triangular_in_place(lower.transpose(), block(rhs, n, 1), Par::Seq);
+    rhs.iter().all(|x| x.is_finite())
+}
+
 /// A unit eigenvector of the largest eigenvalue of a symmetric matrix given by rows; the first axis where the
 /// iteration fails.
 pub(crate) fn top_eigenvector<const N: usize>(symmetric: &[[f64; N]; N]) -> [f64; N] {
@@ -186,6 +199,15 @@ mod tests {
         let mut x = [5.0, 5.0, 11.0];
         solve_general(&matrix.to_csc(), &mut x).unwrap();
         [1.0, 2.0, 3.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
+    }
+
+    #[test]
+    fn dense_positive_definite_systems_are_solved_from_the_lower_triangle() {
+        let mut matrix = [4.0, 2.0, -2.0, f64::NAN, 5.0, 3.0, f64::NAN, f64::NAN, 6.0];
+        let mut x = [2.0, 21.0, 22.0];
+        assert!(solve_positive_definite(&mut matrix, &mut x));
+        [1.0, 2.0, 3.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
+        assert!(!solve_positive_definite(&mut [1.0, 2.0, 2.0, 1.0], &mut [1.0, 1.0]));
     }
 
     #[test]

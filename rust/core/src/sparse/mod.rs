@@ -10,6 +10,6 @@ mod multifrontal;
 pub use cholesky::Cholesky;
 pub(crate) use dirichlet::solve_dirichlet;
 pub use factor::solve_general;
-pub(crate) use factor::top_eigenvector;
+pub(crate) use factor::{solve_positive_definite, top_eigenvector};
 pub use laplacian::Laplacian;
 pub(crate) use multifrontal::{Analysis, Factor, Failure, Order, elimination_order};

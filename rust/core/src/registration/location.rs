@@ -139,7 +139,7 @@ fn determinants([a, b, c]: [Vector; 3], x: Vector) -> [f64; 3] {
 }
 
 /// det(p, q, x) with its exact sign: as x · (p − x) × (q − x), whose rounding falls with the distances.
-fn determinant(p: Vector, q: Vector, x: Vector) -> f64 {
+pub(super) fn determinant(p: Vector, q: Vector, x: Vector) -> f64 {
     if p == x || q == x {
         return 0.0;
     }

@@ -4,11 +4,16 @@
 //! Data have a number of columns, their width, and one row per vertex, or three per face for corners. What a vertex of
 //! the source gets is interpolated in the triangle of the target in which it lies. The corners of faces around a vertex
 //! may lie on different sides of a seam of the data, as of a UV map: each takes the value of the side on which its face
-//! lies. Which that is says a point moved from the vertex a little into the face.
+//! lies. For data in which seams can be seen this is done by [`pull_corners`]. Labels have none; there a point moved
+//! from the vertex a little into the face says which side it is.
+
+mod corners;
 
 use super::location::{Location, Locator};
 use crate::mesh::geometry::{Vector, add, distance, scaled, sub, triangle};
 use crate::parallel;
+
+pub use corners::pull_corners;
 
 /// How far a corner is moved into its face to find its side: this part of the way to the face's centroid, or of the
 /// longest edge of the target's triangle there where that is shorter.
@@ -33,37 +38,6 @@ pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations
         let location = locations[row];
         let face = faces[location.triangle as usize];
         interpolated(location, |corner| values[face[corner] as usize * width + column])
-    })
-}
-
-/// Per-corner data of the target at the corners of the source's faces.
-///
-/// `values` are rows of `width` numbers, three per face of the target; `locations` (n,) say where the vertices of the
-/// source lie, `sides` (3 m,) are those of [`corner_sides`]. Where no seam of the data runs near a corner it gets the
-/// value at its vertex. Returns (3 m, width).
-///
-/// # Panics
-/// Where `values` are too few for the locations, or `sides` are not three per face.
-pub fn pull_corners(
-    values: &[f64],
-    width: usize,
-    source_faces: &[[u32; 3]],
-    target_faces: &[[u32; 3]],
-    locations: &[Location],
-    sides: &[Location],
-) -> Vec<f64> {
-    let vertices = source_faces.as_flattened();
-    assert_eq!(vertices.len(), sides.len(), "one side per corner of the source's faces");
-    let places = parallel::map(sides.len(), |corner| {
-        let (side, vertex) = (sides[corner], locations[vertices[corner] as usize]);
-        match is_seamless(values, width, target_faces, side.triangle, vertex.triangle) {
-            true => vertex,
-            false => side,
-        }
-    });
-    rows(sides.len(), width, |row, column| {
-        let place = places[row];
-        interpolated(place, |corner| values[(3 * place.triangle as usize + corner) * width + column])
     })
 }
 
@@ -128,24 +102,18 @@ fn corner_side(target: &Locator<'_>, at_vertex: Location, x: Vector, inner: Vect
     }
 }
 
-/// Whether the data of two triangles agree where they meet.
-fn is_seamless(values: &[f64], width: usize, faces: &[[u32; 3]], one: u32, other: u32) -> bool {
-    let row = |face: u32, k: usize| &values[(3 * face as usize + k) * width..][..width];
-    let [ours, theirs] = [faces[one as usize], faces[other as usize]];
-    let pairs = (0..9).map(|pair| (pair / 3, pair % 3));
-    let mut shared = pairs.filter(|&(i, j)| ours[i] == theirs[j]).peekable();
-    shared.peek().is_some() && shared.all(|(i, j)| row(one, i) == row(other, j))
-}
-
 /// The corner of the largest weight, the first of equals.
 fn heaviest(Location { barycentric, .. }: Location) -> usize {
     (1..3).fold(0, |best, k| if barycentric[k] > barycentric[best] { k } else { best })
 }
 
-/// Σ λ_k value(k).
-fn interpolated(Location { barycentric, .. }: Location, value: impl Fn(usize) -> f64) -> f64 {
+/// Σ λ_k value(k), a constant and the value at a corner to the bit.
+fn interpolated(location: Location, value: impl Fn(usize) -> f64) -> f64 {
+    let heaviest = heaviest(location);
+    let base = value(heaviest);
     // a corner without weight has no say, not even by a value that is not finite
-    (0..3).filter(|&k| barycentric[k] > 0.0).map(|k| barycentric[k] * value(k)).sum()
+    let others = (0..3).filter(|&k| k != heaviest && location.barycentric[k] > 0.0);
+    others.fold(base, |sum, k| sum + location.barycentric[k] * (value(k) - base))
 }
 
 fn rows(n: usize, width: usize, value: impl Fn(usize, usize) -> f64 + Sync + Send) -> Vec<f64> {

@@ -12,6 +12,11 @@ fn sides(target: &Map, source: &Map, locations: &[Location]) -> Vec<Location> {
     corner_sides(&source.1, &source.0, &target.1, &target.0, locations)
 }
 
+fn corners(values: &[f64], width: usize, target: &Map, source: &Map) -> Vec<f64> {
+    let locations = located(target, &source.0);
+    pull_corners(values, width, &source.1, &source.0, &target.1, &target.0, &locations)
+}
+
 /// A source that shares hardly a vertex with `rings`, inside its polygon.
 fn turned_rings(n: u32) -> Map {
     let (points, faces) = rings(n);
@@ -42,11 +47,15 @@ fn linear_functions_are_reproduced() {
     // data by corner without a seam are the same
     let corners: Vec<f64> =
         target.1.as_flattened().iter().flat_map(|&v| linear(target.0[v as usize])).collect();
-    let sides = sides(&target, &source, &locations);
-    let pulled_corners = pull_corners(&corners, 2, &source.1, &target.1, &locations, &sides);
+    let pulled_corners = self::corners(&corners, 2, &target, &source);
     for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
-        assert_eq!(pulled_corners[2 * corner..][..2], pulled[2 * vertex as usize..][..2]);
+        let at_vertex = &pulled[2 * vertex as usize..][..2];
+        (0..2).for_each(|k| assert!((pulled_corners[2 * corner + k] - at_vertex[k]).abs() < 1e-14));
     }
+    assert_eq!(
+        self::corners(&vec![0.1; 3 * target.1.len()], 1, &target, &source),
+        vec![0.1; 3 * source.1.len()]
+    );
 }
 
 #[test]
@@ -56,7 +65,7 @@ fn a_mesh_gets_its_own_data_back_to_the_bit() {
         let sides = sides(&map, &map, &locations);
         // every corner of every face has a value of its own: each edge is a seam
         let values: Vec<f64> = (0..3 * map.1.len()).map(number).collect();
-        assert_eq!(pull_corners(&values, 1, &map.1, &map.1, &locations, &sides), values);
+        assert_eq!(corners(&values, 1, &map, &map), values);
         let own: Vec<u32> = (0..3 * map.1.len() as u32).collect();
         assert_eq!(nearest_corners(&sides), own);
         let vertices: Vec<u32> = (0..map.0.len() as u32).collect();
@@ -82,7 +91,7 @@ fn the_side_of_a_seam_is_that_of_the_face() {
         let source = (shaken, source.1.clone());
         let locations = located(&target, &source.0);
         let sides = sides(&target, &source, &locations);
-        let pulled = pull_corners(&values, 1, &source.1, &target.1, &locations, &sides);
+        let pulled = corners(&values, 1, &target, &source);
         let labels: Vec<u8> = (0..values.len()).map(|corner| u8::from(on_target(corner / 3) > 0.0)).collect();
         let pulled_labels = pull_rows(&labels, 1, &nearest_corners(&sides));
         for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
@@ -94,6 +103,39 @@ fn the_side_of_a_seam_is_that_of_the_face() {
             assert!((pulled[corner] - expected).abs() < if inside { 1e-6 } else { 1e-2 });
         }
     }
+}
+
+#[test]
+fn no_face_is_smeared_over_a_seam() {
+    // the angle, from 0 to 1 in the rings of the target, jumps where u > 0 = v: amid faces of the source
+    let (target, source) = (rings(12), turned_rings(5));
+    let angle = |x: Vector| x[1].atan2(x[0]).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
+    let values: Vec<f64> = target
+        .1
+        .iter()
+        .flat_map(|&face| {
+            let corners = triangle(&target.0, face);
+            let middle = angle(scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0));
+            corners.map(|x| if norm(x) == 1.0 { middle } else { angle(x) - (angle(x) - middle).round() })
+        })
+        .collect();
+    let pulled = corners(&values, 1, &target, &source);
+    let mut n_across = 0;
+    for (face, &vertices) in source.1.iter().enumerate() {
+        let corners = triangle(&source.0, vertices);
+        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        if centroid[0].hypot(centroid[1]) < 0.25 {
+            continue;
+        }
+        n_across += usize::from(corners.iter().any(|&x| (angle(x) - angle(centroid)).abs() > 0.5));
+        for (k, &x) in corners.iter().enumerate() {
+            // on the other side of the seam, the seam's own value, 0 or 1, instead
+            let on_this_side = angle(x) - (angle(x) - angle(centroid)).round();
+            let error = (pulled[3 * face + k] - on_this_side.clamp(0.0, 1.0)).abs();
+            assert!(error < 0.01, "{error}");
+        }
+    }
+    assert!(n_across > 3);
 }
 
 #[test]

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Data by corners of faces, carried without smearing a face over a seam.
+//!
+//! A seam is an edge of the target at which the data of its two faces differ, as the border of an island of a UV map.
+//! Faces of the source may lie across it. So the value at a corner is the one met on the straight way to it from the
+//! centroid of its face: in the corner itself, or where the way comes to a seam first, at the seam on this side of it.
+
+use super::{interpolated, rows};
+use crate::mesh::VertexCorners;
+use crate::mesh::geometry::{Vector, add, scaled, triangle};
+use crate::parallel;
+use crate::registration::location::{Location, Locator, determinant};
+
+/// Per-corner data of the target at the corners of the source's faces.
+///
+/// `values` are rows of `width` numbers, three per face of the target. `registered` and `target_registered` are the
+/// vertices of both in the domain, either on the unit sphere or in the plane z = 1, and `locations` (n,) say where in
+/// the target the vertices of the source lie. Returns (3 m, width): the values at the vertices, save where a seam of
+/// the data runs through a face or along its edges; there a face takes the values on the side of its centroid.
+///
+/// # Panics
+/// Where `values` are fewer than the corners of `target_faces`.
+pub fn pull_corners(
+    values: &[f64],
+    width: usize,
+    source_faces: &[[u32; 3]],
+    registered: &[Vector],
+    target_faces: &[[u32; 3]],
+    target_registered: &[Vector],
+    locations: &[Location],
+) -> Vec<f64> {
+    let locator = Locator::new(target_registered, target_faces);
+    let corners = VertexCorners::new(target_registered.len(), target_faces);
+    let target =
+        Target { values, width, faces: target_faces, positions: target_registered, corners, locator };
+    let mut places = vec![[Location::default(); 3]; source_faces.len()];
+    parallel::fill(&mut places, |face| {
+        let vertices = source_faces[face];
+        let corners = triangle(registered, vertices);
+        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        let start = target.locator.locate(centroid).triangle;
+        std::array::from_fn(|k| target.reached(start, centroid, corners[k], locations[vertices[k] as usize]))
+    });
+    let places = places.as_flattened();
+    rows(places.len(), width, |row, column| {
+        let first = 3 * places[row].triangle as usize;
+        interpolated(places[row], |corner| values[(first + corner) * width + column])
+    })
+}
+
+/// The target with its data.
+struct Target<'a> {
+    values: &'a [f64],
+    width: usize,
+    faces: &'a [[u32; 3]],
+    positions: &'a [Vector],
+    corners: VertexCorners,
+    locator: Locator<'a>,
+}
+
+impl Target<'_> {
+    /// How far the way `from` a point of the triangle `here` gets to `x`, which lies at `goal`: to its end or to a seam.
+    fn reached(&self, mut here: u32, from: Vector, x: Vector, goal: Location) -> Location {
+        // a way longer than all triangles would be going in circles
+        for _ in 0..self.faces.len() {
+            if here == goal.triangle {
+                return goal;
+            }
+            let Some(edge) = self.way_out(here, from, x) else { break };
+            match self.across(here, edge) {
+                Some(next) => here = next,
+                None => return self.crossing(here, edge, from, x),
+            }
+        }
+        self.locator.clamped(here, x)
+    }
+
+    /// The edge through which the way to `x` leaves a triangle, by the corner opposite; `None` where `x` lies in it.
+    fn way_out(&self, face: u32, from: Vector, x: Vector) -> Option<usize> {
+        let corners = triangle(self.positions, self.faces[face as usize]);
+        // what lies on the way counts as left of it, in every triangle alike
+        let is_left = corners.map(|corner| determinant(from, x, corner) >= 0.0);
+        let leaves = |k: &usize| determinant(corners[(k + 1) % 3], corners[(k + 2) % 3], x) < 0.0;
+        let crosses = |k: &usize| !is_left[(k + 1) % 3] && is_left[(k + 2) % 3];
+        (0..3).find(|k| crosses(k) && leaves(k)).or_else(|| (0..3).find(leaves))
+    }
+
+    /// The face on the other side of an edge; `None` at a seam or at the boundary.
+    fn across(&self, face: u32, edge: usize) -> Option<u32> {
+        let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
+        let [start, end] = [i, j].map(|k| self.faces[face as usize][k]);
+        // in the other face the edge runs the other way
+        let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
+        let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
+        let other = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
+        let agrees = |corner: usize, theirs: u32| self.row(3 * face + corner as u32) == self.row(theirs);
+        (agrees(j, other) && agrees(i, after(other))).then_some(other / 3)
+    }
+
+    /// The point of an edge at which the way crosses it.
+    fn crossing(&self, face: u32, edge: usize, from: Vector, x: Vector) -> Location {
+        let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
+        let corners = triangle(self.positions, self.faces[face as usize]);
+        let (right, left) = (-determinant(from, x, corners[i]), determinant(from, x, corners[j]));
+        let (right, left) = (right.max(0.0), left.max(0.0));
+        if right + left == 0.0 {
+            return self.locator.clamped(face, x);
+        }
+        let mut barycentric = [0.0; 3];
+        (barycentric[i], barycentric[j]) = (left / (right + left), right / (right + left));
+        Location { triangle: face, barycentric }
+    }
+
+    fn row(&self, corner: u32) -> &[f64] {
+        &self.values[corner as usize * self.width..][..self.width]
+    }
+}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The vertex that the cursor is on, by the geometry of a view. Needs no window.
 
-Under the cursor lies a triangle, and the nearest of its vertices is meant; beside the surface, the nearest
+Under the cursor lies a face, and the nearest of its vertices is meant; beside the surface, the nearest
 vertex some pixels away. Vertices behind a surface are never meant.
 """
 
@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from mathutils import Matrix, Vector
-from mathutils.bvhtree import BVHTree
 
 # A hit this much nearer than a vertex, as a part of its distance, hides it.
 _HIDING = 1e-4
@@ -40,13 +39,17 @@ class View:
 
 
 class Surface:
-    """Triangles (t, 3) of points (n, 3) under a matrix (4, 4) to the world, ready for rays."""
+    """Points (n, 3), of which those `used` (n,) count, under a matrix (4, 4) to the world.
 
-    def __init__(self, points, triangles, matrix):
-        self.points, self.triangles = np.asarray(points, float), np.asarray(triangles)
-        self._tree = BVHTree.FromPolygons(self.points.tolist(), self.triangles.tolist(), all_triangles=True)
-        self._used = np.zeros(len(self.points), bool)
-        self._used[self.triangles.ravel()] = True
+    `cast` is a function of the origin and the direction of a ray among the points, and returns the point
+    that it hits first with the vertices of the face there, or None.
+    """
+
+    def __init__(self, points, used, cast, matrix):
+        self.points, self._used, self._cast = np.asarray(points, float), np.asarray(used, bool), cast
+        corners = self.points if len(self.points) else np.zeros((1, 3))
+        sides = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1)
+        self._box = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
         self.place(matrix)
 
     def place(self, matrix):
@@ -56,40 +59,53 @@ class Surface:
 
     def world(self, vertices=slice(None)):
         """The points of some vertices, (k, 3), in the world."""
-        matrix = np.array(self.matrix)
-        return self.points[vertices] @ matrix[:3, :3].T + matrix[:3, 3]
+        return self._moved(self.points[vertices])
 
     def candidates(self, view, pixel, radius):
-        """The vertices of faces at most so many pixels away, the nearest first."""
+        """The vertices that count at most so many pixels away, the nearest first, and how far they are."""
+        if self._is_far(view, pixel, radius):
+            return [], []
         away = np.linalg.norm(view.project(self.world()) - pixel, axis=1)
         near = np.flatnonzero((away <= radius) & self._used)
-        return near[np.argsort(away[near], kind="stable")], np.sort(away[near])
+        near = near[np.argsort(away[near], kind="stable")]
+        return near, away[near]
 
     def hit(self, origin, direction):
-        """The distance and the triangle (3,) that a ray hits first, or infinity and None."""
+        """The distance and the vertices of the face that a ray hits first, or infinity and None."""
         start = self._inverse @ Vector(origin)
-        towards = self._inverse.to_3x3() @ Vector(direction)
-        point, _, triangle, _ = self._tree.ray_cast(start, towards)
-        if point is None:
+        found = self._cast(start, self._inverse.to_3x3() @ Vector(direction))
+        if found is None:
             return np.inf, None
-        return (self.matrix @ point - Vector(origin)).length, self.triangles[triangle]
+        point, face = found
+        return (self.matrix @ point - Vector(origin)).length, np.array(face)
+
+    def _is_far(self, view, pixel, radius):
+        """Whether the box about the surface is in front of the eye and away from the pixel."""
+        corners = view.project(self._moved(self._box))
+        outside = (corners.min(axis=0) > pixel + radius) | (corners.max(axis=0) < pixel - radius)
+        return bool(np.isfinite(corners).all() and outside.any())
+
+    def _moved(self, points):
+        matrix = np.array(self.matrix)
+        return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def pick(surfaces, view, pixel, *, radius=20.0, blocked=np.inf):
     """(which of the surfaces, vertex) at a pixel, or None; `blocked` is how far away what hides them is."""
+    pixel = np.asarray(pixel, float)
     origin, direction = view.ray(pixel)
     hits = [surface.hit(origin, direction) for surface in surfaces]
     which = int(np.argmin([distance for distance, _ in hits])) if hits else 0
-    distance, triangle = hits[which] if hits else (np.inf, None)
+    distance, face = hits[which] if hits else (np.inf, None)
     if min(distance, blocked) < np.inf:
-        return _corner(surfaces, which, triangle, view, pixel) if distance <= blocked else None
+        return _corner(surfaces, which, face, view, pixel) if distance <= blocked else None
     return _beside(surfaces, view, pixel, radius)
 
 
-def _corner(surfaces, which, triangle, view, pixel):
-    """The nearest visible corner of the triangle under the cursor."""
-    away = np.linalg.norm(view.project(surfaces[which].world(triangle)) - pixel, axis=1)
-    for vertex in triangle[np.argsort(away)]:
+def _corner(surfaces, which, face, view, pixel):
+    """The nearest visible corner of the face under the cursor."""
+    away = np.linalg.norm(view.project(surfaces[which].world(face)) - pixel, axis=1)
+    for vertex in face[np.argsort(away)]:
         if _is_visible(surfaces, which, vertex, view):
             return which, int(vertex)
     return None
@@ -116,8 +132,8 @@ def _is_visible(surfaces, which, vertex, view):
     distance = np.linalg.norm(point[0] - origin)
     direction = (point[0] - origin) / max(distance, 1e-30)
     for other, surface in enumerate(surfaces):
-        reached, triangle = surface.hit(origin, direction)
-        own = other == which and triangle is not None and vertex in triangle
+        reached, face = surface.hit(origin, direction)
+        own = other == which and face is not None and vertex in face
         if reached < distance * (1 - _HIDING) and not own:
             return False
     return True

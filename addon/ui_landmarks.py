@@ -93,7 +93,18 @@ def _draw_landmarks(layout, source, context):
     row = layout.row(align=True)
     row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
     row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"
+    _draw_error(layout, source)
     _draw_problems(layout, source, context)
+
+
+def _draw_error(layout, source):
+    """How far the last registration missed the active pair, if there was one."""
+    index = source.authalic_landmark_index
+    error = source.authalic_landmarks[index].error if index < len(_shown) else -1.0
+    if error >= 0:
+        row = layout.row()
+        row.active = False
+        row.label(text=f"Missed by {error:.2g} % of the target's size", translate=False)
 
 
 def _draw_problems(layout, source, context):

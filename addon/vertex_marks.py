@@ -13,13 +13,13 @@ import numpy as np
 
 NAME = "authalic_landmark"
 _random = random.SystemRandom()
-# What was found in meshes that are being edited, where looking at every vertex is slow.
+# What was found last: session id of a mesh -> (counts of its elements, marks).
 _seen = {}
 
 
 def put(mesh, vertex):
     """The mark of a vertex, which gets one if it has none that is its own."""
-    old = _value(mesh, vertex)
+    (old,) = _values(mesh, [vertex])
     if old > 0 and len(find(mesh).get(old, ())) == 1:
         return old
     mark = _random.randrange(1, 2**31)
@@ -35,28 +35,27 @@ def clear(mesh, mark):
 def find(mesh, *, wanted=None):
     """The vertices, a list of numbers, for each mark on a mesh.
 
-    With `wanted`, some marks, what was found before is taken for true in edit mode, unless one of these is
-    missing there or the mesh was changed: fast enough for drawing.
+    With `wanted`, some marks, what was found before is taken for true unless one of these is not where it
+    was or the mesh has more or fewer elements: fast enough for drawing.
     """
-    if not mesh.is_editmode:
-        return _in_arrays(mesh)
-    edit = bmesh.from_edit_mesh(mesh)
     counts, found = _seen.get(mesh.session_uid, (None, {}))
-    if wanted is None or counts != element_counts(mesh) or not _holds(edit, found, wanted):
-        found = _in_edit(edit)
+    if wanted is None or counts != element_counts(mesh) or not _holds(mesh, found, wanted):
+        found = _in_edit(bmesh.from_edit_mesh(mesh)) if mesh.is_editmode else _in_arrays(mesh)
         _seen[mesh.session_uid] = element_counts(mesh), found
     return found
 
 
 def element_counts(mesh):
-    """The numbers of vertices, edges and faces of a mesh in edit mode."""
+    """The numbers of vertices, edges and faces of a mesh, in edit mode too."""
+    if not mesh.is_editmode:
+        return len(mesh.vertices), len(mesh.edges), len(mesh.polygons)
     edit = bmesh.from_edit_mesh(mesh)
     return len(edit.verts), len(edit.edges), len(edit.faces)
 
 
 def vertex_count(mesh):
     """The number of vertices, in edit mode too."""
-    return len(bmesh.from_edit_mesh(mesh).verts) if mesh.is_editmode else len(mesh.vertices)
+    return element_counts(mesh)[0]
 
 
 def _in_arrays(mesh):
@@ -83,29 +82,29 @@ def _grouped(marked):
     return found
 
 
-def _holds(edit, found, wanted):
-    layer = edit.verts.layers.int.get(NAME)
-    if layer is None:
-        return not found
-    edit.verts.ensure_lookup_table()
-    return all(
-        mark in found and all(edit.verts[vertex][layer] == mark for vertex in found[mark]) for mark in wanted
-    )
+def _holds(mesh, found, wanted):
+    """Whether the wanted marks are there, and on the vertices where they were found."""
+    if any(mark not in found for mark in wanted):
+        return False
+    placed = [(mark, vertex) for mark in wanted for vertex in found[mark]]
+    return _values(mesh, [vertex for _, vertex in placed]) == [mark for mark, _ in placed]
 
 
-def _value(mesh, vertex):
+def _values(mesh, vertices):
+    """What some vertices have for a mark, 0 for none."""
     if not mesh.is_editmode:
         attribute = _attribute(mesh)
-        return attribute.data[vertex].value if attribute else 0
+        return [attribute.data[vertex].value if attribute else 0 for vertex in vertices]
     edit = bmesh.from_edit_mesh(mesh)
     layer = edit.verts.layers.int.get(NAME)
     edit.verts.ensure_lookup_table()
-    return edit.verts[vertex][layer] if layer else 0
+    return [edit.verts[vertex][layer] if layer else 0 for vertex in vertices]
 
 
 def _write(mesh, vertices, value):
     if not len(vertices):
         return
+    _seen.pop(mesh.session_uid, None)
     if not mesh.is_editmode:
         # Not element by element: that could write into the array which the undo step shares.
         attribute = _attribute(mesh) or _new_attribute(mesh)
@@ -121,7 +120,6 @@ def _write(mesh, vertices, value):
     for vertex in vertices:
         edit.verts[vertex][layer] = value
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
-    _seen.pop(mesh.session_uid, None)
 
 
 def _attribute(mesh):

@@ -2,8 +2,10 @@
 """Where the vertices of a mesh are seen: moved by its shape keys and modifiers, or as they are edited."""
 
 import bmesh
+import bpy
 import numpy as np
 from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 
 Z = Vector((0.0, 0.0, 1.0))
 # Modifiers that may give the vertices of the mesh other numbers; others add some behind them, if any.
@@ -11,6 +13,7 @@ _RENUMBERING = {
     *("BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "MASK", "NODES", "REMESH", "SCREW", "SKIN"),
     *("VOLUME_TO_MESH", "WELD", "WIREFRAME"),
 }
+_HIDDEN_LAYERS = 64
 
 
 def in_world(obj, vertex, depsgraph):
@@ -21,21 +24,31 @@ def in_world(obj, vertex, depsgraph):
     return matrix @ point, turned.normalized()
 
 
-def triangles(obj, depsgraph):
-    """The visible surface: points (n, 3) of all vertices, and triangles (t, 3) of their numbers, local."""
+def surface(obj, depsgraph):
+    """What is seen of an object, in its own coordinates, for finding vertices.
+
+    Points (n, 3) of all vertices; which of them (n,) belong to a face that is seen; and a function of the
+    origin and the direction of a ray, which returns the point it hits first and the face's vertices, or None.
+    """
     mesh = obj.data
     if mesh.is_editmode:
-        return _edited(bmesh.from_edit_mesh(mesh))
-    shown = shown_mesh(obj, depsgraph)
+        edit = bmesh.from_edit_mesh(mesh)
+        points = np.array([vertex.co[:] for vertex in edit.verts], float).reshape(-1, 3)
+        used = np.array([bool(vertex.link_faces) and not vertex.hide for vertex in edit.verts], bool)
+        return points, used, _cast_on_edited(mesh)
+    shown = _shown_mesh(obj, depsgraph)
     points = np.empty(3 * len(shown.vertices), np.float32)
     shown.vertices.foreach_get("co", points)
-    mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("vertices", corners)
-    return points.reshape(-1, 3)[: len(mesh.vertices)].astype(float), corners.reshape(-1, 3)
+    points = points.reshape(-1, 3)[: len(mesh.vertices)].astype(float)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    used = np.zeros(len(points), bool)
+    used[corners] = True
+    same_faces = len(shown.polygons) == len(mesh.polygons)
+    return points, used, _cast_on_shown(obj) if same_faces else _cast_on_own(mesh, points)
 
 
-def shown_mesh(obj, depsgraph):
+def _shown_mesh(obj, depsgraph):
     """The mesh with shape keys and modifiers where its vertices begin with the object's own, else that."""
     mesh, shown = obj.data, obj.evaluated_get(depsgraph).data
     renumbered = any(each.show_viewport and each.type in _RENUMBERING for each in obj.modifiers)
@@ -50,16 +63,48 @@ def _local(obj, vertex, depsgraph):
         edit.verts.ensure_lookup_table()
         one = edit.verts[vertex]
     else:
-        one = shown_mesh(obj, depsgraph).vertices[vertex]
+        one = _shown_mesh(obj, depsgraph).vertices[vertex]
     return one.co.copy(), one.normal.copy()
 
 
-def _edited(edit):
-    numbers = {vertex: number for number, vertex in enumerate(edit.verts)}
-    points = np.array([vertex.co[:] for vertex in edit.verts], float).reshape(-1, 3)
-    corners = [
-        [numbers[loop.vert] for loop in loops]
-        for loops in edit.calc_loop_triangles()
-        if not loops[0].face.hide
-    ]
-    return points, np.array(corners, np.int32).reshape(-1, 3)
+def _cast_on_shown(obj):
+    """Rays on the tree that Blender itself keeps of the mesh with its modifiers."""
+
+    def cast(origin, direction):
+        shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        is_hit, point, _, face = shown.ray_cast(origin, direction)
+        return (point, list(obj.data.polygons[face].vertices)) if is_hit and face >= 0 else None
+
+    return cast
+
+
+def _cast_on_own(mesh, points):
+    """Rays on the faces of the mesh, which the modifiers have divided, between points (n, 3)."""
+    faces = [list(polygon.vertices) for polygon in mesh.polygons]
+    tree = BVHTree.FromPolygons(points.tolist(), faces)
+
+    def cast(origin, direction):
+        point, _, face, _ = tree.ray_cast(origin, direction)
+        return (point, faces[face]) if point is not None else None
+
+    return cast
+
+
+def _cast_on_edited(mesh):
+    """Rays on the faces that are not hidden in edit mode."""
+    tree = BVHTree.FromBMesh(bmesh.from_edit_mesh(mesh))
+
+    def cast(origin, direction):
+        edit, start = bmesh.from_edit_mesh(mesh), Vector(origin)
+        edit.faces.ensure_lookup_table()
+        edit.verts.index_update()
+        for _ in range(_HIDDEN_LAYERS):
+            point, _, face, _ = tree.ray_cast(start, direction)
+            if point is None or face >= len(edit.faces):
+                return None
+            if not edit.faces[face].hide:
+                return point, [vertex.index for vertex in edit.faces[face].verts]
+            start = point + direction.normalized() * max((point - Vector(origin)).length * 1e-5, 1e-6)
+        return None
+
+    return cast

@@ -67,7 +67,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             return self.execute(context)
         source = landmarks.source(context)
         self._names = source.name, source.authalic_target.name
-        self._chosen, self._steps, self._pushed, self._surfaces = {}, [], [], None
+        self._chosen, self._steps, self._pushed, self._states = {}, [], [], None
         AUTHALIC_OT_landmark_pick.running = True
         self._say(context, "")
         context.window.cursor_modal_set("CROSSHAIR")
@@ -108,8 +108,9 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     def _under(self, context, objects, view):
         """(side, vertex) under the cursor, or None."""
         area, region, pixel = view
-        if self._surfaces is None or not all(map(_fits, self._surfaces, objects)):
-            self._surfaces = [_surface(obj, context) for obj in objects]
+        states = [_state(obj) for obj in objects]
+        if self._states != states:
+            self._states, self._surfaces = states, [_surface(obj, context) for obj in objects]
         shown = [k for k, obj in enumerate(objects) if obj.visible_get(viewport=area.spaces.active)]
         for k in shown:
             self._surfaces[k].place(objects[k].matrix_world)
@@ -230,13 +231,15 @@ def _contains(place, x, y):
     return place.x <= x < place.x + place.width and place.y <= y < place.y + place.height
 
 
-def _fits(surface, obj):
-    return len(surface.points) == vertex_marks.vertex_count(obj.data)
-
-
 def _surface(obj, context):
-    points, triangles = vertex_points.triangles(obj, context.evaluated_depsgraph_get())
-    return landmark_picking.Surface(points, triangles, obj.matrix_world)
+    seen = vertex_points.surface(obj, context.evaluated_depsgraph_get())
+    return landmark_picking.Surface(*seen, obj.matrix_world)
+
+
+def _state(obj):
+    """Changes where the surface of an object has to be looked at again."""
+    mesh = obj.data
+    return obj.as_pointer(), mesh.session_uid, mesh.is_editmode, vertex_marks.vertex_count(mesh)
 
 
 def _blocked(context, objects, view, pixel):

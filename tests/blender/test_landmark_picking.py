@@ -35,8 +35,8 @@ def orthographic(size=3.0):
 
 
 def surface(obj):
-    points, triangles = part("vertex_points").triangles(obj, bpy.context.evaluated_depsgraph_get())
-    return part("landmark_picking").Surface(points, triangles, obj.matrix_world)
+    seen = part("vertex_points").surface(obj, bpy.context.evaluated_depsgraph_get())
+    return part("landmark_picking").Surface(*seen, obj.matrix_world)
 
 
 def pick(surfaces, view, pixel, **options):
@@ -57,12 +57,15 @@ def test_what_is_behind_the_eye_has_no_pixel():
 
 
 @pytest.mark.parametrize("view", [perspective, orthographic])
-@pytest.mark.parametrize("in_edit", [False, True])
-def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view, in_edit):
+@pytest.mark.parametrize("mode", ["object", "edit", "subdivided"])
+def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view, mode):
     obj = meshes.add_grid(n=5)
     obj.matrix_world = [(0.9, 0.3, 0, 0.5), (-0.3, 1.4, 0, 0.1), (0, 0, 2, -1), (0, 0, 0, 1)]
-    if in_edit:
+    if mode == "edit":
         meshes.edit(obj)
+    elif mode == "subdivided":
+        obj.modifiers.new("Subdivision", "SUBSURF")
+    bpy.context.view_layer.update()
     one, seen = surface(obj), view()
     pixels = seen.project(one.world())
     assert [pick([one], seen, pixel + 0.4) for pixel in pixels] == [(0, k) for k in range(36)]
@@ -132,7 +135,7 @@ class Session:
         }
         self.operator = type("Plain", (), {**own, "bl_label": "Pick", "report": self._report})()
         self.operator._names = "Head A", "Head B"
-        self.operator._chosen, self.operator._surfaces = {}, None
+        self.operator._chosen, self.operator._states = {}, None
         self.operator._steps, self.operator._pushed = [], []
         self.module, self.seen = module, module._view_under
         module._view_under = lambda context, event: self._under(event)

@@ -63,17 +63,17 @@ class Side:
 class Registered:
     """The library's registration of `source` onto `target` and figures of it.
 
-    `plane` (u, 2) and `target_plane` those of either
-    in the unit disk, None for spheres. `errors` (k,) are the distances of the landmarks, as parts of the
-    target's size, `missed` the names of pairs that do not meet.
+    `places` (u, 3) and `target_places` are the points of either in the common domain, the unit sphere or the
+    unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
+    `missed` the names of pairs that do not meet.
     """
 
     native: object
     source: Side
     target: Side
     domain: str
-    plane: np.ndarray | None
-    target_plane: np.ndarray | None
+    places: np.ndarray
+    target_places: np.ndarray
     names: list[str]
     errors: np.ndarray
     missed: list[str]
@@ -238,15 +238,15 @@ def key(source, target, pairs):
 def registered(native, sides, shape, landmarks, names):
     """The figures of a registration (`authalic.Registration`) of two sides by landmarks (2, k)."""
     source, target = sides
-    is_disk, images = shape == "DISK", np.asarray(native.positions)[landmarks[0]]
-    apart = np.linalg.norm(images - target.points[landmarks[1]], axis=1)
+    ends = np.asarray(native.positions)[landmarks[0]]
+    apart = np.linalg.norm(ends - target.points[landmarks[1]], axis=1)
     return Registered(
         native=native,
         source=source,
         target=target,
         domain=shape,
-        plane=np.asarray(native.registered) if is_disk else None,
-        target_plane=np.asarray(native.target_registered) if is_disk else None,
+        places=_in_space(np.asarray(native.registered)),
+        target_places=_in_space(np.asarray(native.target_registered)),
         names=names,
         errors=apart / max(target.size, np.finfo(float).tiny),
         missed=[names[pair] for pair in native.missed],
@@ -255,6 +255,11 @@ def registered(native, sides, shape, landmarks, names):
         status=native.status,
         seconds=float(native.seconds),
     )
+
+
+def _in_space(points):
+    """Points (n, 2) of the disk at height 1; points (n, 3) as they are."""
+    return points if points.shape[1] == 3 else np.column_stack([points, np.ones(len(points))])
 
 
 def in_mesh_terms(message, source, target):

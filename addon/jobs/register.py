@@ -181,11 +181,11 @@ def _positions(couple, registered, align):
 
 def _write_uv_maps(couple, registered, on_target):
     """Disks: the maps under which both surfaces coincide, as UV maps that do not become active ones."""
-    if registered.plane is None:
+    if registered.domain != "DISK":
         return []
-    wanted = [(couple.source, registered.source, registered.plane)]
+    wanted = [(couple.source, registered.source, registered.places[:, :2])]
     if on_target:
-        wanted.append((couple.target, registered.target, registered.target_plane))
+        wanted.append((couple.target, registered.target, registered.target_places[:, :2]))
     return [note for note in (_write_uv_map(*part) for part in wanted) if note is not None]
 
 

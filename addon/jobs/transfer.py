@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import bridge, cargo, messages, registering, transferring
+from .. import bridge, cargo, messages, registering, seams, transferring
 from ..job import Job
 from . import register, targets
 from .register import CannotRegister
@@ -118,12 +118,15 @@ def _turn(registered, couple):
 
 def _pulled(registered, item, to_source):
     """The elements of the source's mesh (k,) and their values (k, d)."""
-    spread, gather = transferring.by_points, transferring.from_points
-    if item.of_corners:
-        spread, gather = transferring.by_corners, transferring.from_corners
-    values = bridge.pull(registered, spread(registered.target, item.values))
-    elements, values = gather(registered.source, values)
-    return elements, values @ to_source.T if item.kind == cargo.KEY else values
+    source, target = registered.source, registered.target
+    if not item.of_corners:
+        values = bridge.pull(registered, transferring.by_points(target, item.values))
+        vertices, values = transferring.from_points(source, values)
+        return vertices, values @ to_source.T if item.kind == cargo.KEY else values
+    values = bridge.pull(registered, transferring.by_corners(target, item.values))
+    if item.kind == cargo.UV_MAP:
+        values = seams.on_one_side(source, registered.places, values)
+    return transferring.from_corners(source, values)
 
 
 def _listed(kind, names):

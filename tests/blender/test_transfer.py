@@ -139,6 +139,27 @@ def test_a_seam_stays_a_seam():
     assert spread.max() < 0.3
 
 
+@pytest.mark.parametrize("cut", ["halves", "slit"])
+def test_faces_across_a_seam_stay_on_one_side(cut):
+    """The target's UVs jump by 5 along a line that runs through faces of the source."""
+    source, target = coarse_and_fine()
+    target.data.uv_layers.new(name="Map")
+    where = pairs.positions(target)[[loop.vertex_index for loop in target.data.loops]]
+    middle = where.reshape(-1, 4, 3).mean(axis=1)
+    beyond = middle[:, 0] > 0.05
+    shift = 5.0 * beyond if cut == "halves" else np.where(beyond, 4 * np.maximum(middle[:, 1], 0), 0)
+    if cut == "slit":
+        shift = np.where(where[:, 0] > 0.05, 4 * np.maximum(where[:, 1], 0), 0).reshape(-1, 4)
+        shift[~beyond] = 0
+    shift = np.broadcast_to(np.asarray(shift).reshape(len(beyond), -1), (len(beyond), 4)).ravel()
+    meshes.set_uv(target, where[:, :2] + np.column_stack([shift, 0 * shift]), "Map")
+    only("uv_maps")
+    corners = meshes.uv(source, "Map").reshape(-1, 4, 2)
+    side = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
+    assert side < (0.5 if cut == "halves" else 1.2)
+    assert np.ptp(corners[..., 0]) > 5
+
+
 @pytest.mark.parametrize("matrix", [None, TILTED])
 def test_vertex_groups(matrix):
     source, target = copies(matrix)

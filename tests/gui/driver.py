@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Steps in a living Blender window: events, pictures of the screen, checks; ends Blender when all is done.
+
+The event loop has to run between an event and what is checked of it, so that a script is a list of functions
+of which the driver calls one after the other.
+"""
+
+import os
+import subprocess
+import time
+import traceback
+
+import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+_OUT = os.environ.get("AUTHALIC_GUI_OUT", "/tmp")
+_log = open(os.path.join(_OUT, "checks.log"), "w")  # noqa: SIM115 (open until Blender ends)
+_PAUSE, _LONGEST = 0.4, 380.0
+
+
+def say(*words):
+    print(*words, file=_log, flush=True)
+
+
+def view():
+    """What operators need to be called as if from the 3D view."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "area": area, "region": region}
+
+
+def call(operator, *arguments, **options):
+    """Calls an operator in the 3D view."""
+    with bpy.context.temp_override(**view()):
+        return operator(*arguments, **options)
+
+
+def pixel(name, vertex):
+    """Where a vertex of an object is in the window."""
+    found, obj = view(), bpy.data.objects[name]
+    point = obj.matrix_world @ obj.data.vertices[vertex].co
+    space = found["area"].spaces.active
+    x, y = location_3d_to_region_2d(found["region"], space.region_3d, point)
+    return int(found["region"].x + x), int(found["region"].y + y)
+
+
+def send(kind, value, at=(500, 400), **modifiers):
+    view()["window"].event_simulate(kind, value, x=at[0], y=at[1], **modifiers)
+
+
+def move(where):
+    """A step that moves the mouse to what `where()` returns."""
+    return lambda: send("MOUSEMOVE", "NOTHING", where())
+
+
+def click(where, **modifiers):
+    """Steps that click there."""
+    return [
+        move(where),
+        lambda: send("LEFTMOUSE", "PRESS", where(), **modifiers),
+        lambda: send("LEFTMOUSE", "RELEASE", where(), **modifiers),
+    ]
+
+
+def key(kind, **modifiers):
+    """Steps that strike a key over the 3D view."""
+    return [lambda: send(kind, "PRESS", **modifiers), lambda: send(kind, "RELEASE", **modifiers)]
+
+
+def picture(name):
+    """A step that takes a picture of the screen (Blender's own are black here)."""
+
+    def take():
+        subprocess.run(["import", "-window", "root", os.path.join(_OUT, f"{name}.png")], check=True)
+
+    return take
+
+
+def check(what, found, expected):
+    """A step that compares what `found()` returns."""
+
+    def compare():
+        value = found()
+        assert value == expected, f"{what}: {value!r} instead of {expected!r}"
+        say("ok", what)
+
+    return compare
+
+
+def run(steps):
+    """Runs the steps one after the other; the last line of checks.log says how it went."""
+    bpy.context.preferences.view.show_splash = False
+    started, waiting = time.monotonic(), iter(steps)
+
+    def tick():
+        step = next(waiting, None)
+        if step is None:
+            return _end("PASSED")
+        try:
+            step()
+        except Exception:
+            say(traceback.format_exc())
+            return _end("FAILED")
+        return _PAUSE if time.monotonic() - started < _LONGEST else _end("FAILED: it took too long")
+
+    bpy.app.timers.register(tick, first_interval=1.0)
+
+
+def _end(word):
+    say(word)
+    bpy.ops.wm.quit_blender()

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmarks are picked by clicking on two heads in a real window; see README.md beside this file."""
+
+import importlib
+
+import bmesh
+import bpy
+from driver import call, check, click, key, move, picture, pixel, run, send, view
+
+A, B = "Suzanne", "Her Sister"
+_REGISTRATION = (860, 800 - 579)  # the head of the closed panel
+
+
+def part(name):
+    return importlib.import_module(f"bl_ext.user_default.authalic.{name}")
+
+
+def scene():
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    for name, x in ((A, -1.5), (B, 1.5)):
+        call(bpy.ops.mesh.primitive_monkey_add, location=(x, 0, 0))
+        bpy.context.object.name = name
+    target = bpy.context.object
+    target.scale = (0.8, 0.8, 1.1)
+    target.modifiers.new("Subdivision", "SUBSURF")
+    source = bpy.data.objects[A]
+    source.authalic_target = target
+    source.select_set(True)
+    bpy.context.view_layer.objects.active = source
+    call(bpy.ops.view3d.view_axis, type="FRONT")
+    space = view()["area"].spaces.active
+    space.region_3d.view_distance = 8
+    space.show_region_ui = True
+
+
+def tab():
+    region = next(region for region in view()["area"].regions if region.type == "UI")
+    region.active_panel_category = "Authalic"
+    view()["area"].tag_redraw()
+
+
+def open_panel():
+    """A click with Ctrl closes all other panels."""
+    return click(lambda: _REGISTRATION, ctrl=True)
+
+
+def start():
+    assert call(bpy.ops.authalic.landmark_pick, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+
+
+def at(name, vertex):
+    return lambda: pixel(name, vertex)
+
+
+def pairs():
+    return [pair[1:] for pair in part("landmarks").pairs(bpy.data.objects[A])]
+
+
+def running():
+    return "AUTHALIC_OT_landmark_pick" in [one.bl_idname for one in view()["window"].modal_operators]
+
+
+def hints():
+    return [marker[:2] for marker in part("markers").hints]
+
+
+def delete_first_vertex():
+    mesh = bpy.data.objects[A].data
+    edit = bmesh.from_edit_mesh(mesh)
+    edit.verts.ensure_lookup_table()
+    bmesh.ops.delete(edit, geom=[edit.verts[198]], context="VERTS")
+    bmesh.update_edit_mesh(mesh)
+    bpy.data.objects[A].authalic_landmark_index = 1
+    view()["area"].tag_redraw()
+
+
+STEPS = [
+    scene,
+    tab,
+    lambda: None,
+    *open_panel(),
+    lambda: call(bpy.ops.ed.undo_push, message="Two heads"),
+    start,
+    *click(at(A, 409)),
+    check("one click is no pair", pairs, []),
+    move(at(B, 409)),
+    lambda: None,
+    check("the picked vertex and the one under the mouse", hints, [(A, 409), (B, 409)]),
+    picture("hover"),
+    *click(at(B, 409)),
+    check("a pair, source first", pairs, [(409, 409, None)]),
+    *click(at(B, 198)),
+    *click(at(A, 198)),
+    check("a pair, target first", pairs, [(409, 409, None), (198, 198, None)]),
+    *key("BACK_SPACE"),
+    check("the last pair taken back", pairs, [(409, 409, None)]),
+    *click(at(A, 198)),
+    *key("Z", ctrl=True),
+    *click(at(B, 198)),
+    check("the last click taken back", pairs, [(409, 409, None)]),
+    lambda: send("WHEELUPMOUSE", "PRESS"),
+    lambda: None,
+    *click(at(A, 198)),
+    check("zoomed and picked", pairs, [(409, 409, None), (198, 198, None)]),
+    picture("picked"),
+    check("still picking", running, True),
+    *key("ESC"),
+    check("no longer picking", running, False),
+    check("nothing is left over", hints, []),
+    lambda: call(bpy.ops.ed.undo),
+    check("undo takes one pair back", pairs, [(409, 409, None)]),
+    lambda: call(bpy.ops.ed.redo),
+    check("redo brings it again", pairs, [(409, 409, None), (198, 198, None)]),
+    lambda: call(bpy.ops.object.mode_set, mode="EDIT"),
+    lambda: call(bpy.ops.mesh.select_all, action="DESELECT"),
+    delete_first_vertex,
+    lambda: None,
+    check("a lost vertex is told", pairs, [(408, 409, None), (-1, 198, f"its vertex on {A} is gone")]),
+    picture("lost"),
+    lambda: call(bpy.ops.authalic.landmark_jump, index=0, side="TARGET"),
+    lambda: None,
+    picture("jump"),
+    lambda: call(bpy.ops.object.mode_set, mode="OBJECT"),
+    start,
+    lambda: bpy.data.objects.remove(bpy.data.objects[B]),
+    lambda: None,
+    move(at(A, 0)),
+    lambda: None,
+    check("picking ends with its objects", running, False),
+]
+
+run(STEPS)

@@ -196,3 +196,5 @@ fn for_all(
     (!cancelled.into_inner()).then_some(values)
 }
 
+#[cfg(test)]
+mod tests;

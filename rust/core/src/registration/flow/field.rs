@@ -3,7 +3,8 @@
 //!
 //! Its stream function ψ is a Gaussian process with a Matérn kernel φ(|x − y|) of order 5/2 on the sphere, and with
 //! b(x) b(y) φ(|x − y|) in the disk, where b = 1 − |x|² keeps ψ zero on the circle. The velocity is ∇ψ turned by a
-//! right angle, so it changes no area, and on the circle it runs along it. Given k velocities, the most probable field
+//! right angle, so it changes no area, and on the circle it runs along it. Both kernels have a term for rotations of the
+//! whole domain, which change no angle either: x · y on the sphere, b(x) b(y) in the disk. Given k velocities, the most probable field
 //! is a sum over the k points whose weights solve a positive definite system of 2k unknowns.
 //!
 //! Cost: k³ for the weights, k for the velocity at a point.
@@ -16,6 +17,9 @@ use crate::sparse::solve_positive_definite;
 
 /// What is added to the diagonal of the system, relative to its largest entry.
 const RIDGE: f64 = 1e-10;
+
+/// How much more likely a rotation of the whole domain is than a velocity felt around one point.
+const ROTATION: f64 = 1.0;
 
 /// A divergence-free velocity field on the domain.
 #[derive(Debug, Clone)]
@@ -131,7 +135,7 @@ fn spherical_gradient(scale: f64, sources: &[Source], x: Vector) -> Vector {
         let d = [0, 1, 2].map(|k| scale * (x[k] - place[k]));
         let (_, g, h) = matern(dot(d, d));
         let along = h * dot(*pull, d);
-        gradient = [0, 1, 2].map(|k| gradient[k] + (g * pull[k] + along * d[k]));
+        gradient = [0, 1, 2].map(|k| gradient[k] + ((g + ROTATION) * pull[k] + along * d[k]));
     }
     gradient
 }
@@ -143,7 +147,7 @@ fn planar_stream(scale: f64, sources: &[Source], x: Vector) -> (f64, [f64; 2]) {
         let d = [scale * (x[0] - place[0]), scale * (x[1] - place[1])];
         let (phi, g, h) = matern(d[0] * d[0] + d[1] * d[1]);
         let towards = pull[0] * d[0] + pull[1] * d[1];
-        value += mass * phi + g * towards;
+        value += mass * (phi + ROTATION) + g * towards;
         let along = h * towards - mass * g;
         gradient = [0, 1].map(|k| gradient[k] + scale * (g * pull[k] + along * d[k]));
     }

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::control::Silent;
+use crate::distortion::{Distortion, Image, distortion};
+use crate::mesh::geometry::{face_areas, triangle};
+
+type Mesh = (Vec<Vector>, Vec<[u32; 3]>);
+
+/// A sphere of 8 · 4^level faces.
+fn octasphere(level: u32) -> Mesh {
+    let mut points: Vec<Vector> = vec![
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let mut faces: Vec<[u32; 3]> = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect();
+    for _ in 0..level {
+        let mut middles = BTreeMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                points.push(Domain::Sphere.settled([0.0; 3], add(points[a as usize], points[b as usize])));
+                points.len() as u32 - 1
+            })
+        };
+        let split = |&[a, b, c]: &[u32; 3]| {
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        faces = faces.iter().flat_map(split).collect();
+    }
+    (points, faces)
+}
+
+/// Rings about a centre in the plane z = 1, `6 r` vertices on ring `r`, the last on the circle.
+fn disk(rings: u32) -> Mesh {
+    let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
+    let on = |ring: u32, i: u32| first(ring) + if ring == 0 { 0 } else { i % (6 * ring) };
+    let (mut points, mut faces) = (vec![[0.0, 0.0, 1.0]], Vec::new());
+    for ring in 1..=rings {
+        let radius = f64::from(ring) / f64::from(rings);
+        let angle = |i: u32| TAU * f64::from(i) / f64::from(6 * ring);
+        points.extend((0..6 * ring).map(|i| [radius * angle(i).cos(), radius * angle(i).sin(), 1.0]));
+        for (side, k) in (0..6).flat_map(|side| (0..ring).map(move |k| (side, k))) {
+            let [outer, inner] = [side * ring + k, side * (ring - 1) + k];
+            faces.push([on(ring - 1, inner), on(ring, outer), on(ring, outer + 1)]);
+            if k + 1 < ring {
+                faces.push([on(ring - 1, inner), on(ring, outer + 1), on(ring - 1, inner + 1)]);
+            }
+        }
+    }
+    (points, faces)
+}
+
+/// Numbers in [0, 1) that look random.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// `count` landmarks, no two of them very close together, and places about `motion` away.
+fn landmarks(
+    domain: Domain,
+    points: &[Vector],
+    count: usize,
+    motion: f64,
+    seed: u64,
+) -> (Vec<u32>, Vec<Vector>) {
+    let mut random = Random(seed);
+    let apart = 0.8 / (count as f64).sqrt();
+    let (mut vertices, mut places): (Vec<u32>, Vec<Vector>) = (Vec::new(), Vec::new());
+    while vertices.len() < count {
+        let vertex = (random.next() * points.len() as f64) as usize;
+        let (x, angle) = (points[vertex], TAU * random.next());
+        let frame = domain.motion().frame(x);
+        let way =
+            add(scaled(frame.axes[0], motion * angle.cos()), scaled(frame.axes[1], motion * angle.sin()));
+        let place = domain.on_path(x, way, 1.0).0;
+        let inside = |[u, v, _]: Vector| domain == Domain::Sphere || u * u + v * v < 0.9;
+        let far = |from: Vector, others: &[Vector]| others.iter().all(|&y| distance(from, y) > apart);
+        let starts: Vec<Vector> = vertices.iter().map(|&v| points[v as usize]).collect();
+        if inside(x) && inside(place) && far(x, &starts) && far(place, &places) {
+            vertices.push(vertex as u32);
+            places.push(place);
+        }
+    }
+    (vertices, places)
+}
+
+fn folded(map: &[Vector], faces: &[[u32; 3]]) -> usize {
+    let is_folded = |&face: &[u32; 3]| {
+        let [a, b, c] = triangle(map, face);
+        dot(a, cross(sub(b, a), sub(c, a))) <= 0.0
+    };
+    faces.iter().filter(|face| is_folded(face)).count()
+}
+
+fn gap(map: &[Vector], landmarks: &[u32], places: &[Vector]) -> f64 {
+    landmarks
+        .iter()
+        .zip(places)
+        .fold(0.0, |most, (&v, &place)| f64::max(most, distance(map[v as usize], place)))
+}
+
+fn figures(domain: Domain, (points, faces): &Mesh, map: &[Vector]) -> Distortion {
+    let areas = face_areas(points, faces);
+    let plane: Vec<[f64; 2]> = map.iter().map(|&[u, v, _]| [u, v]).collect();
+    let image = if domain == Domain::Sphere { Image::Sphere(map) } else { Image::Plane(&plane) };
+    distortion(points, faces, image, &areas).unwrap()
+}
+
+/// A mesh that is quick to flow.
+fn small(domain: Domain) -> Mesh {
+    if domain == Domain::Sphere { octasphere(4) } else { disk(20) }
+}
+
+fn flowed(domain: Domain, mesh: &Mesh, landmarks: &[u32], places: &[Vector]) -> Vec<Vector> {
+    let mut silent = Silent;
+    let watch = Watch::new(&mut silent, 0.0, "");
+    let accepts = |map: &[Vector]| folded(map, &mesh.1) == 0;
+    flow(domain, mesh.0.clone(), landmarks, places, &accepts, &watch)
+}
+
+#[test]
+fn fields_have_the_wanted_velocities_and_no_divergence() {
+    for domain in [Domain::Sphere, Domain::Disk] {
+        let (points, _) = small(domain);
+        let (vertices, places) = landmarks(domain, &points, 12, 0.2, 3);
+        let now: Vec<Vector> = vertices.iter().map(|&v| points[v as usize]).collect();
+        let ways: Vec<Vector> = now.iter().zip(&places).map(|(&x, &place)| domain.way(x, place)).collect();
+        let field = Field::through(domain, domain.reach(), &now, &ways).unwrap();
+        for (&x, &way) in now.iter().zip(&ways) {
+            assert!(distance(field.velocity(x), way) < 1e-8);
+        }
+        for &x in points.iter().step_by(5) {
+            let slope = |axis: Vector| {
+                let at = |h: f64| dot(axis, field.velocity(add(x, scaled(axis, h))));
+                (at(1e-5) - at(-1e-5)) / 2e-5
+            };
+            let [a, b] = domain.motion().frame(x).axes.map(slope);
+            assert!((a + b).abs() < 1e-7, "{domain:?} at {x:?}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn fields_run_along_the_circle() {
+    let field = Field::through(Domain::Disk, 0.6, &[[0.7, 0.2, 1.0]], &[[0.5, 0.3, 0.0]]).unwrap();
+    for angle in [0.0, 0.3, 2.0] {
+        let x = [f64::cos(angle), f64::sin(angle), 1.0];
+        let velocity = field.velocity(x);
+        assert!((velocity[0] * x[0] + velocity[1] * x[1]).abs() < 1e-15 && norm(velocity) > 1e-3);
+    }
+}
+
+#[test]
+fn landmarks_arrive_and_nothing_folds() {
+    for (domain, count, motion) in [
+        (Domain::Sphere, 10, 0.2),
+        (Domain::Sphere, 1, 3.0),
+        (Domain::Disk, 10, 0.15),
+        (Domain::Disk, 2, 0.4),
+    ] {
+        let mesh = small(domain);
+        let (vertices, places) = landmarks(domain, &mesh.0, count, motion, 1);
+        let map = flowed(domain, &mesh, &vertices, &places);
+        assert_eq!(folded(&map, &mesh.1), 0);
+        let gap = gap(&map, &vertices, &places);
+        assert!(gap < 1e-8, "{domain:?}, {count} by {motion}: {gap}");
+    }
+}
+
+#[test]
+fn ten_landmarks_that_move_far_arrive_on_a_fine_mesh() {
+    let mesh = octasphere(6);
+    for seed in 0..3 {
+        let (vertices, places) = landmarks(Domain::Sphere, &mesh.0, 10, 0.3, seed);
+        let map = flowed(Domain::Sphere, &mesh, &vertices, &places);
+        assert_eq!(folded(&map, &mesh.1), 0);
+        assert!(gap(&map, &vertices, &places) < 1e-8);
+    }
+}
+
+#[test]
+fn area_distortion_vanishes_under_refinement() {
+    for (domain, coarse, fine) in
+        [(Domain::Sphere, octasphere(4), octasphere(5)), (Domain::Disk, disk(16), disk(32))]
+    {
+        // landmarks of one mesh are vertices of the other
+        let (vertices, places) = landmarks(domain, &coarse.0, 4, 0.2, 2);
+        let nearest = |x: Vector| {
+            let near = |a: &usize, b: &usize| distance(fine.0[*a], x).total_cmp(&distance(fine.0[*b], x));
+            (0..fine.0.len()).min_by(near).unwrap() as u32
+        };
+        let same: Vec<u32> = vertices.iter().map(|&v| nearest(coarse.0[v as usize])).collect();
+        let energy = |mesh: &Mesh, vertices: &[u32]| {
+            figures(domain, mesh, &flowed(domain, mesh, vertices, &places)).authalic_energy
+        };
+        let [before, after] = [energy(&coarse, &vertices), energy(&fine, &same)];
+        assert!(before < 0.05 && after < 0.3 * before, "{domain:?}: {before} and {after}");
+    }
+}
+
+#[test]
+fn the_circle_slides_along_itself() {
+    let mesh = disk(24);
+    let (vertices, places) = landmarks(Domain::Disk, &mesh.0, 4, 0.2, 5);
+    let map = flowed(Domain::Disk, &mesh, &vertices, &places);
+    let rim = &map[map.len() - 6 * 24..];
+    let turn = |i: usize| {
+        let ([u, v, _], [s, t, _]) = (rim[i], rim[(i + 1) % rim.len()]);
+        (u * t - v * s).atan2(u * s + v * t)
+    };
+    assert!(rim.iter().all(|&[u, v, w]| (u * u + v * v - 1.0).abs() < 1e-15 && w == 1.0));
+    assert!((0..rim.len()).all(|i| turn(i) > 0.0));
+    assert!(((0..rim.len()).map(turn).sum::<f64>() - TAU).abs() < 1e-12);
+    assert!(map[..map.len() - rim.len()].iter().all(|&[u, v, w]| u * u + v * v < 1.0 && w == 1.0));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mesh = octasphere(5);
+    let (vertices, places) = landmarks(Domain::Sphere, &mesh.0, 6, 0.2, 4);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| flowed(Domain::Sphere, &mesh, &vertices, &places))
+    };
+    let bits = |map: Vec<Vector>| map.into_iter().map(|x| x.map(f64::to_bits)).collect::<Vec<_>>();
+    assert_eq!(bits(on(1)), bits(on(2)));
+}
+
+#[test]
+fn landmarks_in_place_leave_the_very_same_map() {
+    for domain in [Domain::Sphere, Domain::Disk] {
+        let mesh = small(domain);
+        let places = [3, 9, 14].map(|v| mesh.0[v]);
+        assert_eq!(flowed(domain, &mesh, &[3, 9, 14], &places), mesh.0);
+        assert_eq!(flowed(domain, &mesh, &[], &[]), mesh.0);
+    }
+}
+
+#[test]
+fn what_cannot_be_followed_ends_at_an_accepted_map() {
+    for domain in [Domain::Sphere, Domain::Disk] {
+        // two landmarks that change places meet halfway
+        let mesh = small(domain);
+        let map = flowed(domain, &mesh, &[1, 4], &[4, 1].map(|v: usize| mesh.0[v]));
+        assert_eq!(folded(&map, &mesh.1), 0);
+        assert!(map.as_flattened().iter().all(|x| x.is_finite()));
+    }
+    let mesh = octasphere(3);
+    let map = flowed(Domain::Sphere, &mesh, &[7], &[scaled(mesh.0[7], -1.0)]);
+    assert!(distance(map[7], scaled(mesh.0[7], -1.0)) < 1e-8, "antipodes can be reached");
+}
+
+#[test]
+fn cancelling_returns_the_map_so_far() {
+    let mesh = octasphere(3);
+    let mut observer = |_: f64, _: &str| false;
+    let watch = Watch::new(&mut observer, 0.0, "");
+    while watch.goes_on() {}
+    let map = flow(Domain::Sphere, mesh.0.clone(), &[0], &[mesh.0[5]], &|_| true, &watch);
+    assert_eq!(map, mesh.0);
+}

@@ -103,6 +103,8 @@ pub enum Status {
     Stalled,
     /// The observer asked to stop.
     Cancelled,
+    /// Landmarks of a registration do not meet: that would fold faces.
+    LandmarksMissed,
 }
 
 impl Status {
@@ -113,6 +115,7 @@ impl Status {
             Self::MaxIterations => "max_iterations",
             Self::Stalled => "stalled",
             Self::Cancelled => "cancelled",
+            Self::LandmarksMissed => "landmarks_missed",
         }
     }
 }

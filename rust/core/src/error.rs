@@ -320,6 +320,83 @@ pub enum Error {
         reason: &'static str,
     },
 
+    /// One of two surfaces was refused or could not be mapped.
+    #[error("the {surface}: {error}")]
+    Surface {
+        /// Source or target.
+        surface: &'static str,
+        /// What is wrong with it.
+        error: Box<Self>,
+    },
+
+    /// The lists of landmarks do not match.
+    #[error(
+        "landmarks come in pairs, but there are {source_count} source and {target_count} target landmarks: \
+         give as many of both"
+    )]
+    LandmarkCounts {
+        /// How many landmarks the source has.
+        source_count: usize,
+        /// How many the target has.
+        target_count: usize,
+    },
+
+    /// Too few landmarks to lay one surface over the other.
+    #[error("{found} landmark pairs do not say how the surfaces lie over each other: give at least {needed}")]
+    TooFewLandmarks {
+        /// How many pairs were given.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+
+    /// A landmark is no vertex of its mesh.
+    #[error(
+        "{name} out of range at {}: {value} is not one of the {n_vertices} vertices (indices start at 0)",
+        .pairs.named("pair")
+    )]
+    LandmarkOutOfRange {
+        /// The argument.
+        name: &'static str,
+        /// The pairs at fault.
+        pairs: Elements,
+        /// The first such landmark.
+        value: usize,
+        /// How many vertices the mesh has.
+        n_vertices: usize,
+    },
+
+    /// Two pairs have the same vertex.
+    #[error(
+        "{name} repeat vertex {vertex} of pair {first} at {}: remove the repeated pairs",
+        .pairs.named("pair")
+    )]
+    RepeatedLandmark {
+        /// The argument.
+        name: &'static str,
+        /// The pair that had the vertex first.
+        first: usize,
+        /// The pairs that repeat a vertex.
+        pairs: Elements,
+        /// The first vertex that is repeated.
+        vertex: usize,
+    },
+
+    /// A landmark lies on the boundary, which goes onto the boundary of the disk as a whole.
+    #[error(
+        "{name} on the boundary at {} (vertex {vertex}): the boundary goes onto the boundary by itself; \
+         choose vertices inside",
+        .pairs.named("pair")
+    )]
+    LandmarkOnBoundary {
+        /// The argument.
+        name: &'static str,
+        /// The pairs at fault.
+        pairs: Elements,
+        /// The vertex of the first.
+        vertex: usize,
+    },
+
     /// A linear system could not be factored.
     #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
     FactorizationFailed {
@@ -363,18 +440,37 @@ impl Error {
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
             Self::NoEmbedding { folded } => Some(folded),
+            Self::LandmarkOutOfRange { pairs, .. }
+            | Self::RepeatedLandmark { pairs, .. }
+            | Self::LandmarkOnBoundary { pairs, .. } => Some(pairs),
+            Self::Surface { error, .. } => error.elements(),
             _ => None,
         }
     }
 
-    /// Whether the arrays given are at fault: the mesh, its seams, its density or its initial map.
+    /// Whether the arrays given are at fault: the mesh, its seams, its density, its initial map or its landmarks.
     pub fn is_mesh_error(&self) -> bool {
-        !self.is_solver_error() && !matches!(self, Self::InvalidOption { .. })
+        match self {
+            Self::Surface { error, .. } => error.is_mesh_error(),
+            error => !error.is_solver_error() && !matches!(error, Self::InvalidOption { .. }),
+        }
     }
 
     /// Whether the numerics failed on good input.
     pub fn is_solver_error(&self) -> bool {
-        matches!(self, Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } | Self::CancelledEarly)
+        match self {
+            Self::Surface { error, .. } => error.is_solver_error(),
+            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } | Self::CancelledEarly => true,
+            _ => false,
+        }
+    }
+
+    /// The same error, said of one of two surfaces; a cancelled run is nobody's fault.
+    pub fn of_surface(self, surface: &'static str) -> Self {
+        match self {
+            Self::CancelledEarly => self,
+            error => Self::Surface { surface, error: Box::new(error) },
+        }
     }
 }
 

@@ -28,6 +28,7 @@ mod error;
 pub mod mesh;
 pub mod optimize;
 mod parallel;
+pub mod registration;
 pub mod sparse;
 mod sphere;
 

@@ -79,6 +79,15 @@ pub(crate) struct Sums {
     pub authalic_energy: f64,
     /// Σ T ((m − 1) + ½ β (m − 1)²) on the same targets; infinite where a face is folded.
     pub angle_energy: f64,
+    /// The penalty on landmarks away from their places, which the problem adds; 0 without landmarks.
+    pub penalty: f64,
+}
+
+impl Sums {
+    /// What is to become nothing: E_A and the penalty.
+    pub(crate) fn total(&self) -> f64 {
+        self.authalic_energy + self.penalty
+    }
 }
 
 /// An image triangle.
@@ -189,7 +198,7 @@ impl AuthalicEnergy {
             let ([area, angle_cost], target) = (costs[face], scale * self.targets[face]);
             [(area - target) * (area - target) / target, target * angle_cost]
         });
-        Sums { area, authalic_energy, angle_energy }
+        Sums { area, authalic_energy, angle_energy, penalty: 0.0 }
     }
 
     /// The energy of `map`; infinite where the barrier's profile meets a face that is not open.

@@ -2,6 +2,7 @@
 //! Energies of a map: values, gradients and the Laplacians that go with them.
 
 pub(crate) mod authalic;
+pub(crate) mod landmark_penalty;
 pub(crate) mod mean_value;
 pub(crate) mod motion;
 mod psd;

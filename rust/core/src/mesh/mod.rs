@@ -99,6 +99,29 @@ impl TriangleMesh {
         })
     }
 
+    /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay those of the
+    /// surface.
+    pub(crate) fn at_points(&self, points: Vec<Vector>) -> Self {
+        Self { points, ..self.clone() }
+    }
+
+    /// The same surface seen from its other side: corners 1 and 2 of every face change places.
+    pub(crate) fn turned_over(&self) -> Self {
+        let corner = |corner: u32| match (corner, corner % 3) {
+            (NO_CORNER, _) | (_, 0) => corner,
+            (_, k) => corner - k + 3 - k,
+        };
+        let faces: Vec<[u32; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let mut opposite = vec![NO_CORNER; self.opposite.len()];
+        for (old, &across) in self.opposite.iter().enumerate() {
+            opposite[corner(old as u32) as usize] = corner(across);
+        }
+        let mut topology = self.topology.clone();
+        topology.boundary_loops.iter_mut().for_each(|vertices| vertices[1..].reverse());
+        let corners = VertexCorners::new(self.points.len(), &faces);
+        Self { faces, opposite, corners, topology, ..self.clone() }
+    }
+
     /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
     ///
     /// All geometry is computed on these, so that huge and tiny coordinates neither over- nor underflow.

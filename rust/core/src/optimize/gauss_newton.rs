@@ -22,6 +22,7 @@
 use super::local;
 use crate::control::{History, Observer, Status, Watch};
 use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights};
+use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::motion::{Frame, Motion, frames};
 use crate::energy::stretch::Profile;
 use crate::error::Error;
@@ -87,6 +88,8 @@ pub(crate) struct Problem {
     pub motions: Vec<Motion>,
     /// The boundary loop where it may take any shape that does not cross itself; empty elsewhere.
     pub outline: Vec<u32>,
+    /// Landmarks that are wanted at places; none elsewhere.
+    pub penalty: LandmarkPenalty,
     analysis: Analysis,
 }
 
@@ -117,7 +120,7 @@ impl Problem {
     pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>, order: Order) -> Result<Self, Error> {
         let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
         let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns, order)?;
-        Ok(Self { energy, motions, outline: Vec::new(), analysis })
+        Ok(Self { energy, motions, outline: Vec::new(), penalty: LandmarkPenalty::default(), analysis })
     }
 
     /// The same with a boundary loop that must not cross itself.
@@ -125,13 +128,30 @@ impl Problem {
         Self { outline, ..self }
     }
 
-    /// The energy of a map; infinite where its outline crosses itself.
+    /// The same with landmarks that are wanted at places.
+    pub(crate) fn with_landmarks(self, penalty: LandmarkPenalty) -> Self {
+        Self { penalty, ..self }
+    }
+
+    /// The energy of a map, that of landmarks included; infinite where its outline crosses itself.
     fn value(&self, map: &[Vector], weights: &Weights) -> f64 {
-        let value = self.energy.value(map, weights);
+        let value = self.energy.value(map, weights) + self.penalty.value(map);
         match value.is_finite() && !self.is_simple(map) {
             true => f64::INFINITY,
             false => value,
         }
+    }
+
+    /// The sums of a map, that of landmarks included.
+    fn sums(&self, map: &[Vector]) -> Sums {
+        Sums { penalty: self.penalty.value(map), ..self.energy.sums(map) }
+    }
+
+    /// The gradient by the unknowns of every vertex, (n, 2).
+    fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
+        let mut gradient = self.energy.gradient(map, frames, weights);
+        self.penalty.add_gradient(map, frames, &mut gradient);
+        gradient
     }
 
     /// Whether the outline does not cross itself.
@@ -193,19 +213,19 @@ pub(crate) fn minimize(
 ) -> (Map, Status) {
     let mut descent = Descent::new(problem, *options);
     let mut map = start;
-    let mut sums = problem.energy.sums(&map);
+    let mut sums = problem.sums(&map);
     let mut trend = Trend::default();
     let mut best = (f64::INFINITY, Map::new());
     for done in 0.. {
         // 1. Targets on the scale of the image, λ in balance
         let weights = descent.balance(&sums);
-        trend.energies.push(sums.authalic_energy);
-        if sums.authalic_energy < best.0 && descent.keeps_the_best() {
-            best = (sums.authalic_energy, map.clone());
+        trend.energies.push(sums.total());
+        if sums.total() < best.0 && descent.keeps_the_best() {
+            best = (sums.total(), map.clone());
         }
         if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
             history.push_start(sums.authalic_energy, 0.0);
-            return (descent.best_of(best, sums.authalic_energy, map, history), status);
+            return (descent.best_of(best, &sums, map, history), status);
         }
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
@@ -216,7 +236,7 @@ pub(crate) fn minimize(
                 history.push_start(sums.authalic_energy, 0.0);
                 let is_cancelled = failure == Failure::Cancelled;
                 let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
-                return (descent.best_of(best, sums.authalic_energy, map, history), status);
+                return (descent.best_of(best, &sums, map, history), status);
             }
         };
         let norm = (-newton.slope).max(0.0).sqrt();
@@ -225,10 +245,10 @@ pub(crate) fn minimize(
         // 3. A step along it that lowers the energy and folds nothing
         let Some((next, step)) = descent.step(&map, &newton, &weights, &watch) else {
             let status = if descent.flat { Status::Converged } else { Status::Stalled };
-            return (descent.best_of(best, sums.authalic_energy, map, history), status);
+            return (descent.best_of(best, &sums, map, history), status);
         };
         map = next;
-        sums = problem.energy.sums(&map);
+        sums = problem.sums(&map);
         descent.adapt(step);
         history.push(sums.authalic_energy, step, norm);
     }
@@ -302,19 +322,19 @@ impl<'a> Descent<'a> {
     }
 
     /// The map with the lowest E_A met, where that decides, else the last.
-    fn best_of(&self, best: (f64, Map), energy: f64, last: Map, history: &mut History) -> Map {
-        if !self.keeps_the_best() || best.0 >= energy {
+    fn best_of(&self, best: (f64, Map), sums: &Sums, last: Map, history: &mut History) -> Map {
+        if !self.keeps_the_best() || best.0 >= sums.total() {
             return last;
         }
         // the history ends with the map that is returned
-        history.push(best.0, 0.0, 0.0);
+        history.push(self.problem.energy.sums(&best.1).authalic_energy, 0.0, 0.0);
         best.1
     }
 
     /// The weights of the next iteration.
     fn balance(&mut self, sums: &Sums) -> Weights {
         let [least, most] = ANGLE_WEIGHTS;
-        let balanced = BALANCE * sums.authalic_energy / sums.angle_energy.max(1e-3);
+        let balanced = BALANCE * sums.total() / sums.angle_energy.max(1e-3);
         let goal = balanced.clamp(least, most).max(self.options.angle_weight);
         if self.angle_weight.is_nan() {
             self.angle_weight = goal;
@@ -339,7 +359,7 @@ impl<'a> Descent<'a> {
         let options = &self.options;
         let is_held = options.angle_weight > 0.0 && self.angle_weight <= options.angle_weight;
         let is_slow = !is_held && trend.is_slow();
-        let deviation = (sums.authalic_energy / sums.area).sqrt();
+        let deviation = (sums.total() / sums.area).sqrt();
         let is_even =
             deviation <= options.tolerance || (deviation <= EVEN_ENOUGH && done >= options.usual_iterations);
         let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
@@ -374,7 +394,7 @@ impl<'a> Descent<'a> {
         watch: &Watch<'_>,
     ) -> Option<(Map, f64)> {
         let problem = self.problem;
-        let value = problem.energy.value(map, weights);
+        let value = problem.value(map, weights);
         self.flat = -newton.slope <= LEAST_SLOPE * value || value <= NOTHING * self.scale * self.total_target;
         // 1. The longest step allowed, straight and corrected to second order
         let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
@@ -416,7 +436,7 @@ impl<'a> Descent<'a> {
     /// The damping at a map.
     fn damping_of(&self, sums: &Sums) -> Damping {
         // in proportion to the residual near the minimum, so that the damping does not decide how fast it is reached
-        let deviation = (sums.authalic_energy / sums.area).sqrt();
+        let deviation = (sums.total() / sums.area).sqrt();
         let is_large = self.problem.motions.len() >= LARGE;
         let least = SINGLE_PRECISION[usize::from(is_large)];
         Damping { whole: self.damping, least: deviation.clamp(least, LEAST_DEVIATION) }
@@ -486,9 +506,9 @@ impl Linearised {
         damping: Damping,
         watch: &Watch<'_>,
     ) -> Result<Newton, Failure> {
-        let (energy, frames) = (&problem.energy, frames(&problem.motions, map));
-        let gradient = energy.gradient(map, &frames, weights);
-        let element = |face: usize| damped_element(energy, map, &frames, weights, damping, face);
+        let frames = frames(&problem.motions, map);
+        let gradient = problem.gradient(map, &frames, weights);
+        let element = |face: usize| damped_element(problem, map, &frames, weights, damping, face);
         for _ in 0..3 {
             self.refactor(problem, &element, watch)?;
             let mut unknowns = problem.packed(&gradient);
@@ -557,7 +577,7 @@ impl Linearised {
 /// The Hessian of a face, damped in proportion to the deviation of its area ratio, with a shift that keeps rotations of
 /// the whole from being free.
 fn damped_element(
-    energy: &AuthalicEnergy,
+    problem: &Problem,
     map: &[Vector],
     frames: &[Frame],
     weights: &Weights,
@@ -565,7 +585,8 @@ fn damped_element(
     face: usize,
 ) -> Element {
     let damping = |deviation: f64| damping.whole * (deviation.min(MOST_DEVIATION) + damping.least);
-    let mut element = energy.element(map, frames, weights, damping, face);
+    let mut element = problem.energy.element(map, frames, weights, damping, face);
+    problem.penalty.add_element(map, frames, face, &mut element);
     for (k, row) in element.iter_mut().enumerate() {
         row[k] += 1e-10 * row[k] + 1e-14;
     }

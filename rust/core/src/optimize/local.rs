@@ -98,7 +98,9 @@ fn cut_out(problem: &Problem, faces: &[u32]) -> Option<Patch> {
     let vertices = corners_of(&inside);
     let local = |vertex: u32| vertices.binary_search(&vertex).expect("a corner of the patch") as u32;
     let patch = energy.patch(&inside, vertices.len(), local);
-    let is_free = |vertex: &u32| free.binary_search(vertex).is_ok();
+    // landmarks stay: what moving them costs is not known in the patch
+    let is_landmark = |vertex: &u32| problem.penalty.vertices().contains(vertex);
+    let is_free = |vertex: &u32| free.binary_search(vertex).is_ok() && !is_landmark(vertex);
     let motion =
         |vertex: &u32| if is_free(vertex) { problem.motions[*vertex as usize] } else { Motion::Held };
     let motions: Vec<Motion> = vertices.iter().map(motion).collect();

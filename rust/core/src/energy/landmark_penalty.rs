@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The penalty on landmarks that are away from their places, λ Σ |x_i − q_i|².
+//!
+//! Liu & Yueh (2023), section 6; Sutti & Yueh (2024), section 6.6. Its Hessian is taken without what would make it
+//! indefinite: on the sphere that is a landmark more than a quarter turn away from its place.
+
+use super::authalic::{AuthalicEnergy, Element};
+use super::motion::Frame;
+use crate::mesh::geometry::{Vector, distance, dot, sub};
+
+/// Vertices that are wanted at places.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LandmarkPenalty {
+    /// λ.
+    pub weight: f64,
+    vertices: Vec<u32>,
+    places: Vec<Vector>,
+    /// One corner of each landmark with its number, in ascending order: where its Hessian goes.
+    corners: Vec<(u32, u32)>,
+}
+
+impl LandmarkPenalty {
+    /// The penalty on `vertices` away from `places`, in maps of the energy's surface.
+    pub(crate) fn new(energy: &AuthalicEnergy, vertices: Vec<u32>, places: Vec<Vector>, weight: f64) -> Self {
+        let corner =
+            |(landmark, &vertex): (usize, &u32)| (energy.vertex_corners(vertex as usize)[0], landmark as u32);
+        let mut corners: Vec<(u32, u32)> = vertices.iter().enumerate().map(corner).collect();
+        corners.sort_unstable();
+        Self { weight, vertices, places, corners }
+    }
+
+    /// The vertices that are wanted somewhere.
+    pub(crate) fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// How far each landmark is from its place.
+    pub(crate) fn gaps(&self, map: &[Vector]) -> Vec<f64> {
+        let gap = |(&vertex, &place): (&u32, &Vector)| distance(map[vertex as usize], place);
+        self.vertices.iter().zip(&self.places).map(gap).collect()
+    }
+
+    /// λ Σ |x_i − q_i|².
+    pub(crate) fn value(&self, map: &[Vector]) -> f64 {
+        self.weight * self.gaps(map).iter().map(|gap| gap * gap).sum::<f64>()
+    }
+
+    /// Adds the gradient by the unknowns of every vertex.
+    pub(crate) fn add_gradient(&self, map: &[Vector], frames: &[Frame], gradient: &mut [[f64; 2]]) {
+        for (&vertex, &place) in self.vertices.iter().zip(&self.places) {
+            let vertex = vertex as usize;
+            let away = sub(map[vertex], place);
+            for axis in 0..2 {
+                gradient[vertex][axis] += 2.0 * self.weight * dot(away, frames[vertex].axes[axis]);
+            }
+        }
+    }
+
+    /// Adds the Hessian of the landmarks at corners of a face to its element.
+    pub(crate) fn add_element(&self, map: &[Vector], frames: &[Frame], face: usize, element: &mut Element) {
+        let first = self.corners.partition_point(|&(corner, _)| (corner as usize) < 3 * face);
+        let here = self.corners[first..].iter().take_while(|&&(corner, _)| (corner as usize) < 3 * face + 3);
+        for &(corner, landmark) in here {
+            let (k, vertex) = (corner as usize % 3, self.vertices[landmark as usize] as usize);
+            let away = sub(map[vertex], self.places[landmark as usize]);
+            let bend = 1.0 - dot(away, frames[vertex].outward);
+            let curvature = 2.0 * self.weight * bend.max(0.0);
+            (0..2).for_each(|axis| element[2 * k + axis][2 * k + axis] += curvature);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::authalic::Codomain;
+    use crate::energy::motion::{Motion, frames};
+    use crate::mesh::TriangleMesh;
+    use crate::mesh::geometry::{norm, scaled};
+
+    #[test]
+    fn derivatives_are_the_differences_of_the_value() {
+        let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
+        let mesh = TriangleMesh::new(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]).unwrap();
+        let energy = AuthalicEnergy::new(&mesh, vec![1.0; 4], Codomain::Sphere, 0.0);
+        let map: Vec<Vector> = corners.iter().map(|&x| scaled(x, 1.0 / norm(x))).collect();
+        let place = [0.6, 0.8, 0.0];
+        let penalty = LandmarkPenalty::new(&energy, vec![2, 0], vec![map[2], place], 0.7);
+        assert!((penalty.value(&map) - 0.7 * distance(map[0], place).powi(2)).abs() < 1e-15);
+        let motions = [Motion::Sphere; 4];
+        let frames = frames(&motions, &map);
+        let at = |step: f64, axis: usize| {
+            let mut moved = map.clone();
+            let unknowns = std::array::from_fn(|k| if k == axis { step } else { 0.0 });
+            moved[0] = Motion::Sphere.moved(map[0], &frames[0], unknowns);
+            penalty.value(&moved)
+        };
+        let mut gradient = vec![[0.0; 2]; 4];
+        penalty.add_gradient(&map, &frames, &mut gradient);
+        let mut element = [[0.0; 6]; 6];
+        (0..4).for_each(|face| penalty.add_element(&map, &frames, face, &mut element));
+        for axis in 0..2 {
+            let (there, here, back) = (at(1e-4, axis), at(0.0, axis), at(-1e-4, axis));
+            assert!((gradient[0][axis] - (there - back) / 2e-4).abs() < 1e-7);
+            // both landmarks are the first or the third corner of face 0; the one in place adds 2 λ
+            assert!((element[axis][axis] - (there + back - 2.0 * here) / 1e-8).abs() < 1e-5);
+            assert!((element[4 + axis][4 + axis] - 1.4).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Carries the landmarks of an area-preserving map to their places: the map h of Liu & Yueh (2023), section 6, and the
+//! maps h₀ and h₁ of Sutti & Yueh (2024), section 6.6, applied to the surface's own map.
+//!
+//! The papers minimise E_S(h) + λ Σ |h(x_i) − q_i|² from a few fixed-point steps. A landmark is a single vertex, and in
+//! two dimensions a single point can be pulled anywhere at next to no cost: such steps pull spikes out of the map and fold
+//! the faces around it. So the start is a smooth area-preserving [`flow`](super::flow) that takes the landmarks along,
+//! and from there the guarded Gauss–Newton descent lowers the papers' energy without ever folding a face. λ grows tenfold
+//! until the landmarks meet or do not come any nearer; what rounding leaves of their way they are moved last.
+//!
+//! Cost: the flow, and about ten factorisations with two unknowns per vertex.
+
+use super::RegistrationOptions;
+use super::flow::flow;
+use super::landmarks::Domain;
+use crate::control::{History, Observer, Phase, Status, Watch};
+use crate::energy::authalic::Codomain;
+use crate::energy::landmark_penalty::LandmarkPenalty;
+use crate::energy::motion::Motion;
+use crate::energy::stretch::Profile;
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, distance};
+use crate::mesh::renumbering::Renumbered;
+use crate::optimize::floors;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem};
+use crate::sparse::{Order, elimination_order};
+
+const MESSAGE: &str = "Carrying landmarks";
+
+/// Landmarks this near to their places need not be carried.
+const THERE: f64 = 1e-9;
+
+/// λ grows until the farthest landmark is this near to its place.
+const NEAR: f64 = 1e-6;
+
+/// Landmarks this near are moved onto their places in the end.
+const WITHIN_REACH: f64 = 1e-4;
+
+/// What λ is multiplied by, and how often at the most.
+const GROWTH: f64 = 10.0;
+const STAGES: usize = 9;
+
+/// A stage in which the farthest landmark keeps more than this part of its way brings it no nearer,
+const NO_NEARER: f64 = 0.7;
+
+/// and after so many of them λ grows no more.
+const PATIENCE: usize = 2;
+
+/// Iterations of the first stage and of those that follow, where they suffice and at the most.
+const FIRST: [usize; 2] = [6, 40];
+const LATER: [usize; 2] = [3, 15];
+
+/// Area deviation of the result below which nothing is left to gain.
+const TOLERANCE: f64 = 2e-4;
+
+/// An area-preserving map of a surface whose landmarks are to be carried to places.
+pub(super) struct Carrying<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub domain: Domain,
+    /// The landmarks of this surface, (k,).
+    pub landmarks: &'a [usize],
+    /// Where they are wanted, (k,).
+    pub places: &'a [Vector],
+    pub options: &'a RegistrationOptions,
+}
+
+impl Carrying<'_> {
+    /// The map with its landmarks carried to their places as far as no face folds.
+    ///
+    /// # Errors
+    /// Where the system cannot be ordered.
+    pub(super) fn carry(
+        &self,
+        map: Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        if self.gaps(&map).into_iter().all(|gap| gap <= THERE) {
+            return Ok((map, Status::Converged));
+        }
+        // 1. The surface as its map shows it, in elimination order; angles are those of h
+        let order = elimination_order(map.len(), self.mesh.faces())?;
+        let by_order = Renumbered::new(&self.mesh.at_points(map), order);
+        let problem = self.problem(&by_order)?;
+        // 2. A smooth flow takes the landmarks along
+        let start = by_order.mesh.points().to_vec();
+        let accepts = |map: &[Vector]| problem.energy.is_embedding(map);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+        let watch = Watch::new(&mut phase, 0.0, MESSAGE);
+        let map = flow(self.domain, start, problem.penalty.vertices(), self.places, &accepts, &watch);
+        // 3. A guarded descent with a penalty that grows
+        let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
+        let (problem, map, status) = self.descend(&by_order.mesh, problem, map, history, &mut phase);
+        // 4. What rounding has left of their way
+        Ok((by_order.given(&self.set_down(&problem, map)), status))
+    }
+
+    /// How far each landmark of a map is from its place.
+    pub(super) fn gaps(&self, map: &[Vector]) -> Vec<f64> {
+        let gap = |(&vertex, &place): (&usize, &Vector)| distance(map[vertex], place);
+        self.landmarks.iter().zip(self.places).map(gap).collect()
+    }
+
+    /// The energy of the surface's maps, with the penalty on its landmarks.
+    fn problem(&self, by_order: &Renumbered) -> Result<Problem, Error> {
+        let mesh = &by_order.mesh;
+        let floor = floors::floors(mesh.face_areas())[0];
+        let energy = floors::energy(mesh, mesh.face_areas(), self.codomain(), floor);
+        let mut place_of = vec![0u32; mesh.n_vertices()];
+        by_order.vertices.iter().enumerate().for_each(|(new, &given)| place_of[given as usize] = new as u32);
+        let landmarks = self.landmarks.iter().map(|&vertex| place_of[vertex]).collect();
+        let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.options.weight);
+        let motions = (0..mesh.n_vertices()).map(|vertex| self.motion(mesh.is_boundary(vertex))).collect();
+        Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
+    }
+
+    fn codomain(&self) -> Codomain {
+        match self.domain {
+            Domain::Disk => Codomain::Disk,
+            Domain::Sphere => Codomain::Sphere,
+        }
+    }
+
+    fn motion(&self, is_boundary: bool) -> Motion {
+        match (self.domain, is_boundary) {
+            (Domain::Sphere, _) => Motion::Sphere,
+            (Domain::Disk, false) => Motion::Plane,
+            (Domain::Disk, true) => Motion::Circle,
+        }
+    }
+
+    /// Guarded descents with λ growing until the landmarks are near or come no nearer.
+    fn descend(
+        &self,
+        mesh: &TriangleMesh,
+        mut problem: Problem,
+        mut map: Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Problem, Map, Status) {
+        let surface = floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
+        let (mut no_nearer, mut status) = (0, Status::MaxIterations);
+        for stage in 0..STAGES {
+            let before = farthest(&problem, &map);
+            let [usual, most] = if stage == 0 { FIRST } else { LATER };
+            let options = GaussNewtonOptions {
+                profile: Profile::Barrier,
+                angle_weight: self.options.angle_weight,
+                usual_iterations: usual,
+                most_iterations: most,
+                tolerance: TOLERANCE,
+                until_open: None,
+            };
+            let from = 1.0 - 0.5f64.powi(stage as i32);
+            let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
+            (problem, map, status) = floors::descend(&surface, problem, map, &options, history, &mut phase);
+            let now = farthest(&problem, &map);
+            no_nearer = if now > NO_NEARER * before { no_nearer + 1 } else { 0 };
+            if status == Status::Cancelled || now <= NEAR || no_nearer >= PATIENCE {
+                break;
+            }
+            problem.penalty.weight *= GROWTH;
+        }
+        (problem, map, status)
+    }
+
+    /// The map with its landmarks at their very places, where they are within reach and that folds nothing.
+    fn set_down(&self, problem: &Problem, map: Map) -> Map {
+        let mut there = map.clone();
+        for (k, gap) in problem.penalty.gaps(&map).into_iter().enumerate() {
+            if gap <= WITHIN_REACH {
+                there[problem.penalty.vertices()[k] as usize] = self.places[k];
+            }
+        }
+        if problem.energy.is_embedding(&there) { there } else { map }
+    }
+}
+
+/// The gap of the farthest landmark.
+fn farthest(problem: &Problem, map: &[Vector]) -> f64 {
+    problem.penalty.gaps(map).into_iter().fold(0.0, f64::max)
+}

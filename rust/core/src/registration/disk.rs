@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Registration of two disks (Liu & Yueh 2023, section 6): φ = g⁻¹ ∘ h ∘ f.
+//!
+//! f and g are the area-preserving maps of source and target to the unit disk, h moves the source's landmarks onto the
+//! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which leaves the
+//! faces next to it their areas too.
+
+use super::carry::Carrying;
+use super::landmarks::{Domain, best_turn};
+use super::location::Locator;
+use super::{DiskRegistration, Landmarks, Registration, RegistrationOptions, located, missed, verdict};
+use crate::control::{History, Observer, Phase};
+use crate::disk::{DiskMap, DiskMapOptions, disk_map};
+use crate::distortion::{Image, distortion, folded_in_plane};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::Vector;
+
+/// Registers two disks by landmarks inside them.
+///
+/// # Errors
+/// Surfaces that are no disks, landmarks that are no pairs of vertices inside them, and options out of range are refused
+/// before any work. What [`disk_map`] fails with, and [`Error::CancelledEarly`].
+///
+/// ```
+/// use authalic::registration::{Landmarks, RegistrationOptions, register_disks};
+/// use authalic::{Silent, mesh::TriangleMesh};
+/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
+/// let landmarks = Landmarks { source: &[0], target: &[0] };
+/// let found = register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// assert!(found.distortion.folded.is_empty() && found.missed.is_empty());
+/// assert_eq!(found.positions(&vertices)[0], vertices[0]);
+/// # Ok::<(), authalic::Error>(())
+/// ```
+pub fn register_disks(
+    source: &TriangleMesh,
+    target: &TriangleMesh,
+    landmarks: &Landmarks<'_>,
+    options: &RegistrationOptions,
+    observer: &mut dyn Observer,
+) -> Result<DiskRegistration, Error> {
+    let mut history = History::start();
+    // 1. Refuse what cannot be registered before any work
+    source.require_disk().map_err(|error| error.of_surface("source"))?;
+    target.require_disk().map_err(|error| error.of_surface("target"))?;
+    landmarks.check(source, target, Domain::Disk)?;
+    options.check()?;
+    // 2. Both surfaces to the disk
+    let alone = DiskMapOptions { angle_weight: options.angle_weight, ..Default::default() };
+    let map = |mesh: &TriangleMesh, surface, observer: &mut dyn Observer| {
+        disk_map(mesh, &alone, observer).map_err(|error| error.of_surface(surface))
+    };
+    let f = map(source, "source", &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let g = map(target, "target", &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    // 3. The best rotation of the landmarks
+    let places = picked(&g, landmarks.target);
+    let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
+    // 4. h: the landmarks carried to their places
+    let carrying = Carrying {
+        mesh: source,
+        domain: Domain::Disk,
+        landmarks: landmarks.source,
+        places: &places,
+        options,
+    };
+    let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
+    let (carried, status) = carrying.carry(turned, &mut history, &mut phase)?;
+    // 5. g⁻¹: where that is on the target
+    let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+    let lifted = lifted(&g.uv);
+    let (locations, status) = located(&Locator::new(&lifted, target.faces()), &carried, status, &mut phase)?;
+    // 6. Figures
+    let landmark_error = carrying.gaps(&carried);
+    let missed = missed(&landmark_error);
+    let registered: Vec<[f64; 2]> = carried.iter().map(|x| [x[0], x[1]]).collect();
+    let image = Image::Plane(&registered);
+    let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    Ok(Registration {
+        locations,
+        registered,
+        target_registered: g.uv.clone(),
+        target_faces: target.faces().to_vec(),
+        source_map: f,
+        target_map: g,
+        landmark_error,
+        status: verdict(status, &missed),
+        missed,
+        iterations: history.iterations(),
+        distortion,
+        seconds: history.seconds(),
+    })
+}
+
+/// A map rotated by an angle, unless the rounding of that folds a sliver.
+fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector> {
+    let (sine, cosine) = turn.sin_cos();
+    let turned: Vec<[f64; 2]> =
+        map.uv.iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
+    match folded_in_plane(mesh.faces(), &turned).is_empty() {
+        true => lifted(&turned),
+        false => lifted(&map.uv),
+    }
+}
+
+/// The images of some vertices.
+fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector> {
+    lifted(&vertices.iter().map(|&vertex| map.uv[vertex]).collect::<Vec<_>>())
+}
+
+/// Points of the disk in the plane z = 1.
+fn lifted(points: &[[f64; 2]]) -> Vec<Vector> {
+    points.iter().map(|&[u, v]| [u, v, 1.0]).collect()
+}

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Pairs of landmarks, their check, and the rotations that lay them over each other.
+
+use super::RegistrationOptions;
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::Vector;
+use crate::optimize::check_angle_weight;
+
+/// Pairs of vertices, one on the source and one on the target, that belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Landmarks<'a> {
+    /// (k,): vertices of the source.
+    pub source: &'a [usize],
+    /// (k,): their partners on the target.
+    pub target: &'a [usize],
+}
+
+/// Where the surfaces are mapped to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Domain {
+    Disk,
+    Sphere,
+}
+
+impl Domain {
+    /// How many pairs it takes to determine a rotation.
+    fn fewest(self) -> usize {
+        match self {
+            Self::Disk => 1,
+            Self::Sphere => 2,
+        }
+    }
+}
+
+impl Landmarks<'_> {
+    /// Refuses pairs that cannot be registered, before any work.
+    pub(super) fn check(
+        &self,
+        source: &TriangleMesh,
+        target: &TriangleMesh,
+        domain: Domain,
+    ) -> Result<(), Error> {
+        let (ours, theirs) = (self.source.len(), self.target.len());
+        if ours != theirs {
+            return Err(Error::LandmarkCounts { source_count: ours, target_count: theirs });
+        }
+        if ours < domain.fewest() {
+            return Err(Error::TooFewLandmarks { found: ours, needed: domain.fewest() });
+        }
+        check_side("source_landmarks", self.source, source)?;
+        check_side("target_landmarks", self.target, target)
+    }
+}
+
+fn check_side(name: &'static str, landmarks: &[usize], mesh: &TriangleMesh) -> Result<(), Error> {
+    let n_vertices = mesh.n_vertices();
+    let pairs =
+        |is_bad: &dyn Fn(usize) -> bool| Elements::collect((0..landmarks.len()).filter(|&pair| is_bad(pair)));
+    if let Some(pairs) = pairs(&|pair| landmarks[pair] >= n_vertices) {
+        let value = landmarks[pairs.first[0]];
+        return Err(Error::LandmarkOutOfRange { name, pairs, value, n_vertices });
+    }
+    let mut first = vec![usize::MAX; n_vertices];
+    (0..landmarks.len()).rev().for_each(|pair| first[landmarks[pair]] = pair);
+    if let Some(pairs) = pairs(&|pair| first[landmarks[pair]] != pair) {
+        let vertex = landmarks[pairs.first[0]];
+        return Err(Error::RepeatedLandmark { name, first: first[vertex], pairs, vertex });
+    }
+    if let Some(pairs) = pairs(&|pair| mesh.is_boundary(landmarks[pair])) {
+        let vertex = landmarks[pairs.first[0]];
+        return Err(Error::LandmarkOnBoundary { name, pairs, vertex });
+    }
+    Ok(())
+}
+
+impl RegistrationOptions {
+    pub(super) fn check(&self) -> Result<(), Error> {
+        check_angle_weight(self.angle_weight, true)?;
+        match self.weight > 0.0 && self.weight.is_finite() {
+            true => Ok(()),
+            false => Err(Error::InvalidOption {
+                name: "weight",
+                found: self.weight.to_string(),
+                expected: "a finite number > 0".into(),
+            }),
+        }
+    }
+}
+
+/// The angle by which to rotate points of the plane z = 1 about the origin so that they come nearest to others.
+///
+/// The best R of SO(2) by Σ |R p_i − q_i|²; by no angle where the points say nothing, as at the centre.
+pub(super) fn best_turn(from: &[Vector], to: &[Vector]) -> f64 {
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for (p, q) in from.iter().zip(to) {
+        sine += p[0] * q[1] - p[1] * q[0];
+        cosine += p[0] * q[0] + p[1] * q[1];
+    }
+    match sine.hypot(cosine) > 1e-12 {
+        true => sine.atan2(cosine),
+        false => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::motion::rotated;
+
+    fn square() -> TriangleMesh {
+        let vertices = [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [1., 1., 0.], [1.2, 1., 0.]];
+        let faces = [[0, 1, 4], [1, 5, 4], [1, 2, 5], [2, 4, 5], [2, 3, 4], [3, 0, 4]];
+        TriangleMesh::new(&vertices, &faces).unwrap()
+    }
+
+    #[test]
+    fn bad_pairs_are_refused_by_name() {
+        let mesh = square();
+        let said = |source: &[usize], target: &[usize]| {
+            let landmarks = Landmarks { source, target };
+            landmarks.check(&mesh, &mesh, Domain::Disk).map_err(|error| error.to_string())
+        };
+        assert_eq!(said(&[4, 5], &[5, 4]), Ok(()));
+        assert!(said(&[4], &[4, 5]).unwrap_err().contains("1 source and 2 target"));
+        assert!(said(&[], &[]).unwrap_err().contains("at least 1"));
+        assert!(said(&[4, 6], &[4, 5]).unwrap_err().contains("6"));
+        assert!(said(&[4, 5], &[4, 4]).unwrap_err().contains("pair 1"));
+        assert!(said(&[4, 1], &[4, 5]).unwrap_err().contains("boundary"));
+        let pair = Landmarks { source: &[4], target: &[5] };
+        assert!(matches!(
+            pair.check(&mesh, &mesh, Domain::Sphere),
+            Err(Error::TooFewLandmarks { found: 1, needed: 2 })
+        ));
+    }
+
+    #[test]
+    fn the_best_turn_undoes_a_rotation() {
+        let points = [[0.3, 0.1, 1.0], [-0.2, 0.7, 1.0]];
+        let turned = points.map(|[u, v, w]| {
+            let (sine, cosine) = 2.5f64.sin_cos();
+            [cosine * u - sine * v, sine * u + cosine * v, w]
+        });
+        assert!((best_turn(&points, &turned) - 2.5).abs() < 1e-15);
+        assert_eq!(best_turn(&[[0.0, 0.0, 1.0]], &[[0.1, 0.2, 1.0]]), 0.0);
+        assert!((rotated([1.0, 0.0, 1.0], 2.5)[0] - 2.5f64.cos()).abs() < 1e-15);
+    }
+}

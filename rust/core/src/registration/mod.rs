@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Registration of surfaces by landmarks: a one-to-one map g of a source onto a target that takes landmark vertices to
+//! landmark vertices and keeps areas.
+//!
+//! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6) map both
+//! surfaces into one domain, carry the landmarks onto each other there without folding a face, and look up where each
+//! vertex of the source has come to lie on the target. [`homotopy`] morphs along g.
+//!
+//! Input: two [`TriangleMesh`]es that are both disks or both spheres, and pairs of [`Landmarks`]. Cost: the two maps, and
+//! about as much again for carrying the landmarks.
+
+mod carry;
+mod disk;
+mod flow;
+mod landmarks;
+mod location;
+mod morph;
+mod sphere;
+mod transfer;
+
+use crate::control::{Observer, Silent, Status, Watch};
+use crate::disk::DiskMap;
+use crate::distortion::Distortion;
+use crate::error::Error;
+use crate::mesh::geometry::Vector;
+use crate::parallel;
+use crate::sphere::SphereMap;
+
+use location::Locator;
+
+pub use disk::register_disks;
+pub use landmarks::Landmarks;
+pub use location::Location;
+pub use morph::{Similarity, area_ratios, compare, homotopy, similarity};
+pub use sphere::register_spheres;
+pub use transfer::{corner_sides, nearest_corners, nearest_vertices, pull_corners, pull_rows, pull_vertices};
+
+/// A landmark that ends farther than this from its place, in a domain of radius 1, was missed.
+pub const MISSED: f64 = 1e-3;
+
+/// Options of [`register_disks`] and [`register_spheres`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegistrationOptions {
+    /// λ > 0, the weight of the landmark penalty at the beginning; it grows tenfold until the landmarks meet.
+    pub weight: f64,
+    /// λ ≥ 0, the weight of the angle distortion against that of areas in all maps; 0 keeps areas alone.
+    pub angle_weight: f64,
+}
+
+impl Default for RegistrationOptions {
+    fn default() -> Self {
+        Self { weight: 1.0, angle_weight: 0.0 }
+    }
+}
+
+/// A registration of disks.
+pub type DiskRegistration = Registration<DiskMap, [f64; 2]>;
+
+/// A registration of spheres.
+pub type SphereRegistration = Registration<SphereMap, [f64; 3]>;
+
+/// A one-to-one map g of a source surface onto a target.
+#[derive(Debug, Clone)]
+pub struct Registration<Map, Point> {
+    /// (n,): where on the target each vertex of the source comes to lie.
+    pub locations: Vec<Location>,
+    /// The source's vertices in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀ on the
+    /// sphere.
+    pub registered: Vec<Point>,
+    /// The target's vertices there: g on the disk, h₁∘f₁ on the sphere.
+    pub target_registered: Vec<Point>,
+    /// The faces of the target that [`Self::locations`] speak of, all positively oriented in
+    /// [`Self::target_registered`].
+    pub target_faces: Vec<[u32; 3]>,
+    /// The map of the source alone.
+    pub source_map: Map,
+    /// The map of the target alone.
+    pub target_map: Map,
+    /// (k,): how far each landmark ends from its partner, in the parameter domain of radius 1.
+    pub landmark_error: Vec<f64>,
+    /// The pairs that did not meet, farther apart than [`MISSED`].
+    pub missed: Vec<usize>,
+    /// Why the run ended; [`Status::LandmarksMissed`] where there are such pairs.
+    pub status: Status,
+    /// Iterations of carrying the landmarks.
+    pub iterations: usize,
+    /// The figures of [`Self::registered`] against the source's areas.
+    pub distortion: Distortion,
+    /// Wall time of the whole call.
+    pub seconds: f64,
+}
+
+impl<Map, Point> Registration<Map, Point> {
+    /// g: the place of each source vertex among the target's `vertices`, (n, 3).
+    ///
+    /// # Panics
+    /// Where `vertices` are fewer than the target's.
+    pub fn positions(&self, vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let (locations, faces) = (&self.locations, &self.target_faces);
+        parallel::map(locations.len(), |source| {
+            let Location { triangle, barycentric } = locations[source];
+            let corners = faces[triangle as usize].map(|vertex| vertices[vertex as usize]);
+            std::array::from_fn(|axis| (0..3).map(|c| barycentric[c] * corners[c][axis]).sum())
+        })
+    }
+}
+
+/// The largest surface whose places are still looked up after a run was cancelled: that takes no time.
+const QUICK: usize = 200_000;
+
+/// The locations of points; a cancelled run still gets them where that takes no time.
+fn located(
+    locator: &Locator,
+    points: &[Vector],
+    status: Status,
+    observer: &mut dyn Observer,
+) -> Result<(Vec<Location>, Status), Error> {
+    if status != Status::Cancelled {
+        let watch = Watch::new(observer, 0.0, "Looking up places");
+        if let Some(locations) = locator.locate_all(points, &watch) {
+            return Ok((locations, status));
+        }
+    }
+    if points.len() > QUICK {
+        return Err(Error::CancelledEarly);
+    }
+    let mut silent = Silent;
+    let locations = locator.locate_all(points, &Watch::new(&mut silent, 0.0, ""));
+    Ok((locations.ok_or(Error::CancelledEarly)?, Status::Cancelled))
+}
+
+/// The pairs that did not meet.
+fn missed(landmark_error: &[f64]) -> Vec<usize> {
+    (0..landmark_error.len()).filter(|&pair| landmark_error[pair] > MISSED).collect()
+}
+
+/// The status of a registration; that of the descent where all landmarks met.
+fn verdict(status: Status, missed: &[usize]) -> Status {
+    match status {
+        Status::Cancelled => Status::Cancelled,
+        _ if !missed.is_empty() => Status::LandmarksMissed,
+        status => status,
+    }
+}

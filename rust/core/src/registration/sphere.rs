@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Registration of two closed surfaces of genus 0 (Sutti & Yueh 2024, section 6.6): g = f₁⁻¹ ∘ h₁⁻¹ ∘ h₀ ∘ f₀.
+//!
+//! f₀ and f₁ are the area-preserving maps of source and target to the sphere. After the best rotation h₀ and h₁ move both
+//! landmarks of a pair to the middle between them, so that either surface is moved half the way only.
+
+use super::carry::Carrying;
+use super::landmarks::Domain;
+use super::location::Locator;
+use super::{Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict};
+use crate::control::{History, Observer, Phase, Status};
+use crate::distortion::{Image, distortion, folded_on_sphere};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, area_vector, distance, dot, norm, scaled, triangle};
+use crate::optimize::rotation::{best_rotation, rotate};
+use crate::parallel;
+use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
+
+/// Registers two closed surfaces of genus 0 by landmarks.
+///
+/// A target that is turned inside out beside the source is turned back first.
+///
+/// # Errors
+/// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range are refused before
+/// any work. What [`sphere_map`] fails with, and [`Error::CancelledEarly`].
+///
+/// ```
+/// use authalic::registration::{Landmarks, RegistrationOptions, register_spheres};
+/// use authalic::{Silent, mesh::TriangleMesh};
+/// let vertices = [[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+/// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+/// let mesh = TriangleMesh::new(&vertices, &faces)?;
+/// let landmarks = Landmarks { source: &[0, 2], target: &[0, 2] };
+/// let found = register_spheres(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// assert!(found.distortion.folded.is_empty() && found.missed.is_empty());
+/// # Ok::<(), authalic::Error>(())
+/// ```
+pub fn register_spheres(
+    source: &TriangleMesh,
+    target: &TriangleMesh,
+    landmarks: &Landmarks<'_>,
+    options: &RegistrationOptions,
+    observer: &mut dyn Observer,
+) -> Result<SphereRegistration, Error> {
+    let mut history = History::start();
+    // 1. Refuse what cannot be registered before any work
+    source.require_sphere().map_err(|error| error.of_surface("source"))?;
+    target.require_sphere().map_err(|error| error.of_surface("target"))?;
+    landmarks.check(source, target, Domain::Sphere)?;
+    options.check()?;
+    let same_side;
+    let target = match volume(source) * volume(target) < 0.0 {
+        false => target,
+        true => {
+            same_side = target.turned_over();
+            &same_side
+        }
+    };
+    // 2. Both surfaces to the sphere
+    let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
+    let map = |mesh: &TriangleMesh, surface, observer: &mut dyn Observer| {
+        sphere_map(mesh, &alone, observer).map_err(|error| error.of_surface(surface))
+    };
+    let f0 = map(source, "source", &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let f1 = map(target, "target", &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    // 3. The best rotation of the landmarks, and the middle of each pair
+    let turned = turned(source, &f0, landmarks, &f1);
+    let middle = |(&p, &q): (&usize, &usize)| between(turned[p], f1.positions[q]);
+    let places: Vec<Vector> = landmarks.source.iter().zip(landmarks.target).map(middle).collect();
+    // 4. h₀ and h₁: the landmarks of both carried there
+    let carrying =
+        |mesh, landmarks| Carrying { mesh, domain: Domain::Sphere, landmarks, places: &places, options };
+    let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
+    let (registered, first) = carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
+    let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
+    let (target_registered, second) =
+        carrying(target, landmarks.target).carry(f1.positions.clone(), &mut history, &mut phase)?;
+    // 5. h₁⁻¹: where the source is on the target
+    let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+    let locator = Locator::new(&target_registered, target.faces());
+    let (locations, status) = located(&locator, &registered, worse(first, second), &mut phase)?;
+    // 6. Figures
+    let error = |(&p, &q): (&usize, &usize)| distance(registered[p], target_registered[q]);
+    let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
+    let missed = missed(&landmark_error);
+    let image = Image::Sphere(&registered);
+    let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    Ok(Registration {
+        locations,
+        registered,
+        target_registered,
+        target_faces: target.faces().to_vec(),
+        source_map: f0,
+        target_map: f1,
+        landmark_error,
+        status: verdict(status, &missed),
+        missed,
+        iterations: history.iterations(),
+        distortion,
+        seconds: history.seconds(),
+    })
+}
+
+/// Six times the volume inside.
+fn volume(mesh: &TriangleMesh) -> f64 {
+    parallel::sum(mesh.n_faces(), |face| {
+        let corners = triangle(mesh.points(), mesh.faces()[face]);
+        2.0 * dot(corners[0], area_vector(corners))
+    })
+}
+
+/// The source's map rotated so that its landmarks come nearest to the target's, unless the rounding of that folds a
+/// sliver.
+fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector> {
+    let ours: Vec<Vector> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
+    let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+    let rotation = best_rotation(&ours, &theirs, &vec![1.0; ours.len()]);
+    let turned = parallel::map(f0.positions.len(), |vertex| {
+        let turned = rotate(rotation, f0.positions[vertex]);
+        scaled(turned, 1.0 / norm(turned))
+    });
+    match folded_on_sphere(source.faces(), &turned).is_empty() {
+        true => turned,
+        false => f0.positions.clone(),
+    }
+}
+
+/// The point of the sphere in the middle of two; of opposite points the second.
+fn between(a: Vector, b: Vector) -> Vector {
+    let sum = add(a, b);
+    match norm(sum) {
+        length if length > 1e-6 => scaled(sum, 1.0 / length),
+        _ => b,
+    }
+}
+
+/// The status of two descents together.
+fn worse(one: Status, other: Status) -> Status {
+    let rank = |status: &Status| match status {
+        Status::Cancelled => 3,
+        Status::Stalled => 2,
+        Status::MaxIterations => 1,
+        _ => 0,
+    };
+    [one, other].into_iter().max_by_key(rank).unwrap_or(one)
+}

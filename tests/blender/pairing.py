@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pairs of landmarks for the tests: two objects, and what is done with them."""
+
+import importlib
+
+import bmesh
+import bpy
+import conftest
+import meshes
+import numpy as np
+import pytest
+
+
+def part(name):
+    return importlib.import_module(f"{conftest.MODULE}.{name}")
+
+
+def heads():
+    """Two grids of which the active one has the other for a target."""
+    source, target = meshes.add_grid("Head A"), meshes.add_grid("Head B", n=8)
+    target.location.x = 3
+    source.authalic_target = target
+    meshes.select(source, target)
+    return source, target
+
+
+def add(source_vertex, target_vertex, **options):
+    options.update(source_vertex=source_vertex, target_vertex=target_vertex)
+    assert bpy.ops.authalic.landmark_add(**options) == {"FINISHED"}
+
+
+def listed(obj=None):
+    return [tuple(pair) for pair in part("landmarks").pairs(obj or bpy.data.objects["Head A"])]
+
+
+def refused(words, call, **options):
+    before = listed()
+    with pytest.raises(RuntimeError, match=words):
+        call(**options)
+    assert listed() == before
+
+
+def select_vertices(obj, *vertices):
+    edit = bmesh.from_edit_mesh(obj.data)
+    for number, vertex in enumerate(edit.verts):
+        vertex.select_set(number in vertices)
+    edit.select_flush_mode()
+    bmesh.update_edit_mesh(obj.data)
+
+
+def position(obj, vertex):
+    return np.array(obj.data.vertices[vertex].co)
+
+
+def in_edit_mode(obj, *vertices, do):
+    """Does something to some selected vertices of an object and returns to object mode."""
+    meshes.edit(obj)
+    select_vertices(obj, *vertices)
+    do()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def step(message):
+    bpy.ops.ed.undo_push(message=message)

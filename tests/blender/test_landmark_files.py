@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmarks in .blend files and as JSON."""
+
+import json
+
+import bpy
+import pairing
+import pytest
+
+
+@pytest.fixture
+def heads():
+    return pairing.heads()
+
+
+def test_saved_with_the_file(heads, tmp_path):
+    pairing.add(20, 30, name="Nose")
+    pairing.add(21, 31)
+    path = str(tmp_path / "heads.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert pairing.listed() == [("Nose", 20, 30, None), ("Landmark 2", 21, 31, None)]
+    assert bpy.data.objects["Head A"].authalic_target == bpy.data.objects["Head B"]
+
+
+def test_export_and_import(heads, tmp_path):
+    pairing.add(20, 30, name="Nase ü")
+    pairing.add(21, 31)
+    path = tmp_path / "pairs.json"
+    bpy.ops.authalic.landmark_export(filepath=str(path))
+    assert json.loads(path.read_text(encoding="utf-8")) == {
+        "format": "authalic-landmarks",
+        "version": 1,
+        "source": "Head A",
+        "target": "Head B",
+        "pairs": [
+            {"name": "Nase ü", "source": 20, "target": 30},
+            {"name": "Landmark 2", "source": 21, "target": 31},
+        ],
+    }
+    bpy.ops.authalic.landmark_clear()
+    heads[0].authalic_target = None
+    bpy.ops.authalic.landmark_import(filepath=str(path))
+    assert pairing.listed() == [("Nase ü", 20, 30, None), ("Landmark 2", 21, 31, None)]
+    assert heads[0].authalic_target == heads[1]
+
+
+def test_export_leaves_out_what_is_lost(heads, tmp_path):
+    pairing.add(20, 30)
+    pairing.add(21, 31)
+    pairing.in_edit_mode(heads[0], 20, do=lambda: bpy.ops.mesh.delete(type="VERT"))
+    path = tmp_path / "pairs.json"
+    bpy.ops.authalic.landmark_export(filepath=str(path))
+    assert [pair["source"] for pair in json.loads(path.read_text())["pairs"]] == [20]
+
+
+GOOD = {"format": "authalic-landmarks", "version": 1, "source": "Head A", "target": "Head B"}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("nonsense", "pairs.json: it is not JSON"),
+        ([], "holds no landmarks"),
+        ({**GOOD, "format": "other", "pairs": []}, "holds no landmarks"),
+        ({**GOOD, "version": 2, "pairs": []}, "of version 2"),
+        (GOOD, '"pairs" is missing'),
+        ({**GOOD, "pairs": [7]}, "pair 1 is 7"),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2}, {"source": 1}]}, 'pair 2 has no "target"'),
+        ({**GOOD, "pairs": [{"source": 1.5, "target": 2}]}, "the source of pair 1 is 1.5"),
+        ({**GOOD, "pairs": [{"source": True, "target": 2}]}, "the source of pair 1 is true"),
+        ({**GOOD, "pairs": [{"source": 1, "target": -2}]}, "the target of pair 1 is -2"),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2, "name": 3}]}, "the name of pair 1 is 3"),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2}, {"source": 99, "target": 3}]}, "no vertex 99"),
+        (
+            {
+                **GOOD,
+                "pairs": [{"name": "A", "source": 1, "target": 2}, {"name": "A", "source": 1, "target": 3}],
+            },
+            'vertex 1 of Head A is in two pairs, "A", "A"',
+        ),
+    ],
+)
+def test_a_bad_file_changes_nothing(heads, tmp_path, content, words):
+    pairing.add(20, 30)
+    path = tmp_path / "pairs.json"
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    pairing.refused(words, bpy.ops.authalic.landmark_import, filepath=str(path))
+    heads[0].authalic_target = None
+    with pytest.raises(RuntimeError):
+        bpy.ops.authalic.landmark_import(filepath=str(path))
+    assert heads[0].authalic_target is None
+
+
+def test_files_that_cannot_be_read_or_written(heads, tmp_path):
+    pairing.add(20, 30)
+    pairing.refused(
+        "nothing.json: No such file",
+        bpy.ops.authalic.landmark_import,
+        filepath=str(tmp_path / "nothing.json"),
+    )
+    pairing.refused("No file is named", bpy.ops.authalic.landmark_import, filepath="")
+    away = str(tmp_path / "no" / "folder.json")
+    pairing.refused("folder.json: No such file", bpy.ops.authalic.landmark_export, filepath=away)
+    binary = tmp_path / "binary.json"
+    binary.write_bytes(b"\xff\xfe\x00\x81")
+    pairing.refused("binary.json", bpy.ops.authalic.landmark_import, filepath=str(binary))

@@ -2,7 +2,7 @@
 """Types of the native module; the documentation stands in the docstrings of the module itself."""
 
 from collections.abc import Callable
-from typing import Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,12 +12,16 @@ __all__ = [
     "Distortion",
     "MeshError",
     "Patch",
+    "Registration",
     "SolverError",
     "SphereMap",
     "__version__",
     "cut",
     "disk_map",
     "distortion",
+    "homotopy",
+    "register_disks",
+    "register_spheres",
     "sphere_map",
     "stretch_hessian",
 ]
@@ -25,6 +29,7 @@ __all__ = [
 _Reals: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int64]
 _Progress: TypeAlias = Callable[[float, str], bool | None]
+_Surface: TypeAlias = tuple[ArrayLike, ArrayLike]
 _Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
 
 __version__: str
@@ -115,6 +120,44 @@ class SphereMap:
     @property
     def seconds(self) -> float: ...
 
+@final
+class Registration:
+    @property
+    def positions(self) -> _Reals: ...
+    @property
+    def triangles(self) -> _Indices: ...
+    @property
+    def barycentric(self) -> _Reals: ...
+    @property
+    def registered(self) -> _Reals: ...
+    @property
+    def target_registered(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def target_faces(self) -> _Indices: ...
+    @property
+    def source_map(self) -> DiskMap | SphereMap: ...
+    @property
+    def target_map(self) -> DiskMap | SphereMap: ...
+    @property
+    def landmark_error(self) -> _Reals: ...
+    @property
+    def missed(self) -> _Indices: ...
+    @property
+    def status(self) -> Literal["converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"]: ...
+    @property
+    def distortion(self) -> Distortion: ...
+    @property
+    def area_ratio(self) -> _Reals: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def seconds(self) -> float: ...
+    def pull(self, values: ArrayLike, *, nearest: bool = False) -> NDArray[Any]: ...
+    def inverse(self) -> Registration: ...
+    def compare(self, source_values: ArrayLike, target_values: ArrayLike) -> tuple[float, float]: ...
+
 def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
 def distortion(
     vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
@@ -150,3 +193,26 @@ def sphere_map(
 def stretch_hessian(
     vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
 ) -> tuple[_Reals, _Indices, _Indices]: ...
+def register_disks(
+    source: _Surface,
+    target: _Surface,
+    *,
+    source_landmarks: ArrayLike,
+    target_landmarks: ArrayLike,
+    weight: float = 1.0,
+    angle_weight: float = 0.0,
+    progress: _Progress | None = None,
+) -> Registration: ...
+def register_spheres(
+    source: _Surface,
+    target: _Surface,
+    *,
+    source_landmarks: ArrayLike,
+    target_landmarks: ArrayLike,
+    weight: float = 1.0,
+    angle_weight: float = 0.0,
+    progress: _Progress | None = None,
+) -> Registration: ...
+def homotopy(
+    vertices: ArrayLike, registration: Registration, t: float, *, align: bool = False
+) -> _Reals: ...

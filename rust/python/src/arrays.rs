@@ -29,7 +29,68 @@ pub fn indices<const N: usize>(
         "f" => whole(object, name)?,
         _ => rows(object, name, "int64", "iu", "integers")?,
     };
-    narrow(object.py(), name, &found, n_vertices)
+    narrow(object.py(), name, "row", &found, n_vertices)
+}
+
+/// Vertices, one of each pair: integers of shape (k,) that fit a vertex index.
+pub fn index_list(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<usize>> {
+    let array = as_array(object, name)?;
+    let &[length] = array.shape() else {
+        let found = shape_words(array.shape());
+        return Err(bad_array(object.py(), name, found, "of shape (k,), vertex indices".into()));
+    };
+    let column = array.call_method1(intern!(object.py(), "reshape"), ((length, 1),))?;
+    let found: Vec<[i64; 1]> = match kind(&array)?.as_str() {
+        "f" => whole(&column, name)?,
+        _ => rows(&column, name, "int64", "iu", "integers")?,
+    };
+    let narrowed = narrow(object.py(), name, "pair", &found, n_vertices)?;
+    Ok(narrowed.as_flattened().iter().map(|&vertex| vertex as usize).collect())
+}
+
+/// Data of any kind and shape.
+pub struct Values<'py> {
+    array: Bound<'py, PyUntypedArray>,
+    name: &'static str,
+}
+
+impl<'py> Values<'py> {
+    pub fn new(object: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
+        Ok(Self { array: as_array(object, name)?, name })
+    }
+
+    pub fn shape(&self) -> Vec<usize> {
+        self.array.shape().to_vec()
+    }
+
+    pub fn shape_words(&self) -> String {
+        shape_words(self.array.shape())
+    }
+
+    /// All values in C order as float64; `expected` says what they have to be.
+    pub fn reals(&self, expected: &str) -> PyResult<Vec<f64>> {
+        let array: PyReadonlyArrayDyn<'_, f64> =
+            converted(&self.array, self.name, "float64", "iufb", expected)?;
+        Ok(array.as_slice()?.to_vec())
+    }
+
+    /// Rows of the same dtype as an array of another shape; a row is what is left of the shape after `axes` of them.
+    pub fn taken(&self, axes: usize, rows: &[u32], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
+        let py = self.array.py();
+        let (first, rest) = self.array.shape().split_at(axes);
+        let by_row: Vec<usize> =
+            std::iter::once(first.iter().product()).chain(rest.iter().copied()).collect();
+        let reshape = intern!(py, "reshape");
+        let indices = PyArray1::from_iter(py, rows.iter().map(|&row| i64::from(row)));
+        let table = self.array.call_method1(reshape, (PyTuple::new(py, by_row)?,))?;
+        let taken = table.call_method1(intern!(py, "take"), (indices, 0))?;
+        Ok(taken.call_method1(reshape, (PyTuple::new(py, shape)?,))?.unbind())
+    }
+}
+
+/// Numbers in C order to an array of any shape.
+pub fn from_values(py: Python<'_>, values: Vec<f64>, shape: Vec<usize>) -> PyResult<Py<PyAny>> {
+    Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any().unbind())
 }
 
 /// Real numbers of shape (n,).
@@ -126,10 +187,11 @@ fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyRes
     }
 }
 
-/// Indices of the `n_vertices` vertices, or an error that names the rows with others.
+/// Indices of the `n_vertices` vertices, or an error that names the rows (the noun says what they are) with others.
 fn narrow<const N: usize>(
     py: Python<'_>,
     name: &'static str,
+    noun: &str,
     rows: &[[i64; N]],
     n_vertices: usize,
 ) -> PyResult<Vec<[u32; N]>> {
@@ -140,8 +202,8 @@ fn narrow<const N: usize>(
     };
     let value = rows[bad.first[0]].iter().find(outside).expect("the row is bad");
     let found = match bad.count {
-        1 => format!("{value} in row {bad}"),
-        count => format!("{value} and others in {count} rows ({bad})"),
+        1 => format!("{value} in {noun} {bad}"),
+        count => format!("{value} and others in {count} {noun}s ({bad})"),
     };
     let expected = match n_vertices {
         0 => "empty where there are no vertices".into(),

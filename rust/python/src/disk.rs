@@ -34,7 +34,7 @@ pub struct DiskMap {
 }
 
 impl DiskMap {
-    fn new(py: Python<'_>, map: &authalic::DiskMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, map: &authalic::DiskMap, faces: &[[u32; 3]]) -> PyResult<Self> {
         Ok(Self {
             uv: from_points(py, &map.uv),
             faces: from_indices(py, faces),

@@ -9,6 +9,7 @@ mod errors;
 mod hessian;
 mod mesh;
 mod options;
+mod registration;
 mod run;
 mod sphere;
 
@@ -23,9 +24,13 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<distortion::Distortion>()?;
     module.add_class::<disk::DiskMap>()?;
     module.add_class::<sphere::SphereMap>()?;
+    module.add_class::<registration::Registration>()?;
     module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
     module.add_function(wrap_pyfunction!(sphere::sphere_map, module)?)?;
-    module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)
+    module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)?;
+    module.add_function(wrap_pyfunction!(registration::register_disks, module)?)?;
+    module.add_function(wrap_pyfunction!(registration::register_spheres, module)?)?;
+    module.add_function(wrap_pyfunction!(registration::homotopy, module)?)
 }

@@ -36,7 +36,7 @@ pub struct SphereMap {
 }
 
 impl SphereMap {
-    fn new(py: Python<'_>, map: &authalic::SphereMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, map: &authalic::SphereMap, faces: &[[u32; 3]]) -> PyResult<Self> {
         Ok(Self {
             positions: from_points(py, &map.positions),
             faces: from_indices(py, faces),

@@ -12,6 +12,7 @@
 mod carry;
 mod disk;
 mod flow;
+mod inverse;
 mod landmarks;
 mod location;
 mod morph;
@@ -29,6 +30,7 @@ use crate::sphere::SphereMap;
 use location::Locator;
 
 pub use disk::register_disks;
+pub use inverse::DomainPoint;
 pub use landmarks::Landmarks;
 pub use location::Location;
 pub use morph::{Similarity, area_ratios, compare, homotopy, similarity};

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The way back: the registration of the target onto the source by the maps that a registration has found.
+//!
+//! Cost: one point location per vertex of the target.
+
+use super::Registration;
+use super::location::Locator;
+use crate::control::{Observer, Watch};
+use crate::distortion::{Image, distortion};
+use crate::error::Error;
+use crate::mesh::geometry::{Vector, face_areas, normalized};
+
+/// A point of the disk or of the sphere.
+pub trait DomainPoint: Copy + Send + Sync {
+    /// The point in space, where the disk lies in the plane z = 1.
+    fn lifted(self) -> Vector;
+
+    /// A map to the domain.
+    fn image(map: &[Self]) -> Image<'_>
+    where
+        Self: Sized;
+}
+
+impl DomainPoint for [f64; 2] {
+    fn lifted(self) -> Vector {
+        [self[0], self[1], 1.0]
+    }
+
+    fn image(map: &[Self]) -> Image<'_> {
+        Image::Plane(map)
+    }
+}
+
+impl DomainPoint for [f64; 3] {
+    fn lifted(self) -> Vector {
+        self
+    }
+
+    fn image(map: &[Self]) -> Image<'_> {
+        Image::Sphere(map)
+    }
+}
+
+impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
+    /// The registration of the target onto the source: g⁻¹, from the same maps to the domain.
+    ///
+    /// `source_faces` (m, 3) are the faces of the source as oriented, `target_vertices` (n_t, 3) the target's vertices.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`] where the observer ends it.
+    ///
+    /// # Panics
+    /// Where the arrays are not those of the surfaces registered.
+    pub fn inverse(
+        &self,
+        source_faces: &[[u32; 3]],
+        target_vertices: &[Vector],
+        observer: &mut dyn Observer,
+    ) -> Result<Self, Error> {
+        let source = lifted(&self.registered);
+        let watch = Watch::new(observer, 0.0, "Looking up places");
+        let locator = Locator::new(&source, source_faces);
+        let locations = locator.locate_all(&lifted(&self.target_registered), &watch);
+        let points = normalized(target_vertices).0;
+        let areas = face_areas(&points, &self.target_faces);
+        let image = Point::image(&self.target_registered);
+        Ok(Self {
+            locations: locations.ok_or(Error::CancelledEarly)?,
+            registered: self.target_registered.clone(),
+            target_registered: self.registered.clone(),
+            target_faces: source_faces.to_vec(),
+            source_map: self.target_map.clone(),
+            target_map: self.source_map.clone(),
+            distortion: distortion(&points, &self.target_faces, image, &areas)?,
+            landmark_error: self.landmark_error.clone(),
+            missed: self.missed.clone(),
+            ..*self
+        })
+    }
+}
+
+fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector> {
+    map.iter().map(|&point| point.lifted()).collect()
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The result of a registration as Python sees it.
+
+use std::sync::Arc;
+
+use authalic::registration;
+use authalic::{DiskMap, SphereMap};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use super::found::{Found, Outcome, Per, either};
+use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
+use crate::distortion::Distortion;
+use crate::errors::bad_array;
+use crate::run::run;
+use crate::{disk, sphere};
+
+/// A one-to-one map of a source surface onto a target, with landmarks on landmarks.
+#[pyclass(frozen, module = "authalic")]
+pub struct Registration {
+    /// (n, 3) float64: g(v), where each source vertex comes to lie on the target, in the target's coordinates.
+    #[pyo3(get)]
+    positions: Py<PyArray2<f64>>,
+    /// (n,) int64: the target face in which it lies there.
+    #[pyo3(get)]
+    triangles: Py<PyArray1<i64>>,
+    /// (n, 3) float64: the weights of that face's corners, not negative, each row 1 in sum.
+    #[pyo3(get)]
+    barycentric: Py<PyArray2<f64>>,
+    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with their
+    /// landmarks in place.
+    #[pyo3(get)]
+    registered: Py<PyAny>,
+    /// (n_t, 2) or (n_t, 3) float64: the target vertices there.
+    #[pyo3(get)]
+    target_registered: Py<PyAny>,
+    /// (m, 3) int64: the source faces as oriented; those turned against the rest were flipped.
+    #[pyo3(get)]
+    faces: Py<PyArray2<i64>>,
+    /// (m_t, 3) int64: the target faces as oriented.
+    #[pyo3(get)]
+    target_faces: Py<PyArray2<i64>>,
+    /// DiskMap or SphereMap: the map of the source alone.
+    #[pyo3(get)]
+    source_map: Py<PyAny>,
+    /// DiskMap or SphereMap: the map of the target alone.
+    #[pyo3(get)]
+    target_map: Py<PyAny>,
+    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1.
+    #[pyo3(get)]
+    landmark_error: Py<PyArray1<f64>>,
+    /// (j,) int64: the pairs that did not meet, more than 1e-3 apart.
+    #[pyo3(get)]
+    missed: Py<PyArray1<i64>>,
+    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded whatever it
+    /// says.
+    #[pyo3(get)]
+    status: &'static str,
+    /// The figures of `registered` against the source's areas; its authalic_energy is that of h.
+    #[pyo3(get)]
+    distortion: Py<Distortion>,
+    /// (m,) float64: the area of each source face's image on the target over its own, with both surfaces scaled to
+    /// the same area; 1 where g keeps shares of area.
+    #[pyo3(get)]
+    area_ratio: Py<PyArray1<f64>>,
+    /// Iterations of carrying the landmarks; those of the maps alone are theirs.
+    #[pyo3(get)]
+    iterations: usize,
+    /// Wall time of the call.
+    #[pyo3(get)]
+    seconds: f64,
+    pub(super) found: Arc<Found>,
+}
+
+impl Registration {
+    pub(super) fn new(py: Python<'_>, found: Found) -> PyResult<Self> {
+        let (registered, target_registered, source_map, target_map) = match &found.outcome {
+            Outcome::Disk(f) => (
+                from_points(py, &f.registered).into_any(),
+                from_points(py, &f.target_registered).into_any(),
+                disk_map(py, &f.source_map, &found.source.faces)?,
+                disk_map(py, &f.target_map, &found.target.faces)?,
+            ),
+            Outcome::Sphere(f) => (
+                from_points(py, &f.registered).into_any(),
+                from_points(py, &f.target_registered).into_any(),
+                sphere_map(py, &f.source_map, &found.source.faces)?,
+                sphere_map(py, &f.target_map, &found.target.faces)?,
+            ),
+        };
+        let locations = found.locations();
+        let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
+        let triangles = locations.iter().map(|location| location.triangle as usize);
+        let (landmark_error, missed, status, iterations, seconds, distortion) = either!(&found.outcome, f => {
+            (&f.landmark_error, &f.missed, f.status.as_str(), f.iterations, f.seconds, &f.distortion)
+        });
+        Ok(Self {
+            positions: from_points(py, &found.positions),
+            triangles: from_index_list(py, triangles),
+            barycentric: from_points(py, &barycentric),
+            registered,
+            target_registered,
+            faces: from_indices(py, &found.source.faces),
+            target_faces: from_indices(py, &found.target.faces),
+            source_map,
+            target_map,
+            landmark_error: PyArray1::from_slice(py, landmark_error).unbind(),
+            missed: from_index_list(py, missed.iter().copied()),
+            status,
+            distortion: Py::new(py, Distortion::new(py, distortion))?,
+            area_ratio: PyArray1::from_slice(py, &found.area_ratio).unbind(),
+            iterations,
+            seconds,
+            found: Arc::new(found),
+        })
+    }
+}
+
+fn disk_map(py: Python<'_>, map: &DiskMap, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
+    Ok(Py::new(py, disk::DiskMap::new(py, map, faces)?)?.into_any())
+}
+
+fn sphere_map(py: Python<'_>, map: &SphereMap, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
+    Ok(Py::new(py, sphere::SphereMap::new(py, map, faces)?)?.into_any())
+}
+
+#[pymethods]
+impl Registration {
+    /// Data of the target at the vertices or corners of the source.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : (n_t, ...) or (m_t, 3, ...) array
+    ///     One row per target vertex, or one per corner of the target faces as they were given; per vertex where both
+    ///     would fit. Each corner of a source face takes the value on that side of a seam of the data on which its face
+    ///     lies.
+    /// nearest : bool
+    ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating. For labels.
+    ///
+    /// Returns
+    /// -------
+    /// (n, ...) or (m, 3, ...) array
+    ///     float64, with `nearest` of the dtype of `values`.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Values of another shape; without `nearest` also values that are no real numbers.
+    #[pyo3(signature = (values, *, nearest=false))]
+    fn pull(&self, py: Python<'_>, values: &Bound<'_, PyAny>, nearest: bool) -> PyResult<Py<PyAny>> {
+        let (source, target) = (&self.found.source, &self.found.target);
+        let values = Values::new(values, "values")?;
+        let shape = values.shape();
+        let Some((per, axes)) = Per::of(&shape, target) else {
+            let (n, m) = (target.vertices.len(), target.given.len());
+            let expected = format!("of shape ({n}, …) per vertex or ({m}, 3, …) per corner of the target");
+            return Err(bad_array(py, "values", values.shape_words(), expected));
+        };
+        let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
+        let found = self.found.clone();
+        if nearest {
+            let rows = run(py, None, move |_| Ok(found.nearest_rows(per)))?;
+            return values.taken(axes, &rows, out);
+        }
+        let width = shape[axes..].iter().product();
+        let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
+        let pulled = run(py, None, move |_| Ok(found.interpolated(&numbers, width, per)))?;
+        from_values(py, pulled, out)
+    }
+
+    /// The registration of the target onto the source, by the same maps; its `pull` carries source data to the target.
+    ///
+    /// Returns
+    /// -------
+    /// Registration
+    fn inverse(&self, py: Python<'_>) -> PyResult<Self> {
+        let found = self.found.clone();
+        Self::new(py, run(py, None, move |observer| found.inverse(observer))?)
+    }
+
+    /// How well scalars of both surfaces agree through the map, weighted by area on the source.
+    ///
+    /// Parameters
+    /// ----------
+    /// source_values : (n,) real array
+    ///     One per source vertex.
+    /// target_values : (n_t,) real array
+    ///     One per target vertex.
+    ///
+    /// Returns
+    /// -------
+    /// (float, float)
+    ///     Pearson's correlation, NaN where one side is constant, and the mean absolute difference.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Values of another shape or no real numbers.
+    fn compare(
+        &self,
+        py: Python<'_>,
+        source_values: &Bound<'_, PyAny>,
+        target_values: &Bound<'_, PyAny>,
+    ) -> PyResult<(f64, f64)> {
+        let ours = scalars(source_values, "source_values", self.found.source.vertices.len())?;
+        let theirs = scalars(target_values, "target_values", self.found.target.vertices.len())?;
+        let found = self.found.clone();
+        run(py, None, move |_| {
+            let pulled = found.interpolated(&theirs, 1, Per::Vertex);
+            Ok(registration::compare(&ours, &pulled, &found.vertex_areas()))
+        })
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Registration({} onto {} vertices, {} landmarks, {} missed, {} after {} iterations, {:.2} s, {})",
+            self.found.source.vertices.len(),
+            self.found.target.vertices.len(),
+            self.landmark_error.bind(py).len()?,
+            self.missed.bind(py).len()?,
+            self.status,
+            self.iterations,
+            self.seconds,
+            self.distortion.bind(py).repr()?,
+        ))
+    }
+}
+
+/// One real number per vertex.
+fn scalars(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<f64>> {
+    let values = Values::new(object, name)?;
+    match values.shape().as_slice() {
+        [n] if *n == n_vertices => values.reals("real numbers"),
+        _ => {
+            let expected = format!("of shape ({n_vertices},), one value per vertex");
+            Err(bad_array(object.py(), name, values.shape_words(), expected))
+        }
+    }
+}

@@ -268,7 +268,7 @@ def in_mesh_terms(message, source, target):
         if message.startswith(prefix):
             rest = message.removeprefix(prefix)
             return f"{one.name}: {messages.in_mesh_terms(rest, one.polygons, one.vertices)}"
-    return f"{source.name}: {message}"
+    return message
 
 
 class Kept:

@@ -122,7 +122,7 @@ def test_linear_uvs_between_tessellations():
     meshes.set_uv(target, pairs.positions(target)[corner, :2], "Plan")
     only("uv_maps")
     corner = [loop.vertex_index for loop in source.data.loops]
-    np.testing.assert_allclose(meshes.uv(source, "Plan"), pairs.positions(source)[corner, :2], atol=0.06)
+    np.testing.assert_allclose(meshes.uv(source, "Plan"), pairs.positions(source)[corner, :2], atol=0.12)
 
 
 def test_a_seam_stays_a_seam():

@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Morphs one head into another without a window: landmarks, registration, key frames, rendered frames.
+
+    .venv/bpy-5/bin/python scripts/examples/morph.py --extension dist/authalic-<version>-<platform>.zip
+    .venv/bpy-5/bin/python scripts/examples/morph.py a.obj b.ply landmarks.json --output out/heads --frames 48
+
+Without files it makes two heads of its own. Files of meshes may be .obj, .ply, .stl, or .npz with the arrays
+V and F; landmarks are a file as the extension exports it (panel Registration, authalic.landmark_export):
+
+    {"format": "authalic-landmarks", "version": 1, "pairs": [{"name": "Nose", "source": 12, "target": 345}]}
+
+The script needs Blender as the Python package `bpy` (`scripts/build` makes .venv/bpy-5; in an application run
+`blender --background --python morph.py -- OPTIONS`) and the extension, either in the profile that Blender
+uses or as a zip, which --extension installs into a profile that is thrown away. It installs nothing else.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+EXTENSION = "bl_ext.user_default.authalic"
+LANDMARKS = {  # directions from the middle of a made head: x to its left, -y to the front, z up
+    "Nose": (0, -1, -0.08),
+    "Brow": (0, -1, 0.3),
+    "Chin": (0, -0.85, -0.75),
+    "Left Eye": (0.38, -1, 0.2),
+    "Right Eye": (-0.38, -1, 0.2),
+    "Left Mouth": (0.3, -1, -0.42),
+    "Right Mouth": (-0.3, -1, -0.42),
+    "Left Ear": (1, 0.1, 0.05),
+    "Right Ear": (-1, 0.1, 0.05),
+    "Crown": (0, 0.1, 1),
+    "Back": (0, 1, 0),
+    "Below": (0, 0.15, -1),
+}
+
+
+def main(options):
+    """The whole of it."""
+    start_blender(options)
+    if options.meshes:
+        source, target = (read_mesh(path) for path in options.meshes)
+    else:
+        source, target = make_heads()
+    choose(source, target, options.landmarks)
+    key = morph(source, target, options)
+    target.hide_render = True
+    set_stage(source, key, options)
+    render(options)
+    print(f"{options.frames} frames are in {options.output}")
+
+
+def start_blender(options):
+    """An empty file and the extension, or an explanation of what is missing."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    if options.extension:
+        bpy.ops.extensions.package_install_files(
+            filepath=str(options.extension), repo="user_default", enable_on_install=True
+        )
+    elif EXTENSION not in bpy.context.preferences.addons:
+        try:
+            bpy.ops.preferences.addon_enable(module=EXTENSION)
+        except RuntimeError as problem:
+            print(problem)
+    if not hasattr(bpy.types, "AUTHALIC_OT_register"):
+        raise SystemExit(
+            "Authalic is not installed in this Blender's profile. Build it with scripts/build and name the "
+            "zip, --extension dist/authalic-<version>-<platform>.zip, or install that as in README.md."
+        )
+
+
+def read_mesh(path):
+    """The object in a file of a mesh."""
+    if path.suffix == ".npz":
+        with np.load(path) as arrays:
+            return add_mesh(path.stem, arrays["V"], arrays["F"])
+    readers = {".obj": bpy.ops.wm.obj_import, ".ply": bpy.ops.wm.ply_import, ".stl": bpy.ops.wm.stl_import}
+    if path.suffix not in readers:
+        raise SystemExit(f"{path}: only {', '.join(readers)} and .npz files are read")
+    readers[path.suffix](filepath=str(path))
+    return bpy.context.object
+
+
+def add_mesh(name, vertices, faces):
+    """A new object with smooth faces."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(np.asarray(vertices, float).tolist(), [], np.asarray(faces).tolist())
+    mesh.shade_smooth()
+    shape = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(shape)
+    return shape
+
+
+def make_heads():
+    """A round head of triangles and a long one of quads, the second beside the first, with landmarks."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6)
+    first = shaped(bpy.context.object, "Round Head", (0.95, 1.0, 1.05), nose=0.2, ears=0.2, chin=0.05)
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.modifiers.new("Subdivision", "SUBSURF").levels = 6
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    second = shaped(bpy.context.object, "Long Head", (0.72, 0.9, 1.3), nose=0.42, ears=0.4, chin=0.3)
+    second.location.x = 3
+    return first, second
+
+
+def shaped(shape, name, radii, nose, ears, chin):
+    """Gives a sphere the form of a head; its features are as large as the numbers say."""
+    mesh = shape.data
+    shape.name, mesh.name = name, name
+    points = positions(mesh)
+    sphere = points / np.linalg.norm(points, axis=1)[:, None]
+    bump = {feature: _bump(sphere, direction, 0.16) for feature, direction in LANDMARKS.items()}
+    height = 1 + nose * bump["Nose"] + 0.5 * nose * _bump(sphere, (0, -1, 0.08), 0.12)
+    height += chin * _bump(sphere, LANDMARKS["Chin"], 0.35)
+    height += ears * sum(_bump(sphere, LANDMARKS[f"{side} Ear"], 0.14) for side in ("Left", "Right"))
+    height -= 0.1 * (bump["Left Eye"] + bump["Right Eye"])
+    lips = [(x, -1, -0.42 + 0.3 * x * x) for x in np.linspace(-0.3, 0.3, 7)]
+    height -= 0.035 * sum(_bump(sphere, spot, 0.09) for spot in lips)
+    mesh.attributes["position"].data.foreach_set(
+        "vector", np.ascontiguousarray(sphere * height[:, None] * radii, np.float32).ravel()
+    )
+    mesh.shade_smooth()
+    mesh.update()
+    shape["landmarks"] = [int(np.argmax(sphere @ _unit(d))) for d in LANDMARKS.values()]
+    return shape
+
+
+def choose(source, target, landmarks):
+    """Makes the source active, gives it its target, and pairs of landmarks from a file or of made heads."""
+    bpy.ops.object.select_all(action="DESELECT")
+    source.select_set(True)
+    bpy.context.view_layer.objects.active = source
+    source.authalic_target = target
+    if landmarks:
+        bpy.ops.authalic.landmark_import(filepath=str(landmarks))
+        return
+    for name, first, second in zip(LANDMARKS, source["landmarks"], target["landmarks"], strict=True):
+        bpy.ops.authalic.landmark_add(name=name, source_vertex=first, target_vertex=second)
+
+
+def morph(source, target, options):
+    """Registers, which prints the figures, and key-frames; returns the name of the shape key."""
+    bpy.ops.authalic.register(align=options.align, animate=True, frame_start=1, frame_end=options.frames)
+    return source.data.shape_keys.key_blocks[source.active_shape_key_index].name
+
+
+def set_stage(shape, key, options):
+    """A camera that sees the morph from its beginning to its end, two lights, and a plain material."""
+    scene = bpy.context.scene
+    ends = np.concatenate([positions(shape.data), positions(shape.data, key)])
+    ends = ends @ np.array(shape.matrix_world)[:3, :3].T + np.array(shape.matrix_world)[:3, 3]
+    middle, size = (
+        Vector((ends.min(axis=0) + ends.max(axis=0)) / 2),
+        float(np.linalg.norm(np.ptp(ends, axis=0))),
+    )
+    towards = Vector(options.view).normalized()
+    turn = (-towards).to_track_quat("-Z", "Y")
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 0.75 * size
+    camera.data.clip_end = 10 * size
+    camera.location, camera.rotation_euler = middle + 3 * size * towards, turn.to_euler()
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    for sideways, strength in ((-40, 3.0), (50, 0.9)):
+        light = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+        light.data.energy = strength
+        spin = Euler((np.radians(-35), np.radians(sideways), 0)).to_quaternion()
+        light.rotation_euler = (turn @ spin).to_euler()
+        scene.collection.objects.link(light)
+    scene.world = bpy.data.worlds.new("World")
+    material = bpy.data.materials.new("Clay")
+    material.diffuse_color = (0.75, 0.55, 0.42, 1)
+    material.use_nodes = True
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.75, 0.55, 0.42, 1)
+    shape.data.materials.clear()
+    shape.data.materials.append(material)
+
+
+def render(options):
+    """Renders all frames into the folder."""
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, options.frames
+    scene.render.engine = {"cycles": "CYCLES", "workbench": "BLENDER_WORKBENCH"}[options.engine]
+    if options.engine == "cycles":
+        scene.cycles.device, scene.cycles.samples, scene.cycles.max_bounces = "CPU", 16, 2
+        scene.cycles.use_denoising = False
+    scene.render.resolution_x = scene.render.resolution_y = options.size
+    scene.render.image_settings.file_format = "PNG"
+    options.output.mkdir(parents=True, exist_ok=True)
+    scene.render.filepath = str(options.output / "morph_")
+    bpy.ops.render.render(animation=True)
+
+
+def positions(mesh, key=None):
+    """The coordinates (n, 3) of a mesh or of one of its shape keys."""
+    points = mesh.shape_keys.key_blocks[key].points if key else mesh.vertices
+    values = np.empty(3 * len(points), np.float32)
+    points.foreach_get("co", values)
+    return values.reshape(-1, 3).astype(float)
+
+
+def _unit(direction):
+    return np.asarray(direction, float) / np.linalg.norm(direction)
+
+
+def _bump(sphere, direction, width):
+    """A smooth hill (n,) on the sphere in a direction, 1 at its top."""
+    return np.exp(-((np.linalg.norm(sphere - _unit(direction), axis=1) / width) ** 2))
+
+
+def chosen_options():
+    """What stands behind the name of the script, or behind "--" where Blender has options of its own."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    file = lambda name: Path(name).resolve()  # noqa: E731
+    parser.add_argument("files", nargs="*", type=file, help="source, target and landmarks; or none")
+    parser.add_argument("--extension", type=file, default=os.environ.get("AUTHALIC_EXTENSION_ZIP"))
+    parser.add_argument("--output", type=file, default=file("out/morph"), help="folder (%(default)s)")
+    parser.add_argument("--frames", type=int, default=24, help="%(default)s")
+    parser.add_argument("--size", type=int, default=480, help="pixels along a side (%(default)s)")
+    parser.add_argument("--engine", choices=("cycles", "workbench"), default="cycles", help="%(default)s")
+    parser.add_argument("--no-align", dest="align", action="store_false", help="end where the target is")
+    parser.add_argument(
+        "--view", type=float, nargs=3, default=(-0.45, -1, 0.15), help="where the camera is, from the middle"
+    )
+    words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
+    options = parser.parse_args(words)
+    if len(options.files) not in (0, 3):
+        parser.error("name a source, a target and a file of landmarks, or nothing")
+    if options.frames < 2:
+        parser.error("a morph has 2 frames at the least")
+    for path in [*options.files, *([options.extension] if options.extension else [])]:
+        if not Path(path).is_file():
+            parser.error(f"{path}: there is no such file")
+    options.meshes, options.landmarks = options.files[:2], next(iter(options.files[2:]), None)
+    return options
+
+
+if __name__ == "__main__":
+    chosen = chosen_options()
+    if chosen.extension and "BLENDER_USER_RESOURCES" not in os.environ:
+        os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="authalic-profile-")
+
+import bpy  # noqa: E402 (the profile is chosen first)
+from mathutils import Euler, Vector  # noqa: E402
+
+if __name__ == "__main__":
+    status = 1
+    try:
+        main(chosen)
+        status = 0
+    except (SystemExit, RuntimeError) as problem:  # how bpy passes on what an operator reports
+        print(problem)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)  # some versions hang at a normal exit

@@ -18,14 +18,25 @@ NAMES = {
     "Distortion",
     "MeshError",
     "Patch",
+    "Registration",
     "SolverError",
     "SphereMap",
     "__version__",
     "cut",
     "disk_map",
     "distortion",
+    "homotopy",
+    "register_disks",
+    "register_spheres",
     "sphere_map",
     "stretch_hessian",
+}
+REGISTRATION = {
+    "source_landmarks": inspect.Parameter.empty,
+    "target_landmarks": inspect.Parameter.empty,
+    "weight": 1.0,
+    "angle_weight": 0.0,
+    "progress": None,
 }
 KEYWORDS = {
     "disk_map": {
@@ -53,6 +64,9 @@ KEYWORDS = {
     "stretch_hessian": {"density": None},
     "distortion": {"density": None},
     "cut": {"seams": None},
+    "register_disks": REGISTRATION,
+    "register_spheres": REGISTRATION,
+    "homotopy": {"align": False},
 }
 POSITIONAL = {
     "disk_map": ["vertices", "faces"],
@@ -60,6 +74,9 @@ POSITIONAL = {
     "stretch_hessian": ["vertices", "faces", "image"],
     "distortion": ["vertices", "faces", "image"],
     "cut": ["vertices", "faces"],
+    "register_disks": ["source", "target"],
+    "register_spheres": ["source", "target"],
+    "homotopy": ["vertices", "registration", "t"],
 }
 FUNCTIONS = sorted(KEYWORDS)
 DISK_METHODS = '"gauss_newton", "conjugate_gradient" or "fixed_point"'
@@ -119,7 +136,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         getattr(authalic, name)(*arguments, None)
 
 
-@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "SphereMap", "Distortion", "Patch"])
+@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "SphereMap", "Distortion", "Patch", "Registration"])
 def test_everything_is_documented(name):
     assert len(getattr(authalic, name).__doc__) > 20
 
@@ -144,7 +161,8 @@ def test_the_examples_in_the_docstrings_run(name):
 
 
 def test_every_attribute_of_the_results_is_documented():
-    for kind in (authalic.DiskMap, authalic.SphereMap, authalic.Distortion, authalic.Patch):
+    kinds = (authalic.DiskMap, authalic.SphereMap, authalic.Distortion, authalic.Patch, authalic.Registration)
+    for kind in kinds:
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 

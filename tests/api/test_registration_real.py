@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Registrations of real surfaces, where a data folder is there: AUTHALIC_DATA, or ../shared/data beside the repository."""
+
+import json
+
+import numpy as np
+import pytest
+
+from . import meshes, pairs
+
+FACES = {
+    # landmark: (vertex of face_17157, vertex of nefertiti_cut), picked by eye; left and right as seen
+    "left_outer_eye_corner": (2794, 38827),
+    "left_inner_eye_corner": (15480, 47411),
+    "left_upper_lid": (13554, 39441),
+    "left_lower_lid": (13642, 47418),
+    "left_brow": (13243, 39408),
+    "left_cheek": (10604, 39219),
+    "left_jaw": (11288, 39293),
+    "right_outer_eye_corner": (1261, 12310),
+    "right_inner_eye_corner": (9491, 12363),
+    "right_upper_lid": (7532, 46709),
+    "right_lower_lid": (7617, 46755),
+    "right_brow": (7212, 16552),
+    "right_cheek": (4564, 16237),
+    "right_jaw": (5245, 12544),
+}
+HCP_CURVES = ("lm_central_sulcus_4|3a", "lm_STS_STSda+STSdp|STSva+STSvp", "lm_insula_Ig+PoI1..|OP")
+
+
+def data(name):
+    path = meshes.DATA / name
+    if not path.exists():
+        pytest.skip("no data folder (AUTHALIC_DATA)")
+    return path
+
+
+def surface(name, field="V", mirror=False):
+    """A surface of a file and its other arrays; mirrored in x with its faces turned."""
+    with np.load(data(name)) as file:
+        arrays = {key: file[key] for key in file}
+    vertices, faces = arrays[field].astype(float), arrays["F"].astype(np.int64)
+    mesh = meshes.Mesh(vertices * [-1, 1, 1], faces[:, ::-1]) if mirror else meshes.Mesh(vertices, faces)
+    return mesh, arrays
+
+
+def fsaverage5(field, points):
+    """Left onto mirrored right, with the named points of the twelve curves."""
+    curves = json.loads(data("brain/fsaverage5_curves.json").read_text())
+    (left, ours), (right, theirs) = (
+        surface(f"brain/fsaverage5_{side}_10242.npz", field, mirror)
+        for side, mirror in (("left", False), ("right", True))
+    )
+    found = [
+        (a[pick(a)], b[pick(b)])
+        for a, b in zip(curves["left"], curves["mirrored_right"], strict=True)
+        for pick in points
+    ]
+    return pairs.Pair(left, right, *np.array(found).T), ours["sulc"], theirs["sulc"]
+
+
+def hcp(given_order):
+    """Left onto mirrored right midthickness, with the ends of the curves that have ends."""
+    (left, ours), (right, theirs) = (
+        surface(f"brain/hcp_s1200_{side}_32492.npz", "V_midthickness", side == "R") for side in "LR"
+    )
+    found = []
+    for name in HCP_CURVES:
+        ends = [arrays[name][[0, -1]] for arrays in (ours, theirs)]
+        sphere = ours["V_sphere"][ends[0]], theirs["V_sphere"][ends[1]] * [-1, 1, 1]
+        straight, crossed = (
+            np.linalg.norm(sphere[0] - other).sum() for other in (sphere[1], sphere[1][::-1])
+        )
+        found += list(
+            zip(ends[0], ends[1] if given_order or straight < crossed else ends[1][::-1], strict=True)
+        )
+    return pairs.Pair(left, right, *np.array(found).T), ours["sulc_S1200"], theirs["sulc_S1200"]
+
+
+POINTS = {
+    "ends": [lambda curve: 0, lambda curve: -1],
+    "ends_and_middles": [lambda curve: 0, lambda curve: len(curve) // 2, lambda curve: -1],
+}
+
+
+def assert_what_the_papers_reach(result, pair):
+    """No fold, landmarks at 1e-3 of the domain and half a percent of the target's size at the most."""
+    gap = result.positions[pair.source_landmarks] - pair.target.vertices[pair.target_landmarks]
+    print(
+        f"{result.status}, landmark error {result.landmark_error.mean():.1e} (max {result.landmark_error.max():.1e}), "
+        f"on the target {np.linalg.norm(gap, axis=1).max() / pairs.size(pair.target):.1e} of its size, "
+        f"E_A {result.distortion.authalic_energy:.2e}, {result.seconds:.1f} s"
+    )
+    assert_sound(result, pair)
+    pairs.assert_landmarks_meet(result, pair)
+
+
+def assert_sound(result, pair):
+    """As pairs.assert_registration, without the test of every vertex against every boundary edge."""
+    pairs.assert_embedding(result.registered, result.faces)
+    pairs.assert_embedding(result.target_registered, result.target_faces)
+    pairs.assert_figures(result, pair)
+    assert (result.barycentric >= 0).all()
+    assert np.abs(result.barycentric.sum(axis=1) - 1).max() < 2e-15
+    assert np.isfinite(result.positions).all()
+
+
+@pytest.mark.parametrize("field", ["V_white", "V_pial"])
+@pytest.mark.parametrize("points", POINTS.values(), ids=POINTS)
+def test_the_left_cortex_onto_the_mirrored_right(field, points):
+    pair, ours, theirs = fsaverage5(field, points)
+    result = pairs.register(pair)
+    assert_what_the_papers_reach(result, pair)
+    correlation, difference = result.compare(ours, theirs)
+    print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
+    assert correlation > 0.5
+
+
+@pytest.mark.parametrize("given_order", [False, True], ids=["matching_ends", "ends_as_stored"])
+def test_the_left_average_cortex_onto_the_mirrored_right(given_order):
+    """Two of the curves are stored the other way round on the right: their ends then trade places."""
+    pair, ours, theirs = hcp(given_order)
+    result = pairs.register(pair)
+    assert_what_the_papers_reach(result, pair)
+    if not given_order:
+        correlation, difference = result.compare(ours, theirs)
+        print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
+        assert correlation > 0.3
+
+
+def test_two_averages_of_the_same_cortex_lie_over_each_other():
+    """The vertices of both have the same numbers, so where each belongs is known."""
+    (ours, arrays), (theirs, _) = (
+        surface("brain/hcp_s1200_L_32492.npz", field)
+        for field in ("V_midthickness", "V_conte69_midthickness")
+    )
+    curves = [arrays[name] for name in arrays if name.startswith("lm_")]
+    marks = np.unique(np.concatenate([curve[:: max(len(curve) // 6, 1)] for curve in curves]))
+    pair = pairs.Pair(ours, theirs, marks, marks)
+    result = pairs.register(pair)
+    assert_what_the_papers_reach(result, pair)
+    away = np.linalg.norm(result.positions - theirs.vertices, axis=1)
+    print(f"mean distance to where each vertex belongs: {away.mean():.2f} mm")
+    assert away.mean() < 0.1 * pairs.size(theirs)
+
+
+@pytest.mark.parametrize("name", [None, "eyes"])
+def test_a_face_onto_a_bust(name):
+    """Nefertiti's nose and mouth are cut away, so the landmarks lie around her boundary: inside out."""
+    source, target = (meshes.load(data(f"disk/{file}.npz")) for file in ("face_17157", "nefertiti_cut"))
+    marks = [marks for landmark, marks in FACES.items() if name is None or "eye_corner" in landmark]
+    pair = pairs.Pair(source, target, *np.array(marks).T)
+    assert_what_the_papers_reach(pairs.register(pair), pair)
+
+
+@pytest.mark.parametrize(
+    ("folder", "name"),
+    [
+        ("disk", "chineselion_17334"),
+        ("disk", "face_17157"),
+        ("sphere", "david_10671"),
+        ("sphere", "spot_2930"),
+    ],
+)
+def test_a_real_surface_onto_itself_is_the_identity(folder, name):
+    mesh = meshes.load(data(f"{folder}/{name}.npz"))
+    inside = np.setdiff1d(np.arange(len(mesh.vertices)), pairs.boundary_vertices(mesh.faces))
+    marks = inside[:: len(inside) // 7]
+    pair = pairs.Pair(mesh, mesh, marks, marks)
+    result = pairs.register(pair)
+    assert_what_the_papers_reach(result, pair)
+    assert np.abs(result.positions - mesh.vertices).max() <= 1e-6 * pairs.size(mesh)
+
+
+def test_a_head_onto_a_head():
+    """Landmarks by the extremes of the two heads, which both look along the same axis."""
+    source, target = (meshes.load(data(f"sphere/{file}.npz")) for file in ("david_10671", "maxplanck_9002"))
+    marks = [
+        np.array([pick(mesh.vertices[:, axis]) for axis in range(3) for pick in (np.argmin, np.argmax)])
+        for mesh in (source, target)
+    ]
+    pair = pairs.Pair(source, target, *marks)
+    assert_what_the_papers_reach(pairs.register(pair), pair)

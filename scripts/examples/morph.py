@@ -144,7 +144,13 @@ def choose(source, target, landmarks):
 
 def morph(source, target, options):
     """Registers, which prints the figures, and key-frames; returns the name of the shape key."""
-    bpy.ops.authalic.register(align=options.align, animate=True, frame_start=1, frame_end=options.frames)
+    bpy.ops.authalic.register(
+        align=options.align,
+        angle_weight=options.angle_weight,
+        animate=True,
+        frame_start=1,
+        frame_end=options.frames,
+    )
     return source.data.shape_keys.key_blocks[source.active_shape_key_index].name
 
 
@@ -224,6 +230,9 @@ def chosen_options():
     parser.add_argument("--frames", type=int, default=24, help="%(default)s")
     parser.add_argument("--size", type=int, default=480, help="pixels along a side (%(default)s)")
     parser.add_argument("--engine", choices=("cycles", "workbench"), default="cycles", help="%(default)s")
+    parser.add_argument(
+        "--angle-weight", type=float, default=0.632, help="0 to 1, shapes against areas (%(default)s)"
+    )
     parser.add_argument("--no-align", dest="align", action="store_false", help="end where the target is")
     parser.add_argument(
         "--view", type=float, nargs=3, default=(-0.45, -1, 0.15), help="where the camera is, from the middle"

@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import demo_measure as measure
 import demo_meshes
+import demo_morph
 import demo_report as report
 import demo_sphere
 import demo_stage as stage
@@ -36,6 +37,8 @@ def main(out, files):
     results = compare(out, sources, methods, heat)
     if hasattr(bpy.types, "AUTHALIC_OT_sphere_shape_key"):
         results += demo_sphere.show(out, closed, heat)
+    if hasattr(bpy.types, "AUTHALIC_OT_register"):
+        results.append(demo_morph.show())
     report.write(out, results)
     finish(out)
 
@@ -121,11 +124,15 @@ def finish(out):
     """Writes the .blend and renders the pictures."""
     bpy.context.window.scene = bpy.data.scenes["Comparison"]
     bpy.ops.wm.save_as_mainfile(filepath=str(out / "demo.blend"), check_existing=False, compress=True)
-    for name, samples in (("Comparison", SAMPLES), ("Sphere", demo_sphere.SAMPLES)):
+    for name, picture, samples in (
+        ("Comparison", "comparison.png", SAMPLES),
+        ("Sphere", "sphere.png", demo_sphere.SAMPLES),
+        ("Registration", "morph.png", demo_morph.SAMPLES),
+    ):
         if name in bpy.data.scenes:
-            print(f"rendering {name.lower()}.png ...", flush=True)
+            print(f"rendering {picture} ...", flush=True)
             bpy.context.window.scene = bpy.data.scenes[name]
-            stage.render(out / f"{name.lower()}.png", samples)
+            stage.render(out / picture, samples)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Pairs of surfaces with landmarks, and what a registration has to be, by other formulas than the library's."""
+"""Pairs of surfaces with landmarks, and what a registration has to be, by formulas of their own."""
 
 from typing import NamedTuple
 
@@ -103,7 +103,7 @@ def turned_caps(angle=0.7):
 
 
 def cap_and_square():
-    """A round cap and a flat square: the pole and six vertices around it, the middle and six points around it."""
+    """A round cap and a flat square: the pole and six vertices around it, and likewise the middle."""
     source, target = meshes.bumpy_cap(), meshes.grid(21, 21, aspect=1.0)
     source_landmarks = np.array([420, *range(120, 150, 5)])
     angle = np.pi / 3 * np.arange(6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Registrations of real surfaces, where a data folder is there: AUTHALIC_DATA, or ../shared/data beside the repository."""
+"""Registrations of real surfaces, where a data folder is there: AUTHALIC_DATA, or ../shared/data."""
 
 import json
 
@@ -86,11 +86,10 @@ POINTS = {
 def assert_what_the_papers_reach(result, pair):
     """No fold, landmarks at 1e-3 of the domain and half a percent of the target's size at the most."""
     gap = result.positions[pair.source_landmarks] - pair.target.vertices[pair.target_landmarks]
-    print(
-        f"{result.status}, landmark error {result.landmark_error.mean():.1e} (max {result.landmark_error.max():.1e}), "
-        f"on the target {np.linalg.norm(gap, axis=1).max() / pairs.size(pair.target):.1e} of its size, "
-        f"E_A {result.distortion.authalic_energy:.2e}, {result.seconds:.1f} s"
-    )
+    error, apart = result.landmark_error, np.linalg.norm(gap, axis=1).max() / pairs.size(pair.target)
+    print(f"{result.status}, landmark error {error.mean():.1e}, at most {error.max():.1e}", end=", ")
+    print(f"{apart:.1e} of the target's size, E_A {result.distortion.authalic_energy:.2e}", end=", ")
+    print(f"{result.seconds:.1f} s")
     assert_sound(result, pair)
     pairs.assert_landmarks_meet(result, pair)
 

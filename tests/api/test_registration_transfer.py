@@ -211,7 +211,7 @@ def test_values_of_another_length_are_refused(both):
 def test_values_that_are_no_numbers_need_nearest(both):
     result, pair = both
     for dtype in ("U3", "O", "c16"):
-        with pytest.raises(authalic.MeshError, match="values must be real numbers.*nearest=True"):
+        with pytest.raises(authalic.MeshError, match=r"values must be real numbers.*nearest=True"):
             result.pull(np.zeros(len(pair.target.vertices), dtype))
 
 

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
+
+mod common;
+
+use authalic::mesh::TriangleMesh;
+use authalic::registration::{
+    DiskRegistration, Landmarks, RegistrationOptions, SphereRegistration, register_disks, register_spheres,
+};
+use authalic::{Error, Silent, Status, folded_in_plane, folded_on_sphere};
+use common::closed::{bumpy, spheres};
+use common::random::Random;
+use common::{TestMesh, bumpy_disk, cap, distance, ellipsoid};
+use proptest::prelude::*;
+
+fn disks(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> DiskRegistration {
+    let landmarks = Landmarks { source: pairs[0], target: pairs[1] };
+    register_disks(source, target, &landmarks, &RegistrationOptions::default(), &mut Silent).unwrap()
+}
+
+fn closed(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> SphereRegistration {
+    let landmarks = Landmarks { source: pairs[0], target: pairs[1] };
+    register_spheres(source, target, &landmarks, &RegistrationOptions::default(), &mut Silent).unwrap()
+}
+
+/// `count` different vertices inside a mesh.
+fn picked(mesh: &TriangleMesh, count: usize, seed: u64) -> Vec<usize> {
+    let order = Random::new(seed).permutation(mesh.n_vertices());
+    order.into_iter().map(|v| v as usize).filter(|&v| !mesh.is_boundary(v)).take(count).collect()
+}
+
+/// Nothing folded in either map, locations that are places, landmarks that were not missed met.
+fn assert_sound(
+    faces: &[[u32; 3]],
+    found: &DiskRegistration,
+    pairs: [&[usize]; 2],
+) -> Result<(), TestCaseError> {
+    prop_assert!(folded_in_plane(faces, &found.registered).is_empty());
+    prop_assert!(folded_in_plane(&found.target_faces, &found.target_registered).is_empty());
+    for location in &found.locations {
+        let sum: f64 = location.barycentric.iter().sum();
+        prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
+        prop_assert!((location.triangle as usize) < found.target_faces.len());
+    }
+    for (k, error) in found.landmark_error.iter().enumerate() {
+        let [[a, b], [c, d]] = [found.registered[pairs[0][k]], found.target_registered[pairs[1][k]]];
+        prop_assert!((error - (a - c).hypot(b - d)).abs() < 1e-14);
+        prop_assert!(*error <= 1e-3 || found.missed.contains(&k));
+    }
+    prop_assert_eq!(found.status == Status::LandmarksMissed, !found.missed.is_empty());
+    Ok(())
+}
+
+/// The largest distance of g(v) to v, in units of the mesh.
+fn moved(mesh: &TestMesh, positions: &[[f64; 3]]) -> f64 {
+    positions.iter().zip(&mesh.vertices).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_disk_onto_itself_is_the_identity() {
+    for disk in common::disks() {
+        let mesh = disk.mesh();
+        let marks = picked(&mesh, 3, 1);
+        if marks.is_empty() {
+            continue;
+        }
+        let found = disks(&mesh, &mesh, [&marks, &marks]);
+        assert!(moved(&disk, &found.positions(&disk.vertices)) < 1e-6 * mesh.scale(), "{}", disk.name);
+        assert!(found.missed.is_empty() && found.distortion.folded.is_empty(), "{}", disk.name);
+    }
+}
+
+#[test]
+fn a_sphere_onto_itself_is_the_identity() {
+    for sphere in spheres() {
+        let mesh = sphere.mesh();
+        let marks = picked(&mesh, 4, 2);
+        let found = closed(&mesh, &mesh, [&marks, &marks]);
+        assert!(moved(&sphere, &found.positions(&sphere.vertices)) < 1e-6 * mesh.scale(), "{}", sphere.name);
+        assert!(found.missed.is_empty() && found.distortion.folded.is_empty(), "{}", sphere.name);
+    }
+}
+
+#[test]
+fn closed_surfaces_meet_in_their_landmarks() {
+    let (source, target) = (bumpy(), ellipsoid(3, [1.0, 2.0, 3.0]).mesh());
+    let (ours, theirs) = (picked(&source, 5, 7), picked(&target, 5, 8));
+    let found = closed(&source, &target, [&ours, &theirs]);
+    assert!(folded_on_sphere(source.faces(), &found.registered).is_empty());
+    assert!(folded_on_sphere(&found.target_faces, &found.target_registered).is_empty());
+    let positions = found.positions(target.points());
+    for (k, (&p, &q)) in ours.iter().zip(&theirs).enumerate() {
+        let is_there = found.landmark_error[k] <= 1e-3 && distance(positions[p], target.points()[q]) < 5e-3;
+        assert!(is_there || found.missed.contains(&k), "pair {k}");
+    }
+}
+
+#[test]
+fn the_inverse_exchanges_both_surfaces() {
+    let (source, target) = (bumpy_disk(7).mesh(), cap(8, 1.4).mesh());
+    let (ours, theirs) = (picked(&source, 3, 3), picked(&target, 3, 4));
+    let found = disks(&source, &target, [&ours, &theirs]);
+    let back = found.inverse(source.faces(), target.points(), &mut Silent).unwrap();
+    assert_eq!((back.registered.len(), back.locations.len()), (target.n_vertices(), target.n_vertices()));
+    assert_sound(&found.target_faces, &back, [&theirs, &ours]).unwrap();
+    let again = back.inverse(&found.target_faces, source.points(), &mut Silent).unwrap();
+    assert_eq!(again.locations, found.locations);
+    let [before, after] = [&found, &again].map(|found| found.distortion.authalic_energy);
+    assert!((after - before).abs() < 1e-9 * before, "{before} {after}");
+}
+
+#[test]
+fn bad_landmarks_are_refused_before_any_work() {
+    let mesh = bumpy_disk(5).mesh();
+    let edge = mesh.boundary_loops()[0][0] as usize;
+    let refused = |source: &[usize], target: &[usize]| {
+        let mut observer = |_: f64, _: &str| panic!("something was computed");
+        let landmarks = Landmarks { source, target };
+        register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut observer).unwrap_err()
+    };
+    assert!(matches!(refused(&[1, 2], &[1]), Error::LandmarkCounts { source_count: 2, target_count: 1 }));
+    assert!(matches!(refused(&[], &[]), Error::TooFewLandmarks { found: 0, needed: 1 }));
+    assert!(matches!(refused(&[1, 10_000], &[1, 2]), Error::LandmarkOutOfRange { value: 10_000, .. }));
+    assert!(matches!(refused(&[1, 2], &[3, 3]), Error::RepeatedLandmark { first: 0, vertex: 3, .. }));
+    assert!(
+        matches!(refused(&[1, edge], &[1, 2]), Error::LandmarkOnBoundary { vertex, .. } if vertex == edge)
+    );
+    let sphere = bumpy();
+    let landmarks = Landmarks { source: &[1], target: &[1] };
+    let error = register_disks(&mesh, &sphere, &landmarks, &RegistrationOptions::default(), &mut Silent);
+    assert!(error.unwrap_err().to_string().starts_with("the target: "));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever landmarks are asked for, nothing folds, and what was missed is named.
+    #[test]
+    fn random_landmarks_fold_nothing(seed in 0u64..1000, count in 1usize..9, rings in 3u32..8) {
+        let (source, target) = (bumpy_disk(rings).mesh(), cap(rings + 1, 1.8).mesh());
+        let (ours, theirs) = (picked(&source, count, seed), picked(&target, count, seed + 1));
+        let pairs: [&[usize]; 2] = [&ours, &theirs];
+        assert_sound(source.faces(), &disks(&source, &target, pairs), pairs)?;
+    }
+
+    /// A run that is cancelled anywhere returns a map without folds, or says that there was none yet.
+    #[test]
+    fn cancelled_runs_are_sound(seed in 0u64..1000, last in 0usize..60) {
+        let (source, target) = (bumpy_disk(5).mesh(), cap(6, 1.8).mesh());
+        let (ours, theirs) = (picked(&source, 4, seed), picked(&target, 4, seed + 1));
+        let mut calls = 0;
+        let mut observer = |_: f64, _: &str| {
+            calls += 1;
+            calls <= last
+        };
+        let landmarks = Landmarks { source: &ours, target: &theirs };
+        let options = RegistrationOptions::default();
+        match register_disks(&source, &target, &landmarks, &options, &mut observer) {
+            Ok(found) => {
+                prop_assert!(folded_in_plane(source.faces(), &found.registered).is_empty());
+                prop_assert_eq!(found.status == Status::Cancelled, calls > last);
+            }
+            Err(error) => prop_assert_eq!(error, Error::CancelledEarly),
+        }
+    }
+}

@@ -18,7 +18,7 @@ mod gauss_newton;
 mod holes;
 mod run;
 mod start;
-mod unfold;
+pub(crate) mod unfold;
 
 use std::borrow::Cow;
 

@@ -19,6 +19,15 @@ const PASSES: usize = 3;
 /// Returns `map` with its folded faces unfolded and its boundary kept, or `None` where even the whole
 /// interior does not suffice in double precision.
 pub(super) fn unfold(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    unfold_within(mesh, map, usize::MAX)
+}
+
+/// The same with no more than so many rings around the folded faces free.
+pub(crate) fn unfold_within(
+    mesh: &TriangleMesh,
+    map: &[[f64; 2]],
+    most_rings: usize,
+) -> Option<Vec<[f64; 2]>> {
     let folds = folded(mesh, map);
     let n_interior = (0..mesh.n_vertices()).filter(|&v| !mesh.is_boundary(v)).count();
     let mut rings = 2;
@@ -30,7 +39,7 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Option<Vec<[f64; 
             return Some(mended);
         }
         // 3. Once more with twice the rings, until the whole interior was free
-        if free.len() == n_interior {
+        if free.len() == n_interior || 2 * rings > most_rings {
             return None;
         }
         rings *= 2;

@@ -6,7 +6,7 @@
 
 use super::authalic::{AuthalicEnergy, Element};
 use super::motion::Frame;
-use crate::mesh::geometry::{Vector, distance, dot, sub};
+use crate::mesh::geometry::{Vector, distance, dot, scaled, sub};
 
 /// Vertices that are wanted at places.
 #[derive(Debug, Clone, Default)]
@@ -49,10 +49,9 @@ impl LandmarkPenalty {
     pub(crate) fn add_gradient(&self, map: &[Vector], frames: &[Frame], gradient: &mut [[f64; 2]]) {
         for (&vertex, &place) in self.vertices.iter().zip(&self.places) {
             let vertex = vertex as usize;
-            let away = sub(map[vertex], place);
-            for axis in 0..2 {
-                gradient[vertex][axis] += 2.0 * self.weight * dot(away, frames[vertex].axes[axis]);
-            }
+            let pull = scaled(sub(map[vertex], place), 2.0 * self.weight);
+            let slopes = frames[vertex].axes.map(|axis| dot(pull, axis));
+            gradient[vertex] = [gradient[vertex][0] + slopes[0], gradient[vertex][1] + slopes[1]];
         }
     }
 
@@ -76,7 +75,7 @@ mod tests {
     use crate::energy::authalic::Codomain;
     use crate::energy::motion::{Motion, frames};
     use crate::mesh::TriangleMesh;
-    use crate::mesh::geometry::{norm, scaled};
+    use crate::mesh::geometry::norm;
 
     #[test]
     fn derivatives_are_the_differences_of_the_value() {

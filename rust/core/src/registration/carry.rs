@@ -23,8 +23,25 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::floors;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem};
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::sparse::{Order, elimination_order};
+use crate::{disk, sphere};
+
+/// How often flow and pull take turns at the most.
+const ROUNDS: usize = 4;
+
+/// The flow ends where the angle energy becomes more than this part of the area.
+const SHEARED: f64 = 5.0;
+
+/// While landmarks are pulled, angles have this weight at least, more each time, and λ is so many times the one given.
+const BALANCED: f64 = 0.03;
+const STIFF: f64 = 1e4;
+
+/// The landmarks contradict the areas where E_A is more than this part of the area with them in place.
+const CONTRADICTED: f64 = 0.05;
+
+/// Rings around folded faces that may move to unfold them on the way.
+const RINGS: usize = 4;
 
 const MESSAGE: &str = "Carrying landmarks";
 
@@ -42,7 +59,7 @@ const GROWTH: f64 = 10.0;
 const STAGES: usize = 9;
 
 /// A stage in which the farthest landmark keeps more than this part of its way brings it no nearer,
-const NO_NEARER: f64 = 0.7;
+const NO_NEARER: f64 = 0.9;
 
 /// and after so many of them λ grows no more.
 const PATIENCE: usize = 2;
@@ -53,6 +70,13 @@ const LATER: [usize; 2] = [3, 15];
 
 /// Area deviation of the result below which nothing is left to gain.
 const TOLERANCE: f64 = 2e-4;
+
+/// What a descent begins with: λ, and the weight of angles.
+#[derive(Debug, Clone, Copy)]
+struct Goals {
+    weight: f64,
+    angle_weight: f64,
+}
 
 /// An area-preserving map of a surface whose landmarks are to be carried to places.
 pub(super) struct Carrying<'a> {
@@ -76,30 +100,32 @@ impl Carrying<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        if self.gaps(&map).into_iter().all(|gap| gap <= THERE) {
+        if self.farthest(&map) <= THERE {
             return Ok((map, Status::Converged));
         }
         // 1. The surface as its map shows it, in elimination order; angles are those of h
         let order = elimination_order(map.len(), self.mesh.faces())?;
         let by_order = Renumbered::new(&self.mesh.at_points(map), order);
-        let problem = self.problem(&by_order)?;
+        let mut problem = self.problem(&by_order)?;
         // 2. A smooth flow takes the landmarks along
-        let start = by_order.mesh.points().to_vec();
-        let accepts = |map: &[Vector]| problem.energy.is_embedding(map);
-        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let watch = Watch::new(&mut phase, 0.0, MESSAGE);
-        let map = flow(self.domain, start, problem.penalty.vertices(), self.places, &accepts, &watch);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.6 };
+        let (map, goals) = self.start(&by_order.mesh, &mut problem, history, &mut phase);
         // 3. A guarded descent with a penalty that grows
-        let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
-        let (problem, map, status) = self.descend(&by_order.mesh, problem, map, history, &mut phase);
+        let mut phase = Phase { whole: observer, from: 0.6, to: 1.0 };
+        let (problem, map, status) = self.descend(&by_order.mesh, problem, map, goals, history, &mut phase);
         // 4. What rounding has left of their way
         Ok((by_order.given(&self.set_down(&problem, map)), status))
     }
 
     /// How far each landmark of a map is from its place.
-    pub(super) fn gaps(&self, map: &[Vector]) -> Vec<f64> {
+    fn gaps(&self, map: &[Vector]) -> Vec<f64> {
         let gap = |(&vertex, &place): (&usize, &Vector)| distance(map[vertex], place);
         self.landmarks.iter().zip(self.places).map(gap).collect()
+    }
+
+    /// The gap of the farthest landmark of a map.
+    pub(super) fn farthest(&self, map: &[Vector]) -> f64 {
+        self.gaps(map).into_iter().fold(0.0, f64::max)
     }
 
     /// The energy of the surface's maps, with the penalty on its landmarks.
@@ -113,6 +139,70 @@ impl Carrying<'_> {
         let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.options.weight);
         let motions = (0..mesh.n_vertices()).map(|vertex| self.motion(mesh.is_boundary(vertex))).collect();
         Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
+    }
+
+    /// A map with the landmarks at or near their places, by an area-preserving flow; where that gets stuck, because faces
+    /// are too coarse or too thin to follow, by turns with a descent that pulls at the landmarks and mends shapes.
+    fn start(
+        &self,
+        mesh: &TriangleMesh,
+        problem: &mut Problem,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Goals) {
+        let given = Goals { weight: self.options.weight, angle_weight: self.options.angle_weight };
+        let mut pulling = self.stiff();
+        let mut map = mesh.points().to_vec();
+        for round in 0..ROUNDS {
+            let watch = Watch::new(observer, 0.1 * round as f64, MESSAGE);
+            let mended = |map: Map| self.mended(mesh, problem, map);
+            map = flow(self.domain, map, problem.penalty.vertices(), self.places, &mended, &watch);
+            if farthest(problem, &map) <= NEAR {
+                return (map, if round == 0 { given } else { Goals { weight: pulling.weight, ..given } });
+            }
+            let (from, to) = (0.1 * round as f64, 0.1 * (round + 1) as f64);
+            let mut phase = Phase { whole: observer, from, to };
+            problem.penalty.weight = pulling.weight;
+            let options = descent(pulling, FIRST);
+            let status;
+            (map, status) = minimize(problem, map, &options, history, &mut phase);
+            if status == Status::Cancelled || farthest(problem, &map) <= WITHIN_REACH {
+                break;
+            }
+            pulling.angle_weight *= GROWTH;
+        }
+        // areas are not kept at all costs where landmarks contradict them
+        let stiff = self.stiff();
+        let is_contradicted = problem.unevenness(&map) > CONTRADICTED;
+        (map, if is_contradicted { stiff } else { Goals { weight: stiff.weight, ..given } })
+    }
+
+    /// Landmarks before areas.
+    fn stiff(&self) -> Goals {
+        let RegistrationOptions { weight, angle_weight } = *self.options;
+        Goals { weight: STIFF * weight, angle_weight: angle_weight.max(BALANCED) }
+    }
+
+    /// A map with the few faces unfolded that were too thin or too coarse to follow the flow; `None` where some stay.
+    fn mended(&self, mesh: &TriangleMesh, problem: &Problem, map: Map) -> Option<Map> {
+        if problem.energy.is_embedding(&map) {
+            return self.is_sound(problem, &map).then_some(map);
+        }
+        let mended = match self.domain {
+            Domain::Sphere => sphere::unfold::unfold_within(mesh, &map, RINGS),
+            Domain::Disk => {
+                let flat: Vec<[f64; 2]> = map.iter().map(|x| [x[0], x[1]]).collect();
+                let mended = disk::unfold::unfold_within(mesh, &flat, RINGS);
+                mended.map(|flat| flat.iter().map(|&[u, v]| [u, v, 1.0]).collect())
+            }
+        };
+        mended.filter(|map: &Map| problem.energy.is_embedding(map) && self.is_sound(problem, map))
+    }
+
+    /// Whether no part of a map is sheared so much that going on would only make it worse.
+    fn is_sound(&self, problem: &Problem, map: &Map) -> bool {
+        let sums = problem.energy.sums(map);
+        sums.angle_energy <= SHEARED * sums.area
     }
 
     fn codomain(&self) -> Codomain {
@@ -136,22 +226,16 @@ impl Carrying<'_> {
         mesh: &TriangleMesh,
         mut problem: Problem,
         mut map: Map,
+        goals: Goals,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Problem, Map, Status) {
+        problem.penalty.weight = goals.weight;
         let surface = floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
         let (mut no_nearer, mut status) = (0, Status::MaxIterations);
         for stage in 0..STAGES {
             let before = farthest(&problem, &map);
-            let [usual, most] = if stage == 0 { FIRST } else { LATER };
-            let options = GaussNewtonOptions {
-                profile: Profile::Barrier,
-                angle_weight: self.options.angle_weight,
-                usual_iterations: usual,
-                most_iterations: most,
-                tolerance: TOLERANCE,
-                until_open: None,
-            };
+            let options = descent(goals, if stage == 0 { FIRST } else { LATER });
             let from = 1.0 - 0.5f64.powi(stage as i32);
             let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
             (problem, map, status) = floors::descend(&surface, problem, map, &options, history, &mut phase);
@@ -174,6 +258,18 @@ impl Carrying<'_> {
             }
         }
         if problem.energy.is_embedding(&there) { there } else { map }
+    }
+}
+
+/// A guarded descent with so many iterations, where they suffice and at the most.
+fn descent(goals: Goals, [usual_iterations, most_iterations]: [usize; 2]) -> GaussNewtonOptions {
+    GaussNewtonOptions {
+        profile: Profile::Barrier,
+        angle_weight: goals.angle_weight,
+        usual_iterations,
+        most_iterations,
+        tolerance: TOLERANCE,
+        until_open: None,
     }
 }
 

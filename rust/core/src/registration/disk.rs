@@ -8,13 +8,15 @@
 use super::carry::Carrying;
 use super::landmarks::{Domain, best_turn};
 use super::location::Locator;
-use super::{DiskRegistration, Landmarks, Registration, RegistrationOptions, located, missed, verdict};
-use crate::control::{History, Observer, Phase};
+use super::{
+    DiskRegistration, Landmarks, MISSED, Registration, RegistrationOptions, located, missed, verdict,
+};
+use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, disk_map};
 use crate::distortion::{Image, distortion, folded_in_plane};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::Vector;
+use crate::mesh::geometry::{Vector, distance};
 
 /// Registers two disks by landmarks inside them.
 ///
@@ -56,30 +58,41 @@ pub fn register_disks(
     // 3. The best rotation of the landmarks
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
-    // 4. h: the landmarks carried to their places
-    let carrying = Carrying {
-        mesh: source,
-        domain: Domain::Disk,
-        landmarks: landmarks.source,
-        places: &places,
-        options,
-    };
+    // 4. h: the landmarks carried to their places; where some are missed, those of the target carried the other way
+    let ours: Vec<Vector> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
+    let disk = |mesh, landmarks, places| Carrying { mesh, domain: Domain::Disk, landmarks, places, options };
+    let there = disk(source, landmarks.source, &places);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
-    let (carried, status) = carrying.carry(turned, &mut history, &mut phase)?;
+    let (carried, status) = there.carry(turned.clone(), &mut history, &mut phase)?;
+    let there = Meeting { gap: there.farthest(&carried), source: carried, target: lifted(&g.uv), status };
+    let met = match there.gap > MISSED && status != Status::Cancelled {
+        false => there,
+        true => {
+            let back = disk(target, landmarks.target, &ours);
+            let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
+            let (carried, status) = back.carry(lifted(&g.uv), &mut history, &mut phase)?;
+            let back = Meeting { gap: back.farthest(&carried), source: turned, target: carried, status };
+            if back.gap < there.gap { back } else { there }
+        }
+    };
     // 5. g⁻¹: where that is on the target
-    let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-    let lifted = lifted(&g.uv);
-    let (locations, status) = located(&Locator::new(&lifted, target.faces()), &carried, status, &mut phase)?;
+    let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
+    let locator = Locator::new(&met.target, target.faces());
+    let (locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
     // 6. Figures
-    let landmark_error = carrying.gaps(&carried);
-    let missed = missed(&landmark_error);
-    let registered: Vec<[f64; 2]> = carried.iter().map(|x| [x[0], x[1]]).collect();
+    let error = |(&p, &q): (&usize, &usize)| distance(met.source[p], met.target[q]);
+    let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
+    let missed = missed(landmarks, &landmark_error, target, &locations);
+    let registered = flat(&met.source);
     let image = Image::Plane(&registered);
     let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    if status != Status::Cancelled {
+        observer.progress(1.0, "Done");
+    }
     Ok(Registration {
         locations,
         registered,
-        target_registered: g.uv.clone(),
+        target_registered: flat(&met.target),
         target_faces: target.faces().to_vec(),
         source_map: f,
         target_map: g,
@@ -90,6 +103,14 @@ pub fn register_disks(
         distortion,
         seconds: history.seconds(),
     })
+}
+
+/// Both surfaces in the disk with their landmarks together, but for a gap.
+struct Meeting {
+    source: Vec<Vector>,
+    target: Vec<Vector>,
+    gap: f64,
+    status: Status,
 }
 
 /// A map rotated by an angle, unless the rounding of that folds a sliver.
@@ -111,4 +132,9 @@ fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector> {
 /// Points of the disk in the plane z = 1.
 fn lifted(points: &[[f64; 2]]) -> Vec<Vector> {
     points.iter().map(|&[u, v]| [u, v, 1.0]).collect()
+}
+
+/// Points of the plane z = 1 as points of the disk.
+fn flat(points: &[Vector]) -> Vec<[f64; 2]> {
+    points.iter().map(|x| [x[0], x[1]]).collect()
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A smooth flow of the whole domain that carries landmarks to given places and preserves areas.
+//! A smooth flow of the whole domain that carries landmarks to given places and changes no area.
 //!
-//! Each landmark moves straight to its place, on the sphere along the shortest arc, and the [`Field`] through these
+//! Each landmark moves straight to its place, on the sphere along the shortest arc, but around others that it would run
+//! into, so that two can change places. The [`Field`] through these
 //! velocities moves everything else. A flow along smooth fields is one-to-one, and as they are free of divergence it
 //! changes no area; so a map that folds nothing stays nearly as good as it was, up to what its faces are too coarse to
 //! follow.
@@ -29,6 +30,10 @@ const LONGEST_MOVE: f64 = 0.1;
 const LARGEST_STRAIN: f64 = 0.25;
 /// Steps after which the flow ends wherever it is.
 const MOST_STEPS: usize = 120;
+/// Two landmarks would collide whose straight ways bring them nearer than this part of what lies between them before or
+/// after. They turn aside by this angle, all to the same side, and so turn around each other.
+const COLLISION: f64 = 0.3;
+const ASIDE: f64 = PI / 3.0;
 /// How often a step that the caller does not accept is halved.
 const HALVINGS: usize = 6;
 /// Points at most this far from the circle, in squared distance from the centre, lie on it.
@@ -38,31 +43,30 @@ const BREATH: usize = 512;
 
 /// Carries the `landmarks`, vertices of `map`, towards their `places`, and all other vertices along.
 ///
-/// Returns the last map that `accepts`, the landmarks as near to their places as it came; the very map given where they
-/// are there already.
+/// `mended` returns a moved map without the folds that its coarse faces may have, `None` where there are too many. Returns
+/// the last map, the landmarks as near to their places as it came; the very map given where they are there already.
 pub(super) fn flow(
     domain: Domain,
     map: Vec<Vector>,
     landmarks: &[u32],
     places: &[Vector],
-    accepts: &dyn Fn(&[Vector]) -> bool,
+    mended: &dyn Fn(Vec<Vector>) -> Option<Vec<Vector>>,
     watch: &Watch<'_>,
 ) -> Vec<Vector> {
     let mut map = map;
     for steps_left in (1..=MOST_STEPS).rev() {
         // 1. Where the landmarks are and how far they have to go
-        let now: Vec<Vector> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
-        let ways: Vec<Vector> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
-        if ways.iter().all(|&way| norm(way) <= ARRIVED) || !watch.goes_on() {
+        let paths = Paths::new(domain, &map, landmarks, places);
+        if paths.ways.iter().all(|&way| norm(way) <= ARRIVED) || !watch.goes_on() {
             break;
         }
         // 2. The velocities that would take them there in a unit of time, and the part of that for this step
-        let Some(velocities) = domain.velocities(&map, &now, &ways, watch) else { break };
-        let share = 1.0 / steps_needed(&now, &ways, &velocities).clamp(1.0, steps_left as f64);
+        let Some(velocities) = paths.velocities(&map, watch) else { break };
+        let share = 1.0 / paths.steps_needed(&velocities).clamp(1.0, steps_left as f64);
         // 3. The longest step that the caller accepts
-        let step = |share| domain.step(&map, &velocities, &now, &ways, share, watch);
+        let step = |share| paths.step(&map, &velocities, share, watch);
         let shares = (0..=HALVINGS).map(|halvings| share * 0.5f64.powi(halvings as i32));
-        let accepted = shares.map_while(step).find(|moved| accepts(moved));
+        let accepted = shares.map_while(step).find_map(mended);
         match accepted {
             Some(moved) => map = moved,
             None => break,
@@ -71,17 +75,84 @@ pub(super) fn flow(
     map
 }
 
-/// Into how many steps the way from here has to be cut.
-fn steps_needed(now: &[Vector], ways: &[Vector], velocities: &[Vector]) -> f64 {
-    let fastest = velocities.iter().fold(0.0, |fastest, &v| f64::max(fastest, norm(v)));
-    let pairs = (0..now.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-    let strain = pairs.fold(0.0, |most, (i, j)| {
-        f64::max(most, distance(ways[i], ways[j]) / distance(now[i], now[j]).max(ARRIVED))
-    });
-    (fastest / LONGEST_MOVE).max(strain / LARGEST_STRAIN).ceil()
+/// The ways of all landmarks from where they are, each in a unit of time.
+struct Paths {
+    domain: Domain,
+    now: Vec<Vector>,
+    ways: Vec<Vector>,
+}
+
+impl Paths {
+    fn new(domain: Domain, map: &[Vector], landmarks: &[u32], places: &[Vector]) -> Self {
+        let now: Vec<Vector> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
+        let ways: Vec<Vector> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
+        let collides =
+            |i: usize| (0..now.len()).any(|j| j != i && collide([now[i], now[j]], [ways[i], ways[j]]));
+        let around = |i: usize| if collides(i) { domain.aside(now[i], ways[i]) } else { ways[i] };
+        let ways = (0..now.len()).map(around).collect();
+        Self { domain, now, ways }
+    }
+
+    /// Into how many steps the way from here has to be cut.
+    fn steps_needed(&self, velocities: &[Vector]) -> f64 {
+        let Self { now, ways, .. } = self;
+        let fastest = velocities.iter().fold(0.0, |fastest, &v| f64::max(fastest, norm(v)));
+        let pairs = (0..now.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let strain = pairs.fold(0.0, |most, (i, j)| {
+            f64::max(most, distance(ways[i], ways[j]) / distance(now[i], now[j]).max(ARRIVED))
+        });
+        (fastest / LONGEST_MOVE).max(strain / LARGEST_STRAIN).ceil()
+    }
+
+    /// The field through the landmarks at time `t` of their paths.
+    fn field(&self, t: f64) -> Option<Field> {
+        let on_path = |(&x, &way)| self.domain.on_path(x, way, t);
+        let (places, velocities): (Vec<_>, Vec<_>) = self.now.iter().zip(&self.ways).map(on_path).unzip();
+        Field::through(self.domain, self.domain.reach(), &places, &velocities)
+    }
+
+    /// The velocity of every vertex; `None` where cancelled or where landmarks are too close to each other.
+    fn velocities(&self, map: &[Vector], watch: &Watch<'_>) -> Option<Vec<Vector>> {
+        let field = self.field(0.0)?;
+        for_all(map.len(), watch, |vertex| field.velocity(map[vertex]))
+    }
+
+    /// One step of the classical Runge–Kutta method over the first `share` of the landmarks' ways.
+    fn step(
+        &self,
+        map: &[Vector],
+        velocities: &[Vector],
+        share: f64,
+        watch: &Watch<'_>,
+    ) -> Option<Vec<Vector>> {
+        let halfway = self.field(0.5 * share)?;
+        let end = self.field(share)?;
+        for_all(map.len(), watch, |vertex| {
+            let (x, first) = (map[vertex], velocities[vertex]);
+            let second = halfway.velocity(add(x, scaled(first, 0.5 * share)));
+            let third = halfway.velocity(add(x, scaled(second, 0.5 * share)));
+            let fourth = end.velocity(add(x, scaled(third, share)));
+            let mean = [0, 1, 2].map(|k| (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]) / 6.0);
+            self.domain.settled(x, add(x, scaled(mean, share)))
+        })
+    }
+}
+
+/// Whether two points run into each other on their straight ways.
+fn collide([x, y]: [Vector; 2], [way, other]: [Vector; 2]) -> bool {
+    let (apart, drift) = (sub(x, y), sub(way, other));
+    let when = (-dot(apart, drift) / dot(drift, drift).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    let nearest = norm(add(apart, scaled(drift, when)));
+    nearest < COLLISION * norm(apart).min(norm(add(apart, drift)))
 }
 
 impl Domain {
+    /// A velocity at `x` turned aside.
+    fn aside(self, x: Vector, way: Vector) -> Vector {
+        let normal = if self == Self::Disk { [0.0, 0.0, 1.0] } else { x };
+        add(scaled(way, ASIDE.cos()), scaled(cross(normal, way), ASIDE.sin()))
+    }
+
     /// How a vertex may move that is not on the circle.
     fn motion(self) -> Motion {
         match self {
@@ -122,47 +193,6 @@ impl Domain {
         let (sine, cosine) = (t * speed).sin_cos();
         let point = add(scaled(x, cosine), scaled(way, sine / speed));
         (point, sub(scaled(way, cosine), scaled(x, speed * sine)))
-    }
-
-    /// The field through landmarks at time `t` of their paths.
-    fn field(self, now: &[Vector], ways: &[Vector], t: f64) -> Option<Field> {
-        let (places, velocities): (Vec<_>, Vec<_>) =
-            now.iter().zip(ways).map(|(&x, &way)| self.on_path(x, way, t)).unzip();
-        Field::through(self, self.reach(), &places, &velocities)
-    }
-
-    /// The velocity of every vertex; `None` where cancelled or where landmarks are too close to each other.
-    fn velocities(
-        self,
-        map: &[Vector],
-        now: &[Vector],
-        ways: &[Vector],
-        watch: &Watch<'_>,
-    ) -> Option<Vec<Vector>> {
-        let field = self.field(now, ways, 0.0)?;
-        for_all(map.len(), watch, |vertex| field.velocity(map[vertex]))
-    }
-
-    /// One step of the classical Runge–Kutta method over the first `share` of the landmarks' ways.
-    fn step(
-        self,
-        map: &[Vector],
-        velocities: &[Vector],
-        now: &[Vector],
-        ways: &[Vector],
-        share: f64,
-        watch: &Watch<'_>,
-    ) -> Option<Vec<Vector>> {
-        let halfway = self.field(now, ways, 0.5 * share)?;
-        let end = self.field(now, ways, share)?;
-        for_all(map.len(), watch, |vertex| {
-            let (x, first) = (map[vertex], velocities[vertex]);
-            let second = halfway.velocity(add(x, scaled(first, 0.5 * share)));
-            let third = halfway.velocity(add(x, scaled(second, 0.5 * share)));
-            let fourth = end.velocity(add(x, scaled(third, share)));
-            let mean = [0, 1, 2].map(|k| (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]) / 6.0);
-            self.settled(x, add(x, scaled(mean, share)))
-        })
     }
 
     /// A moved point back on the domain: on the sphere, or on the circle if it was there.

@@ -23,7 +23,8 @@ use crate::control::{Observer, Silent, Status, Watch};
 use crate::disk::DiskMap;
 use crate::distortion::Distortion;
 use crate::error::Error;
-use crate::mesh::geometry::Vector;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, distance};
 use crate::parallel;
 use crate::sphere::SphereMap;
 
@@ -39,6 +40,9 @@ pub use transfer::{corner_sides, nearest_corners, nearest_vertices, pull_corners
 
 /// A landmark that ends farther than this from its place, in a domain of radius 1, was missed.
 pub const MISSED: f64 = 1e-3;
+
+/// So was one that ends farther than this part of the target's size from its partner.
+const MISSED_ON_TARGET: f64 = 5e-3;
 
 /// Options of [`register_disks`] and [`register_spheres`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +73,8 @@ pub struct Registration<Map, Point> {
     /// The source's vertices in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀ on the
     /// sphere.
     pub registered: Vec<Point>,
-    /// The target's vertices there: g on the disk, h₁∘f₁ on the sphere.
+    /// The target's vertices there: g on the disk, h₁∘f₁ on the sphere. Where landmarks could be met only the other way
+    /// round, they are the ones that were moved on the disk too.
     pub target_registered: Vec<Point>,
     /// The faces of the target that [`Self::locations`] speak of, all positively oriented in
     /// [`Self::target_registered`].
@@ -80,7 +85,7 @@ pub struct Registration<Map, Point> {
     pub target_map: Map,
     /// (k,): how far each landmark ends from its partner, in the parameter domain of radius 1.
     pub landmark_error: Vec<f64>,
-    /// The pairs that did not meet, farther apart than [`MISSED`].
+    /// The pairs that did not meet: farther apart than [`MISSED`], or than .5 % of the target's size on the target.
     pub missed: Vec<usize>,
     /// Why the run ended; [`Status::LandmarksMissed`] where there are such pairs.
     pub status: Status,
@@ -131,9 +136,21 @@ fn located(
     Ok((locations.ok_or(Error::CancelledEarly)?, Status::Cancelled))
 }
 
-/// The pairs that did not meet.
-fn missed(landmark_error: &[f64]) -> Vec<usize> {
-    (0..landmark_error.len()).filter(|&pair| landmark_error[pair] > MISSED).collect()
+/// The pairs that did not meet, in the parameter domain or on the target.
+fn missed(
+    landmarks: &Landmarks<'_>,
+    landmark_error: &[f64],
+    target: &TriangleMesh,
+    locations: &[Location],
+) -> Vec<usize> {
+    let is_missed = |&pair: &usize| {
+        let Location { triangle, barycentric } = locations[landmarks.source[pair]];
+        let corners = target.faces()[triangle as usize].map(|vertex| target.points()[vertex as usize]);
+        let place = std::array::from_fn(|axis| (0..3).map(|c| barycentric[c] * corners[c][axis]).sum());
+        let on_target = distance(place, target.points()[landmarks.target[pair]]);
+        landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET
+    };
+    (0..landmark_error.len()).filter(is_missed).collect()
 }
 
 /// The status of a registration; that of the descent where all landmarks met.

@@ -17,6 +17,12 @@ use crate::optimize::rotation::{best_rotation, rotate};
 use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
 
+/// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on either side.
+const CROWDED: f64 = 0.3;
+
+/// What a turn by itself weighs against landmarks.
+const LEAST_TURN: f64 = 1e-9;
+
 /// Registers two closed surfaces of genus 0 by landmarks.
 ///
 /// A target that is turned inside out beside the source is turned back first.
@@ -66,8 +72,9 @@ pub fn register_spheres(
     let f1 = map(target, "target", &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks, and the middle of each pair
     let turned = turned(source, &f0, landmarks, &f1);
-    let middle = |(&p, &q): (&usize, &usize)| between(turned[p], f1.positions[q]);
-    let places: Vec<Vector> = landmarks.source.iter().zip(landmarks.target).map(middle).collect();
+    let ours: Vec<Vector> = landmarks.source.iter().map(|&p| turned[p]).collect();
+    let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+    let places = meeting_places(&ours, &theirs);
     // 4. h₀ and h₁: the landmarks of both carried there
     let carrying =
         |mesh, landmarks| Carrying { mesh, domain: Domain::Sphere, landmarks, places: &places, options };
@@ -83,9 +90,12 @@ pub fn register_spheres(
     // 6. Figures
     let error = |(&p, &q): (&usize, &usize)| distance(registered[p], target_registered[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
-    let missed = missed(&landmark_error);
+    let missed = missed(landmarks, &landmark_error, target, &locations);
     let image = Image::Sphere(&registered);
     let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    if status != Status::Cancelled {
+        observer.progress(1.0, "Done");
+    }
     Ok(Registration {
         locations,
         registered,
@@ -115,7 +125,11 @@ fn volume(mesh: &TriangleMesh) -> f64 {
 fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector> {
     let ours: Vec<Vector> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
     let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
-    let rotation = best_rotation(&ours, &theirs, &vec![1.0; ours.len()]);
+    // of equally good rotations, as about the axis of two opposite landmarks, the least
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
+    let (ours, theirs) = ([&ours[..], &axes].concat(), [&theirs[..], &axes].concat());
+    let rotation = best_rotation(&ours, &theirs, &weights);
     let turned = parallel::map(f0.positions.len(), |vertex| {
         let turned = rotate(rotation, f0.positions[vertex]);
         scaled(turned, 1.0 / norm(turned))
@@ -123,6 +137,20 @@ fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: 
     match folded_on_sphere(source.faces(), &turned).is_empty() {
         true => turned,
         false => f0.positions.clone(),
+    }
+}
+
+/// Where the landmarks of each pair meet: in the middle, or at the target's where some pairs would meet in one place, as
+/// two that change places do.
+fn meeting_places(ours: &[Vector], theirs: &[Vector]) -> Vec<Vector> {
+    let middle: Vec<Vector> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
+    let is_crowded = |i: usize, j: usize| {
+        let apart = |points: &[Vector]| distance(points[i], points[j]);
+        apart(&middle) < CROWDED * apart(ours).min(apart(theirs))
+    };
+    match (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j))) {
+        true => theirs.to_vec(),
+        false => middle,
     }
 }
 

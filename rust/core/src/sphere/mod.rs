@@ -17,7 +17,7 @@ mod gauss_newton;
 mod run;
 mod start;
 mod stereographic;
-mod unfold;
+pub(crate) mod unfold;
 
 use std::borrow::Cow;
 

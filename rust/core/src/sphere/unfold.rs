@@ -26,10 +26,15 @@ const MOST_RINGS: usize = 4096;
 
 /// Returns `map` with its folded faces unfolded, or `None` where even whole hemispheres do not suffice.
 pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector]) -> Option<Map> {
+    unfold_within(mesh, map, MOST_RINGS)
+}
+
+/// The same with no more than so many rings around the folded faces free.
+pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector], most_rings: usize) -> Option<Map> {
     let mut map = map.to_vec();
     let mut folded = folded_on_sphere(mesh.faces(), &map);
     let mut rings = 2;
-    while !folded.is_empty() && rings <= MOST_RINGS {
+    while !folded.is_empty() && rings <= most_rings {
         // 1. Free a few rings around what is folded, in both hemispheres; once more with the new weights
         // 2. Where that gains nothing, by uniform weights
         for weights in [Weights::MeanValue, Weights::Uniform] {

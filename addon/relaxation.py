@@ -12,7 +12,7 @@ from . import triangulation
 from .untangle import folded
 
 _STEPS = 3
-# Steps where areas are off by more than this even then, as where limbs are a face wide, and how stiff they get.
+# Steps where areas are off by more than this even then, as where limbs are a face wide, and their damping.
 _MORE_STEPS = 30
 _EVEN = 0.03
 _STIFFEST = 100.0

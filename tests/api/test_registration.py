@@ -18,7 +18,7 @@ both = pytest.mark.parametrize("pair", BOTH.values(), ids=BOTH)
 ATTRIBUTES = {
     *("positions", "triangles", "barycentric", "registered", "target_registered", "faces", "target_faces"),
     *("source_map", "target_map", "landmark_error", "missed", "status", "distortion", "area_ratio"),
-    *("iterations", "seconds", "pull", "inverse", "compare"),
+    *("area_distortion", "target_distortion", "iterations", "seconds", "pull", "inverse", "compare"),
 }
 STATUSES = {"converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"}
 

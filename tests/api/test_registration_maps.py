@@ -95,7 +95,7 @@ def test_landmarks_meet_without_a_fold(pair, angle_weight):
     pairs.assert_landmarks_meet(result, pair)
 
 
-@pytest.mark.parametrize("weight", [0.01, 1.0, 1e6])
+@pytest.mark.parametrize("weight", [1e-6, 1e-3, 0.01, 1.0, 1e6])
 @pytest.mark.parametrize("name", ["caps", "ball_and_ellipsoid"])
 def test_landmarks_meet_from_any_weight(name, weight):
     pair = pairs.PAIRS[name]

@@ -380,3 +380,26 @@ def test_bad_morphs_are_refused(both):
             authalic.homotopy(pair.source.vertices, result, t)
     with pytest.raises(TypeError):
         authalic.homotopy(pair.source.vertices, None, 0.5)
+
+
+def test_data_that_would_fit_both_ways_are_taken_as_asked():
+    """A tetrahedron has as many faces as vertices."""
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], float)
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    solid = (corners, faces)
+    result = authalic.register_spheres(solid, solid, source_landmarks=[0, 1], target_landmarks=[0, 1])
+    values = np.arange(12.0).reshape(4, 3)
+    assert np.abs(result.pull(values) - values).max() < 1e-12
+    assert result.pull(values, per="vertex").shape == (4, 3)
+    of_corners = result.pull(corners[faces][..., 0], per="corner")
+    assert np.abs(of_corners - corners[faces][..., 0]).max() < 1e-9
+    with pytest.raises(ValueError, match='per must be "vertex", "corner" or None, but is "face"'):
+        result.pull(values, per="face")
+
+
+def test_rounding_is_no_seam():
+    target = pairs.DISK_PAIRS["caps"].target
+    result = pairs.register(pairs.DISK_PAIRS["caps"])
+    exact = target.vertices[np.asarray(result.target_faces)][..., :2]
+    noisy = exact.astype(np.float32) * (1 + 6e-8 * np.resize([-1, 1, 0], exact.shape))
+    assert np.abs(result.pull(noisy, per="corner") - result.pull(exact, per="corner")).max() < 1e-6

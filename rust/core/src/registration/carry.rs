@@ -30,6 +30,9 @@ use crate::{disk, sphere};
 /// How often flow and pull take turns at the most.
 const ROUNDS: usize = 4;
 
+/// More landmarks than these are pulled from the beginning: the flow solves dense systems of all of them.
+const MOST_IN_FLOW: usize = 1000;
+
 /// The flow ends where the angle energy becomes more than this part of the area.
 const SHEARED: f64 = 5.0;
 
@@ -56,7 +59,7 @@ const WITHIN_REACH: f64 = 1e-4;
 
 /// What λ is multiplied by, and how often at the most.
 const GROWTH: f64 = 10.0;
-const STAGES: usize = 9;
+const STAGES: usize = 15;
 
 /// A stage in which the farthest landmark keeps more than this part of its way brings it no nearer,
 const NO_NEARER: f64 = 0.9;
@@ -156,7 +159,9 @@ impl Carrying<'_> {
         for round in 0..ROUNDS {
             let watch = Watch::new(observer, 0.1 * round as f64, MESSAGE);
             let mended = |map: Map| self.mended(mesh, problem, map);
-            map = flow(self.domain, map, problem.penalty.vertices(), self.places, &mended, &watch);
+            if self.landmarks.len() <= MOST_IN_FLOW {
+                map = flow(self.domain, map, problem.penalty.vertices(), self.places, &mended, &watch);
+            }
             if farthest(problem, &map) <= NEAR {
                 return (map, if round == 0 { given } else { Goals { weight: pulling.weight, ..given } });
             }
@@ -240,7 +245,9 @@ impl Carrying<'_> {
             let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
             (problem, map, status) = floors::descend(&surface, problem, map, &options, history, &mut phase);
             let now = farthest(&problem, &map);
-            no_nearer = if now > NO_NEARER * before { no_nearer + 1 } else { 0 };
+            // a λ that weighs less than what it works against says nothing yet
+            let is_weighty = problem.penalty.weight >= 1.0 + goals.angle_weight;
+            no_nearer = if is_weighty && now > NO_NEARER * before { no_nearer + 1 } else { 0 };
             if status == Status::Cancelled || now <= NEAR || no_nearer >= PATIENCE {
                 break;
             }

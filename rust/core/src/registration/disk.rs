@@ -84,23 +84,29 @@ pub fn register_disks(
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
     let registered = flat(&met.source);
-    let image = Image::Plane(&registered);
-    let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    let target_registered = flat(&met.target);
+    let figures = |mesh: &TriangleMesh, map: &[[f64; 2]]| {
+        distortion(mesh.points(), mesh.faces(), Image::Plane(map), mesh.face_areas())
+    };
+    let target_distortion = figures(target, &target_registered)?;
+    let distortion = figures(source, &registered)?;
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }
+    let status = verdict(status, [f.status, g.status], &missed, [&distortion, &target_distortion]);
     Ok(Registration {
         locations,
         registered,
-        target_registered: flat(&met.target),
+        target_registered,
         target_faces: target.faces().to_vec(),
         source_map: f,
         target_map: g,
         landmark_error,
-        status: verdict(status, &missed),
+        status,
         missed,
         iterations: history.iterations(),
         distortion,
+        target_distortion,
         seconds: history.seconds(),
     })
 }

@@ -72,6 +72,7 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
             source_map: self.target_map.clone(),
             target_map: self.source_map.clone(),
             distortion: distortion(&points, &self.target_faces, image, &areas)?,
+            target_distortion: self.distortion.clone(),
             landmark_error: self.landmark_error.clone(),
             missed: self.missed.clone(),
             ..*self

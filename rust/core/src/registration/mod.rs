@@ -91,8 +91,11 @@ pub struct Registration<Map, Point> {
     pub status: Status,
     /// Iterations of carrying the landmarks.
     pub iterations: usize,
-    /// The figures of [`Self::registered`] against the source's areas.
+    /// The figures of [`Self::registered`] against the source's areas; its E_A is that of h where the source's landmarks
+    /// were carried.
     pub distortion: Distortion,
+    /// The figures of [`Self::target_registered`] against the target's areas.
+    pub target_distortion: Distortion,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
@@ -112,10 +115,7 @@ impl<Map, Point> Registration<Map, Point> {
     }
 }
 
-/// The largest surface whose places are still looked up after a run was cancelled: that takes no time.
-const QUICK: usize = 200_000;
-
-/// The locations of points; a cancelled run still gets them where that takes no time.
+/// The locations of points; a cancelled run still gets them, that takes seconds at a million.
 fn located(
     locator: &Locator,
     points: &[Vector],
@@ -127,9 +127,6 @@ fn located(
         if let Some(locations) = locator.locate_all(points, &watch) {
             return Ok((locations, status));
         }
-    }
-    if points.len() > QUICK {
-        return Err(Error::CancelledEarly);
     }
     let mut silent = Silent;
     let locations = locator.locate_all(points, &Watch::new(&mut silent, 0.0, ""));
@@ -153,11 +150,28 @@ fn missed(
     (0..landmark_error.len()).filter(is_missed).collect()
 }
 
-/// The status of a registration; that of the descent where all landmarks met.
-fn verdict(status: Status, missed: &[usize]) -> Status {
-    match status {
+/// An area ratio with a smaller deviation is even enough to end with, whatever the descent says.
+const EVEN_ENOUGH: f64 = 0.01;
+
+/// The status of a registration: what the descent says unless all landmarks met and areas are even, and no better than
+/// those of the two maps.
+fn verdict(carried: Status, maps: [Status; 2], missed: &[usize], figures: [&Distortion; 2]) -> Status {
+    let is_even = figures.iter().all(|figures| figures.area_ratio_std <= EVEN_ENOUGH);
+    match carried {
         Status::Cancelled => Status::Cancelled,
         _ if !missed.is_empty() => Status::LandmarksMissed,
-        status => status,
+        _ if is_even => worst([Status::Converged, maps[0], maps[1]]),
+        carried => worst([carried, maps[0], maps[1]]),
     }
+}
+
+/// The least good of several statuses.
+fn worst<const N: usize>(statuses: [Status; N]) -> Status {
+    let rank = |status: &Status| match status {
+        Status::Cancelled => 3,
+        Status::Stalled => 2,
+        Status::MaxIterations => 1,
+        _ => 0,
+    };
+    statuses.into_iter().max_by_key(rank).unwrap_or(Status::Converged)
 }

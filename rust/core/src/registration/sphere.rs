@@ -7,7 +7,9 @@
 use super::carry::Carrying;
 use super::landmarks::Domain;
 use super::location::Locator;
-use super::{Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict};
+use super::{
+    Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict, worst,
+};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Image, distortion, folded_on_sphere};
 use crate::error::Error;
@@ -86,16 +88,20 @@ pub fn register_spheres(
     // 5. h₁⁻¹: where the source is on the target
     let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
-    let (locations, status) = located(&locator, &registered, worse(first, second), &mut phase)?;
+    let (locations, status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
     // 6. Figures
     let error = |(&p, &q): (&usize, &usize)| distance(registered[p], target_registered[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
-    let image = Image::Sphere(&registered);
-    let distortion = distortion(source.points(), source.faces(), image, source.face_areas())?;
+    let figures = |mesh: &TriangleMesh, map: &[Vector]| {
+        distortion(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
+    };
+    let target_distortion = figures(target, &target_registered)?;
+    let distortion = figures(source, &registered)?;
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }
+    let status = verdict(status, [f0.status, f1.status], &missed, [&distortion, &target_distortion]);
     Ok(Registration {
         locations,
         registered,
@@ -104,10 +110,11 @@ pub fn register_spheres(
         source_map: f0,
         target_map: f1,
         landmark_error,
-        status: verdict(status, &missed),
+        status,
         missed,
         iterations: history.iterations(),
         distortion,
+        target_distortion,
         seconds: history.seconds(),
     })
 }
@@ -161,15 +168,4 @@ fn between(a: Vector, b: Vector) -> Vector {
         length if length > 1e-6 => scaled(sum, 1.0 / length),
         _ => b,
     }
-}
-
-/// The status of two descents together.
-fn worse(one: Status, other: Status) -> Status {
-    let rank = |status: &Status| match status {
-        Status::Cancelled => 3,
-        Status::Stalled => 2,
-        Status::MaxIterations => 1,
-        _ => 0,
-    };
-    [one, other].into_iter().max_by_key(rank).unwrap_or(one)
 }

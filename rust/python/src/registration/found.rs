@@ -160,10 +160,11 @@ pub enum Per {
 
 impl Per {
     /// What data of this shape belong to on a surface, with the number of axes that say so.
-    pub fn of(shape: &[usize], surface: &Surface) -> Option<(Self, usize)> {
+    pub fn of(shape: &[usize], surface: &Surface, wanted: Option<Self>) -> Option<(Self, usize)> {
+        let may_be = |per| wanted.is_none_or(|wanted| wanted == per);
         match shape {
-            [n, ..] if *n == surface.vertices.len() => Some((Self::Vertex, 1)),
-            [m, 3, ..] if *m == surface.given.len() => Some((Self::Corner, 2)),
+            [n, ..] if *n == surface.vertices.len() && may_be(Self::Vertex) => Some((Self::Vertex, 1)),
+            [m, 3, ..] if *m == surface.given.len() && may_be(Self::Corner) => Some((Self::Corner, 2)),
             _ => None,
         }
     }

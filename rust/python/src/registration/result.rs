@@ -6,6 +6,7 @@ use std::sync::Arc;
 use authalic::registration;
 use authalic::{DiskMap, SphereMap};
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::found::{Found, Outcome, Per, either};
@@ -49,7 +50,8 @@ pub struct Registration {
     /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1.
     #[pyo3(get)]
     landmark_error: Py<PyArray1<f64>>,
-    /// (j,) int64: the pairs that did not meet, more than 1e-3 apart.
+    /// (j,) int64: the pairs that did not meet: more than 1e-3 apart there, or more than .5 % of the target's size on
+    /// the target.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
     /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded whatever it
@@ -59,10 +61,17 @@ pub struct Registration {
     /// The figures of `registered` against the source's areas; its authalic_energy is that of h.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// (m,) float64: the area of each source face's image on the target over its own, with both surfaces scaled to
-    /// the same area; 1 where g keeps shares of area.
+    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere. On the disk those of
+    /// the target's own map, but where landmarks could be met only by carrying the target's.
+    #[pyo3(get)]
+    target_distortion: Py<Distortion>,
+    /// (m,) float64: the area of each source face's image on the target over its own, with the source scaled to
+    /// the area of its image; 1 where g keeps shares of area.
     #[pyo3(get)]
     area_ratio: Py<PyArray1<f64>>,
+    /// (m,) float64: max(J, 1/J) of that ratio J, at least 1; infinite where the image has no area.
+    #[pyo3(get)]
+    area_distortion: Py<PyArray1<f64>>,
     /// Iterations of carrying the landmarks; those of the maps alone are theirs.
     #[pyo3(get)]
     iterations: usize,
@@ -91,6 +100,8 @@ impl Registration {
         let locations = found.locations();
         let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
         let triangles = locations.iter().map(|location| location.triangle as usize);
+        let area_distortion = found.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
+        let target_distortion = either!(&found.outcome, f => &f.target_distortion);
         let (landmark_error, missed, status, iterations, seconds, distortion) = either!(&found.outcome, f => {
             (&f.landmark_error, &f.missed, f.status.as_str(), f.iterations, f.seconds, &f.distortion)
         });
@@ -109,6 +120,8 @@ impl Registration {
             status,
             distortion: Py::new(py, Distortion::new(py, distortion))?,
             area_ratio: PyArray1::from_slice(py, &found.area_ratio).unbind(),
+            area_distortion: PyArray1::from_vec(py, area_distortion).unbind(),
+            target_distortion: Py::new(py, Distortion::new(py, target_distortion))?,
             iterations,
             seconds,
             found: Arc::new(found),
@@ -131,9 +144,10 @@ impl Registration {
     /// Parameters
     /// ----------
     /// values : (n_t, ...) or (m_t, 3, ...) array
-    ///     One row per target vertex, or one per corner of the target faces as they were given; per vertex where both
-    ///     would fit. Each corner of a source face takes the value on that side of a seam of the data on which its face
+    ///     One row per target vertex, or one per corner of the target faces as they were given. Each corner of a source face takes the value on that side of a seam of the data on which its face
     ///     lies.
+    /// per : "vertex" or "corner", optional
+    ///     What `values` has a row for. Default: what its shape says, a vertex where both would fit.
     /// nearest : bool
     ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating. For labels.
     ///
@@ -146,12 +160,27 @@ impl Registration {
     /// ------
     /// MeshError
     ///     Values of another shape; without `nearest` also values that are no real numbers.
-    #[pyo3(signature = (values, *, nearest=false))]
-    fn pull(&self, py: Python<'_>, values: &Bound<'_, PyAny>, nearest: bool) -> PyResult<Py<PyAny>> {
+    #[pyo3(signature = (values, *, per=None, nearest=false))]
+    fn pull(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        per: Option<&str>,
+        nearest: bool,
+    ) -> PyResult<Py<PyAny>> {
+        let wanted = match per {
+            None => None,
+            Some("vertex") => Some(Per::Vertex),
+            Some("corner") => Some(Per::Corner),
+            Some(found) => {
+                let message = format!("per must be \"vertex\", \"corner\" or None, but is \"{found}\"");
+                return Err(PyValueError::new_err(message));
+            }
+        };
         let (source, target) = (&self.found.source, &self.found.target);
         let values = Values::new(values, "values")?;
         let shape = values.shape();
-        let Some((per, axes)) = Per::of(&shape, target) else {
+        let Some((per, axes)) = Per::of(&shape, target, wanted) else {
             let (n, m) = (target.vertices.len(), target.given.len());
             let expected = format!("of shape ({n}, …) per vertex or ({m}, 3, …) per corner of the target");
             return Err(bad_array(py, "values", values.shape_words(), expected));

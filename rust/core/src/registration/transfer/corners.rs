@@ -11,6 +11,9 @@ use crate::mesh::geometry::{Vector, add, scaled, triangle};
 use crate::parallel;
 use crate::registration::location::{Location, Locator, determinant};
 
+/// Values that differ by less than this, of themselves or of 1, are the same on both sides of an edge.
+const ROUNDING: f64 = 1e-6;
+
 /// Per-corner data of the target at the corners of the source's faces.
 ///
 /// `values` are rows of `width` numbers, three per face of the target. `registered` and `target_registered` are the
@@ -93,7 +96,7 @@ impl Target<'_> {
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
         let other = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
-        let agrees = |corner: usize, theirs: u32| self.row(3 * face + corner as u32) == self.row(theirs);
+        let agrees = |corner: usize, theirs: u32| self.agree(3 * face + corner as u32, theirs);
         (agrees(j, other) && agrees(i, after(other))).then_some(other / 3)
     }
 
@@ -109,6 +112,14 @@ impl Target<'_> {
         let mut barycentric = [0.0; 3];
         (barycentric[i], barycentric[j]) = (left / (right + left), right / (right + left));
         Location { triangle: face, barycentric }
+    }
+
+    /// Whether two corners have the same values up to the rounding of single precision; what is no number agrees.
+    fn agree(&self, corner: u32, other: u32) -> bool {
+        let is_same = |(a, b): (&f64, &f64)| {
+            (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1.0) || a.is_nan() && b.is_nan() || a == b
+        };
+        self.row(corner).iter().zip(self.row(other)).all(is_same)
     }
 
     fn row(&self, corner: u32) -> &[f64] {

@@ -188,9 +188,9 @@ def morphed(registered, source, target, align):
     return registering.moved(np.asarray(over), source.matrix)
 
 
-def pull(registered, values):
-    """The target's values by points (u, ...) or corners (m, 3, ...) as those of the source's."""
-    return np.asarray(registered.native.pull(np.ascontiguousarray(values, float)))
+def pull(registered, values, per):
+    """The target's values as those of the source, `per` "vertex" (u, ...) or per "corner" (m, 3, ...)."""
+    return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
 
 
 def _registered(source, target, pairs, settings, progress):

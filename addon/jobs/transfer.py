@@ -66,13 +66,17 @@ def job(context, settings):
     def finish(found):
         registered, pulled = found
         register.check_unchanged(couple)
-        for item, (elements, values) in zip(items, pulled, strict=True):
-            cargo.write(couple.source, item, elements, values)
+        problems = [
+            cargo.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
+        ]
+        left = refusals + [problem for problem in problems if problem is not None]
+        if all(problems):
+            raise _nothing(couple, left)
         return Report(
             source=couple.source.name,
             target=couple.target.name,
-            written=[(item.kind, item.name) for item in items],
-            refusals=refusals,
+            written=[(item.kind, item.name) for item, bad in zip(items, problems, strict=True) if not bad],
+            refusals=left,
             notes=register.warnings(registered),
             seconds=time.perf_counter() - started,
         )
@@ -120,10 +124,10 @@ def _pulled(registered, item, to_source):
     """The elements of the source's mesh (k,) and their values (k, d)."""
     source, target = registered.source, registered.target
     if not item.of_corners:
-        values = bridge.pull(registered, transferring.by_points(target, item.values))
+        values = bridge.pull(registered, transferring.by_points(target, item.values), "vertex")
         vertices, values = transferring.from_points(source, values)
         return vertices, values @ to_source.T if item.kind == cargo.KEY else values
-    values = bridge.pull(registered, transferring.by_corners(target, item.values))
+    values = bridge.pull(registered, transferring.by_corners(target, item.values), "corner")
     if item.kind == cargo.UV_MAP:
         values = seams.on_one_side(source, registered.places, values)
     return transferring.from_corners(source, values)

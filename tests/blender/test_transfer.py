@@ -295,6 +295,73 @@ def test_what_cannot_be_written_is_named(capfd):
     assert "vertex group Map 4: Sheet has another attribute of this name; rename that" in said
 
 
+def layers(obj):
+    data = obj.data
+    return [[one.name for one in kind] for kind in (data.uv_layers, obj.vertex_groups, data.color_attributes)]
+
+
+def test_colour_and_group_of_one_name_on_the_target(capfd):
+    """A group may take a colour's name, but not the other way round: the second is refused by name."""
+    source, target = copies()
+    random_uv(target, "Map")
+    add_colours(target, "Col", "FLOAT_COLOR", "POINT")
+    add_group(target, "Col", [1.0])
+    assert layers(target) == [["Map"], ["Col"], ["Col"]]
+    assert transfer() == {"FINISHED"}
+    assert layers(source) == [["Map"], ["Col"], []]
+    said = capfd.readouterr().out
+    assert "1 UV map (Map), 1 vertex group (Col) from" in said
+    assert "colour attribute Col: Sheet gets a vertex group of this name; rename one of them on" in said
+
+
+@pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
+def test_colour_and_group_of_one_name_on_both(kind, capfd):
+    """What is there already is written in place, but no other type can take its place."""
+    source, target = copies()
+    wanted = add_colours(target, "Col", "FLOAT_COLOR", "POINT")
+    before = add_colours(source, "Col", kind, "POINT")
+    for obj in (source, target):
+        add_group(obj, "Col", [1.0])
+    assert transfer() == {"FINISHED"}
+    assert layers(source) == [[], ["Col"], ["Col"]]
+    is_alike = kind == "FLOAT_COLOR"
+    np.testing.assert_allclose(colours(source, "Col"), wanted if is_alike else before, atol=1e-5)
+    assert ("colour attribute Col: Sheet has another attribute" in capfd.readouterr().out) != is_alike
+
+
+@pytest.mark.parametrize("kind", ["UV map", "vertex group", "colour attribute"])
+def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch):
+    """Should a name turn out to be taken only when a layer is added, the object keeps what it had."""
+    source, target = copies()
+    random_uv(target, "Map")
+    if kind == "UV map":
+        random_uv(target, "Col")
+    if kind == "vertex group":
+        add_group(target, "Col", [1.0])
+    if kind == "colour attribute":
+        add_colours(target, "Col", "FLOAT_COLOR", "POINT")
+        before = add_colours(source, "Col", "BYTE_COLOR", "CORNER")
+    cargo = part("cargo")
+    really = cargo._added
+
+    def elsewhere(layers, item, **options):
+        if item.name == "Col":
+            layers.new(name=item.name, **options)  # takes the name
+            made = really(layers, item, **options)
+            layers.remove(layers[item.name])
+            return made
+        return really(layers, item, **options)
+
+    monkeypatch.setattr(cargo, "_added", elsewhere)
+    expected = layers(source)
+    expected[0] = ["Map"]
+    assert transfer() == {"FINISHED"}
+    assert layers(source) == expected
+    assert f"{kind} Col: Blender adds no layer of this name to Sheet" in capfd.readouterr().out
+    if kind == "colour attribute":
+        assert (colours(source, "Col") == before).all()
+
+
 def test_nothing_to_transfer(capfd):
     source, _ = copies()
     assert transfer() == {"CANCELLED"}

@@ -13,6 +13,8 @@ from .domains import Unsuitable
 _KEPT = 4
 _UNIFORM = 1e-5  # matrices have single precision
 _FEWEST = {"DISK": 1, "SPHERE": 2}
+_WORST, _NEXT_WORST = 3, 0.5  # so many pairs are named, of those with so much of the largest error
+_SEEN = 5e-6  # errors above this are not 0.000 %
 
 
 @dataclass
@@ -65,7 +67,8 @@ class Registered:
 
     `places` (u, 3) and `target_places` are the points of either in the common domain, the unit sphere or the
     unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
-    `missed` the names of pairs that do not meet.
+    `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain,
+    `folds` counts those of both.
     """
 
     native: object
@@ -85,6 +88,13 @@ class Registered:
     @property
     def ended_early(self):
         return self.status == "cancelled"
+
+    @property
+    def worst(self):
+        """The few pairs (name, error) with the largest errors, the largest first; none if all meet."""
+        order = np.argsort(-self.errors, kind="stable")[:_WORST]
+        least = max(_SEEN, _NEXT_WORST * self.errors.max())
+        return [(self.names[pair], float(self.errors[pair])) for pair in order if self.errors[pair] >= least]
 
 
 def side(surface, matrix):
@@ -240,6 +250,8 @@ def registered(native, sides, shape, landmarks, names):
     source, target = sides
     ends = np.asarray(native.positions)[landmarks[0]]
     apart = np.linalg.norm(ends - target.points[landmarks[1]], axis=1)
+    figures = native.distortion, getattr(native, "target_distortion", None)
+    figures = [one for one in figures if one is not None]
     return Registered(
         native=native,
         source=source,
@@ -250,8 +262,8 @@ def registered(native, sides, shape, landmarks, names):
         names=names,
         errors=apart / max(target.size, np.finfo(float).tiny),
         missed=[names[pair] for pair in native.missed],
-        energy=float(native.distortion.authalic_energy),
-        folds=len(native.distortion.folded),
+        energy=max(float(one.authalic_energy) for one in figures),
+        folds=sum(len(one.folded) for one in figures),
         status=native.status,
         seconds=float(native.seconds),
     )

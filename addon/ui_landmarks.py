@@ -12,7 +12,7 @@ _shown = []  # the pairs of the list that is being drawn
 
 
 class AUTHALIC_UL_landmarks(bpy.types.UIList):
-    """Number, name and the two vertices of each pair, and a warning where one was lost."""
+    """Number, name, last error and the two vertices of each pair, and a warning where one was lost."""
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, index=0):
         pair = _shown[index] if index < len(_shown) else None
@@ -25,6 +25,11 @@ class AUTHALIC_UL_landmarks(bpy.types.UIList):
             return
         if pair.problem is not None:
             row.label(icon="ERROR")
+        elif item.error >= 0:
+            error = row.row()
+            error.alignment = "RIGHT"
+            error.active = False
+            error.label(text=f"{item.error:.2f} %", translate=False)
         vertices = row.row()
         vertices.alignment = "RIGHT"
         vertices.active = False

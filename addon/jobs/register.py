@@ -13,6 +13,11 @@ UV_MAP = "Authalic Registered"
 _PREFIX = "Morph → "
 _NAME_BYTES = 63
 _MIRRORED = 3  # so many landmarks on a disk tell front from back
+_UNMOVED = 1e-6  # values of shape keys that change nothing
+# Modifiers that leave the shape of a mesh as it is.
+_SHAPELESS = {"COLLISION", "DATA_TRANSFER", "NORMAL_EDIT", "PARTICLE_SYSTEM", "WEIGHTED_NORMAL"} | {
+    *("UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "VERTEX_WEIGHT_PROXIMITY")
+}
 
 
 class CannotRegister(Exception):
@@ -58,7 +63,7 @@ class Report:
             [
                 f"{self.key} on {one.source.name}: {messages.count(len(one.names), 'landmark pair')}",
                 f"landmark error mean {100 * one.errors.mean():.3f} % and max {100 * one.errors.max():.3f} % "
-                f"of the size of {one.target.name}",
+                f"of the size of {one.target.name}{_worst(one)}",
                 messages.count(one.folds, "fold"),
                 f"authalic energy {one.energy:.3g}",
                 one.status.replace("_", " "),
@@ -95,7 +100,7 @@ def job(context, settings):
             landmark.error = 100 * error
         if settings.frames is not None:
             animation.rise(couple.source, key, *settings.frames)
-        notes = [*warnings(registered), *notes, *_remarks(couple)]
+        notes = [*warnings(registered), *notes, *_remarks(couple, key)]
         return Report(key, registered, notes, time.perf_counter() - started)
 
     return Job(work, finish)
@@ -215,7 +220,37 @@ def warnings(registered):
     return notes
 
 
-def _remarks(couple):
-    """What else is affected."""
+def _worst(registered):
+    """The pairs that end furthest from each other, for a report."""
+    named = [f'"{name}" {100 * error:.3f} %' for name, error in registered.worst]
+    return f", worst at {messages.listed(named)}" if named else ""
+
+
+def _remarks(couple, key):
+    """What else is affected, and what is seen of the two that was not registered."""
     users = couple.source.data.users
-    return [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
+    notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
+    for obj in (couple.source, couple.target):
+        if ignored := _ignored(obj, but=key if obj == couple.source else None):
+            notes.append(
+                f"{obj.name} was registered without {messages.listed(ignored)}, which it is seen with; apply "
+                "what is to count first"
+            )
+    return notes
+
+
+def _ignored(obj, but):
+    """The modifiers and shape keys, but the one of a name, that make an object look unlike its mesh."""
+    blocks = obj.data.shape_keys.key_blocks[1:] if obj.data.shape_keys else ()
+    shown = [key for key in blocks if key.name != but and not key.mute and abs(key.value) > _UNMOVED]
+    shaping = [one for one in obj.modifiers if one.show_viewport and one.type not in _SHAPELESS]
+    return [
+        *(f'shape key "{key.name}"' for key in shown),
+        *(f'modifier "{one.name}"' for one in shaping if not _smooths_only(one)),
+    ]
+
+
+def _smooths_only(modifier):
+    """Whether it is Blender's own Shade Auto Smooth, which only splits normals."""
+    group = getattr(modifier, "node_group", None)
+    return group is not None and group.name.startswith("Smooth by Angle")

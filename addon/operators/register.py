@@ -17,7 +17,7 @@ class Registering:
         description="The shape by way of which the two surfaces are registered",
         items=(
             ("AUTO", "Automatic", "A disk for surfaces with a boundary, a sphere for closed ones"),
-            ("DISK", "Disk", "Both surfaces must have one boundary"),
+            ("DISK", "Disk", "Both surfaces must have one boundary, and normals to the same side"),
             ("SPHERE", "Sphere", "Both surfaces must be closed"),
         ),
         default="AUTO",
@@ -46,7 +46,8 @@ class Registering:
 class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
-    Faces keep their shares of the area as well as the landmarks allow, and the map folds none of them over"""
+    Faces keep their shares of the area as well as the landmarks allow, and the map folds none of them over.
+    Normals of both must face the same way, or the map is mirrored: recalculate or flip those of one"""
 
     bl_idname = "authalic.register"
     bl_label = "Register and Morph"

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of landmarks: added, refused, listed, removed, and their markers."""
 
+from unittest import mock
+
 import bmesh
 import bpy
 import meshes
@@ -242,6 +244,22 @@ def test_markers_ride_on_what_is_seen(heads):
     bpy.context.view_layer.update()
     point, _ = place(source, 20, bpy.context.evaluated_depsgraph_get())
     assert np.allclose(point, 2 * flat + [0, 0, 5], atol=1e-5)
+
+
+def test_the_list_shows_the_errors_that_are_known(heads):
+    source, _ = heads
+    pairing.add(20, 30)
+    pairing.add(21, 31)
+    source.authalic_landmarks[0].error = 0.125
+    panel = pairing.part("ui_landmarks")
+    panel._shown[:] = pairing.part("landmarks").pairs(source)
+    said = []
+    for index, item in enumerate(source.authalic_landmarks):
+        layout = mock.MagicMock()
+        layout.row.return_value = layout
+        panel.AUTHALIC_UL_landmarks.draw_item(None, None, layout, source, item, 0, None, "", index)
+        said.append([call.kwargs["text"] for call in layout.label.call_args_list])
+    assert said == [["1", "0.12 %", "20 → 30"], ["2", "21 → 31"]]
 
 
 def test_picking_without_a_window_adds_numbers(heads):

@@ -427,6 +427,60 @@ def test_shared_mesh(capfd):
     assert "shares its mesh, all 2 users have the key" in capfd.readouterr().out
 
 
+def test_worst_pairs_are_named():
+    one = part("registering").Registered(
+        *[None] * 6,
+        names=list("ABCDE"),
+        errors=np.array([0.01, 0.02, 0.004, 0.011, 0.0105]),
+        missed=[],
+        energy=0.0,
+        folds=0,
+        status="converged",
+        seconds=0.0,
+    )
+    assert [name for name, _ in one.worst] == ["B", "D", "E"]
+    said = part("jobs.register")._worst(one)
+    assert said == ', worst at "B" 2.000 %; "D" 1.100 %; "E" 1.050 %'
+    one.errors = np.full(5, 1e-7)
+    assert part("jobs.register")._worst(one) == ""
+
+
+def test_the_larger_energy_is_reported():
+    class Figures:
+        def __init__(self, energy, folded):
+            self.authalic_energy, self.folded = energy, folded
+
+    class Native:
+        positions, registered, target_registered = (np.zeros((1, 3)) for _ in range(3))
+        distortion, missed, status, seconds = Figures(0.25, []), [], "converged", 0.0
+
+    sheets()
+    sides = part("jobs.register").chosen(bpy.context).sides
+    figures = part("registering").registered
+    assert figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"]).energy == 0.25
+    Native.target_distortion = Figures(0.5, [3])
+    found = figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"])
+    assert (found.energy, found.folds) == (0.5, 1)
+
+
+def test_what_is_seen_but_not_registered_is_named(capfd):
+    source, target = balls()
+    register()
+    assert "was registered without" not in capfd.readouterr().out
+    source.data.shape_keys.key_blocks[KEY].value = 1.0
+    source.modifiers.new("Weights", "VERTEX_WEIGHT_EDIT")
+    source.modifiers.new("Off", "SUBSURF").show_viewport = False
+    register()
+    assert "was registered without" not in capfd.readouterr().out
+    source.modifiers.new("Smooth", "SUBSURF")
+    target.shape_key_add(name="Basis", from_mix=False)
+    target.shape_key_add(name="Fat", from_mix=False).value = 0.5
+    register()
+    said = capfd.readouterr().out
+    assert 'Icosphere was registered without modifier "Smooth", which it is seen with' in said
+    assert 'Twin was registered without shape key "Fat", which it is seen with' in said
+
+
 def test_undo_and_redo():
     source, _ = sheets()
     bpy.ops.ed.undo_push(message="Start")

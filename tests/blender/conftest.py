@@ -2,10 +2,12 @@
 """Tests of the extension as installed: the zip AUTHALIC_EXTENSION_ZIP, in a scratch profile."""
 
 import os
+import sys
 
 import bpy
 import pytest
 
+_STATUS = pytest.StashKey[int]()
 MODULE = "bl_ext.user_default.authalic"
 
 
@@ -30,7 +32,21 @@ def extension():
     _setting("BLENDER_USER_RESOURCES", "an empty folder for Blender's profile")
     install()
     assert MODULE in bpy.context.preferences.addons, "the extension was not enabled"
-    return MODULE
+    yield MODULE
+    # disabled as a person would, so that nothing of it is registered when Blender ends
+    bpy.ops.preferences.addon_disable(module=MODULE)
+
+
+def pytest_sessionfinish(session, exitstatus):
+    session.config.stash[_STATUS] = int(exitstatus)
+
+
+def pytest_unconfigure(config):
+    """Blender 4.2 may crash as the interpreter ends, long after the report is written."""
+    if bpy.app.version < (4, 5) and _STATUS in config.stash:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(config.stash[_STATUS])
 
 
 @pytest.fixture(autouse=True)

@@ -397,11 +397,231 @@ pub enum Error {
         vertex: usize,
     },
 
+    /// A surface that must have genus 0 has handles.
+    #[error(
+        "the surface has genus {genus} (handles like a torus), but may have none: cut each handle open by seams, or fill it"
+    )]
+    GenusNotZero {
+        /// The number of handles.
+        genus: usize,
+    },
+
+    /// The lists of landmark curves do not match.
+    #[error(
+        "curves come in pairs, but there are {source_count} source_curves and {target_count} target_curves: \
+         give a partner to {}, or leave it out",
+        .unpaired.named("curve")
+    )]
+    CurveCounts {
+        /// How many curves the source has.
+        source_count: usize,
+        /// How many the target has.
+        target_count: usize,
+        /// The curves without a partner.
+        unpaired: Elements,
+    },
+
+    /// There is nothing to register closed surfaces by.
+    #[error("no curves on closed surfaces: give at least one pair, or use register_spheres, which needs none")]
+    NoCurves,
+
+    /// A curve has too few edges.
+    #[error(
+        "{name}: curve {curve} has {edges} edges, but needs at least two, a closed one three: \
+         lengthen it, or subdivide the mesh there"
+    )]
+    ShortCurve {
+        /// The argument.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+        /// How many edges it has.
+        edges: usize,
+    },
+
+    /// A vertex of a curve does not exist.
+    #[error(
+        "{name}: curve {curve} is out of range at place {place}: {value} is not one of the {n_vertices} vertices \
+         (indices start at 0)"
+    )]
+    CurveOutOfRange {
+        /// The argument.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+        /// The place in it, from 0.
+        place: usize,
+        /// What stands there.
+        value: usize,
+        /// How many vertices the mesh has.
+        n_vertices: usize,
+    },
+
+    /// Two consecutive vertices of a curve are not joined by an edge.
+    #[error(
+        "{name}: curve {curve} leaves the edges of the mesh after place {place}: no edge joins vertices {vertices}; \
+         list every vertex along the path"
+    )]
+    CurveOffEdges {
+        /// The argument.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+        /// The place of the first of the two vertices in it, from 0.
+        place: usize,
+        /// The two vertices.
+        vertices: Elements,
+    },
+
+    /// A curve meets itself.
+    #[error(
+        "{name}: curve {curve} meets itself at {}, at places {} and {}: remove the crossing \
+         (only the first vertex may be repeated, at the end, to close the curve)",
+        .vertices.named("vertex"), places[0], places[1]
+    )]
+    CurveMeetsItself {
+        /// The argument.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+        /// Two places in it with the same vertex, from 0.
+        places: [usize; 2],
+        /// The vertex.
+        vertices: Elements,
+    },
+
+    /// Two curves meet.
+    #[error(
+        "{name}: curves {} and {} meet at {}: shorten or move one of them, so that they have no vertex in common",
+        curves[0], curves[1], .vertices.named("vertex")
+    )]
+    CurvesMeet {
+        /// The argument.
+        name: &'static str,
+        /// The curves.
+        curves: [usize; 2],
+        /// The vertices that they share.
+        vertices: Elements,
+    },
+
+    /// A curve meets the boundary without being a whole loop of it.
+    #[error(
+        "{name}: curve {curve} meets the boundary at {}: end it inside the surface, \
+         or give a closed curve that runs along the whole boundary loop",
+        .vertices.named("vertex")
+    )]
+    CurveOnBoundary {
+        /// The argument.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+        /// Its vertices on the boundary.
+        vertices: Elements,
+    },
+
+    /// Of a pair of curves only one is closed.
+    #[error(
+        "{name}: curve {curve} is open, but its partner is closed: close it by its first vertex at the end, or open both"
+    )]
+    CurveNotClosed {
+        /// The argument with the open curve.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+    },
+
+    /// Of a pair of closed curves only one runs along the boundary.
+    #[error(
+        "{name}: curve {curve} runs along a boundary loop, but its partner lies inside the other surface: \
+         remove the faces that the partner encloses, or fill the hole"
+    )]
+    CurveBoundsOneSide {
+        /// The argument with the curve on the boundary.
+        name: &'static str,
+        /// The curve.
+        curve: usize,
+    },
+
+    /// The surfaces have different numbers of boundary loops.
+    #[error(
+        "boundary loops come in pairs too, but beside the curves the source has {source_count} and the target {target_count}: \
+         fill the holes that have no partner"
+    )]
+    LoopCounts {
+        /// How many loops the source has that are no curves.
+        source_count: usize,
+        /// How many the target has.
+        target_count: usize,
+    },
+
+    /// A curve lies on different sides of a closed curve.
+    #[error(
+        "curve {curve} lies inside closed curve {closed} on the {surface} but outside on the other surface: \
+         move it, or check the order of the curves"
+    )]
+    CurveSides {
+        /// The curve.
+        curve: usize,
+        /// The closed curve.
+        closed: usize,
+        /// On which surface it lies inside, the smaller part of the source.
+        surface: &'static str,
+    },
+
+    /// A closed curve has different numbers of boundary loops on its sides.
+    #[error(
+        "closed curve {closed} has {source_count} boundary loops inside it on the source but {target_count} on the target: \
+         fill the holes that have no partner"
+    )]
+    LoopSides {
+        /// The closed curve.
+        closed: usize,
+        /// How many loops lie in it on the source.
+        source_count: usize,
+        /// How many on the target.
+        target_count: usize,
+    },
+
+    /// The curves of one surface look like a mirror image of the other's.
+    #[error(
+        "the curves fit far better when one surface is mirrored, like a left and a right hemisphere: mirror one of \
+         them (negate x and flip its faces), or check the order of the curves"
+    )]
+    Mirrored,
+
     /// A linear system could not be factored.
     #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
     FactorizationFailed {
         /// The matrix.
         what: String,
+    },
+
+    /// A curve or boundary loop does not open the surface by itself.
+    #[error(
+        "the surface cannot be cut open along feature {feature}: it is no path of edges, or it touches itself or another"
+    )]
+    Uncuttable {
+        /// Which one, in the order of the slits and boundary loops of the surface.
+        feature: usize,
+    },
+
+    /// Two curves that follow each other cannot be joined.
+    #[error(
+        "no path of edges joins feature {feature} to the next without touching a curve: refine the mesh there"
+    )]
+    NoArc {
+        /// From which one on, in the order of the slits and boundary loops of the surface.
+        feature: usize,
+    },
+
+    /// No hyperbolic metric with geodesic boundary was found.
+    #[error(
+        "no hyperbolic metric with these boundaries was found in double precision, left over: {}; remove the slivers there",
+        .faces.named("face")
+    )]
+    NoHyperbolicMetric {
+        /// The faces that stayed without area, or whose angles do not fit together.
+        faces: Elements,
     },
 
     /// The observer ended the run before there was any map without folds.
@@ -436,6 +656,7 @@ impl Error {
             | Self::DuplicateFaces { faces }
             | Self::ZeroArea { faces }
             | Self::SeveralComponents { faces }
+            | Self::NoHyperbolicMetric { faces }
             | Self::Density { faces, .. } => Some(faces),
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
@@ -443,12 +664,17 @@ impl Error {
             Self::LandmarkOutOfRange { pairs, .. }
             | Self::RepeatedLandmark { pairs, .. }
             | Self::LandmarkOnBoundary { pairs, .. } => Some(pairs),
+            Self::CurveCounts { unpaired, .. } => Some(unpaired),
+            Self::CurveOffEdges { vertices, .. }
+            | Self::CurveMeetsItself { vertices, .. }
+            | Self::CurvesMeet { vertices, .. }
+            | Self::CurveOnBoundary { vertices, .. } => Some(vertices),
             Self::Surface { error, .. } => error.elements(),
             _ => None,
         }
     }
 
-    /// Whether the arrays given are at fault: the mesh, its seams, its density, its initial map or its landmarks.
+    /// Whether the arrays given are at fault: the mesh, its seams, its density, its initial map, its landmarks or curves.
     pub fn is_mesh_error(&self) -> bool {
         match self {
             Self::Surface { error, .. } => error.is_mesh_error(),

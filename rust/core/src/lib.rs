@@ -25,6 +25,7 @@ mod distortion;
 pub mod embedding;
 pub mod energy;
 mod error;
+pub mod hyperbolic;
 pub mod mesh;
 pub mod optimize;
 mod parallel;

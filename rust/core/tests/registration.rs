@@ -100,10 +100,10 @@ fn the_inverse_exchanges_both_surfaces() {
     let (source, target) = (bumpy_disk(7).mesh(), cap(8, 1.4).mesh());
     let (ours, theirs) = (picked(&source, 3, 3), picked(&target, 3, 4));
     let found = disks(&source, &target, [&ours, &theirs]);
-    let back = found.inverse(source.faces(), target.points(), &mut Silent).unwrap();
+    let back = found.inverse(source.faces(), &mut Silent).unwrap();
     assert_eq!((back.registered.len(), back.locations.len()), (target.n_vertices(), target.n_vertices()));
     assert_sound(&found.target_faces, &back, [&theirs, &ours]).unwrap();
-    let again = back.inverse(&found.target_faces, source.points(), &mut Silent).unwrap();
+    let again = back.inverse(&found.target_faces, &mut Silent).unwrap();
     assert_eq!(again.locations, found.locations);
     let [before, after] = [&found, &again].map(|found| found.distortion.authalic_energy);
     assert!((after - before).abs() < 1e-9 * before, "{before} {after}");

@@ -9,6 +9,7 @@
 """
 
 from ._native import (
+    Certificates,
     DiskMap,
     Distortion,
     MeshError,
@@ -22,12 +23,14 @@ from ._native import (
     distortion,
     homotopy,
     register_disks,
+    register_hyperbolic,
     register_spheres,
     sphere_map,
     stretch_hessian,
 )
 
 __all__ = [
+    "Certificates",
     "DiskMap",
     "Distortion",
     "MeshError",
@@ -41,6 +44,7 @@ __all__ = [
     "distortion",
     "homotopy",
     "register_disks",
+    "register_hyperbolic",
     "register_spheres",
     "sphere_map",
     "stretch_hessian",

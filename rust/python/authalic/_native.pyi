@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Types of the native module; the documentation stands in the docstrings of the module itself."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "Certificates",
     "DiskMap",
     "Distortion",
     "MeshError",
@@ -21,6 +22,7 @@ __all__ = [
     "distortion",
     "homotopy",
     "register_disks",
+    "register_hyperbolic",
     "register_spheres",
     "sphere_map",
     "stretch_hessian",
@@ -157,6 +159,12 @@ class Registration:
     @property
     def target_distortion(self) -> Distortion: ...
     @property
+    def certificates(self) -> Certificates | None: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def energies(self) -> list[_Reals]: ...
+    @property
     def iterations(self) -> int: ...
     @property
     def seconds(self) -> float: ...
@@ -165,6 +173,29 @@ class Registration:
     ) -> NDArray[Any]: ...
     def inverse(self) -> Registration: ...
     def compare(self, source_values: ArrayLike, target_values: ArrayLike) -> tuple[float, float]: ...
+
+@final
+class Certificates:
+    @property
+    def folded(self) -> _Indices: ...
+    @property
+    def area(self) -> float: ...
+    @property
+    def expected_area(self) -> float: ...
+    @property
+    def area_error(self) -> float: ...
+    @property
+    def curve_error(self) -> float: ...
+    @property
+    def bank_error(self) -> float: ...
+    @property
+    def cocycle_error(self) -> float: ...
+    @property
+    def outside(self) -> int: ...
+    @property
+    def energy_ratio(self) -> float: ...
+    @property
+    def curvature(self) -> tuple[float, float]: ...
 
 def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
 def distortion(
@@ -219,6 +250,20 @@ def register_spheres(
     target_landmarks: ArrayLike,
     weight: float = 1.0,
     angle_weight: float = 0.0,
+    progress: _Progress | None = None,
+) -> Registration: ...
+def register_hyperbolic(
+    source: _Surface,
+    target: _Surface,
+    *,
+    source_curves: Iterable[ArrayLike],
+    target_curves: Iterable[ArrayLike],
+    metric: Literal["newton", "ricci_flow"] = "newton",
+    solver: Literal["newton", "heat"] = "newton",
+    max_iterations: int | None = None,
+    tolerance: float | None = None,
+    source_sphere: ArrayLike | None = None,
+    target_sphere: ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Registration: ...
 def homotopy(vertices: ArrayLike, registration: Registration, t: float, *, align: bool = False) -> _Reals: ...

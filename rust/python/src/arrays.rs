@@ -32,8 +32,13 @@ pub fn indices<const N: usize>(
     narrow(object.py(), name, "row", &found, n_vertices)
 }
 
-/// Vertices, one of each pair: integers of shape (k,) that fit a vertex index.
-pub fn index_list(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<usize>> {
+/// Vertices: integers of shape (k,) that fit a vertex index; `noun` names an entry.
+pub fn index_list(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+    noun: &str,
+    n_vertices: usize,
+) -> PyResult<Vec<usize>> {
     let array = as_array(object, name)?;
     let &[length] = array.shape() else {
         let found = shape_words(array.shape());
@@ -44,7 +49,7 @@ pub fn index_list(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usi
         "f" => whole(&column, name)?,
         _ => rows(&column, name, "int64", "iu", "integers")?,
     };
-    let narrowed = narrow(object.py(), name, "pair", &found, n_vertices)?;
+    let narrowed = narrow(object.py(), name, noun, &found, n_vertices)?;
     Ok(narrowed.as_flattened().iter().map(|&vertex| vertex as usize).collect())
 }
 

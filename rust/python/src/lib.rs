@@ -25,6 +25,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<disk::DiskMap>()?;
     module.add_class::<sphere::SphereMap>()?;
     module.add_class::<registration::Registration>()?;
+    module.add_class::<registration::Certificates>()?;
     module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
@@ -32,5 +33,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_disks, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_spheres, module)?)?;
+    module.add_function(wrap_pyfunction!(registration::register_hyperbolic, module)?)?;
     module.add_function(wrap_pyfunction!(registration::homotopy, module)?)
 }

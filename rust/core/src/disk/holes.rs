@@ -31,15 +31,31 @@ pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled,
     for hole in &mesh.boundary_loops()[1..] {
         let corners: Vec<Vector> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
         let share = (scale * spanned_area(&corners) / hole.len() as f64).max(least);
-        let apex = points.len() as u32;
-        points.push(apex_of(&corners));
-        for k in 0..hole.len() {
-            // the loop has the surface on its left, the fan lies on its right
-            faces.push([hole[(k + 1) % hole.len()], hole[k], apex]);
-            targets.push(share);
-        }
+        fill(hole, &mut points, &mut faces);
+        targets.resize(faces.len(), share);
     }
     Ok(Filled { mesh: TriangleMesh::new(&points, &faces)?, targets })
+}
+
+/// The closed surface with all loops filled; the original vertices and faces come first.
+///
+/// # Errors
+/// As [`fill_holes`].
+pub(crate) fn closed(mesh: &TriangleMesh) -> Result<TriangleMesh, Error> {
+    let (mut points, mut faces) = (mesh.points().to_vec(), mesh.faces().to_vec());
+    mesh.boundary_loops().iter().for_each(|hole| fill(hole, &mut points, &mut faces));
+    TriangleMesh::new(&points, &faces)
+}
+
+/// Fills one hole by a fan to a new vertex.
+fn fill(hole: &[u32], points: &mut Vec<Vector>, faces: &mut Vec<[u32; 3]>) {
+    let corners: Vec<Vector> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
+    let apex = points.len() as u32;
+    points.push(apex_of(&corners));
+    for k in 0..hole.len() {
+        // the loop has the surface on its left, the fan lies on its right
+        faces.push([hole[(k + 1) % hole.len()], hole[k], apex]);
+    }
 }
 
 /// Area of the flat polygon nearest to a loop: the length of its area vector.

@@ -28,6 +28,7 @@ use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::optimize::check_angle_weight;
 
+pub(crate) use holes::closed;
 use run::Run;
 
 /// A map of the vertices into the plane.

@@ -11,7 +11,7 @@ pub mod orientation;
 pub(crate) mod polygon;
 pub(crate) mod renumbering;
 mod soup;
-mod topology;
+pub(crate) mod topology;
 mod validate;
 
 pub use cut::{Patch, cut};
@@ -21,8 +21,9 @@ pub use topology::Topology;
 
 use crate::error::{Elements, Error};
 use geometry::Vector;
-pub(crate) use topology::VertexCorners;
-use topology::{EdgeTable, NO_CORNER};
+pub(crate) use topology::{
+    EdgeTable, NO_CORNER, VertexCorners, corner_of_entry, half_edge, next_corner, previous_corner, vertex_at,
+};
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
 ///
@@ -235,6 +236,18 @@ impl TriangleMesh {
         match self.genus() {
             0 => Ok(()),
             genus => Err(Error::SphereHasHandles { genus }),
+        }
+    }
+
+    /// Refuses anything but one component of genus 0, with or without a boundary.
+    ///
+    /// # Errors
+    /// Several components, or handles; each with its own message.
+    pub fn require_genus_zero(&self) -> Result<(), Error> {
+        self.require_one_component()?;
+        match self.genus() {
+            0 => Ok(()),
+            genus => Err(Error::GenusNotZero { genus }),
         }
     }
 

@@ -6,9 +6,9 @@
 use super::Registration;
 use super::location::Locator;
 use crate::control::{Observer, Watch};
-use crate::distortion::{Image, distortion};
+use crate::distortion::Image;
 use crate::error::Error;
-use crate::mesh::geometry::{Vector, face_areas, normalized};
+use crate::mesh::geometry::Vector;
 
 /// A point of the disk or of the sphere.
 pub trait DomainPoint: Copy + Send + Sync {
@@ -44,7 +44,7 @@ impl DomainPoint for [f64; 3] {
 impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     /// The registration of the target onto the source: g⁻¹, from the same maps to the domain.
     ///
-    /// `source_faces` (m, 3) are the faces of the source as oriented, `target_vertices` (n_t, 3) the target's vertices.
+    /// `source_faces` (m, 3) are the faces of the source as oriented.
     ///
     /// # Errors
     /// [`Error::CancelledEarly`] where the observer ends it.
@@ -54,16 +54,12 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     pub fn inverse(
         &self,
         source_faces: &[[u32; 3]],
-        target_vertices: &[Vector],
         observer: &mut dyn Observer,
     ) -> Result<Self, Error> {
         let source = lifted(&self.registered);
         let watch = Watch::new(observer, 0.0, "Looking up places");
         let locator = Locator::new(&source, source_faces);
         let locations = locator.locate_all(&lifted(&self.target_registered), &watch);
-        let points = normalized(target_vertices).0;
-        let areas = face_areas(&points, &self.target_faces);
-        let image = Point::image(&self.target_registered);
         Ok(Self {
             locations: locations.ok_or(Error::CancelledEarly)?,
             registered: self.target_registered.clone(),
@@ -71,7 +67,7 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
             target_faces: source_faces.to_vec(),
             source_map: self.target_map.clone(),
             target_map: self.source_map.clone(),
-            distortion: distortion(&points, &self.target_faces, image, &areas)?,
+            distortion: self.target_distortion.clone(),
             target_distortion: self.distortion.clone(),
             landmark_error: self.landmark_error.clone(),
             missed: self.missed.clone(),

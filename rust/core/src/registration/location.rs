@@ -32,6 +32,21 @@ pub struct Location {
     pub barycentric: [f64; 3],
 }
 
+impl Location {
+    /// The place at part `t` of the way along the edge opposite to a corner, from the corner after it to the one after that.
+    pub(crate) fn on_edge(corner: u32, t: f64) -> Self {
+        let mut barycentric = [0.0; 3];
+        let k = corner as usize % 3;
+        (barycentric[(k + 1) % 3], barycentric[(k + 2) % 3]) = (1.0 - t, t);
+        Self { triangle: corner / 3, barycentric }
+    }
+
+    /// The point of the place where its face has these corners.
+    pub(crate) fn point(&self, corners: [Vector; 3]) -> Vector {
+        [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
+    }
+}
+
 /// Finds points in a map.
 pub(crate) struct Locator<'a> {
     positions: &'a [Vector],

@@ -24,17 +24,18 @@ use crate::disk::DiskMap;
 use crate::distortion::Distortion;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, distance};
+use crate::mesh::geometry::{Vector, distance, triangle};
 use crate::parallel;
 use crate::sphere::SphereMap;
 
-use location::Locator;
+pub(crate) use location::Locator;
 
 pub use disk::register_disks;
 pub use inverse::DomainPoint;
 pub use landmarks::Landmarks;
 pub use location::Location;
 pub use morph::{Similarity, area_ratios, compare, homotopy, similarity};
+pub(crate) use sphere::inside_out;
 pub use sphere::register_spheres;
 pub use transfer::{corner_sides, nearest_corners, nearest_vertices, pull_corners, pull_rows, pull_vertices};
 
@@ -108,9 +109,8 @@ impl<Map, Point> Registration<Map, Point> {
     pub fn positions(&self, vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let (locations, faces) = (&self.locations, &self.target_faces);
         parallel::map(locations.len(), |source| {
-            let Location { triangle, barycentric } = locations[source];
-            let corners = faces[triangle as usize].map(|vertex| vertices[vertex as usize]);
-            std::array::from_fn(|axis| (0..3).map(|c| barycentric[c] * corners[c][axis]).sum())
+            let location = locations[source];
+            location.point(triangle(vertices, faces[location.triangle as usize]))
         })
     }
 }
@@ -141,9 +141,8 @@ fn missed(
     locations: &[Location],
 ) -> Vec<usize> {
     let is_missed = |&pair: &usize| {
-        let Location { triangle, barycentric } = locations[landmarks.source[pair]];
-        let corners = target.faces()[triangle as usize].map(|vertex| target.points()[vertex as usize]);
-        let place = std::array::from_fn(|axis| (0..3).map(|c| barycentric[c] * corners[c][axis]).sum());
+        let location = locations[landmarks.source[pair]];
+        let place = location.point(triangle(target.points(), target.faces()[location.triangle as usize]));
         let on_target = distance(place, target.points()[landmarks.target[pair]]);
         landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET
     };

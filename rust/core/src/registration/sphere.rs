@@ -58,7 +58,7 @@ pub fn register_spheres(
     landmarks.check(source, target, Domain::Sphere)?;
     options.check()?;
     let same_side;
-    let target = match volume(source) * volume(target) < 0.0 {
+    let target = match inside_out(source, target) {
         false => target,
         true => {
             same_side = target.turned_over();
@@ -117,6 +117,11 @@ pub fn register_spheres(
         target_distortion,
         seconds: history.seconds(),
     })
+}
+
+/// Whether one of two surfaces is turned inside out beside the other, by the sign of the volume inside.
+pub(crate) fn inside_out(source: &TriangleMesh, target: &TriangleMesh) -> bool {
+    volume(source) * volume(target) < 0.0
 }
 
 /// Six times the volume inside.

@@ -46,15 +46,17 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
 }
 
 /// Solves `A x = b` in place for a dense symmetric positive definite matrix, of which only the lower triangle is read;
-/// it is overwritten by its Cholesky factor. False, and `rhs` undefined, where a pivot is not positive and finite.
+/// it is overwritten by its Cholesky factor. `rhs` holds one or more columns, one after another. False, and `rhs`
+/// undefined, where a pivot is not positive and finite.
 pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bool {
-    let n = rhs.len();
+    let n = matrix.len().isqrt();
+    let columns = rhs.len().checked_div(n).unwrap_or(0);
     if !cholesky_in_place(block(matrix, n, n)) {
         return false;
     }
     let lower = block_ref(matrix, n, n);
-    triangular_solve::solve_lower_triangular_in_place(lower, block(rhs, n, 1), Par::Seq);
-    triangular_solve::solve_upper_triangular_in_place(lower.transpose(), block(rhs, n, 1), Par::Seq);
+    triangular_solve::solve_lower_triangular_in_place(lower, block(rhs, n, columns), Par::Seq);
+    triangular_solve::solve_upper_triangular_in_place(lower.transpose(), block(rhs, n, columns), Par::Seq);
     rhs.iter().all(|x| x.is_finite())
 }
 
@@ -204,9 +206,9 @@ mod tests {
     #[test]
     fn dense_positive_definite_systems_are_solved_from_the_lower_triangle() {
         let mut matrix = [4.0, 2.0, -2.0, f64::NAN, 5.0, 3.0, f64::NAN, f64::NAN, 6.0];
-        let mut x = [2.0, 21.0, 22.0];
+        let mut x = [2.0, 21.0, 22.0, 4.0, 42.0, 44.0];
         assert!(solve_positive_definite(&mut matrix, &mut x));
-        [1.0, 2.0, 3.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
+        [1.0, 2.0, 3.0, 2.0, 4.0, 6.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
         assert!(!solve_positive_definite(&mut [1.0, 2.0, 2.0, 1.0], &mut [1.0, 1.0]));
     }
 

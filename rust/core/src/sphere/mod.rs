@@ -31,6 +31,7 @@ use crate::optimize::gradient_descent::LineSearch;
 use crate::parallel;
 
 use run::Run;
+pub(crate) use start::rough_conformal;
 
 /// A map of the vertices onto the unit sphere.
 type Map = Vec<Vector>;
@@ -158,7 +159,7 @@ pub fn sphere_map(
 }
 
 /// A third of the targets of the faces at each vertex.
-fn vertex_weights(mesh: &TriangleMesh, targets: &[f64]) -> Vec<f64> {
+pub(crate) fn vertex_weights(mesh: &TriangleMesh, targets: &[f64]) -> Vec<f64> {
     parallel::map(mesh.n_vertices(), |vertex| {
         mesh.vertex_corners(vertex).iter().map(|&corner| targets[corner as usize / 3] / 3.0).sum()
     })

@@ -41,6 +41,9 @@ const COLLAPSED: f64 = 1e-9;
 /// conformal map's E_A; a conformal map turns such a surface about for nothing.
 const ROUND: f64 = 0.1;
 
+/// A rough map takes no cotangent above this, and none below its inverse.
+const LARGEST_COTANGENT: f64 = 100.0;
+
 const MESSAGE: &str = "Start map";
 
 /// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
@@ -108,8 +111,33 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
 /// # Errors
 /// [`Error::FactorizationFailed`] where slivers make the cotangents too large.
 fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
+    conformal_within(f64::INFINITY, mesh, weights, watch)
+}
+
+/// The same, nearly conformal only but without folds, but for rounding: cotangents that are negative or extreme are
+/// moved to positive ones.
+///
+/// # Errors
+/// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
+pub(crate) fn rough_conformal(
+    mesh: &TriangleMesh,
+    weights: &[f64],
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
+    conformal_within(LARGEST_COTANGENT, mesh, weights, watch)
+}
+
+/// The map for cotangents of at most `largest`; where that is finite, of at least its inverse.
+fn conformal_within(
+    largest: f64,
+    mesh: &TriangleMesh,
+    weights: &[f64],
+    watch: &Watch<'_>,
+) -> Result<Map, Error> {
+    let least = if largest.is_finite() { 1.0 / largest } else { f64::NEG_INFINITY };
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
-    let by_corner: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
+    let half = |cotangent: &f64| 0.5 * cotangent.clamp(least, largest);
+    let by_corner: Vec<f64> = by_face.iter().flatten().map(half).collect();
     let removed = roundest_face(mesh);
     let mut plane = harmonic(mesh, removed, &by_corner, watch)?;
     normalise(&mut plane, weights);

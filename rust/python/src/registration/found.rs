@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use authalic::mesh::geometry::{face_areas, normalized};
+use authalic::hyperbolic::CurveRegistration;
 use authalic::registration::{DiskRegistration, Location, SphereRegistration, similarity};
 use authalic::{Error, Observer, registration};
 
@@ -28,6 +29,7 @@ pub struct Found {
 pub enum Outcome {
     Disk(DiskRegistration),
     Sphere(SphereRegistration),
+    Curves(Box<CurveRegistration>),
 }
 
 /// Evaluates an expression for either kind of outcome.
@@ -36,6 +38,10 @@ macro_rules! either {
         match $outcome {
             Outcome::Disk($found) => $value,
             Outcome::Sphere($found) => $value,
+            Outcome::Curves(curves) => {
+                let $found = &curves.registration;
+                $value
+            }
         }
     };
 }
@@ -70,14 +76,18 @@ impl Found {
         match &self.outcome {
             Outcome::Disk(found) => (lifted(&found.registered), lifted(&found.target_registered)),
             Outcome::Sphere(found) => (found.registered.clone(), found.target_registered.clone()),
+            Outcome::Curves(found) => {
+                (found.registration.registered.clone(), found.registration.target_registered.clone())
+            }
         }
     }
 
     pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
-        let (faces, vertices) = (&self.source.faces, &self.target.vertices);
+        let faces = &self.source.faces;
         let outcome = match &self.outcome {
-            Outcome::Disk(found) => Outcome::Disk(found.inverse(faces, vertices, observer)?),
-            Outcome::Sphere(found) => Outcome::Sphere(found.inverse(faces, vertices, observer)?),
+            Outcome::Disk(found) => Outcome::Disk(found.inverse(faces, observer)?),
+            Outcome::Sphere(found) => Outcome::Sphere(found.inverse(faces, observer)?),
+            Outcome::Curves(found) => Outcome::Curves(Box::new(found.inverted())),
         };
         Ok(Self::new(self.target.clone(), self.source.clone(), outcome))
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::registration`.
 
+mod curves;
 mod found;
 mod result;
 
@@ -14,6 +15,7 @@ use crate::arrays::{Pairs, from_points, index_list, indices, points};
 use crate::errors::bad_array;
 use crate::run::run;
 use found::{Found, Outcome, Surface};
+pub use curves::{Certificates, register_hyperbolic};
 pub use result::Registration;
 
 /// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to landmarks.
@@ -235,8 +237,8 @@ impl Arguments {
     ) -> PyResult<Self> {
         let source = surface(source, ["source", "source vertices", "source faces"])?;
         let target = surface(target, ["target", "target vertices", "target faces"])?;
-        let source_landmarks = index_list(source_landmarks, "source_landmarks", source.0.len())?;
-        let target_landmarks = index_list(target_landmarks, "target_landmarks", target.0.len())?;
+        let source_landmarks = index_list(source_landmarks, "source_landmarks", "pair", source.0.len())?;
+        let target_landmarks = index_list(target_landmarks, "target_landmarks", "pair", target.0.len())?;
         Ok(Self { source, target, source_landmarks, target_landmarks, options })
     }
 
@@ -250,17 +252,24 @@ impl Arguments {
             &RegistrationOptions,
         ) -> Result<Outcome, Error>,
     ) -> Result<Found, Error> {
-        let mesh = |(vertices, faces): &(Vec<_>, Vec<_>), surface| {
-            TriangleMesh::new(vertices, faces).map_err(|error| error.of_surface(surface))
-        };
         let (source, target) = (mesh(&self.source, "source")?, mesh(&self.target, "target")?);
         let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
         let outcome = register(&source, &target, &landmarks, &self.options)?;
-        let kept = |(vertices, given), faces: &[_]| Surface { vertices, given, faces: faces.to_vec() };
-        let target_faces = found::either!(&outcome, found => found.target_faces.clone());
-        let surfaces = (kept(self.source, source.faces()), kept(self.target, &target_faces));
-        Ok(Found::new(surfaces.0.into(), surfaces.1.into(), outcome))
+        Ok(found(self.source, self.target, &source, outcome))
     }
+}
+
+/// A checked surface.
+fn mesh((vertices, faces): &Arrays, surface: &'static str) -> Result<TriangleMesh, Error> {
+    TriangleMesh::new(vertices, faces).map_err(|error| error.of_surface(surface))
+}
+
+/// An outcome with the surfaces as given and as oriented.
+fn found(source: Arrays, target: Arrays, mesh: &TriangleMesh, outcome: Outcome) -> Found {
+    let kept = |(vertices, given): Arrays, faces: &[_]| Surface { vertices, given, faces: faces.to_vec() };
+    let target_faces = found::either!(&outcome, found => found.target_faces.clone());
+    let surfaces = (kept(source, mesh.faces()), kept(target, &target_faces));
+    Found::new(surfaces.0.into(), surfaces.1.into(), outcome)
 }
 
 /// Vertices and faces.

@@ -9,6 +9,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::curves::Certificates;
 use super::found::{Found, Outcome, Per, either};
 use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
 use crate::distortion::Distortion;
@@ -47,11 +48,12 @@ pub struct Registration {
     /// DiskMap or SphereMap: the map of the target alone.
     #[pyo3(get)]
     target_map: Py<PyAny>,
-    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1.
+    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1. By curves the largest
+    /// distance of each curve's vertices from its partner, in parts of the target's size.
     #[pyo3(get)]
     landmark_error: Py<PyArray1<f64>>,
     /// (j,) int64: the pairs that did not meet: more than 1e-3 apart there, or more than .5 % of the target's size on
-    /// the target.
+    /// the target; by curves those more than 1e-9 of the target's size off.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
     /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded whatever it
@@ -72,7 +74,17 @@ pub struct Registration {
     /// (m,) float64: max(J, 1/J) of that ratio J, at least 1; infinite where the image has no area.
     #[pyo3(get)]
     area_distortion: Py<PyArray1<f64>>,
-    /// Iterations of carrying the landmarks; those of the maps alone are theirs.
+    /// Certificates or None: what proves that a map by curves is one-to-one; None of a map by points.
+    #[pyo3(get)]
+    certificates: Option<Py<Certificates>>,
+    /// list of str: what should be looked at in a map by curves; empty of one by points.
+    #[pyo3(get)]
+    warnings: Vec<String>,
+    /// list of (k,) float64: the harmonic energy before and after each step, for each piece with a hyperbolic metric; empty of a map
+    /// by points.
+    #[pyo3(get)]
+    energies: Vec<Py<PyArray1<f64>>>,
+    /// Iterations of carrying the landmarks, those of the maps alone are theirs; by curves the steps of the harmonic map.
     #[pyo3(get)]
     iterations: usize,
     /// Wall time of the call.
@@ -96,6 +108,20 @@ impl Registration {
                 sphere_map(py, &f.source_map, &found.source.faces)?,
                 sphere_map(py, &f.target_map, &found.target.faces)?,
             ),
+            Outcome::Curves(curves) => (
+                from_points(py, &curves.registration.registered).into_any(),
+                from_points(py, &curves.registration.target_registered).into_any(),
+                sphere_map(py, &curves.registration.source_map, &found.source.faces)?,
+                sphere_map(py, &curves.registration.target_map, &found.target.faces)?,
+            ),
+        };
+        let (certificates, warnings, energies) = match &found.outcome {
+            Outcome::Curves(curves) => (
+                Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
+                curves.warnings.clone(),
+                curves.descents.iter().map(|d| PyArray1::from_slice(py, &d.energies).unbind()).collect(),
+            ),
+            _ => (None, Vec::new(), Vec::new()),
         };
         let locations = found.locations();
         let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
@@ -122,6 +148,9 @@ impl Registration {
             area_ratio: PyArray1::from_slice(py, &found.area_ratio).unbind(),
             area_distortion: PyArray1::from_vec(py, area_distortion).unbind(),
             target_distortion: Py::new(py, Distortion::new(py, target_distortion))?,
+            certificates,
+            warnings,
+            energies,
             iterations,
             seconds,
             found: Arc::new(found),

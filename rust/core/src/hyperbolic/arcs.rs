@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The arcs that join the features of a chain, on the source and, in the same homotopy class, on the target.
+//!
+//! Harmonic maps of surfaces with several boundaries are unique in a homotopy class only, and it is the arcs that say
+//! which one is meant: those of the source go onto those of the target. On the source an arc is a short path of edges
+//! that keeps clear of the cuts. Its image under a deformation of the sphere that carries the features of the source
+//! to those of the target is a polyline; the arc on the target is the path of edges that stays nearest to it.
+//!
+//! Input: surfaces on which the features are marked and no chords are left. After each arc its chords are split, so
+//! that there is always a way for the next. Cost: a search by Dijkstra's algorithm for each arc.
+
+use super::chain::Link;
+use super::cutting::{Cutting, Seam};
+use super::paths::{cheapest_path, lower_distances};
+use super::track::{Polyline, resampled};
+use crate::control::Watch;
+use crate::error::Error;
+use crate::mesh::geometry::{Vector, distance};
+
+/// The angle between the points of a carried polyline.
+const SPACING: f64 = 0.01;
+
+/// How much more a step costs per squared distance from the polyline, in edge lengths.
+const STRAYING: f64 = 10.0;
+
+/// An arc further from its polyline than so many edge lengths may be in another class.
+const FAR: f64 = 10.0;
+
+/// Carries a polyline from the sphere of the source to that of the target, if it can.
+pub(super) type Carry<'a> = &'a dyn Fn(&[Vector]) -> Option<Vec<Vector>>;
+
+/// Where an arc on the target should run.
+pub(super) struct Guide {
+    /// At least two points on its sphere.
+    polyline: Vec<Vector>,
+    /// Whether it has been carried there from the source.
+    is_carried: bool,
+}
+
+/// Cuts the source along an arc for each link; returns their vertices.
+///
+/// # Errors
+/// [`Error::NoArc`], [`Error::CancelledEarly`].
+pub(super) fn source_arcs(
+    surface: &mut Cutting,
+    links: &[Link],
+    watch: &Watch<'_>,
+) -> Result<Vec<Vec<u32>>, Error> {
+    let step = median_edge(&surface.points, &surface.faces);
+    let mut room = clearance(surface);
+    let mut arcs = Vec::new();
+    for link in links {
+        goes_on(watch)?;
+        let cost = |a, b| surface.length(a, b) * narrowness(&room, a, b, step);
+        let arc = cheapest_path(surface, link.from, link.to, cost).ok_or(no_arc(link))?;
+        cut(surface, &arc);
+        lower_distances(surface, &mut room, &arc);
+        arcs.push(arc);
+    }
+    Ok(arcs)
+}
+
+/// The polylines that the arcs on the target should follow.
+///
+/// Where the source's cannot be carried over, the arc there runs where it runs on the source.
+pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> Vec<Guide> {
+    let guide = |arc: &Vec<u32>| {
+        let along: Vec<Vector> = arc.iter().map(|&vertex| source.on_sphere[vertex as usize]).collect();
+        let along = resampled(&along, SPACING);
+        let is_line =
+            |line: &Vec<Vector>| line.len() >= 2 && line.as_flattened().iter().all(|x| x.is_finite());
+        match carry(&along).filter(is_line) {
+            Some(polyline) => Guide { polyline, is_carried: true },
+            None => Guide { polyline: along, is_carried: false },
+        }
+    };
+    arcs.iter().map(guide).collect()
+}
+
+/// Cuts the target along an arc for each link; returns their vertices, and whether all follow carried polylines.
+///
+/// # Errors
+/// [`Error::NoArc`], [`Error::CancelledEarly`].
+pub(super) fn target_arcs(
+    surface: &mut Cutting,
+    links: &[Link],
+    guides: Vec<Guide>,
+    watch: &Watch<'_>,
+) -> Result<(Vec<Vec<u32>>, bool), Error> {
+    let step = median_edge(&surface.on_sphere, &surface.faces);
+    let mut arcs = Vec::new();
+    let mut all_followed = true;
+    for (link, guide) in links.iter().zip(guides) {
+        goes_on(watch)?;
+        let (arc, followed) = follow(surface, link, guide, step).ok_or(no_arc(link))?;
+        cut(surface, &arc);
+        arcs.push(arc);
+        all_followed &= followed;
+    }
+    Ok((arcs, all_followed))
+}
+
+/// The path along a guide, and whether it stays near to it and so in its class.
+fn follow(surface: &Cutting, link: &Link, guide: Guide, step: f64) -> Option<(Vec<u32>, bool)> {
+    let Guide { mut polyline, is_carried } = guide;
+    let last = polyline.len() - 1;
+    polyline[0] = surface.on_sphere[link.from as usize];
+    polyline[last] = surface.on_sphere[link.to as usize];
+    let line = Polyline::new(polyline);
+    let mut known = vec![f64::NAN; surface.points.len()];
+    let mut strayed = |vertex: u32| {
+        let known = &mut known[vertex as usize];
+        if known.is_nan() {
+            *known = line.distance(surface.on_sphere[vertex as usize]) / step;
+        }
+        *known
+    };
+    let space_step = median_edge(&surface.points, &surface.faces);
+    let room = (!is_carried).then(|| clearance(surface));
+    let cost = |a, b| {
+        let narrow = room.as_ref().map_or(1.0, |room| narrowness(room, a, b, space_step));
+        let off = 0.5 * (strayed(a) + strayed(b));
+        surface.length(a, b) * (narrow + STRAYING * off * off)
+    };
+    let arc = cheapest_path(surface, link.from, link.to, cost)?;
+    let is_near = arc.iter().all(|&vertex| strayed(vertex) <= FAR);
+    Some((arc, is_carried && is_near))
+}
+
+/// What makes an edge near the cuts dearer than one far off: 1 far off, 11 at a cut.
+fn narrowness(room: &[f64], a: u32, b: u32, step: f64) -> f64 {
+    let clear = 0.5 * (room[a as usize] + room[b as usize]);
+    1.0 + 3.0 * step / (0.3 * step + clear)
+}
+
+/// The distances of all vertices from the cuts.
+fn clearance(surface: &Cutting) -> Vec<f64> {
+    let mut distances = Vec::new();
+    lower_distances(surface, &mut distances, &surface.cut_vertices());
+    distances
+}
+
+fn cut(surface: &mut Cutting, arc: &[u32]) {
+    surface.mark(arc, Seam::Arc);
+    surface.split_chords(arc);
+}
+
+fn no_arc(link: &Link) -> Error {
+    Error::NoArc { feature: link.feature }
+}
+
+fn goes_on(watch: &Watch<'_>) -> Result<(), Error> {
+    if watch.goes_on() { Ok(()) } else { Err(Error::CancelledEarly) }
+}
+
+/// The median length of the faces' sides.
+fn median_edge(positions: &[Vector], faces: &[[u32; 3]]) -> f64 {
+    let sides = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut lengths: Vec<f64> =
+        sides.map(|[a, b]| distance(positions[a as usize], positions[b as usize])).collect();
+    let middle = lengths.len() / 2;
+    if lengths.is_empty() { 0.0 } else { *lengths.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! An atlas of a hyperbolic surface: every face by itself in the Poincaré disk, and the isometries between neighbours.
+//!
+//! No global coordinates: developed over many faces they leave double precision, charts of single faces never do. A point
+//! is a face and a place in its chart, and walks from chart to chart.
+//!
+//! Input: the faces of a surface with the lengths and angles of a hyperbolic [`Metric`]. Cost: O(m).
+
+use super::metric::Metric;
+use super::moebius::{Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid};
+use super::slice::{NONE, Opened};
+use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
+use crate::parallel;
+
+/// A point this far outside an edge still counts as inside.
+const INSIDE: f64 = 1e-13;
+/// A point this far outside an edge of the boundary has left the surface.
+const OUTSIDE: f64 = 1e-7;
+/// Steps of a walk after which it turns at random, for it may go in a circle.
+const CIRCLING: usize = 50;
+/// Steps after which a walk ends wherever it is.
+const MOST_STEPS: usize = 100_000;
+
+/// Charts of all faces of a surface.
+#[derive(Debug, Clone)]
+pub(super) struct Atlas<'a> {
+    /// (m, 3): the corners of each face in its chart, counter-clockwise.
+    pub charts: Vec<[Complex; 3]>,
+    /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity on the boundary.
+    pub transitions: Vec<Moebius>,
+    /// (m, 3): μ at the corners of each face.
+    pub mu: Vec<[f64; 3]>,
+    opposite: &'a [u32],
+}
+
+/// Where a walk has ended.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Walk {
+    /// The face.
+    pub face: u32,
+    /// The point in its chart.
+    pub x: Complex,
+    /// From the chart in which the walk began to this one.
+    pub motion: Moebius,
+    /// Whether the point lies beyond the boundary.
+    pub is_outside: bool,
+}
+
+impl<'a> Atlas<'a> {
+    /// The charts of `surface` with a metric.
+    pub(super) fn new(surface: &'a Opened, metric: &Metric) -> Self {
+        let opposite = &surface.opposite[..];
+        let charts =
+            parallel::map(surface.faces.len(), |face| chart(metric.lengths[face], metric.angles[face]));
+        let transitions = parallel::map(3 * charts.len(), |corner| match opposite[corner] {
+            NONE => Moebius::default(),
+            across => {
+                let [from, to] = edge(&charts, corner);
+                let [to_from, to_to] = edge(&charts, across as usize);
+                Moebius::between([from, to], [to_to, to_from])
+            }
+        });
+        let mu = surface.faces.iter().map(|face| face.map(|vertex| metric.mu[vertex as usize])).collect();
+        Self { charts, transitions, mu, opposite }
+    }
+
+    /// Walks from a place in the chart of `face` to the face that contains it.
+    pub(super) fn walk(&self, face: u32, x: Complex) -> Walk {
+        let mut walk = Walk { face, x, motion: Moebius::default(), is_outside: false };
+        let mut random = Random(0x9e37_79b9_7f4a_7c15);
+        for step in 0..MOST_STEPS {
+            let heights = self.heights(walk.face, walk.x);
+            let crossed = |k: &usize| {
+                heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NONE
+            };
+            let candidates: Vec<usize> = (0..3).filter(crossed).collect();
+            let lowest = || candidates.iter().copied().min_by(|&a, &b| heights[a].total_cmp(&heights[b]));
+            let chosen = match candidates.len() {
+                2 if step > CIRCLING => Some(candidates[random.next() as usize % 2]),
+                _ => lowest(),
+            };
+            let Some(k) = chosen else {
+                walk.is_outside = heights.iter().any(|&height| height < -OUTSIDE);
+                return walk;
+            };
+            walk = self.across(&walk, 3 * walk.face as usize + k);
+        }
+        Walk { is_outside: true, ..walk }
+    }
+
+    /// The same walk, one face farther.
+    fn across(&self, walk: &Walk, corner: usize) -> Walk {
+        let transition = self.transitions[corner];
+        let (face, x) = (self.opposite[corner] / 3, transition.apply(walk.x));
+        Walk { face, x, motion: transition * walk.motion, is_outside: false }
+    }
+
+    /// How far `x` lies inside of the edges opposite to the corners of a face, nearly in its metric.
+    fn heights(&self, face: u32, x: Complex) -> [f64; 3] {
+        let corners = self.charts[face as usize];
+        std::array::from_fn(|k| {
+            let (from, to) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            orientation(from, to, x) / seen_from(from, to).norm().max(f64::MIN_POSITIVE)
+        })
+    }
+
+    /// The point of a face with given barycentric coordinates on the flat face in space.
+    ///
+    /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map that keeps circumcircles.
+    pub(super) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
+        let (corners, mu) = (self.charts[face as usize], self.mu[face as usize]);
+        let weighted = |k: usize| scaled(to_hyperboloid(corners[k]), barycentric[k] * mu[k]);
+        from_hyperboloid(add(weighted(0), add(weighted(1), weighted(2))))
+    }
+
+    /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not negative, 1 in sum.
+    pub(super) fn barycentric(&self, face: u32, x: Complex) -> [f64; 3] {
+        let [a, b, c] = self.charts[face as usize].map(to_hyperboloid);
+        let x = to_hyperboloid(x);
+        let volumes = [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)];
+        let mu = self.mu[face as usize];
+        let weights: [f64; 3] = std::array::from_fn(|k| (volumes[k] / mu[k]).max(0.0));
+        let sum: f64 = weights.iter().sum();
+        weights.map(|weight| weight / sum)
+    }
+}
+
+/// det(a, b, x), by differences so that it keeps its digits for small triangles.
+fn determinant(a: Vector, b: Vector, x: Vector) -> f64 {
+    let difference = |p: Vector| [p[0] - x[0], p[1] - x[1], p[2] - x[2]];
+    dot(x, cross(difference(a), difference(b)))
+}
+
+/// The ends of the edge opposite to a corner, in the order in which its face runs through it.
+fn edge(charts: &[[Complex; 3]], corner: usize) -> [Complex; 2] {
+    let (face, k) = (corner / 3, corner % 3);
+    [charts[face][(k + 1) % 3], charts[face][(k + 2) % 3]]
+}
+
+/// A face in the Poincaré disk, its middle at the origin.
+fn chart(lengths: [f64; 3], angles: [f64; 3]) -> [Complex; 3] {
+    let corners = [
+        Complex::new(0.0, 0.0),
+        Complex::new((0.5 * lengths[2]).tanh(), 0.0),
+        Complex::from_polar((0.5 * lengths[1]).tanh(), angles[0]),
+    ];
+    let [a, b, c] = corners.map(to_hyperboloid);
+    let middle = from_hyperboloid(add(a, add(b, c)));
+    corners.map(|corner| seen_from(middle, corner))
+}
+
+/// Marsaglia's xorshift: the same turns in every run.
+#[derive(Debug, Clone)]
+pub(super) struct Random(pub u64);
+
+impl Random {
+    pub(super) fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 >> 16
+    }
+}

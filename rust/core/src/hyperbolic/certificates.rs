@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What proves that a map of sliced surfaces is a homeomorphism with the curves in place.
+//!
+//! Every face is positively oriented, the images' signed areas make up the whole surface, and both banks of a slit run
+//! through the same points in order: such a map is one-to-one and onto.
+
+use std::f64::consts::PI;
+
+use super::delaunay::Net;
+use super::harmonic::ChartMap;
+use super::moebius::{Complex, Moebius, orientation, seen_from};
+use crate::error::Elements;
+use crate::parallel;
+
+/// Figures that certify a registration by curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificates {
+    /// Faces of the source whose image is not positively oriented; none in a homeomorphism.
+    pub folded: Vec<usize>,
+    /// The sum of the images' signed areas in the target's metric.
+    pub area: f64,
+    /// What it must be: 2π(B − 2) for B features, of pieces without such a metric the area of their layout.
+    pub expected_area: f64,
+    /// The largest distance of a curve's image from its partner, in parts of the target's size.
+    pub curve_error: f64,
+    /// The largest distance of the images of the two banks of a slit, in parts of the target's size.
+    pub bank_error: f64,
+    /// The largest deviation from the identity of the three transitions around a face.
+    pub cocycle_error: f64,
+    /// Vertices that rounding has put beyond the boundary.
+    pub outside: usize,
+    /// E ≥ about 1 over 2π(B − 2): the harmonic energy in parts of the area; 1 for an isometry. NaN where no piece has a hyperbolic
+    /// metric.
+    pub energy_ratio: f64,
+    /// The largest curvature that the metrics of source and target have left.
+    pub curvature: [f64; 2],
+}
+
+/// The certificates of one piece, curves aside.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PieceCertificates {
+    /// Faces of the sliced source.
+    pub folded: Vec<usize>,
+    pub area: f64,
+    pub expected_area: f64,
+    pub cocycle_error: f64,
+    pub outside: usize,
+    pub energy: f64,
+}
+
+/// Certifies a map between hyperbolic surfaces of Euler characteristic `chi`.
+pub(super) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
+    let net = &map.input;
+    let images = parallel::map(net.faces.len(), |face| image(map, net, face));
+    let folded = |face: &usize| {
+        let [a, b, c] = images[*face];
+        orientation(a, b, c) <= 0.0
+    };
+    let outside = |vertex: usize| map.atlas.walk(map.places.faces[vertex], map.places.positions[vertex]);
+    let is_outside = |vertex: &usize| map.places.held[*vertex].is_none() && outside(*vertex).is_outside;
+    PieceCertificates {
+        folded: (0..images.len()).filter(folded).collect(),
+        area: parallel::sum(images.len(), |face| signed_area(images[face])),
+        expected_area: -2.0 * PI * chi as f64,
+        cocycle_error: (0..images.len()).fold(0.0, |most: f64, face| most.max(cocycle(net, face))),
+        outside: (0..map.places.faces.len()).filter(is_outside).count(),
+        energy: map.energy(),
+    }
+}
+
+/// The image of a face in the chart of its first vertex.
+pub(super) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] {
+    let x = net.faces[face].map(|vertex| map.places.positions[vertex as usize]);
+    let [_, to_last, to_second] = [0, 1, 2].map(|k| net.transitions[3 * face + k]);
+    // the edge opposite to corner 2 runs from vertex 0 to 1, that opposite to corner 1 from vertex 2 to 0
+    [x[0], to_second.apply(x[1]), to_last.inverse().apply(x[2])]
+}
+
+/// The area of a geodesic triangle, negative where it is clockwise.
+pub(super) fn signed_area([a, b, c]: [Complex; 3]) -> f64 {
+    let (p, q) = (seen_from(a, b), seen_from(a, c));
+    let product = p.conj() * q;
+    2.0 * product.im.atan2(1.0 - product.re)
+}
+
+/// How far the transitions around a face are from closing up.
+fn cocycle(net: &Net, face: usize) -> f64 {
+    let [from_second, from_third, from_first] = [0, 1, 2].map(|k| net.transitions[3 * face + k]);
+    // 1 ← 2, 2 ← 0 and 0 ← 1
+    let Moebius { a, b } = from_first * from_second * from_third;
+    (a.re.abs() - 1.0).abs().max(a.im.abs()).max(b.norm())
+}
+
+/// The faces of the surface that contain folded faces of its slices, ascending.
+pub(super) fn folded_faces(folded: &[usize], face_of: impl Fn(usize) -> usize) -> Vec<usize> {
+    let mut faces: Vec<usize> = folded.iter().map(|&face| face_of(face)).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces
+}
+
+impl Certificates {
+    /// The folded faces for a message.
+    pub fn folded_elements(&self) -> Option<Elements> {
+        Elements::collect(self.folded.iter().copied())
+    }
+}

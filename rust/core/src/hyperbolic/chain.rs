@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The order and direction in which features are joined by arcs.
+//!
+//! Every feature but the last is joined from its end to the start of the next, so that all features and arcs together
+//! are one simple path and cutting along it leaves a disk. Which order is taken decides nothing but how long the arcs
+//! are: from each of the 2 B first features with a direction on to the nearest tip left, on both spheres together, and
+//! of these chains the one with the shortest sum.
+//!
+//! Cost: O(B³) for B features.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::features::{Feature, Piece};
+use crate::mesh::geometry::{Vector, distance};
+
+/// A link from the end of a feature to the start of the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Link {
+    /// The feature of the piece from which it comes.
+    pub feature: usize,
+    /// The end of that one.
+    pub from: u32,
+    /// The start of the next.
+    pub to: u32,
+}
+
+/// The features in order, each with whether it is reversed, the same for both pieces.
+pub(super) fn order(source: &Piece, target: &Piece) -> Vec<(usize, bool)> {
+    let tips: Vec<Tips> = source
+        .features
+        .iter()
+        .zip(&target.features)
+        .map(|(s, t)| [tips(source, s), tips(target, t)])
+        .collect();
+    let starts = (0..2 * tips.len()).map(|start| (start / 2, start % 2 == 1));
+    let chains = starts.map(|start| nearest_neighbours(&tips, start));
+    chains.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Vec::new(), |(chain, _)| chain)
+}
+
+/// The features of a piece in the order and the directions of a chain.
+pub(super) fn features(piece: &Piece, chain: &[(usize, bool)]) -> Vec<Feature> {
+    let directed = |&(feature, reversed): &(usize, bool)| match &piece.features[feature] {
+        feature if reversed => feature.reversed(),
+        feature => feature.clone(),
+    };
+    chain.iter().map(directed).collect()
+}
+
+/// What the arcs of a chain have to join, for its features in order.
+pub(super) fn links(chain: &[(usize, bool)], features: &[Feature]) -> Vec<Link> {
+    let pairs = features.windows(2).zip(chain);
+    pairs.map(|(pair, &(feature, _))| Link { feature, from: pair[0].end(), to: pair[1].start() }).collect()
+}
+
+/// On either sphere, start and end of a feature.
+type Tips = [[Vector; 2]; 2];
+
+fn tips(piece: &Piece, feature: &Feature) -> [Vector; 2] {
+    [feature.start(), feature.end()].map(|vertex| piece.on_sphere[vertex as usize])
+}
+
+/// The chain from one feature, in one direction, on to the nearest ones, and its length.
+fn nearest_neighbours(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>, f64) {
+    let mut chain = vec![start];
+    let mut length = 0.0;
+    let mut last = start;
+    while chain.len() < tips.len() {
+        let left = (0..tips.len()).filter(|&k| chain.iter().all(|&(used, _)| used != k));
+        let directed = left.flat_map(|k| [(k, false), (k, true)]);
+        let reached = directed.map(|next| (gap(tips, last, next), next));
+        let Some((nearest, next)) = reached.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        length += nearest;
+        chain.push(next);
+        last = next;
+    }
+    (chain, length)
+}
+
+/// The angle between the end of one feature and the start of another, summed over both spheres.
+fn gap(tips: &[Tips], (one, one_reversed): (usize, bool), (other, other_reversed): (usize, bool)) -> f64 {
+    let angle = |sphere: usize| {
+        let end = tips[one][sphere][usize::from(!one_reversed)];
+        let start = tips[other][sphere][usize::from(other_reversed)];
+        let half_chord = 0.5 * distance(end, start);
+        if half_chord < 1.0 { half_chord.asin() } else { FRAC_PI_2 }
+    };
+    2.0 * (angle(0) + angle(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperbolic::features::Bank;
+
+    /// Features of two vertices each, at the given angles along the equator.
+    fn piece(angles: &[[f64; 2]]) -> Piece {
+        let bank =
+            |k: usize| Bank { vertices: vec![2 * k as u32, 2 * k as u32 + 1], parameters: vec![0.0, 1.0] };
+        let feature = |k: usize| Feature { left: bank(k), right: bank(k), is_loop: false };
+        let on_sphere: Vec<Vector> = angles.as_flattened().iter().map(|a| [a.cos(), a.sin(), 0.0]).collect();
+        Piece {
+            points: on_sphere.clone(),
+            faces: Vec::new(),
+            vertex_of: (0..on_sphere.len() as u32).collect(),
+            face_of: Vec::new(),
+            features: (0..angles.len()).map(feature).collect(),
+            on_sphere,
+        }
+    }
+
+    #[test]
+    fn features_along_a_line_are_joined_in_their_order() {
+        let piece = piece(&[[0.0, 0.2], [1.2, 1.0], [0.4, 0.7]]);
+        let chain = order(&piece, &piece);
+        assert_eq!(chain, [(0, false), (2, false), (1, true)]);
+        let features = features(&piece, &chain);
+        let links = links(&chain, &features);
+        let expected = [Link { feature: 0, from: 1, to: 4 }, Link { feature: 2, from: 5, to: 3 }];
+        assert_eq!(links, expected);
+    }
+
+    #[test]
+    fn one_feature_or_none_needs_no_link() {
+        let one = piece(&[[0.0, 0.2]]);
+        assert_eq!(order(&one, &one), [(0, false)]);
+        assert!(links(&[(0, false)], &features(&one, &[(0, false)])).is_empty());
+        assert!(order(&piece(&[]), &piece(&[])).is_empty());
+    }
+
+    #[test]
+    fn both_spheres_count() {
+        let source = piece(&[[0.0, 0.1], [0.3, 0.4], [0.6, 0.7]]);
+        let target = piece(&[[0.0, 0.1], [2.0, 2.2], [0.2, 0.4]]);
+        assert_eq!(order(&source, &target), [(0, false), (2, false), (1, false)]);
+    }
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+use super::super::sample_meshes::{circle, mesh, path, sphere};
+use super::*;
+use crate::mesh::geometry::Vector;
+
+const X: Vector = [1.0, 0.0, 0.0];
+const Y: Vector = [0.0, 1.0, 0.0];
+const Z: Vector = [0.0, 0.0, 1.0];
+
+fn whole() -> TriangleMesh {
+    mesh(&sphere(3), |x| x, |_| false)
+}
+
+fn cap_removed() -> TriangleMesh {
+    mesh(&sphere(3), |x| x, |x| x[2] > 0.8)
+}
+
+fn check(meshes: [&TriangleMesh; 2], source: &[Vec<usize>], target: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
+    Curves { source, target }.check(meshes[0], meshes[1])
+}
+
+/// The message about the same curves on the same surface.
+fn message(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> String {
+    check([mesh, mesh], curves, curves).unwrap_err().to_string()
+}
+
+#[test]
+fn open_curves_are_pairs_as_given() {
+    let (whole, arc) = (whole(), path(&sphere(3), X, Y));
+    let pairs = check([&whole, &whole], &[arc.clone()], &[arc.clone()]).unwrap();
+    let vertices: Vec<u32> = arc.iter().map(|&v| v as u32).collect();
+    let expected =
+        CurvePair { source: vertices.clone(), target: vertices, closed: false, on_boundary: false, gap: None };
+    assert_eq!(pairs, [expected]);
+}
+
+#[test]
+fn curves_are_closed_where_both_partners_can_be() {
+    let (whole, ring, arc) = (whole(), circle(&sphere(3), Z, 0.5), path(&sphere(3), X, Y));
+    let repeated = [&ring[..], &ring[..1]].concat();
+    let pair = |source: &Vec<usize>, target: &Vec<usize>| {
+        let pair = check([&whole, &whole], &[source.clone()], &[target.clone()]);
+        pair.map(|pairs| (pairs[0].closed, pairs[0].gap, pairs[0].target.len()))
+    };
+    let n = ring.len();
+    assert_eq!(pair(&repeated, &repeated), Ok((true, None, n)));
+    assert_eq!(pair(&ring, &repeated), Ok((true, None, n)));
+    assert_eq!(pair(&repeated, &ring), Ok((true, Some(Gap::AtEnd), n)));
+    assert_eq!(pair(&ring, &ring), Ok((true, Some(Gap::AtEnd), n)));
+    assert_eq!(pair(&ring, &arc), Ok((false, None, arc.len())));
+    assert_eq!(pair(&arc, &repeated), Err(Error::CurveNotClosed { name: "source_curves", curve: 0 }));
+    assert_eq!(pair(&repeated, &arc), Err(Error::CurveNotClosed { name: "target_curves", curve: 0 }));
+}
+
+#[test]
+fn counts_must_agree() {
+    let (whole, open, arc) = (whole(), cap_removed(), path(&sphere(3), X, Y));
+    let error = check([&whole, &whole], &[arc.clone(), arc.clone(), arc.clone()], &[arc]).unwrap_err();
+    assert!(error.to_string().contains("3 source_curves and 1 target_curves"), "{error}");
+    assert!(error.to_string().contains("2 curves (1, 2)"), "{error}");
+    assert!(check([&whole, &whole], &[], &[]).unwrap_err().to_string().contains("use register_spheres"));
+    assert!(check([&open, &open], &[], &[]).unwrap().is_empty());
+    let error = check([&open, &whole], &[], &[]).unwrap_err();
+    assert_eq!(error, Error::LoopCounts { source_count: 1, target_count: 0 });
+}
+
+#[test]
+fn bad_curves_are_refused_by_argument_number_and_place() {
+    let (whole, arc) = (whole(), path(&sphere(3), X, Y));
+    let other = path(&sphere(3), [-1.0, -0.3, 0.0], [0.0, -1.0, -0.4]);
+    let with = |curve: Vec<usize>| message(&whole, &[other.clone(), curve]);
+    let short = with(arc[..2].to_vec());
+    assert!(short.starts_with("source_curves: curve 1 has 1 edges"), "{short}");
+    assert!(with(vec![]).contains("0 edges") && with(vec![arc[0], arc[1], arc[0]]).contains("a closed one three"));
+    let outside = with([&arc[..2], &[9999]].concat());
+    assert!(outside.contains("curve 1 is out of range at place 2: 9999"), "{outside}");
+    let off = with(vec![arc[0], arc[1], arc[3]]);
+    assert!(off.contains(&format!("after place 1: no edge joins vertices {}, {};", arc[1], arc[3])), "{off}");
+    let back = with(vec![arc[0], arc[1], arc[2], arc[1]]);
+    assert!(back.contains(&format!("at vertex {}, at places 1 and 3", arc[1])), "{back}");
+    let meeting = message(&whole, &[arc.clone(), other.clone(), path(&sphere(3), Y, [0.0, 0.6, 0.7])]);
+    let at = arc[arc.len() - 1];
+    assert!(meeting.contains(&format!("source_curves: curves 0 and 2 meet at vertex {at}:")), "{meeting}");
+    let error = check([&whole, &whole], &[arc.clone()], &[vec![0, 0, 0, 0]]).unwrap_err();
+    assert!(error.to_string().starts_with("target_curves: curve 0 meets itself"), "{error}");
+    assert!(error.is_mesh_error() && error.elements().is_some());
+}
+
+#[test]
+fn the_boundary_is_met_by_whole_loops_only() {
+    let open = cap_removed();
+    let rim: Vec<usize> = open.boundary_loops()[0].iter().map(|&v| v as usize).collect();
+    let n = rim.len();
+    let backwards: Vec<usize> = (0..=n).map(|k| rim[(5 + n - k) % n]).collect();
+    let pairs = check([&open, &open], &[rim.clone()], &[backwards.clone()]).unwrap();
+    assert!(pairs[0].on_boundary && pairs[0].closed && pairs[0].gap.is_none());
+    let part = message(&open, &[rim[..4].to_vec()]);
+    assert!(part.contains("curve 0 meets the boundary at 4 vertices"), "{part}");
+    // a loop inside the target cannot be the end of the source
+    let ring = circle(&sphere(3), [0.0, 0.0, -1.0], 0.5);
+    let ring = [&ring[..], &ring[..1]].concat();
+    let error = check([&open, &open], &[backwards], &[ring]).unwrap_err();
+    assert_eq!(error, Error::CurveBoundsOneSide { name: "source_curves", curve: 0 });
+}
+
+#[test]
+fn surfaces_must_be_one_piece_without_handles() {
+    let (points, faces) = sphere(1);
+    let shifted: Vec<Vector> = points.iter().map(|&[x, y, z]| [x + 5.0, y, z]).collect();
+    let n = points.len() as u32;
+    let other = faces.iter().map(|face| face.map(|v| v + n));
+    let both: Vec<[u32; 3]> = faces.iter().copied().chain(other).collect();
+    let two = TriangleMesh::new(&[points, shifted].concat(), &both).unwrap();
+    let error = check([&whole(), &two], &[vec![0, 1]], &[vec![0, 1]]).unwrap_err();
+    assert!(error.to_string().starts_with("the target: the mesh is 2 separate pieces"), "{error}");
+}

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A surface while it is being cut: its edges can be marked for cutting and split at their midpoints.
+//!
+//! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An edge between two such
+//! vertices that is not marked itself is a *chord*: a triangle with two sides on the boundary could not be given the
+//! angle it needs there, and a straight-line map with the boundary fixed would flatten it. So every chord is split.
+//! One pass over the neighbours of the vertices that are new on the cuts leaves none, as the new edges all end in a
+//! midpoint, which lies on no cut. It also leaves a way through between any two places of the boundary: every triangle
+//! has a vertex off the cuts, and neighbouring triangles share one.
+//!
+//! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a vertex as
+//! many steps as it has neighbours.
+
+use super::features::Piece;
+use super::slice::Place;
+use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
+use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
+
+/// What an edge is cut for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Seam {
+    /// It is not cut.
+    None,
+    /// It belongs to a slit or to a boundary loop.
+    Feature,
+    /// It belongs to an arc between two features.
+    Arc,
+}
+
+/// A surface with its marked edges.
+#[derive(Debug, Clone)]
+pub(super) struct Cutting {
+    /// (n, 3): the vertices, then the midpoints of split edges.
+    pub points: Vec<Vector>,
+    /// (n, 3): the same on the unit sphere.
+    pub on_sphere: Vec<Vector>,
+    /// (m, 3), oriented.
+    pub faces: Vec<[u32; 3]>,
+    /// (3 m,): the opposite corners, [`NO_CORNER`] on the boundary of the piece.
+    pub opposite: Vec<u32>,
+    /// (3 m,): whether the edge opposite to each corner is cut.
+    pub seams: Vec<Seam>,
+    /// (m,): where each face lies in the piece.
+    pub places: Vec<Place>,
+    /// (n,): a corner at each vertex, on the boundary the one from which [`Cutting::corners`] reaches all.
+    first_corner: Vec<u32>,
+    /// (n,): whether each vertex lies on a cut.
+    is_cut: Vec<bool>,
+}
+
+impl Cutting {
+    /// A whole piece.
+    pub(super) fn new(piece: &Piece) -> Self {
+        let opposite = EdgeTable::new(piece.points.len(), &piece.faces).opposites();
+        let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        Self {
+            first_corner: first_corners(piece.points.len(), &piece.faces, &opposite),
+            points: piece.points.clone(),
+            on_sphere: piece.on_sphere.clone(),
+            faces: piece.faces.clone(),
+            seams: vec![Seam::None; opposite.len()],
+            opposite,
+            places: (0..piece.faces.len() as u32).map(|face| Place { face, corners }).collect(),
+            is_cut: vec![false; piece.points.len()],
+        }
+    }
+
+    /// Whether a vertex lies on a cut.
+    pub(super) fn is_cut(&self, vertex: u32) -> bool {
+        self.is_cut[vertex as usize]
+    }
+
+    /// The vertices on cuts, in ascending order.
+    pub(super) fn cut_vertices(&self) -> Vec<u32> {
+        (0..self.points.len() as u32).filter(|&vertex| self.is_cut(vertex)).collect()
+    }
+
+    /// The distance of two vertices in space.
+    pub(super) fn length(&self, a: u32, b: u32) -> f64 {
+        distance(self.points[a as usize], self.points[b as usize])
+    }
+
+    /// The corners at a vertex, in the order in which they lie around it; none at a loose vertex.
+    pub(super) fn corners(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        let first = self.first_corner[vertex as usize];
+        let turn = move |&corner: &u32| {
+            let across = self.opposite[next_corner(corner) as usize];
+            (across != NO_CORNER).then(|| next_corner(across)).filter(|&corner| corner != first)
+        };
+        std::iter::successors((first != NO_CORNER).then_some(first), turn)
+    }
+
+    /// The neighbours of a vertex; at a boundary vertex without the one before it on the boundary.
+    pub(super) fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        self.corners(vertex).map(|corner| vertex_at(&self.faces, next_corner(corner)))
+    }
+
+    /// The corner opposite to the half-edge from `a` to `b`, if there is a face on its left.
+    pub(super) fn half_edge(&self, a: u32, b: u32) -> Option<u32> {
+        let found = self.corners(a).find(|&corner| vertex_at(&self.faces, next_corner(corner)) == b);
+        found.map(previous_corner)
+    }
+
+    /// Marks the edges of a path for cutting; returns whether it is a path of edges.
+    pub(super) fn mark(&mut self, path: &[u32], seam: Seam) -> bool {
+        let is_path = path.windows(2).all(|edge| self.mark_edge(edge[0], edge[1], seam));
+        path.iter().for_each(|&vertex| self.is_cut[vertex as usize] = true);
+        is_path
+    }
+
+    fn mark_edge(&mut self, a: u32, b: u32, seam: Seam) -> bool {
+        let Some(corner) = self.half_edge(a, b).or_else(|| self.half_edge(b, a)) else { return false };
+        self.seams[corner as usize] = seam;
+        let across = self.opposite[corner as usize];
+        if across != NO_CORNER {
+            self.seams[across as usize] = seam;
+        }
+        true
+    }
+
+    /// Splits the chords at `vertices`, which all lie on cuts.
+    pub(super) fn split_chords(&mut self, vertices: &[u32]) {
+        for &vertex in vertices {
+            // Splits leave the corners around the vertex where they are and bring the far ends of its edges nearer.
+            let corners: Vec<u32> = self.corners(vertex).collect();
+            for edge in corners.into_iter().map(previous_corner) {
+                if self.is_chord(edge) {
+                    self.split(edge);
+                }
+            }
+        }
+    }
+
+    /// Whether the edge opposite to a corner is not cut but has both ends on cuts.
+    fn is_chord(&self, corner: u32) -> bool {
+        let is_inner =
+            self.opposite[corner as usize] != NO_CORNER && self.seams[corner as usize] == Seam::None;
+        is_inner && half_edge(&self.faces, corner).iter().all(|&end| self.is_cut(end))
+    }
+
+    /// Splits the edge opposite to a corner at its midpoint and returns that.
+    ///
+    /// The parts at the start of the half-edge keep the numbers of the faces; those at its end are appended.
+    pub(super) fn split(&mut self, corner: u32) -> u32 {
+        let [start, end] = half_edge(&self.faces, corner);
+        let across = self.opposite[corner as usize];
+        let midpoint = self.add_midpoint(start, end, self.seams[corner as usize] != Seam::None);
+        let new = self.halve(corner, true, midpoint);
+        self.first_corner[midpoint as usize] = next_corner(new);
+        if across != NO_CORNER {
+            let new_across = self.halve(across, false, midpoint);
+            self.link(new, new_across);
+        }
+        midpoint
+    }
+
+    fn add_midpoint(&mut self, a: u32, b: u32, is_cut: bool) -> u32 {
+        let [a, b] = [a as usize, b as usize];
+        let on_sphere = add(self.on_sphere[a], self.on_sphere[b]);
+        let length = norm(on_sphere);
+        let antipodal = length < f64::EPSILON;
+        self.on_sphere.push(if antipodal { self.on_sphere[a] } else { scaled(on_sphere, 1.0 / length) });
+        self.points.push(scaled(add(self.points[a], self.points[b]), 0.5));
+        self.is_cut.push(is_cut);
+        self.first_corner.push(NO_CORNER);
+        self.points.len() as u32 - 1
+    }
+
+    /// Divides a face between a corner and the midpoint of the edge opposite to it, keeps the part at the start of that
+    /// edge (or else at its end), appends the other and returns its corner where the face is divided.
+    fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: u32) -> u32 {
+        let [next, previous] = [next_corner(corner), previous_corner(corner)];
+        let [kept, given] = if keeps_start { [next, previous] } else { [previous, next] };
+        let new = self.append_copy(corner);
+        let new_given = if keeps_start { new + 2 } else { new + 1 };
+        let new_kept = if keeps_start { new + 1 } else { new + 2 };
+        self.move_corner(given, [kept, given], midpoint);
+        self.move_corner(new_kept, [new_kept, new_given], midpoint);
+        // The side from the corner to the vertex that was given away, then the dividing edge.
+        let outer = self.opposite[kept as usize];
+        self.seams[new_kept as usize] = self.seams[kept as usize];
+        self.link(new_kept, outer);
+        self.seams[kept as usize] = Seam::None;
+        self.seams[new_given as usize] = Seam::None;
+        self.link(kept, new_given);
+        let vertex = vertex_at(&self.faces, new_given) as usize;
+        if self.first_corner[vertex] == given {
+            self.first_corner[vertex] = new_given;
+        }
+        new
+    }
+
+    /// Appends a copy of the face of a corner, turned so that this corner comes first, without neighbours.
+    fn append_copy(&mut self, corner: u32) -> u32 {
+        let corners = [corner, next_corner(corner), previous_corner(corner)];
+        let Place { face, corners: weights } = self.places[corner as usize / 3];
+        self.places.push(Place { face, corners: corners.map(|corner| weights[corner as usize % 3]) });
+        self.faces.push(corners.map(|corner| vertex_at(&self.faces, corner)));
+        self.seams.extend(corners.map(|corner| self.seams[corner as usize]));
+        self.opposite.extend([NO_CORNER; 3]);
+        3 * self.faces.len() as u32 - 3
+    }
+
+    /// Moves a corner to the midpoint of two corners of its face.
+    fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: u32) {
+        let weights = &mut self.places[corner as usize / 3].corners;
+        let [a, b] = [a, b].map(|end| weights[end as usize % 3]);
+        weights[corner as usize % 3] = scaled(add(a, b), 0.5);
+        self.faces[corner as usize / 3][corner as usize % 3] = midpoint;
+    }
+
+    /// Makes two corners opposite to each other; the second may be none.
+    fn link(&mut self, corner: u32, across: u32) {
+        self.opposite[corner as usize] = across;
+        if across != NO_CORNER {
+            self.opposite[across as usize] = corner;
+        }
+    }
+}
+
+/// A corner at each vertex, on the boundary the one with a boundary edge behind it.
+fn first_corners(n_vertices: usize, faces: &[[u32; 3]], opposite: &[u32]) -> Vec<u32> {
+    let mut first = vec![NO_CORNER; n_vertices];
+    for corner in 0..opposite.len() as u32 {
+        let slot = &mut first[vertex_at(faces, corner) as usize];
+        if *slot == NO_CORNER || opposite[previous_corner(corner) as usize] == NO_CORNER {
+            *slot = corner;
+        }
+    }
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two triangles that share the edge from 0 to 1.
+    fn two_triangles() -> Cutting {
+        let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, -1.0, 0.0]];
+        Cutting::new(&Piece {
+            on_sphere: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
+            vertex_of: (0..4).collect(),
+            face_of: vec![0, 1],
+            faces: vec![[0, 1, 2], [1, 0, 3]],
+            points,
+            features: Vec::new(),
+        })
+    }
+
+    fn check(cutting: &Cutting) {
+        let table = EdgeTable::new(cutting.points.len(), &cutting.faces).opposites();
+        assert_eq!(cutting.opposite, table);
+        for vertex in 0..cutting.points.len() as u32 {
+            let around: Vec<u32> = cutting.corners(vertex).collect();
+            assert!(around.iter().all(|&corner| vertex_at(&cutting.faces, corner) == vertex));
+            let all = cutting.faces.as_flattened().iter().filter(|&&corner| corner == vertex);
+            assert_eq!(around.len(), all.count());
+        }
+        for (face, place) in cutting.faces.iter().zip(&cutting.places) {
+            for (corner, weights) in face.iter().zip(place.corners) {
+                assert_eq!(weights.iter().sum::<f64>(), 1.0);
+                let whole = two_triangles().faces[place.face as usize];
+                let terms = whole.iter().zip(weights).map(|(&v, w)| scaled(cutting.points[v as usize], w));
+                assert_eq!(terms.fold([0.0; 3], add), cutting.points[*corner as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn splits_keep_neighbours_rings_and_places() {
+        let mut cutting = two_triangles();
+        // inner, boundary and edges that earlier splits have made, from either end
+        for ends in [[0, 1], [1, 2], [4, 5], [4, 0], [5, 4], [3, 1], [8, 1]] {
+            let corner = cutting.half_edge(ends[0], ends[1]).or(cutting.half_edge(ends[1], ends[0])).unwrap();
+            cutting.split(corner);
+            check(&cutting);
+        }
+        assert_eq!(cutting.points.len(), 11);
+    }
+
+    #[test]
+    fn splitting_a_cut_edge_cuts_both_halves() {
+        let mut cutting = two_triangles();
+        assert!(cutting.mark(&[0, 1], Seam::Feature));
+        let midpoint = cutting.split(cutting.half_edge(0, 1).unwrap());
+        for [a, b] in [[0, midpoint], [midpoint, 1], [1, midpoint], [midpoint, 0]] {
+            assert_eq!(cutting.seams[cutting.half_edge(a, b).unwrap() as usize], Seam::Feature);
+        }
+        assert_eq!(cutting.seams.iter().filter(|&&seam| seam == Seam::Feature).count(), 4);
+        assert!(cutting.is_cut(midpoint));
+    }
+
+    #[test]
+    fn an_edge_between_two_cut_vertices_is_split_once() {
+        let mut cutting = two_triangles();
+        assert!(cutting.mark(&[3, 0, 2], Seam::Feature) && cutting.mark(&[1], Seam::Feature));
+        cutting.split_chords(&[0, 1]);
+        assert_eq!(cutting.points.len(), 5);
+        cutting.split_chords(&[0, 1]);
+        assert_eq!(cutting.points.len(), 5);
+        assert!(!cutting.mark(&[2, 3], Seam::Arc));
+    }
+}

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Pieces with one or two features, which have no hyperbolic metric: the disk and the cylinder.
+//!
+//! Both surfaces are laid out on the same flat domain by weighted means, the features by their parameters on its straight or round
+//! boundary, and put on top of each other. One feature is laid on a circle; two on the ends of a cylinder of
+//! circumference 1, on which the arc between them says how often the map winds around.
+//!
+//! Cost: one sparse Cholesky factorisation for either surface and a point location for each vertex.
+
+use std::f64::consts::PI;
+
+use super::certificates::PieceCertificates;
+use super::initial::{boundary_corners, segment};
+use super::layout::{Laplace, Planar, clamped_weights, lifted, planar_layout};
+use super::slice::{NONE, Sliced};
+use crate::control::Watch;
+use crate::distortion::folded_in_plane;
+use crate::error::{Elements, Error};
+use crate::registration::{Location, Locator};
+
+/// How many times a layout of a cylinder may wind around it beyond its own period.
+const WINDINGS: i32 = 8;
+/// A point located this far from where it is was not found.
+const FOUND: f64 = 1e-9;
+
+/// A map of a piece.
+pub(super) struct FlatMap {
+    /// For each vertex of the sliced source a place in the sliced target.
+    pub locations: Vec<Location>,
+    /// For each vertex of the sliced target a place in the sliced source.
+    pub inverse: Vec<Location>,
+    /// What proves it.
+    pub certificates: PieceCertificates,
+}
+
+/// One surface on the flat domain.
+struct Laid<'a> {
+    sliced: &'a Sliced,
+    layout: Vec<Planar>,
+}
+
+/// Maps a piece with one or two features.
+///
+/// # Errors
+/// [`Error::NoEmbedding`] where a layout folds in double precision, [`Error::CancelledEarly`].
+pub(super) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
+    // 1. Both surfaces on the same domain
+    let is_cylinder = source.sides.len() > 2;
+    let theirs = match is_cylinder {
+        true => on_cylinder(target, watch)?,
+        false => planar_layout(target, &on_circle(target), watch)?,
+    };
+    let ours = match is_cylinder {
+        true => on_cylinder(source, watch)?,
+        false => planar_layout(source, &on_polygon(source, target, &theirs), watch)?,
+    };
+    let [ours, theirs] = [(source, ours), (target, theirs)].map(|(sliced, layout)| Laid { sliced, layout });
+    // 2. Where the vertices of each are on the other
+    let locations = ours.places_on(&theirs, watch)?;
+    let inverse = theirs.places_on(&ours, watch)?;
+    // 3. Figures
+    let area = ours.signed_area();
+    let expected_area = if is_cylinder { 1.0 } else { ours.outline_area() };
+    let folded = folded_in_plane(&source.disk.faces, &ours.layout);
+    let certificates = PieceCertificates { folded, area, expected_area, ..Default::default() };
+    Ok(FlatMap { locations, inverse, certificates })
+}
+
+impl Laid<'_> {
+    /// For each vertex of the surface its place on another.
+    fn places_on(&self, other: &Self, watch: &Watch<'_>) -> Result<Vec<Location>, Error> {
+        let mut copies = located(other.sliced, &other.layout, &self.layout, watch)?;
+        let corners = boundary_corners(&other.sliced.disk);
+        let sides = self.sliced.sides.iter().zip(&other.sliced.sides);
+        for (side, theirs) in sides.filter(|(side, _)| !side.is_arc) {
+            for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
+                let (at, t) = segment(&theirs.parameters, s);
+                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[at] as usize], t);
+            }
+        }
+        let mut locations = vec![Location::default(); self.sliced.surface.vertex_of.len()];
+        for (copy, vertex) in self.sliced.surface_vertices().into_iter().enumerate() {
+            locations[vertex as usize] = copies[copy];
+        }
+        Ok(locations)
+    }
+
+    /// The sum of the signed areas of all faces.
+    fn signed_area(&self) -> f64 {
+        let area = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|vertex| self.layout[vertex as usize]);
+            0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+        };
+        self.sliced.disk.faces.iter().map(area).sum()
+    }
+
+    /// The area inside the boundary.
+    fn outline_area(&self) -> f64 {
+        let disk = &self.sliced.disk;
+        let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NONE);
+        let part = |corner: usize| {
+            let face = disk.faces[corner / 3];
+            let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3] as usize]);
+            0.5 * (a[0] * b[1] - a[1] * b[0])
+        };
+        corners.map(part).sum()
+    }
+}
+
+/// The boundary by its parameters on the unit circle.
+fn on_circle(sliced: &Sliced) -> Vec<Option<Planar>> {
+    held(sliced, |side, s| {
+        let (sine, cosine) = (PI * if side == 0 { s } else { 2.0 - s }).sin_cos();
+        [cosine, sine]
+    })
+}
+
+/// The boundary by its parameters on the polygon of the target's layout.
+fn on_polygon(source: &Sliced, target: &Sliced, layout: &[Planar]) -> Vec<Option<Planar>> {
+    held(source, |side, s| {
+        let other = &target.sides[side];
+        let (at, t) = segment(&other.parameters, s);
+        let [from, to] = [at, at + 1].map(|at| layout[other.vertices[at] as usize]);
+        [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis])
+    })
+}
+
+fn held(sliced: &Sliced, place: impl Fn(usize, f64) -> Planar) -> Vec<Option<Planar>> {
+    let mut held = vec![None; sliced.disk.vertex_of.len()];
+    for (at, side) in sliced.sides.iter().enumerate() {
+        for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
+            held[vertex as usize] = Some(place(at, s));
+        }
+    }
+    held
+}
+
+/// The disk's vertices on the strip −½ ≤ x ≤ ½, 0 ≤ y ≤ 1, the arc at x = ±½ free to bend.
+fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error> {
+    let (disk, surface) = (&sliced.disk, &sliced.surface);
+    // 1. Where the ends are: the sides are bank, arc and bank on the right half of the strip, and the same on the left half
+    let x = |side: usize, s: f64| 0.5 * if side < 3 { s } else { -s };
+    let y = |side: usize| if side == 0 || side == 5 { 0.0 } else { 1.0 };
+    let mut place = vec![None; surface.vertex_of.len()];
+    let mut shift = vec![0.0; disk.vertex_of.len()];
+    let surface_vertex: Vec<usize> = sliced.surface_vertices().iter().map(|&v| v as usize).collect();
+    for (at, side) in sliced.sides.iter().enumerate() {
+        for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
+            match (side.is_arc, at) {
+                (true, 1) => {}
+                // the copies on the left of the strip are one period away from those that stand for them
+                (true, _) => shift[vertex as usize] = -1.0,
+                (false, 0 | 5) => place[surface_vertex[vertex as usize]] = Some([x(at, s), y(at)]),
+                // run through from the arc on: the second feature starts where the first ends
+                (false, _) => place[surface_vertex[vertex as usize]] = Some([x(at, 1.0 - s), y(at)]),
+            }
+        }
+    }
+    // the tips of the arc belong to both halves: they stand at ½
+    for &tip in [&sliced.sides[1].vertices[0], sliced.sides[1].vertices.last().expect("an arc has vertices")] {
+        let place = &mut place[surface_vertex[tip as usize]];
+        *place = place.map(|[_, y]| [0.5, y]);
+    }
+    // 2. Weighted means across the arc
+    let is_held = place.iter().map(Option::is_some).collect();
+    let mut map: Vec<Planar> = place.into_iter().map(Option::unwrap_or_default).collect();
+    let jump = |face: usize, k: usize| {
+        let [i, j] = [1, 2].map(|step| shift[disk.faces[face][(k + step) % 3] as usize]);
+        [j - i, 0.0]
+    };
+    let faces: Vec<[u32; 3]> = surface.faces.clone();
+    let system = Laplace::new(&faces, is_held)?;
+    system.solve(&faces, &clamped_weights(sliced), jump, &mut map, watch)?;
+    let layout = |map: &[Planar]| -> Vec<Planar> {
+        (0..shift.len()).map(|v| [map[surface_vertex[v]][0] + shift[v], map[surface_vertex[v]][1]]).collect()
+    };
+    let laid = layout(&map);
+    match Elements::collect(folded_in_plane(&disk.faces, &laid)) {
+        None => Ok(laid),
+        Some(_) => {
+            system.solve(&faces, &vec![1.0; 3 * faces.len()], jump, &mut map, watch)?;
+            let laid = layout(&map);
+            match Elements::collect(folded_in_plane(&disk.faces, &laid)) {
+                None => Ok(laid),
+                Some(folded) => Err(Error::NoEmbedding { folded }),
+            }
+        }
+    }
+}
+
+/// Where points are among the target's faces as laid out; on a cylinder up to whole turns.
+fn located(
+    target: &Sliced,
+    layout: &[Planar],
+    points: &[Planar],
+    watch: &Watch<'_>,
+) -> Result<Vec<Location>, Error> {
+    let theirs = lifted(layout);
+    let locator = Locator::new(&theirs, &target.disk.faces);
+    let mut locations = locator.locate_all(&lifted(points), watch).ok_or(Error::CancelledEarly)?;
+    if target.sides.len() <= 2 {
+        return Ok(locations);
+    }
+    let miss = |found: &Location, [x, y]: Planar| {
+        let corners = target.disk.faces[found.triangle as usize].map(|vertex| layout[vertex as usize]);
+        let at = |axis: usize| (0..3).map(|k| found.barycentric[k] * corners[k][axis]).sum::<f64>();
+        (at(0) - x).hypot(at(1) - y)
+    };
+    for (point, found) in points.iter().zip(&mut locations) {
+        let mut best = miss(found, *point);
+        let turns = (1..=WINDINGS).flat_map(|turn| [turn, -turn]);
+        for turn in turns {
+            if best < FOUND {
+                break;
+            }
+            let moved = [point[0] + f64::from(turn), point[1]];
+            let other = locator.locate([moved[0], moved[1], 1.0]);
+            if miss(&other, moved) < best {
+                (best, *found) = (miss(&other, moved), other);
+            }
+        }
+    }
+    Ok(locations)
+}

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The initial map: both disks laid out on one polygon and put on top of each other.
+//!
+//! It takes the place of the paper's harmonic maps between hexagons (section 4, step 4), is one-to-one by the same
+//! theorem, and need not know any coordinates of the universal cover. Both banks of a feature are run through by the
+//! same parameter, so that they agree.
+//!
+//! From it comes all that the harmonic map needs to know about its homotopy class: a place on the target for each vertex, and for each edge
+//! the isometry between the charts of its ends, along a path of faces that lies below the edge.
+//!
+//! Cost: two sparse Cholesky factorisations, a point location for each vertex and a short walk for each edge.
+
+use std::collections::{HashMap, VecDeque};
+use std::f64::consts::PI;
+
+use robust::{Coord, orient2d};
+
+use super::atlas::{Atlas, Random};
+use super::delaunay::Net;
+use super::layout::{Planar, lifted, planar_layout};
+use super::moebius::{Complex, Moebius};
+use super::slice::{NONE, Opened, Sliced};
+use crate::control::Watch;
+use crate::error::Error;
+use crate::parallel;
+use crate::registration::{Location, Locator};
+
+/// Walks give up after this many faces and search.
+const MOST_STEPS: usize = 10_000;
+
+/// The source's vertices on the target.
+#[derive(Debug, Clone)]
+pub(super) struct Places {
+    /// (n,): the face of the sliced target in whose chart each vertex of the sliced source is.
+    pub faces: Vec<u32>,
+    /// (n,): where in that chart.
+    pub positions: Vec<Complex>,
+    /// (n,): for the vertices of the boundary, which stay, the barycentric coordinates in that face.
+    pub held: Vec<Option<[f64; 3]>>,
+}
+
+/// The initial map between two surfaces sliced alike, with the transitions of the source's edges.
+///
+/// # Errors
+/// [`Error::NoEmbedding`] where a disk has no planar layout in double precision, [`Error::CancelledEarly`].
+pub(super) fn initial_map(
+    source: &Sliced,
+    target: &Sliced,
+    atlas: &Atlas<'_>,
+    watch: &Watch<'_>,
+) -> Result<(Places, Net), Error> {
+    // 1. Both disks on the same polygon
+    let layouts = [layout_on_polygon(source, watch)?, layout_on_polygon(target, watch)?];
+    // 2. Where each vertex of the source's disk is on the target
+    let copies = places_of_copies(source, target, &layouts, watch)?;
+    // 3. One of the copies of each vertex stands for it
+    let links = Links::new(source, target, atlas, &copies);
+    let places = links.places(&copies, atlas);
+    // 4. The isometries between the charts of neighbours
+    let transitions = links.transitions(source, target, &layouts[1], atlas, &copies);
+    Ok((places, Net::new(&source.surface, transitions)))
+}
+
+/// A Tutte layout with one side of the cut on each side of a regular polygon.
+fn layout_on_polygon(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error> {
+    let n_sides = sliced.sides.len();
+    let corner = |side: usize| {
+        let (sine, cosine) = (2.0 * PI * side as f64 / n_sides as f64).sin_cos();
+        [cosine, sine]
+    };
+    let mut held = vec![None; sliced.disk.vertex_of.len()];
+    for (at, side) in sliced.sides.iter().enumerate() {
+        let (from, to) = (corner(at), corner((at + 1) % n_sides));
+        let backwards = at >= n_sides / 2;
+        for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
+            let t = if backwards { 1.0 - s } else { s };
+            held[vertex as usize] = Some([0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]));
+        }
+    }
+    planar_layout(sliced, &held, watch)
+}
+
+/// The place of each vertex of the source's disk in the target's.
+fn places_of_copies(
+    source: &Sliced,
+    target: &Sliced,
+    layouts: &[Vec<Planar>; 2],
+    watch: &Watch<'_>,
+) -> Result<Vec<Location>, Error> {
+    let ours = lifted(&layouts[0]);
+    let theirs = lifted(&layouts[1]);
+    let locator = Locator::new(&theirs, &target.disk.faces);
+    let mut copies = locator.locate_all(&ours, watch).ok_or(Error::CancelledEarly)?;
+    
+    let corners = boundary_corners(&target.disk);
+    // arcs last: where a bank ends in an arc, the faces along the arc are those that its two sides share
+    for is_arc in [false, true] {
+        for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| side.is_arc == is_arc) {
+            for (&vertex, &s) in ours.vertices.iter().zip(&ours.parameters) {
+                let (at, t) = segment(&theirs.parameters, s);
+                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[at] as usize], t);
+            }
+        }
+    }
+    Ok(copies)
+}
+
+/// The segment of ascending or descending parameters in which `s` lies, and where in it; of two the one of lower parameters, whichever
+/// way they run.
+pub(super) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
+    let n = parameters.len();
+    let ascends = parameters[n - 1] > parameters[0];
+    let last = n - 2;
+    let at = match ascends {
+        true => parameters.partition_point(|&p| p < s).clamp(1, last + 1) - 1,
+        false => parameters.partition_point(|&p| p >= s).clamp(1, last + 1) - 1,
+    };
+    let (from, to) = (parameters[at], parameters[at + 1]);
+    (at, ((s - from) / (to - from)).clamp(0.0, 1.0))
+}
+
+/// For each vertex of the boundary the corner opposite to the edge that leaves it with the disk on the left.
+pub(super) fn boundary_corners(disk: &Opened) -> Vec<u32> {
+    let mut corners = vec![NONE; disk.vertex_of.len()];
+    for corner in (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NONE) {
+        corners[disk.faces[corner / 3][(corner + 1) % 3] as usize] = corner as u32;
+    }
+    corners
+}
+
+/// Which copy stands for each vertex, and how the charts of the others lead to its chart.
+struct Links {
+    /// (n,): the vertex of the disk that stands for each vertex of the sliced source.
+    masters: Vec<u32>,
+    /// For each vertex of the disk the isometry from its chart to its master's.
+    to_master: Vec<Moebius>,
+    /// For each vertex of the disk the vertex of the sliced source.
+    is_boundary: Vec<bool>,
+}
+
+impl Links {
+    fn new(source: &Sliced, target: &Sliced, atlas: &Atlas<'_>, copies: &[Location]) -> Self {
+        let n = source.surface.vertex_of.len();
+        let surface_vertex = source.surface_vertices();
+        let mut masters = vec![NONE; n];
+        // on the left sides first, which come before the others
+        let left = source.sides.iter().flat_map(|side| side.vertices.iter().copied());
+        for copy in left.chain(0..copies.len() as u32) {
+            let master = &mut masters[surface_vertex[copy as usize] as usize];
+            *master = if *master == NONE { copy } else { *master };
+        }
+        let mut to_master = vec![Moebius::default(); copies.len()];
+        for copy in 0..copies.len() {
+            let master = masters[surface_vertex[copy] as usize] as usize;
+            let (from, to) = (copies[copy].triangle, copies[master].triangle);
+            if from != to {
+                to_master[copy] = path(&target.surface.opposite, atlas, from, to);
+            }
+        }
+        let mut is_boundary = vec![false; n];
+        for corner in (0..3 * source.faces.len()).filter(|&c| source.surface.opposite[c] == NONE) {
+            for step in [1, 2] {
+                is_boundary[source.surface.faces[corner / 3][(corner + step) % 3] as usize] = true;
+            }
+        }
+        Self { masters, to_master, is_boundary }
+    }
+
+    fn places(&self, copies: &[Location], atlas: &Atlas<'_>) -> Places {
+        let copy = |vertex: usize| copies[self.masters[vertex] as usize];
+        let n = self.masters.len();
+        Places {
+            faces: (0..n).map(|vertex| copy(vertex).triangle).collect(),
+            positions: parallel::map(n, |vertex| atlas.at(copy(vertex).triangle, copy(vertex).barycentric)),
+            held: (0..n)
+                .map(|vertex| self.is_boundary[vertex].then_some(copy(vertex).barycentric))
+                .collect(),
+        }
+    }
+
+    /// For each corner of the sliced source the isometry from the chart of its edge's head to that of its tail.
+    fn transitions(
+        &self,
+        source: &Sliced,
+        target: &Sliced,
+        layout: &[Planar],
+        atlas: &Atlas<'_>,
+        copies: &[Location],
+    ) -> Vec<Moebius> {
+        let opposite = &source.surface.opposite;
+        let along = |corner: usize| {
+            let face = source.disk.faces[corner / 3];
+            let [tail, head] = [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v as usize);
+            let there = walk(&target.disk, layout, atlas, copies[tail].triangle, copies[head].triangle);
+            self.to_master[tail] * there.inverse() * self.to_master[head].inverse()
+        };
+        // from both sides by the same path
+        let by_first = parallel::map(opposite.len(), |corner| match opposite[corner] as usize > corner {
+            true => along(corner),
+            false => Moebius::default(),
+        });
+        parallel::map(opposite.len(), |corner| match opposite[corner] as usize > corner {
+            true => by_first[corner],
+            false => by_first[opposite[corner] as usize].inverse(),
+        })
+    }
+}
+
+/// The isometry from the chart of one face to that of another, along faces of the disk between them.
+fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
+    let centre = |face: u32| {
+        let corners = disk.faces[face as usize].map(|vertex| layout[vertex as usize]);
+        [0, 1].map(|axis| (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3.0)
+    };
+    let goal = centre(to);
+    let (mut face, mut motion) = (from, Moebius::default());
+    let mut random = Random(0x2545_f491_4f6c_dd1d);
+    for _ in 0..MOST_STEPS {
+        if face == to {
+            return motion;
+        }
+        let is_beyond = |k: &usize| {
+            let corner = 3 * face as usize + k;
+            disk.opposite[corner] != NONE && is_right_of(edge_of(disk, layout, corner), goal)
+        };
+        let exits: Vec<usize> = (0..3).filter(is_beyond).collect();
+        let Some(&k) = exits.get(random.next() as usize % exits.len().max(1)) else { break };
+        let corner = 3 * face as usize + k;
+        motion = atlas.transitions[corner] * motion;
+        face = disk.opposite[corner] / 3;
+    }
+    path(&disk.opposite, atlas, face, to) * motion
+}
+
+fn edge_of(disk: &Opened, layout: &[Planar], corner: usize) -> [Planar; 2] {
+    let face = disk.faces[corner / 3];
+    [1, 2].map(|step| layout[face[(corner + step) % 3] as usize])
+}
+
+fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {
+    let [from, to, point] = [from, to, point].map(|[x, y]| Coord { x, y });
+    orient2d(from, to, point) < 0.0
+}
+
+/// The isometry from the chart of one face to that of another that is near, along the shortest path of faces.
+fn path(opposite: &[u32], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
+    let mut motions = HashMap::from([(from, Moebius::default())]);
+    let mut queue = VecDeque::from([from]);
+    while let Some(face) = queue.pop_front() {
+        let motion = motions[&face];
+        if face == to {
+            return motion;
+        }
+        for corner in (3 * face as usize)..(3 * face as usize + 3) {
+            let across = opposite[corner];
+            if across != NONE && !motions.contains_key(&(across / 3)) {
+                motions.insert(across / 3, atlas.transitions[corner] * motion);
+                queue.push_back(across / 3);
+            }
+        }
+    }
+    Moebius::default()
+}

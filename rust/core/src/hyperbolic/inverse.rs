@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The way back: where on the source each vertex of the target is.
+//!
+//! The image of a face of the source is a geodesic triangle. In the chart of one of its corners it is spread over the faces of the target that
+//! it covers, and the vertices found in it lie in that face, at the coordinates of the flat triangle that its corners span on the hyperboloid.
+//! Those on the boundary are found by their parameters, as on the way there.
+//!
+//! Cost: some ten faces of the target for every face of the source.
+
+use super::certificates::image;
+use super::harmonic::ChartMap;
+use super::initial::{boundary_corners, segment};
+use super::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
+use super::slice::{NONE, Sliced};
+use crate::mesh::geometry::{Vector, cross, dot};
+use crate::parallel;
+use crate::registration::Location;
+
+/// A vertex this far outside of an edge, in barycentric coordinates, may still belong to a face.
+const NEAR: f64 = 1e-9;
+/// Faces of the target that one face of the source may cover.
+const MOST_COVERED: usize = 1_000_000;
+
+/// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost it.
+pub(super) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> Vec<Option<Location>> {
+    let mut found = vec![None; target.surface.vertex_of.len()];
+    // 1. Inside: what each face of the source covers; of several the one in which a vertex lies deepest
+    let covered = parallel::map(map.input.faces.len(), |face| covered(map, target, face));
+    let mut depth = vec![-NEAR; found.len()];
+    for (face, vertices) in covered.iter().enumerate() {
+        for &(vertex, barycentric) in vertices {
+            let inside = barycentric.iter().copied().fold(1.0, f64::min);
+            if inside > depth[vertex as usize] {
+                depth[vertex as usize] = inside;
+                found[vertex as usize] = Some(settled(face as u32, barycentric));
+            }
+        }
+    }
+    // 2. On the boundary: the same parameter
+    let corners = boundary_corners(&source.disk);
+    let surface_vertex = target.surface_vertices();
+    for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| !side.is_arc) {
+        for (&vertex, &s) in theirs.vertices.iter().zip(&theirs.parameters) {
+            let (at, t) = segment(&ours.parameters, s);
+            let corner = corners[ours.vertices[at] as usize];
+            found[surface_vertex[vertex as usize] as usize] = Some(Location::on_edge(corner, t));
+        }
+    }
+    found
+}
+
+fn settled(triangle: u32, barycentric: [f64; 3]) -> Location {
+    let clipped = barycentric.map(|weight| weight.max(0.0));
+    let sum: f64 = clipped.iter().sum();
+    Location { triangle, barycentric: clipped.map(|weight| weight / sum) }
+}
+
+/// The vertices of the target in the image of a face of the source, with their coordinates there.
+fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 3])> {
+    let corners = image(map, &map.input, face);
+    // relative to the first corner, where geodesics are straight lines
+    let straight = |z: Complex| to_klein(seen_from(corners[0], z));
+    let triangle = corners.map(straight);
+    let mut vertices: Vec<(u32, [f64; 3])> = Vec::new();
+    let first = map.places.faces[map.input.faces[face][0] as usize];
+    let mut queue = vec![(first, Moebius::default(), NONE)];
+    let mut visited = vec![first];
+    while let Some((at, motion, _)) = queue.pop() {
+        let chart = map.atlas.charts[at as usize].map(|z| straight(motion.apply(z)));
+        if at != first && !overlap(&triangle, &chart) {
+            continue;
+        }
+        for (k, &place) in chart.iter().enumerate() {
+            let vertex = target.surface.faces[at as usize][k];
+            if let Some(barycentric) = barycentric(&triangle, place)
+                && vertices.iter().all(|&(other, _)| other != vertex)
+            {
+                vertices.push((vertex, barycentric));
+            }
+        }
+        for corner in 3 * at as usize..3 * at as usize + 3 {
+            let across = target.surface.opposite[corner];
+            if across != NONE && visited.len() < MOST_COVERED && !visited.contains(&(across / 3)) {
+                visited.push(across / 3);
+                queue.push((across / 3, motion * map.atlas.transitions[corner].inverse(), corner as u32));
+            }
+        }
+    }
+    vertices
+}
+
+/// Whether two counter-clockwise triangles may have a point in common: no edge of either separates them.
+fn overlap(one: &[Complex; 3], other: &[Complex; 3]) -> bool {
+    let separates = |triangle: &[Complex; 3], points: &[Complex; 3]| {
+        (0..3).any(|k| {
+            let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+            points.iter().all(|&point| ((to - from).conj() * (point - from)).im < 0.0)
+        })
+    };
+    !separates(one, other) && !separates(other, one)
+}
+
+/// The coordinates of a point of Klein's model in a triangle that contains it, up to [`NEAR`], as those of the flat triangle on the
+/// hyperboloid.
+fn barycentric(triangle: &[Complex; 3], point: Complex) -> Option<[f64; 3]> {
+    let ray = |k: Complex| -> Vector { [k.re, k.im, 1.0] };
+    let [a, b, c] = triangle.map(|corner| to_hyperboloid(from_klein(corner)));
+    let x = ray(point);
+    let weights = [dot(x, cross(b, c)), dot(x, cross(c, a)), dot(x, cross(a, b))];
+    let sum: f64 = weights.iter().sum();
+    let weights = weights.map(|weight| weight / sum);
+    (sum > 0.0 && weights.iter().all(|&weight| weight > -NEAR)).then_some(weights)
+}

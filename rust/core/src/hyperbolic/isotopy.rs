@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A motion of the whole sphere that carries the features of a piece to those of its partner.
+//!
+//! Points of equal parameter move on paths: each curve turns as a whole about the axis of its own best rotation, and what
+//! is left over goes along great arcs, so that a curve that has to turn round spins instead of collapsing. In every small
+//! step the smooth displacement through those of the points, by a Matérn kernel of order 3/2, moves all else. Paths
+//! between the features keep their class: how they wind around the features.
+//!
+//! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k ≤ 400 or so points per step, and k for
+//! every point carried and step.
+
+use super::features::{Bank, Piece};
+use super::polyline::{length, on_sphere, unit};
+use crate::control::Watch;
+use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled};
+use crate::optimize::rotation::{best_rotation, rotate, rotation_of};
+use crate::parallel;
+use crate::sparse::solve_positive_definite;
+
+/// How far a displacement is felt.
+const REACH: f64 = 0.25;
+/// What is added to the diagonal of the system, relative to it.
+const RIDGE: f64 = 1e-9;
+/// In how many steps the motion is tried.
+const STEPS: [usize; 3] = [60, 120, 240];
+/// No two points approach or leave each other by more than this share of their distance in one step, so that no step folds.
+const LARGEST_STRAIN: f64 = 0.5;
+/// Points that move less than this stay where they are.
+const AT_REST: f64 = 1e-9;
+/// A point that ends farther than this from its place was lost.
+const LOST: f64 = 3e-2;
+/// Points on a curve lie this close, or farther where there would be more than `MOST_POINTS`.
+const SPACING: f64 = 0.03;
+const MOST_POINTS: f64 = 400.0;
+
+/// A motion of the sphere in small steps.
+#[derive(Debug, Clone)]
+pub(super) struct Isotopy {
+    steps: Vec<Step>,
+}
+
+/// One displacement of the whole sphere.
+#[derive(Debug, Clone)]
+struct Step {
+    places: Vec<Vector>,
+    weights: Vec<Vector>,
+}
+
+impl Isotopy {
+    /// The motion that takes the features of `source` to those of `target`; `None` as [`Self::new`].
+    pub(super) fn between(source: &Piece, target: &Piece, watch: &Watch<'_>) -> Option<Self> {
+        let [ours, theirs] = samples(source, target);
+        Self::new(&ours, &theirs, watch)
+    }
+
+    /// The motion that takes every point of each curve of `source` to that of the same number on `target`, all of them unit
+    /// vectors and no two of one surface equal.
+    ///
+    /// `None` where curves run into each other on the way, and where cancelled.
+    pub(super) fn new(source: &[Vec<Vector>], target: &[Vec<Vector>], watch: &Watch<'_>) -> Option<Self> {
+        let (from, to) = (source.concat(), target.concat());
+        let are_within = |points: &[Vector], most: f64| {
+            points.iter().zip(&to).all(|(&x, &place)| distance(x, place) <= most)
+        };
+        if are_within(&from, AT_REST) {
+            return Some(Self { steps: Vec::new() });
+        }
+        let paths: Vec<Path> = source.iter().zip(target).flat_map(|(from, to)| paths(from, to)).collect();
+        let in_steps = |count: &usize| Some(Self { steps: steps(&paths, *count, watch)? });
+        STEPS.iter().filter_map(in_steps).find(|isotopy| are_within(&isotopy.carry(&from), LOST))
+    }
+
+    /// Carries unit vectors along.
+    pub(super) fn carry(&self, points: &[Vector]) -> Vec<Vector> {
+        parallel::map(points.len(), |i| self.steps.iter().fold(points[i], |x, step| step.moved(x)))
+    }
+}
+
+impl Step {
+    /// The displacement through those of points at `places` on the way to `next`; `None` where the system is singular.
+    fn through(places: Vec<Vector>, next: &[Vector]) -> Option<Self> {
+        let k = places.len();
+        let mut matrix = parallel::map(k * k, |entry| {
+            let (i, j) = (entry % k, entry / k);
+            kernel(distance(places[i], places[j])) + if i == j { RIDGE } else { 0.0 }
+        });
+        let mut weights: Vec<f64> =
+            (0..3 * k).map(|entry| next[entry % k][entry / k] - places[entry % k][entry / k]).collect();
+        solve_positive_definite(&mut matrix, &mut weights).then(|| {
+            let weights = (0..k).map(|i| [weights[i], weights[k + i], weights[2 * k + i]]).collect();
+            Self { places, weights }
+        })
+    }
+
+    fn moved(&self, x: Vector) -> Vector {
+        let terms = self.places.iter().zip(&self.weights);
+        unit(terms.fold(x, |sum, (&place, &weight)| add(sum, scaled(weight, kernel(distance(x, place))))))
+    }
+}
+
+/// The Matérn kernel of order 3/2.
+fn kernel(distance: f64) -> f64 {
+    let r = distance / REACH;
+    (1.0 + r) * (-r).exp()
+}
+
+/// The steps along all paths; `None` where some step would fold or the points are too close for the kernel.
+fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
+    let at = |i: usize| -> Vec<Vector> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
+    let mut places = at(0);
+    let mut steps = Vec::with_capacity(count);
+    for i in 1..=count {
+        let next = at(i);
+        if !watch.goes_on() || strain(&places, &next) > LARGEST_STRAIN {
+            return None;
+        }
+        steps.push(Step::through(places, &next)?);
+        places = next;
+    }
+    Some(steps)
+}
+
+/// The largest change of the difference of two points relative to their distance.
+fn strain(places: &[Vector], next: &[Vector]) -> f64 {
+    let of = |i: usize| {
+        let pair = |j: usize| {
+            let [x, y] = [0, 1].map(|at| if at == 0 { i } else { j });
+            let change = [0, 1, 2].map(|k| next[x][k] - places[x][k] - (next[y][k] - places[y][k]));
+            norm(change) / distance(places[x], places[y])
+        };
+        (0..i).map(pair).fold(0.0, f64::max)
+    };
+    parallel::map(places.len(), of).into_iter().fold(0.0, f64::max)
+}
+
+/// The way of one point: a rotation shared with its curve, and a great arc before it.
+struct Path {
+    from: Vector,
+    /// The point's place turned back by the whole rotation.
+    to: Vector,
+    axis: Vector,
+    angle: f64,
+}
+
+/// The ways of the points of one curve.
+fn paths(from: &[Vector], to: &[Vector]) -> impl Iterator<Item = Path> {
+    let rotation = best_rotation(from, to, &vec![1.0; from.len()]);
+    let (axis, angle) = axis_angle(rotation);
+    let back = turn(axis, -angle);
+    from.iter().zip(to).map(move |(&from, &to)| Path { from, to: rotate(back, to), axis, angle })
+}
+
+impl Path {
+    fn at(&self, t: f64) -> Vector {
+        rotate(turn(self.axis, t * self.angle), slerp(self.from, self.to, t))
+    }
+}
+
+/// The point at share `t` of the great arc.
+fn slerp(from: Vector, to: Vector, t: f64) -> Vector {
+    let angle = norm(cross(from, to)).atan2(dot(from, to));
+    match angle.sin() {
+        sine if sine > 1e-12 => {
+            let [a, b] = [((1.0 - t) * angle).sin() / sine, (t * angle).sin() / sine];
+            unit(add(scaled(from, a), scaled(to, b)))
+        }
+        _ => from,
+    }
+}
+
+/// The rotation about a unit axis.
+fn turn(axis: Vector, angle: f64) -> [Vector; 3] {
+    let (sine, cosine) = (0.5 * angle).sin_cos();
+    rotation_of([cosine, sine * axis[0], sine * axis[1], sine * axis[2]])
+}
+
+/// The unit axis and the angle in [0, π] of a rotation.
+fn axis_angle(rotation: [Vector; 3]) -> (Vector, f64) {
+    let [[a, ab, ac], [ba, b, bc], [ca, cb, c]] = rotation;
+    let double_sine = [cb - bc, ac - ca, ba - ab];
+    let angle = norm(double_sine).atan2(a + b + c - 1.0);
+    if norm(double_sine) > 1e-6 {
+        return (unit(double_sine), angle);
+    }
+    if angle < 1.0 {
+        return ([0.0, 0.0, 1.0], 0.0);
+    }
+    // by half a turn: R + I = 2 axis axisᵀ, of which the longest column is taken
+    let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]];
+    let longest = columns.into_iter().max_by(|x, y| norm(*x).total_cmp(&norm(*y)));
+    (unit(longest.unwrap_or([0.0, 0.0, 1.0])), angle)
+}
+
+/// Points of equal parameter on all features of both pieces, of closed ones each once.
+fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector>>; 2] {
+    let features = || source.features.iter().zip(&target.features);
+    let banks = features().flat_map(|(ours, theirs)| {
+        let right = ours.is_loop.then_some((&ours.right, &theirs.right));
+        [Some((&ours.left, &theirs.left)), right].into_iter().flatten()
+    });
+    let size = |(ours, theirs): (&Bank, &Bank)| longer(&ours.places(source), &theirs.places(target));
+    let spacing = f64::max(SPACING, banks.map(size).sum::<f64>() / MOST_POINTS);
+    let both = features().map(|(ours, theirs)| {
+        let along = |banks: [&Bank; 2]| along(banks, [source, target], spacing);
+        let mut points = along([&ours.left, &theirs.left]);
+        if ours.is_loop {
+            let right = along([&ours.right, &theirs.right]);
+            // start and end belong to both banks
+            points.iter_mut().zip(right).for_each(|(points, right)| points.extend(&right[1..right.len() - 1]));
+        }
+        points
+    });
+    let (ours, theirs) = both.map(|[ours, theirs]| (ours, theirs)).unzip();
+    [ours, theirs]
+}
+
+fn longer(ours: &[Vector], theirs: &[Vector]) -> f64 {
+    f64::max(length(ours), length(theirs))
+}
+
+/// Points of equal parameter on two banks, both ends included.
+fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector>; 2] {
+    let places = [0, 1].map(|side| banks[side].places(pieces[side]));
+    let count = ((longer(&places[0], &places[1]) / spacing).ceil() as usize).max(2);
+    let point = |side: usize, k: usize| on_sphere(&places[side], &banks[side].parameters, k as f64 / count as f64);
+    [0, 1].map(|side| (0..=count).map(|k| point(side, k)).collect())
+}
+
+impl Bank {
+    fn places(&self, piece: &Piece) -> Vec<Vector> {
+        self.vertices.iter().map(|&vertex| piece.on_sphere[vertex as usize]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

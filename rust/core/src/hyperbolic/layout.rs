@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Planar layouts of cut surfaces on a convex polygon (Tutte 1963).
+//!
+//! With positive weights and a boundary on a convex polygon the solution is an embedding, as no edge joins two vertices of the boundary that is
+//! none of it. The weights are the cotangents in space, clamped.
+//!
+//! Cost: one sparse Cholesky factorisation.
+
+use super::slice::{NONE, Opened, Sliced};
+use crate::control::Watch;
+use crate::distortion::folded_in_plane;
+use crate::error::{Elements, Error};
+use crate::mesh::geometry::{Vector, corner_cotangents};
+use crate::parallel;
+use crate::sparse::{Analysis, Factor, Failure, Order};
+
+/// Weights are kept within this range.
+const WEIGHTS: [f64; 2] = [1e-2, 1e2];
+
+/// A place in the plane.
+pub(super) type Planar = [f64; 2];
+
+/// One position for each vertex of the disk, `held` where given; no face is folded.
+///
+/// # Errors
+/// [`Error::NoEmbedding`] where faces fold in double precision, [`Error::CancelledEarly`].
+pub(super) fn planar_layout(
+    sliced: &Sliced,
+    held: &[Option<Planar>],
+    watch: &Watch<'_>,
+) -> Result<Vec<Planar>, Error> {
+    let disk = &sliced.disk;
+    let cotangent = harmonic(disk, &clamped_weights(sliced), held, watch)?;
+    if folded_in_plane(&disk.faces, &cotangent).is_empty() {
+        return Ok(cotangent);
+    }
+    let uniform = harmonic(disk, &vec![1.0; 3 * disk.faces.len()], held, watch)?;
+    match Elements::collect(folded_in_plane(&disk.faces, &uniform)) {
+        None => Ok(uniform),
+        Some(folded) => Err(Error::NoEmbedding { folded }),
+    }
+}
+
+/// (3 m,): for each corner the weight of the opposite edge.
+pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
+    let cotangents = corner_cotangents(&sliced.points, &sliced.faces);
+    let opposite = &sliced.surface.opposite;
+    let of = |corner: usize| cotangents[corner / 3][corner % 3];
+    let weight = |corner: usize| match opposite[corner] {
+        NONE => 0.5 * of(corner),
+        across => 0.5 * (of(corner) + of(across as usize)),
+    };
+    parallel::map(3 * cotangents.len(), |corner| {
+        let weight = weight(corner);
+        if weight.is_finite() { weight.clamp(WEIGHTS[0], WEIGHTS[1]) } else { WEIGHTS[1] }
+    })
+}
+
+/// The weighted means of their neighbours for all vertices that are not held.
+fn harmonic(
+    disk: &Opened,
+    weights: &[f64],
+    held: &[Option<Planar>],
+    watch: &Watch<'_>,
+) -> Result<Vec<Planar>, Error> {
+    let system = Laplace::new(&disk.faces, held.iter().map(Option::is_some).collect())?;
+    let mut map: Vec<Planar> = held.iter().map(|place| place.unwrap_or_default()).collect();
+    system.solve(&disk.faces, weights, |_, _| [0.0; 2], &mut map, watch)?;
+    Ok(map)
+}
+
+/// The system of a weighted graph Laplacian on a triangulation.
+pub(super) struct Laplace {
+    analysis: Analysis,
+    is_held: Vec<bool>,
+}
+
+impl Laplace {
+    /// Analyses the pattern of `faces` for the vertices that are not held.
+    pub(super) fn new(faces: &[[u32; 3]], is_held: Vec<bool>) -> Result<Self, Error> {
+        let dofs: Vec<u8> = is_held.iter().map(|&held| u8::from(!held)).collect();
+        let analysis = Analysis::new(dofs.len(), faces, &dofs, Order::Sparse)?;
+        Ok(Self { analysis, is_held })
+    }
+
+    /// Solves Σ w (f_i − f_j − jump(face, k)) = 0, where the edge i → j opposite to corner k of a face goes beyond f_j by a jump, for the
+    /// vertices of `map` that are not held. Each corner's weight is half the edge's.
+    pub(super) fn solve(
+        &self,
+        faces: &[[u32; 3]],
+        weights: &[f64],
+        jump: impl Fn(usize, usize) -> Planar + Sync,
+        map: &mut [Planar],
+        watch: &Watch<'_>,
+    ) -> Result<(), Error> {
+        let element = |face: usize| {
+            let mut matrix = [[0.0; 6]; 6];
+            for k in 0..3 {
+                let (i, j) = (2 * ((k + 1) % 3), 2 * ((k + 2) % 3));
+                let weight = 0.5 * weights[3 * face + k];
+                (matrix[i][i], matrix[j][j]) = (matrix[i][i] + weight, matrix[j][j] + weight);
+                (matrix[i][j], matrix[j][i]) = (-weight, -weight);
+            }
+            matrix
+        };
+        let mut factor = Factor::<f64>::new(&self.analysis);
+        factor.refactor(&self.analysis, &element, watch).map_err(|failure| match failure {
+            Failure::Cancelled => Error::CancelledEarly,
+            Failure::NotPositiveDefinite => {
+                Error::FactorizationFailed { what: "the Laplacian of a cut surface".into() }
+            }
+        })?;
+        // the solution is what is held, and what Newton's step from there adds
+        let unknown = |vertex: u32| self.analysis.first_unknown(vertex as usize);
+        let n = self.analysis.n_unknowns();
+        let mut rhs = vec![0.0; 2 * n];
+        for (face, corners) in faces.iter().enumerate() {
+            for k in 0..3 {
+                let [i, j] = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
+                let (jump, weight) = (jump(face, k), 0.5 * weights[3 * face + k]);
+                for axis in 0..2 {
+                    let pull = weight * (map[i as usize][axis] - map[j as usize][axis] - jump[axis]);
+                    for (vertex, pull) in [(i, -pull), (j, pull)] {
+                        if !self.is_held[vertex as usize] {
+                            rhs[axis * n + unknown(vertex)] += pull;
+                        }
+                    }
+                }
+            }
+        }
+        factor.solve(&self.analysis, &mut rhs);
+        for vertex in (0..map.len()).filter(|&vertex| !self.is_held[vertex]) {
+            let at = unknown(vertex as u32);
+            map[vertex] = [map[vertex][0] + rhs[at], map[vertex][1] + rhs[n + at]];
+        }
+        Ok(())
+    }
+}
+
+/// Planar positions in the plane z = 1, where point location has them.
+pub(super) fn lifted(map: &[Planar]) -> Vec<Vector> {
+    map.iter().map(|&[u, v]| [u, v, 1.0]).collect()
+}

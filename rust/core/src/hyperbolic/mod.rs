@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Registration of surfaces of genus 0 by landmark curves (Shi et al. 2013): a homeomorphism that takes curve to curve.
+//!
+//! Both surfaces are sliced along the curves, which leaves spheres with holes. For three and more holes there is one hyperbolic metric
+//! in each conformal class with geodesic boundaries, and into such a metric the harmonic map is a diffeomorphism whatever the
+//! boundary values (theorem 3.4). [`register_hyperbolic`] computes it:
+//!
+//! 1. `curves`, `placement`, `pieces`: what the surfaces are cut along, roughly laid over each other;
+//! 2. `arcs`, `slice`: a chain of arcs through all features, carried along by an isotopy (`isotopy`), says which homotopy class is meant;
+//! 3. `metric`: the hyperbolic metrics, by Newton or by the paper's Ricci flow (`ricci_flow`);
+//! 4. `atlas`, `layout`, `initial`: local charts and a first homeomorphism;
+//! 5. `delaunay`, `harmonic`: the harmonic map by Newton, or by the paper's heat diffusion (`heat`);
+//! 6. `certificates`: the proof that it is one-to-one.
+//!
+//! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: pants, hexagons and the Fuchsian group.
+//!
+//! Input: two [`TriangleMesh`]es and pairs of [`Curves`]. Cost: some twenty sparse factorisations.
+
+mod arcs;
+mod atlas;
+mod certificates;
+mod chain;
+mod curves;
+mod cutting;
+mod delaunay;
+mod features;
+mod flat;
+mod harmonic;
+mod heat;
+mod initial;
+mod inverse;
+mod isotopy;
+mod layout;
+mod metric;
+pub mod moebius;
+mod paths;
+mod piece;
+mod pieces;
+mod placement;
+mod polyline;
+mod regions;
+mod register;
+#[cfg(test)]
+mod sample_meshes;
+mod slice;
+mod track;
+
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, dot};
+
+pub use certificates::Certificates;
+pub use curves::Curves;
+pub use harmonic::Descent;
+pub use metric::{FlowOptions, FlowRecord, Metric, MetricMethod};
+pub use register::{CurveRegistration, register_hyperbolic};
+
+/// How the harmonic energy is minimised.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Solver {
+    /// Riemannian Newton: to the minimum in a few steps.
+    #[default]
+    Newton,
+    /// The paper's heat diffusion: thousands of small steps towards it.
+    Heat,
+}
+
+/// Options of [`register_hyperbolic`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HyperbolicOptions<'a> {
+    /// How the hyperbolic metrics are computed.
+    pub metric: MetricMethod,
+    /// How the harmonic energy is minimised.
+    pub solver: Solver,
+    /// Steps of the heat diffusion at the most.
+    pub heat_steps: usize,
+    /// The heat diffusion ends where no component of the gradient is larger.
+    pub heat_tolerance: f64,
+    /// The vertices of source and target on spheres around the origin, from which it is told how the surfaces lie over each other; conformal
+    /// maps where `None`. They need not be aligned.
+    pub spheres: Option<[&'a [Vector]; 2]>,
+}
+
+impl Default for HyperbolicOptions<'_> {
+    fn default() -> Self {
+        Self {
+            metric: MetricMethod::default(),
+            solver: Solver::default(),
+            heat_steps: 2000,
+            heat_tolerance: 1e-6,
+            spheres: None,
+        }
+    }
+}
+
+impl HyperbolicOptions<'_> {
+    fn check(&self, source: &TriangleMesh, target: &TriangleMesh) -> Result<(), Error> {
+        if !(self.heat_tolerance >= 0.0 && self.heat_tolerance.is_finite()) {
+            return Err(Error::InvalidOption {
+                name: "tolerance",
+                found: self.heat_tolerance.to_string(),
+                expected: "a finite number ≥ 0".into(),
+            });
+        }
+        let Some(spheres) = self.spheres else { return Ok(()) };
+        for ((name, sphere), mesh) in ["source_sphere", "target_sphere"].into_iter().zip(spheres).zip([source, target]) {
+            check_sphere(name, sphere, mesh.n_vertices())?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses positions that do not lie around the origin.
+fn check_sphere(name: &'static str, sphere: &[Vector], n_vertices: usize) -> Result<(), Error> {
+    if sphere.len() != n_vertices {
+        let (found, expected) = (format!("of shape ({}, 3)", sphere.len()), format!("of shape ({n_vertices}, 3)"));
+        return Err(Error::InvalidArray { name, found, expected });
+    }
+    let has_direction = |x: &Vector| dot(*x, *x) > 0.0 && dot(*x, *x).is_finite();
+    let bad = (0..n_vertices).filter(|&vertex| !has_direction(&sphere[vertex]));
+    match Elements::collect(bad) {
+        None => Ok(()),
+        Some(vertices) => Err(Error::MapNonFinite { name, vertices }),
+    }
+}

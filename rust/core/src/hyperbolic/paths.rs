@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Shortest paths along the edges of a surface, by Dijkstra's algorithm.
+//!
+//! Input: lengths or costs of edges that are not negative. Cost: O(n log n) at the most; a search for one path ends when
+//! it has found it. Of equally good vertices the one of the lower index comes first.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::cutting::Cutting;
+
+/// Vertices in the order of their distances; the bits of floats that are not negative are ordered like these.
+type Queue = BinaryHeap<Reverse<(u64, u32)>>;
+
+/// Lowers `distances` to the lengths in space of the shortest paths from `sources`, whose distances become 0.
+///
+/// Vertices that `distances` does not have yet are added. Where it is the distances from some vertices, it becomes those
+/// from these and the sources; the cost is that of the part that changes.
+pub(super) fn lower_distances(surface: &Cutting, distances: &mut Vec<f64>, sources: &[u32]) {
+    distances.resize(surface.points.len(), f64::INFINITY);
+    let mut queue = Queue::new();
+    for &source in sources {
+        distances[source as usize] = 0.0;
+        queue.push(Reverse((0, source)));
+    }
+    while let Some(Reverse((bits, vertex))) = queue.pop() {
+        let distance = f64::from_bits(bits);
+        if distance > distances[vertex as usize] {
+            continue;
+        }
+        for neighbour in surface.neighbours(vertex) {
+            let through = distance + surface.length(vertex, neighbour);
+            if through < distances[neighbour as usize] {
+                distances[neighbour as usize] = through;
+                queue.push(Reverse((through.to_bits(), neighbour)));
+            }
+        }
+    }
+}
+
+/// The cheapest path between two vertices that touches no cut between them; `None` where there is none.
+pub(super) fn cheapest_path(
+    surface: &Cutting,
+    from: u32,
+    to: u32,
+    mut cost: impl FnMut(u32, u32) -> f64,
+) -> Option<Vec<u32>> {
+    let mut best = vec![(f64::INFINITY, from); surface.points.len()];
+    best[from as usize].0 = 0.0;
+    let mut queue = Queue::from([Reverse((0, from))]);
+    while let Some(Reverse((bits, vertex))) = queue.pop() {
+        let spent = f64::from_bits(bits);
+        if vertex == to {
+            return Some(backtrace(&best, from, to));
+        }
+        if spent > best[vertex as usize].0 {
+            continue;
+        }
+        for neighbour in surface.neighbours(vertex) {
+            if surface.is_cut(neighbour) && neighbour != to {
+                continue;
+            }
+            let total = spent + cost(vertex, neighbour);
+            if total < best[neighbour as usize].0 {
+                best[neighbour as usize] = (total, vertex);
+                queue.push(Reverse((total.to_bits(), neighbour)));
+            }
+        }
+    }
+    None
+}
+
+/// The path along which a vertex was reached.
+fn backtrace(best: &[(f64, u32)], from: u32, to: u32) -> Vec<u32> {
+    let before = |&vertex: &u32| (vertex != from).then(|| best[vertex as usize].1);
+    let mut path: Vec<u32> = std::iter::successors(Some(to), before).collect();
+    path.reverse();
+    path
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One piece of two surfaces: from slices to places on the target.
+//!
+//! Three features or more have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013, algorithm 1), fewer are laid out flat.
+
+use super::atlas::Atlas;
+use super::certificates::{PieceCertificates, certify};
+use super::delaunay::delaunay;
+use super::flat::flat_map;
+use super::harmonic::{ChartMap, Descent, newton};
+use super::heat::diffuse;
+use super::initial::initial_map;
+use super::inverse::inverse;
+use super::metric::{Metric, hyperbolic_metric};
+use super::slice::Sliced;
+use super::{HyperbolicOptions, Solver};
+use crate::control::{Observer, Phase, Watch};
+use crate::error::Error;
+use crate::mesh::geometry::Vector;
+use crate::registration::Location;
+
+/// A map between two sliced pieces.
+pub(super) struct PieceMap {
+    /// For each vertex of the sliced source its place in the sliced target.
+    pub locations: Vec<Location>,
+    /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost it.
+    pub inverse: Vec<Option<Location>>,
+    /// What proves it.
+    pub certificates: PieceCertificates,
+    /// The metrics of source and target, and the descent; `None` for a flat piece.
+    pub hyperbolic: Option<([Metric; 2], Descent)>,
+}
+
+/// Maps a piece.
+///
+/// # Errors
+/// What metric, layout and harmonic map fail with, and [`Error::CancelledEarly`].
+pub(super) fn map_piece(
+    source: &Sliced,
+    target: &Sliced,
+    options: &HyperbolicOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<PieceMap, Error> {
+    let n_features = source.sides.len().div_ceil(4);
+    let chi = 2 - n_features as i64;
+    if chi >= 0 {
+        let flat = flat_map(source, target, &Watch::new(observer, 0.0, "Flat map"))?;
+        let inverse = flat.inverse.into_iter().map(Some).collect();
+        let (locations, certificates) = (flat.locations, flat.certificates);
+        return Ok(PieceMap { locations, inverse, certificates, hyperbolic: None });
+    }
+    // 1. Hyperbolic metrics with geodesic boundaries: that of the target to map into, that of the source for the weights
+    let metric = |sliced: &Sliced, observer: &mut dyn Observer| {
+        let points = sliced_points(sliced);
+        let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
+        hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch)
+    };
+    let ours = metric(source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let theirs = metric(target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    // 2. A first homeomorphism
+    let atlas = Atlas::new(&target.surface, &theirs);
+    let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
+    let (places, input) = initial_map(source, target, &atlas, &Watch::new(&mut phase, 0.0, "Initial map"))?;
+    // 3. The harmonic one
+    let (intrinsic, weights) = delaunay(input.clone(), &ours.lengths);
+    let mut map = ChartMap::new(&atlas, places, input, intrinsic, weights);
+    let mut phase = Phase { whole: observer, from: 0.75, to: 1.0 };
+    let descent = match options.solver {
+        Solver::Newton => newton(&mut map, &mut phase)?,
+        Solver::Heat => {
+            let areas = vertex_areas(source, &ours);
+            diffuse(&mut map, &areas, options.heat_steps, options.heat_tolerance, &mut phase)
+        }
+    };
+    // 4. Where that is in space, and the proof
+    let certificates = certify(&map, chi);
+    let (locations, inverse) = (locations(&map), inverse(&map, source, target));
+    Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
+}
+
+/// The points of the vertices of the sliced surface.
+pub(super) fn sliced_points(sliced: &Sliced) -> Vec<Vector> {
+    sliced.surface.vertex_of.iter().map(|&vertex| sliced.points[vertex as usize]).collect()
+}
+
+/// A third of the hyperbolic area of the faces at each vertex.
+fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
+    let mut areas = vec![0.0; sliced.surface.vertex_of.len()];
+    for (face, angles) in sliced.surface.faces.iter().zip(&metric.angles) {
+        let area = std::f64::consts::PI - angles.iter().sum::<f64>();
+        face.iter().for_each(|&vertex| areas[vertex as usize] += area / 3.0);
+    }
+    areas
+}
+
+fn locations(map: &ChartMap<'_>) -> Vec<Location> {
+    let places = &map.places;
+    crate::parallel::map(places.faces.len(), |vertex| Location {
+        triangle: places.faces[vertex],
+        barycentric: match places.held[vertex] {
+            Some(barycentric) => barycentric,
+            None => map.atlas.barycentric(places.faces[vertex], places.positions[vertex]),
+        },
+    })
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Both surfaces cut along closed curves into pieces with their features: slits along open curves, and loops.
+//!
+//! A closed curve is a loop of the pieces on both of its sides, with the same parameters on both, so that maps of the pieces
+//! agree along it. A loop gets a start and an end: its places on source and target lie as near to each other as vertices
+//! can. Parameters are shares of the length in space between them.
+//!
+//! Input: divided and placed surfaces. Cost: linear.
+
+use super::curves::{CurvePair, Gap};
+use super::features::{Bank, Feature, Piece};
+use super::placement::Placement;
+use super::polyline::{nearest, shares};
+use super::regions::{Divided, Regions};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::Vector;
+
+/// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the same order:
+/// curves as given, then other boundary loops.
+pub(super) fn pieces(
+    source: &TriangleMesh,
+    target: &TriangleMesh,
+    divided: &Divided,
+    placement: &Placement,
+) -> Vec<(Piece, Piece)> {
+    // 1. Curves and other loops with their features on either surface
+    let pairs: Vec<&CurvePair> = divided.pairs.iter().chain(&placement.loops).collect();
+    let features = pairs.iter().zip(&placement.shifts).map(|(pair, &shift)| match pair.closed {
+        true => loop_features(pair, [source.points(), target.points()], shift),
+        false => [slit(&pair.source, source.points()), slit(&pair.target, target.points())],
+    });
+    let (ours, theirs): (Vec<Feature>, Vec<Feature>) = features.map(|[ours, theirs]| (ours, theirs)).unzip();
+    // 2. The pieces, each with the features at it
+    let ours = Surface { mesh: source, regions: &divided.source, sphere: &placement.source, features: &ours };
+    let theirs = Surface { mesh: target, regions: &divided.target, sphere: &placement.target, features: &theirs };
+    (0..divided.source.count).map(|region| {
+        let partner = divided.partner[region];
+        (ours.piece(region as u32), theirs.piece(partner))
+    }).collect()
+}
+
+/// A surface and what its pieces are made of; features are seen from the left of closed curves.
+struct Surface<'a> {
+    mesh: &'a TriangleMesh,
+    regions: &'a Regions,
+    sphere: &'a [Vector],
+    features: &'a [Feature],
+}
+
+impl Surface<'_> {
+    fn piece(&self, region: u32) -> Piece {
+        let all = 0..self.mesh.n_faces() as u32;
+        let face_of: Vec<u32> = all.filter(|&face| self.regions.of_face[face as usize] == region).collect();
+        let (faces, vertex_of) = renumbered(self.mesh, &face_of);
+        let number = |vertex: u32| vertex_of.partition_point(|&of| of < vertex) as u32;
+        let features = (0..self.features.len()).filter_map(|curve| self.seen_from(region, curve));
+        let features = features.map(|feature| feature.with_vertices(number)).collect();
+        let of_vertices = |values: &[Vector]| vertex_of.iter().map(|&v| values[v as usize]).collect();
+        Piece {
+            points: of_vertices(self.mesh.points()),
+            on_sphere: of_vertices(self.sphere),
+            faces,
+            vertex_of,
+            face_of,
+            features,
+        }
+    }
+
+    /// A feature as the region sees it, `None` where it lies elsewhere.
+    fn seen_from(&self, region: u32, curve: usize) -> Option<Feature> {
+        let feature = &self.features[curve];
+        let first_loop = self.regions.sides.len();
+        let [left, right] = match curve.checked_sub(first_loop) {
+            None => self.regions.sides[curve],
+            Some(_) => self.loop_sides(feature),
+        };
+        match (left == region, right == region) {
+            (true, _) => Some(feature.clone()),
+            (false, true) => Some(Feature { left: feature.right.clone(), right: feature.left.clone(), is_loop: true }),
+            (false, false) => None,
+        }
+    }
+
+    /// The region on the left of a boundary loop, twice.
+    fn loop_sides(&self, feature: &Feature) -> [u32; 2] {
+        let corner = self.mesh.vertex_corners(feature.start() as usize)[0];
+        [self.regions.of_face[corner as usize / 3]; 2]
+    }
+}
+
+/// Faces between the vertices that they use, numbered in ascending order; and those vertices.
+fn renumbered(mesh: &TriangleMesh, face_of: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>) {
+    const UNUSED: u32 = u32::MAX;
+    let mut number = vec![UNUSED; mesh.n_vertices()];
+    let given = face_of.iter().map(|&face| mesh.faces()[face as usize]);
+    given.clone().flatten().for_each(|vertex| number[vertex as usize] = 0);
+    let vertex_of: Vec<u32> = (0..mesh.n_vertices() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
+    vertex_of.iter().zip(0..).for_each(|(&vertex, new)| number[vertex as usize] = new);
+    (given.map(|face| face.map(|vertex| number[vertex as usize])).collect(), vertex_of)
+}
+
+/// An open curve cut open.
+fn slit(vertices: &[u32], points: &[Vector]) -> Feature {
+    let bank = Bank {
+        vertices: vertices.to_vec(),
+        parameters: shares(vertices.iter().map(|&vertex| points[vertex as usize])),
+    };
+    Feature { left: bank.clone(), right: bank, is_loop: false }
+}
+
+/// A pair of closed curves as loops around what lies on their left.
+fn loop_features(pair: &CurvePair, points: [&[Vector]; 2], shift: f64) -> [Feature; 2] {
+    // 1. Both from their starts
+    let [ours, theirs] = [Around::new(&pair.source, points[0]), Around::new(&pair.target, points[1])];
+    let (ours, theirs) = match pair.gap {
+        None => {
+            let start = theirs.vertex_at(shift);
+            (ours, theirs.rotated(start, points[1]))
+        }
+        // nothing of the source may come to lie inside the target's gap, so both start at its end
+        Some(_) => {
+            let start = ours.vertex_at((1.0 - shift).fract());
+            (ours.rotated(start, points[0]), theirs)
+        }
+    };
+    // 2. The ends halfway
+    let middle = ours.middle(pair.gap, 0.5);
+    let their_middle = theirs.middle(pair.gap, ours.parameters[middle]);
+    // 3. The banks, with the gap from edge to edge
+    let mut features = [ours.feature(middle), theirs.feature(their_middle)];
+    if let Some(gap) = pair.gap {
+        share_gap(&mut features, gap);
+    }
+    features
+}
+
+/// A closed curve from some vertex on and back to it.
+struct Around {
+    /// The first vertex again at the end.
+    vertices: Vec<u32>,
+    /// Shares of the length.
+    parameters: Vec<f64>,
+}
+
+impl Around {
+    fn new(closed: &[u32], points: &[Vector]) -> Self {
+        let vertices: Vec<u32> = closed.iter().chain(&closed[..1]).copied().collect();
+        let parameters = shares(vertices.iter().map(|&vertex| points[vertex as usize]));
+        Self { vertices, parameters }
+    }
+
+    fn n_edges(&self) -> usize {
+        self.vertices.len() - 1
+    }
+
+    /// The vertex nearest to a parameter.
+    fn vertex_at(&self, s: f64) -> usize {
+        nearest(&self.parameters, [0, self.n_edges()], s) % self.n_edges()
+    }
+
+    /// The same curve from another vertex on.
+    fn rotated(&self, start: usize, points: &[Vector]) -> Self {
+        let n = self.n_edges();
+        Self::new(&[&self.vertices[start..n], &self.vertices[..start]].concat(), points)
+    }
+
+    /// The vertex nearest to a parameter that leaves an edge on either side, two on that of a gap.
+    fn middle(&self, gap: Option<Gap>, s: f64) -> usize {
+        let n = self.n_edges();
+        let within = match gap {
+            None => [1, n - 1],
+            Some(Gap::AtStart) => [2, n - 1],
+            Some(Gap::AtEnd) => [1, n - 2],
+        };
+        nearest(&self.parameters, within, s)
+    }
+
+    /// The curve with an end at vertex `middle`.
+    fn feature(&self, middle: usize) -> Feature {
+        let bank = |vertices: &[u32], parameters: &[f64]| {
+            let (first, last) = (parameters[0], parameters[parameters.len() - 1]);
+            let inner = parameters.iter().map(|s| ((s - first) / (last - first)).clamp(0.0, 1.0));
+            Bank { vertices: vertices.to_vec(), parameters: inner.collect() }
+        };
+        Feature {
+            left: bank(&self.vertices[..=middle], &self.parameters[..=middle]),
+            right: bank(&self.vertices[middle..], &self.parameters[middle..]).reversed(),
+            is_loop: true,
+        }
+    }
+}
+
+/// Gives the edges next to the start on the bank with the gap the same share of it on both surfaces.
+fn share_gap(features: &mut [Feature; 2], gap: Gap) {
+    let [ours, theirs] = features.each_mut().map(|feature| match gap {
+        Gap::AtStart => &mut feature.left.parameters,
+        Gap::AtEnd => &mut feature.right.parameters,
+    });
+    let share = 0.5 * (ours[1] + theirs[1]);
+    for parameters in [ours, theirs] {
+        let own = parameters[1];
+        let rest = |s: f64| share + (s - own) / (1.0 - own) * (1.0 - share);
+        let last = parameters.len() - 1;
+        parameters[1..last].iter_mut().for_each(|s| *s = rest(*s));
+    }
+}
+
+impl Feature {
+    /// The same feature with other numbers for its vertices.
+    fn with_vertices(mut self, number: impl Fn(u32) -> u32) -> Self {
+        let banks = [&mut self.left, &mut self.right];
+        banks.into_iter().flat_map(|bank| &mut bank.vertices).for_each(|vertex| *vertex = number(*vertex));
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Rough places of both surfaces on the unit sphere, the source laid over the target by the curves.
+//!
+//! Nearly conformal maps to the sphere, boundary loops filled, then the rotation that brings points of equal parameter on
+//! paired curves together. Closed curves have no common start: the best one and the rotation are found in turns. Where
+//! curves leave a rotation open, the one is taken that lays the surfaces over each other as they lie in space.
+//!
+//! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorisations.
+
+use super::curves::CurvePair;
+use super::polyline::{on_sphere, shares, unit};
+use super::regions::Divided;
+use crate::control::Watch;
+use crate::disk::closed;
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
+use crate::optimize::rotation::{best_rotation, centroid, rotate};
+use crate::parallel;
+use crate::sphere::{rough_conformal, vertex_weights};
+
+/// Points compared on an open curve.
+const OPEN_SAMPLES: usize = 64;
+/// Points compared on a closed curve; so many starts are tried.
+const CLOSED_SAMPLES: usize = 256;
+/// How often rotation and starts are found in turns.
+const ROUNDS: usize = 4;
+/// What lying over each other in space weighs against curves.
+const LEAST_TURN: f64 = 1e-9;
+/// Something fits clearly better where what is left over is smaller by this factor and not next to nothing anyway.
+const CLEARLY: f64 = 0.5;
+const NEXT_TO_NOTHING: f64 = 0.1;
+/// Fewer open curves fit a mirrored surface as well; fewer curves fit backwards as well.
+const FEWEST: usize = 3;
+
+/// A rotation, by rows.
+type Rotation = [Vector; 3];
+
+/// Both surfaces on the unit sphere.
+#[derive(Debug, Clone)]
+pub(super) struct Placement {
+    /// (n, 3): the source's vertices, rotated over the target's.
+    pub source: Vec<Vector>,
+    /// (m, 3): the target's vertices.
+    pub target: Vec<Vector>,
+    /// Paired boundary loops that are no curves.
+    pub loops: Vec<CurvePair>,
+    /// Per curve, then per pair of `loops`: which share of the target's length lies between its first vertex and the place
+    /// of the source's first vertex; 0 of an open curve.
+    pub shifts: Vec<f64>,
+    /// Whether the source fits clearly better mirrored.
+    pub mirrored: bool,
+    /// The open curves that fit clearly better when one is run through the other way.
+    pub backwards: Vec<usize>,
+}
+
+/// Points of equal parameter on a pair of curves.
+struct Samples {
+    source: Vec<Vector>,
+    target: Vec<Vector>,
+    closed: bool,
+    /// How many points the target's start lies ahead.
+    shift: usize,
+}
+
+/// Places two surfaces on the sphere, by `spheres` (source, target) where given.
+///
+/// # Errors
+/// [`Error::InvalidArray`] and [`Error::InitialSphere`] where `spheres` are no positions,
+/// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the watch.
+pub(super) fn placed(
+    meshes: [&TriangleMesh; 2],
+    divided: &Divided,
+    spheres: Option<[&[Vector]; 2]>,
+    watch: &Watch<'_>,
+) -> Result<Placement, Error> {
+    // 1. Either surface by itself
+    let [source, target] = match spheres {
+        Some([source, target]) => [normalised(meshes[0], "source", source)?, normalised(meshes[1], "target", target)?],
+        None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
+    };
+    // 2. A rotation by what needs no start, then starts and rotation in turns
+    let of_pair = |pair: &CurvePair| Samples::new(pair, meshes, [&source, &target]);
+    let curves: Vec<Samples> = divided.pairs.iter().map(of_pair).collect();
+    let mut rotation = first_rotation(&curves);
+    let loops = paired_loops(meshes, divided, [&source, &target], rotation);
+    let mut samples = curves;
+    samples.extend(loops.iter().map(of_pair));
+    for _ in 0..ROUNDS {
+        samples.iter_mut().filter(|samples| samples.closed).for_each(|samples| samples.find_shift(rotation));
+        rotation = rotation_over(samples.iter().flat_map(Samples::pairs));
+    }
+    // 3. What would fit better
+    let source = parallel::map(source.len(), |vertex| unit(rotate(rotation, source[vertex])));
+    let shifts = samples.iter().map(|samples| samples.shift as f64 / CLOSED_SAMPLES as f64).collect();
+    let (mirrored, backwards) = (fits_mirrored(&samples), backwards(&samples, rotation));
+    Ok(Placement { source, target, loops, shifts, mirrored, backwards })
+}
+
+/// Given positions on the unit sphere.
+fn normalised(mesh: &TriangleMesh, surface: &'static str, given: &[Vector]) -> Result<Vec<Vector>, Error> {
+    let expected = || format!("({}, 3), one place for each vertex", mesh.n_vertices());
+    if given.len() != mesh.n_vertices() {
+        let found = format!("({}, 3)", given.len());
+        return Err(Error::InvalidArray { name: "sphere", found, expected: expected() }.of_surface(surface));
+    }
+    let is_bad = |vertex: &usize| !(norm(given[*vertex]) > 0.0 && norm(given[*vertex]).is_finite());
+    match Elements::collect((0..given.len()).filter(is_bad)) {
+        None => Ok(given.iter().map(|&x| unit(x)).collect()),
+        Some(vertices) => {
+            let reason = "places on the sphere are finite and not zero";
+            Err(Error::InitialSphere { vertices, reason }.of_surface(surface))
+        }
+    }
+}
+
+/// The nearly conformal map of a surface, holes filled, rotated over the surface.
+fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector>, Error> {
+    let whole = closed(mesh)?;
+    let weights = vertex_weights(&whole, whole.face_areas());
+    let mut map = rough_conformal(&whole, &weights, watch)?;
+    map.truncate(mesh.n_vertices());
+    let weights = vertex_weights(mesh, mesh.face_areas());
+    let centre = centroid(mesh.points(), &weights);
+    let directions = parallel::map(map.len(), |vertex| sub(mesh.points()[vertex], centre));
+    let rotation = best_rotation(&map, &directions, &weights);
+    Ok(parallel::map(map.len(), |vertex| unit(rotate(rotation, map[vertex]))))
+}
+
+impl Samples {
+    fn new(pair: &CurvePair, meshes: [&TriangleMesh; 2], spheres: [&[Vector]; 2]) -> Self {
+        let of = |vertices: &[u32], side: usize| match pair.closed {
+            true => closed_samples(vertices, meshes[side].points(), spheres[side]),
+            false => open_samples(vertices, meshes[side].points(), spheres[side]),
+        };
+        Self { source: of(&pair.source, 0), target: of(&pair.target, 1), closed: pair.closed, shift: 0 }
+    }
+
+    /// Points that belong together, with what they weigh: every curve the same.
+    fn pairs(&self) -> impl Iterator<Item = (Vector, Vector, f64)> {
+        let n = self.source.len();
+        (0..n).map(move |k| (self.source[k], self.target[(k + self.shift) % n], 1.0 / n as f64))
+    }
+
+    /// Finds the start of the target's curve that brings the rotated source's nearest.
+    fn find_shift(&mut self, rotation: Rotation) {
+        let n = self.source.len();
+        let turned: Vec<Vector> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
+        let fit = |shift: usize| -> f64 { (0..n).map(|k| dot(turned[k], self.target[(k + shift) % n])).sum() };
+        let fits = parallel::map(n, fit);
+        // max_by takes the last of equals, so from the back
+        self.shift = (0..n).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
+    }
+
+    /// The middles of both curves.
+    fn middles(&self) -> [Vector; 2] {
+        [middle(&self.source), middle(&self.target)]
+    }
+}
+
+fn middle(points: &[Vector]) -> Vector {
+    scaled(points.iter().fold([0.0; 3], |sum, &x| add(sum, x)), 1.0 / points.len() as f64)
+}
+
+fn open_samples(vertices: &[u32], points: &[Vector], sphere: &[Vector]) -> Vec<Vector> {
+    let parameters = shares(vertices.iter().map(|&v| points[v as usize]));
+    let places: Vec<Vector> = vertices.iter().map(|&v| sphere[v as usize]).collect();
+    let at = |k: usize| on_sphere(&places, &parameters, k as f64 / (OPEN_SAMPLES - 1) as f64);
+    (0..OPEN_SAMPLES).map(at).collect()
+}
+
+fn closed_samples(vertices: &[u32], points: &[Vector], sphere: &[Vector]) -> Vec<Vector> {
+    let around = || vertices.iter().chain(&vertices[..1]);
+    let parameters = shares(around().map(|&v| points[v as usize]));
+    let places: Vec<Vector> = around().map(|&v| sphere[v as usize]).collect();
+    (0..CLOSED_SAMPLES).map(|k| on_sphere(&places, &parameters, k as f64 / CLOSED_SAMPLES as f64)).collect()
+}
+
+/// The rotation that brings the first point of each pair nearest to the second; among equals the least.
+fn rotation_over(pairs: impl Iterator<Item = (Vector, Vector, f64)>) -> Rotation {
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let (mut from, mut to, mut weights) = (axes.to_vec(), axes.to_vec(), vec![LEAST_TURN; 3]);
+    for (x, y, weight) in pairs {
+        from.push(x);
+        to.push(y);
+        weights.push(weight);
+    }
+    best_rotation(&from, &to, &weights)
+}
+
+/// The rotation by open curves and the middles of closed ones.
+fn first_rotation(curves: &[Samples]) -> Rotation {
+    let middles = curves.iter().filter(|samples| samples.closed).map(|samples| {
+        let [ours, theirs] = samples.middles();
+        (ours, theirs, 1.0)
+    });
+    let open = curves.iter().filter(|samples| !samples.closed).flat_map(Samples::pairs);
+    rotation_over(open.chain(middles))
+}
+
+/// Pairs the boundary loops that are no curves, region by region, the nearest first.
+fn paired_loops(
+    meshes: [&TriangleMesh; 2],
+    divided: &Divided,
+    spheres: [&[Vector]; 2],
+    rotation: Rotation,
+) -> Vec<CurvePair> {
+    let centre = |side: usize, number: usize| {
+        let vertices = &meshes[side].boundary_loops()[number];
+        unit(middle(&closed_samples(vertices, meshes[side].points(), spheres[side])))
+    };
+    let ours = divided.source.loops.iter().map(|&(number, region)| {
+        (number, divided.partner[region as usize], rotate(rotation, centre(0, number)))
+    });
+    let ours: Vec<_> = ours.collect();
+    let theirs = divided.target.loops.iter().map(|&(number, region)| (number, region, centre(1, number)));
+    let theirs: Vec<_> = theirs.collect();
+    // 1. All pairs, the nearest first
+    let mut near = Vec::new();
+    for (i, &(_, region, x)) in ours.iter().enumerate() {
+        let same = theirs.iter().enumerate().filter(|(_, their)| their.1 == region);
+        near.extend(same.map(|(j, their)| (distance(x, their.2), i, j)));
+    }
+    near.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    // 2. Each loop once
+    let (mut partner, mut is_taken) = (vec![None; ours.len()], vec![false; theirs.len()]);
+    for (_, i, j) in near {
+        if partner[i].is_none() && !is_taken[j] {
+            (partner[i], is_taken[j]) = (Some(j), true);
+        }
+    }
+    let loops = |i: usize, j: usize| CurvePair {
+        source: meshes[0].boundary_loops()[ours[i].0].clone(),
+        target: meshes[1].boundary_loops()[theirs[j].0].clone(),
+        closed: true,
+        on_boundary: true,
+        gap: None,
+    };
+    partner.iter().enumerate().filter_map(|(i, j)| j.map(|j| loops(i, j))).collect()
+}
+
+/// √ of the mean squared distance after a rotation.
+fn left_over(pairs: &[(Vector, Vector, f64)], rotation: Rotation) -> f64 {
+    let total: f64 = pairs.iter().map(|(_, _, weight)| weight).sum();
+    let square = |&(x, y, weight): &(Vector, Vector, f64)| weight * distance(rotate(rotation, x), y).powi(2);
+    (pairs.iter().map(square).sum::<f64>() / total).sqrt()
+}
+
+fn is_clearly_better(better: f64, than: f64) -> bool {
+    than > NEXT_TO_NOTHING && better < CLEARLY * than
+}
+
+/// Whether open curves fit clearly better after a reflection of the source.
+fn fits_mirrored(samples: &[Samples]) -> bool {
+    let open = || samples.iter().filter(|samples| !samples.closed);
+    if open().count() < FEWEST {
+        return false;
+    }
+    let given: Vec<_> = open().flat_map(Samples::pairs).collect();
+    let mirrored: Vec<_> = given.iter().map(|&([x, y, z], to, weight)| ([x, y, -z], to, weight)).collect();
+    let best = |pairs: &[(Vector, Vector, f64)]| left_over(pairs, rotation_over(pairs.iter().copied()));
+    is_clearly_better(best(&mirrored), best(&given))
+}
+
+/// The open curves that fit clearly better the other way round.
+fn backwards(samples: &[Samples], rotation: Rotation) -> Vec<usize> {
+    let is_backwards = |samples: &Samples| {
+        let given: Vec<_> = samples.pairs().collect();
+        let n = given.len();
+        let turned: Vec<_> = (0..n).map(|k| (given[k].0, given[n - 1 - k].1, 1.0)).collect();
+        !samples.closed && is_clearly_better(left_over(&turned, rotation), left_over(&given, rotation))
+    };
+    match samples.len() < FEWEST {
+        true => Vec::new(),
+        false => (0..samples.len()).filter(|&curve| is_backwards(&samples[curve])).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

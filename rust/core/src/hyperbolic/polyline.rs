@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Parameters along curves, and points at parameters.
+
+use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
+
+/// How much of a curve is divided evenly where some of its edges are too short for the others.
+const EVEN_SHARE: f64 = 1e-9;
+
+/// The length of a polyline up to each of its points as a share of the whole, strictly increasing from 0 to 1.
+///
+/// Takes at least two points.
+pub(super) fn shares(points: impl Iterator<Item = Vector>) -> Vec<f64> {
+    let points: Vec<Vector> = points.collect();
+    let mut lengths = vec![0.0];
+    points.windows(2).for_each(|ends| lengths.push(lengths[lengths.len() - 1] + distance(ends[0], ends[1])));
+    let last = lengths.len() - 1;
+    let total = lengths[last].max(f64::MIN_POSITIVE);
+    let mut shares: Vec<f64> = lengths.iter().map(|length| length / total).collect();
+    if shares.windows(2).any(|ends| ends[1] - ends[0] <= f64::EPSILON) {
+        let even = |k: usize| k as f64 / last as f64;
+        shares.iter_mut().enumerate().for_each(|(k, s)| *s += EVEN_SHARE * (even(k) - *s));
+    }
+    shares[last] = 1.0;
+    shares
+}
+
+/// The point of the unit sphere at parameter `s` of a polyline on it, of which every point has its parameter.
+pub(super) fn on_sphere(places: &[Vector], parameters: &[f64], s: f64) -> Vector {
+    let after = parameters.partition_point(|&at| at < s).clamp(1, parameters.len() - 1);
+    let [low, high] = [parameters[after - 1], parameters[after]];
+    let t = ((s - low) / (high - low)).clamp(0.0, 1.0);
+    unit(add(scaled(places[after - 1], 1.0 - t), scaled(places[after], t)))
+}
+
+/// The index of the parameter nearest to `s` among those from `first` to `last`; parameters ascend.
+pub(super) fn nearest(parameters: &[f64], [first, last]: [usize; 2], s: f64) -> usize {
+    let gap = |k: usize| (parameters[k] - s).abs();
+    (first..=last).min_by(|&a, &b| gap(a).total_cmp(&gap(b))).unwrap_or(first)
+}
+
+/// The length of a polyline on the unit sphere, by chords.
+pub(super) fn length(places: &[Vector]) -> f64 {
+    places.windows(2).map(|ends| distance(ends[0], ends[1])).sum()
+}
+
+/// A vector made a unit one; zero stays zero.
+pub(super) fn unit(x: Vector) -> Vector {
+    match norm(x) {
+        0.0 => x,
+        length => scaled(x, 1.0 / length),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_go_from_zero_to_one_even_over_edges_without_length() {
+        let line = |xs: &[f64]| shares(xs.iter().map(|&x| [x, 0.0, 0.0]));
+        assert_eq!(line(&[0.0, 1.0, 4.0]), [0.0, 0.25, 1.0]);
+        let short = line(&[0.0, 1.0, 1.0 + 1e-18, 2.0]);
+        assert!(short[0] == 0.0 && short[3] == 1.0 && short.windows(2).all(|ends| ends[0] < ends[1]));
+    }
+
+    #[test]
+    fn points_at_parameters_lie_between_their_neighbours() {
+        let places = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let parameters = [0.0, 0.5, 1.0];
+        assert_eq!(on_sphere(&places, &parameters, 0.0), places[0]);
+        assert_eq!(on_sphere(&places, &parameters, 1.0), places[2]);
+        let middle = on_sphere(&places, &parameters, 0.75);
+        assert!(distance(middle, unit([0.0, 1.0, 1.0])) < 1e-15);
+        assert_eq!(nearest(&parameters, [0, 2], 0.7), 1);
+        assert_eq!(nearest(&parameters, [2, 2], 0.7), 2);
+    }
+}

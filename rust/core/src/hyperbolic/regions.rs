@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The parts into which closed curves divide the surfaces, and which parts belong together.
+//!
+//! On a surface of genus 0 every closed curve has two sides. A map that keeps orientation takes left to left, so closed
+//! curves of the target are turned until what lies on their left is what lies on the left of their partners.
+//!
+//! Input: checked pairs of curves. Cost: linear in the faces, k² for k curves.
+
+use super::curves::{CurvePair, Gap, face_on_left, loop_along};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::topology::{NO_CORNER, next_corner, previous_corner, vertex_at};
+
+/// No region: beyond the boundary.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+
+/// The areas left and right of a curve say which is which where they differ by more than this share of all.
+const CLEAR_SHARE: f64 = 0.02;
+
+/// The regions of one surface.
+#[derive(Debug, Clone)]
+pub(super) struct Regions {
+    /// (m,): the region of each face, numbered by their lowest faces.
+    pub of_face: Vec<u32>,
+    /// How many there are.
+    pub count: usize,
+    /// Per curve the regions on its left and right, twice the same of an open one, [`OUTSIDE`] beyond the boundary.
+    pub sides: Vec<[u32; 2]>,
+    /// The region of each boundary loop that is no curve, with the number of the loop.
+    pub loops: Vec<(usize, u32)>,
+    /// The share of each region in the area of the surface.
+    shares: Vec<f64>,
+}
+
+/// Both surfaces divided, with closed curves of the target turned like their partners.
+#[derive(Debug, Clone)]
+pub(super) struct Divided {
+    /// The pairs; sides of both agree.
+    pub pairs: Vec<CurvePair>,
+    /// The regions of the source.
+    pub source: Regions,
+    /// The regions of the target.
+    pub target: Regions,
+    /// The region of the target that belongs to each of the source.
+    pub partner: Vec<u32>,
+}
+
+/// Divides both surfaces along closed curves and pairs their regions.
+///
+/// # Errors
+/// [`Error::CurveSides`] and [`Error::LoopSides`] where sides of a closed curve cannot belong together.
+pub(super) fn divided(
+    source: &TriangleMesh,
+    target: &TriangleMesh,
+    mut pairs: Vec<CurvePair>,
+) -> Result<Divided, Error> {
+    let curves = |side: fn(&CurvePair) -> &Vec<u32>| pairs.iter().map(side).collect::<Vec<_>>();
+    let closed: Vec<bool> = pairs.iter().map(|pair| pair.closed).collect();
+    let ours = Regions::new(source, &curves(|pair| &pair.source), &closed);
+    let mut theirs = Regions::new(target, &curves(|pair| &pair.target), &closed);
+    // 1. Left to left
+    for (curve, pair) in pairs.iter_mut().enumerate().filter(|(_, pair)| pair.closed) {
+        if is_turned(curve, &ours, &theirs) {
+            turn(pair);
+            theirs.sides[curve].reverse();
+        }
+    }
+    // 2. What lies on the left must be the same
+    (0..pairs.len()).filter(|&curve| closed[curve]).try_for_each(|curve| check_sides(curve, &ours, &theirs))?;
+    // 3. So regions on the same sides belong together
+    let mut partner = vec![0; ours.count];
+    for curve in (0..pairs.len()).filter(|&curve| closed[curve]) {
+        for side in (0..2).filter(|&side| ours.sides[curve][side] != OUTSIDE) {
+            partner[ours.sides[curve][side] as usize] = theirs.sides[curve][side];
+        }
+    }
+    Ok(Divided { pairs, source: ours, target: theirs, partner })
+}
+
+/// Runs through the target's curve the other way, from the same vertex.
+fn turn(pair: &mut CurvePair) {
+    pair.target[1..].reverse();
+    pair.gap = pair.gap.map(|_| Gap::AtStart);
+}
+
+/// Whether the left of the target's curve belongs to the right of the source's.
+fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
+    let (left, their_left) = (ours.on_left(curve), theirs.on_left(curve));
+    // 1. The boundary says it, or other curves do
+    if ours.sides[curve].contains(&OUTSIDE) {
+        return (ours.sides[curve][0] == OUTSIDE) != (theirs.sides[curve][0] == OUTSIDE);
+    }
+    let others = (0..ours.sides.len()).filter(|&other| other != curve);
+    let agree = |other: &usize| left[ours.region(*other)] == their_left[theirs.region(*other)];
+    let (agreeing, turned): (Vec<usize>, Vec<usize>) = others.partition(agree);
+    if agreeing.len() != turned.len() {
+        return agreeing.len() < turned.len();
+    }
+    // 2. Or boundary loops, or areas
+    let [on_left, their_loops] = [ours.loops_in(&left), theirs.loops_in(&their_left)];
+    let on_right = ours.loops.len() - on_left;
+    if on_left != on_right {
+        return on_right.abs_diff(their_loops) < on_left.abs_diff(their_loops);
+    }
+    let (share, theirs) = (ours.share_of(&left), theirs.share_of(&their_left));
+    (1.0 - share - theirs).abs() + CLEAR_SHARE < (share - theirs).abs()
+}
+
+/// Refuses other curves and loops on different sides of a closed curve.
+fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Error> {
+    let (left, their_left) = (ours.on_left(closed), theirs.on_left(closed));
+    let left_is_inside = ours.share_of(&left) <= 0.5;
+    for curve in (0..ours.sides.len()).filter(|&curve| curve != closed) {
+        let [on_left, their_side] = [left[ours.region(curve)], their_left[theirs.region(curve)]];
+        if on_left != their_side {
+            let surface = if on_left == left_is_inside { "source" } else { "target" };
+            return Err(Error::CurveSides { curve, closed, surface });
+        }
+    }
+    let [on_left, their_loops] = [ours.loops_in(&left), theirs.loops_in(&their_left)];
+    let inside = |on_left| if left_is_inside { on_left } else { ours.loops.len() - on_left };
+    match on_left == their_loops {
+        true => Ok(()),
+        false => {
+            let [source_count, target_count] = [inside(on_left), inside(their_loops)];
+            Err(Error::LoopSides { closed, source_count, target_count })
+        }
+    }
+}
+
+impl Regions {
+    fn new(mesh: &TriangleMesh, curves: &[&Vec<u32>], closed: &[bool]) -> Self {
+        let walls = curves.iter().zip(closed).filter(|(_, closed)| **closed).map(|(curve, _)| &curve[..]);
+        let (of_face, count) = flooded(mesh, &walls_at_corners(mesh, walls));
+        let region = |face: Option<u32>| face.map_or(OUTSIDE, |face| of_face[face as usize]);
+        let sides = curves.iter().map(|curve| {
+            let [a, b] = [curve[0], curve[1]];
+            [region(face_on_left(mesh, a, b)), region(face_on_left(mesh, b, a))]
+        });
+        let sides: Vec<[u32; 2]> = sides.collect();
+        let named: Vec<usize> = curves.iter().filter_map(|curve| loop_along(mesh, curve)).collect();
+        let unnamed = (0..mesh.boundary_loops().len()).filter(|number| !named.contains(number));
+        let loops = unnamed.map(|number| {
+            let vertices = &mesh.boundary_loops()[number];
+            (number, region(face_on_left(mesh, vertices[0], vertices[1])))
+        });
+        let loops = loops.collect();
+        let mut shares = vec![0.0; count];
+        let total: f64 = mesh.face_areas().iter().sum();
+        of_face.iter().zip(mesh.face_areas()).for_each(|(&at, area)| shares[at as usize] += area / total);
+        Self { of_face, count, sides, loops, shares }
+    }
+
+    /// A region at a curve.
+    fn region(&self, curve: usize) -> usize {
+        let [left, right] = self.sides[curve];
+        left.min(right) as usize
+    }
+
+    /// Per region whether it lies on the left of a closed curve.
+    fn on_left(&self, closed: usize) -> Vec<bool> {
+        let mut on_left = vec![false; self.count];
+        if let Some(first) = on_left.get_mut(self.sides[closed][0] as usize) {
+            *first = true;
+        }
+        let others = (0..self.sides.len()).filter(|&other| other != closed);
+        let joined: Vec<[usize; 2]> = others
+            .map(|other| self.sides[other])
+            .filter(|sides| !sides.contains(&OUTSIDE))
+            .map(|sides| sides.map(|side| side as usize))
+            .collect();
+        while let Some([a, b]) = joined.iter().find(|[a, b]| on_left[*a] != on_left[*b]) {
+            (on_left[*a], on_left[*b]) = (true, true);
+        }
+        on_left
+    }
+
+    fn loops_in(&self, inside: &[bool]) -> usize {
+        self.loops.iter().filter(|(_, region)| inside[*region as usize]).count()
+    }
+
+    fn share_of(&self, inside: &[bool]) -> f64 {
+        self.shares.iter().zip(inside).map(|(share, &inside)| if inside { *share } else { 0.0 }).sum()
+    }
+}
+
+/// Per corner whether the edge opposite to it lies on a closed curve.
+fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [u32]>) -> Vec<bool> {
+    let mut next = vec![[u32::MAX; 2]; mesh.n_vertices()];
+    for curve in curves {
+        for (k, &vertex) in curve.iter().enumerate() {
+            let n = curve.len();
+            next[vertex as usize] = [curve[(k + 1) % n], curve[(k + n - 1) % n]];
+        }
+    }
+    let is_wall = |corner: u32| {
+        let [a, b] = [next_corner(corner), previous_corner(corner)].map(|c| vertex_at(mesh.faces(), c));
+        next[a as usize].contains(&b)
+    };
+    (0..3 * mesh.n_faces() as u32).map(is_wall).collect()
+}
+
+/// The region of each face, and how many there are.
+fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<u32>, usize) {
+    let (mut of_face, mut count) = (vec![OUTSIDE; mesh.n_faces()], 0);
+    for seed in 0..mesh.n_faces() {
+        if of_face[seed] != OUTSIDE {
+            continue;
+        }
+        of_face[seed] = count;
+        let mut pending = vec![seed as u32];
+        while let Some(face) = pending.pop() {
+            for corner in 3 * face..3 * face + 3 {
+                let across = mesh.opposite(corner).unwrap_or(NO_CORNER);
+                if across == NO_CORNER || is_wall[corner as usize] || of_face[across as usize / 3] != OUTSIDE {
+                    continue;
+                }
+                of_face[across as usize / 3] = count;
+                pending.push(across / 3);
+            }
+        }
+        count += 1;
+    }
+    (of_face, count as usize)
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Spheres with curves on them, for tests.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::polyline::unit;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, dot, triangle};
+
+/// The vertices and faces of a sphere of 8 · 4^level faces, slightly uneven so that no two faces are alike.
+pub(super) fn sphere(level: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut points: Vec<Vector> = axes.to_vec();
+    points.push([0.0, 0.0, -1.0]);
+    let mut faces: Vec<[u32; 3]> = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect();
+    for _ in 0..level {
+        let mut middles = BTreeMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                points.push(unit(add(points[a as usize], points[b as usize])));
+                points.len() as u32 - 1
+            })
+        };
+        let split = |&[a, b, c]: &[u32; 3]| {
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        faces = faces.iter().flat_map(split).collect();
+    }
+    let uneven = |(k, &x): (usize, &Vector)| {
+        let wave = |phase: f64| 0.2 * 0.5f64.powi(level as i32) * (1.7 * k as f64 + phase).sin();
+        unit(add(x, [wave(0.0), wave(1.0), wave(2.0)]))
+    };
+    (points.iter().enumerate().map(uneven).collect(), faces)
+}
+
+/// A mesh of other places for the vertices, without the faces for which `is_hole` holds at their middle.
+pub(super) fn mesh(
+    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
+    place: impl Fn(Vector) -> Vector,
+    is_hole: impl Fn(Vector) -> bool,
+) -> TriangleMesh {
+    let kept = faces.iter().filter(|face| !is_hole(middle(points, **face))).copied();
+    let places: Vec<Vector> = points.iter().map(|&x| place(x)).collect();
+    TriangleMesh::new(&places, &kept.collect::<Vec<_>>()).unwrap()
+}
+
+fn middle(points: &[Vector], face: [u32; 3]) -> Vector {
+    unit(triangle(points, face).into_iter().fold([0.0; 3], add))
+}
+
+/// The vertex nearest to a direction.
+pub(super) fn nearest_vertex(points: &[Vector], direction: Vector) -> usize {
+    (0..points.len()).max_by(|&a, &b| dot(points[a], direction).total_cmp(&dot(points[b], direction))).unwrap()
+}
+
+/// A path of fewest edges from the vertex nearest to one direction to that nearest to another.
+pub(super) fn path((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), from: Vector, to: Vector) -> Vec<usize> {
+    let [start, end] = [from, to].map(|direction| nearest_vertex(points, unit(direction)));
+    let mut neighbours = vec![Vec::new(); points.len()];
+    for [a, b, c] in faces.iter().map(|face| face.map(|v| v as usize)) {
+        [[a, b], [b, c], [c, a]].iter().for_each(|&[p, q]| neighbours[p].push(q));
+    }
+    let mut before = vec![usize::MAX; points.len()];
+    before[end] = end;
+    let mut pending = VecDeque::from([end]);
+    while let Some(vertex) = pending.pop_front() {
+        for &next in &neighbours[vertex] {
+            if before[next] == usize::MAX {
+                before[next] = vertex;
+                pending.push_back(next);
+            }
+        }
+    }
+    let mut path = vec![start];
+    while path[path.len() - 1] != end {
+        path.push(before[path[path.len() - 1]]);
+    }
+    path
+}
+
+/// The closed curve around the faces within an angle of a direction, those on its left; its first vertex not repeated.
+pub(super) fn circle((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), centre: Vector, angle: f64) -> Vec<usize> {
+    let inside = faces.iter().filter(|face| dot(middle(points, **face), unit(centre)) > angle.cos());
+    let edges: Vec<[u32; 2]> = inside.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+    let is_border = |edge: &&[u32; 2]| !edges.contains(&[edge[1], edge[0]]);
+    let next: BTreeMap<u32, u32> = edges.iter().filter(is_border).map(|&[a, b]| (a, b)).collect();
+    let first = *next.keys().next().unwrap();
+    let mut curve = vec![first];
+    while next[&curve[curve.len() - 1]] != first {
+        curve.push(next[&curve[curve.len() - 1]]);
+    }
+    assert_eq!(curve.len(), next.len(), "one simple loop");
+    curve.into_iter().map(|v| v as usize).collect()
+}

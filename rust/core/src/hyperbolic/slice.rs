@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Cutting a pair of pieces open: along their features, and along arcs between these into disks.
+//!
+//! The features of a surface of genus 0 become its boundary loops; a chain of arcs joins these into one. The disks of
+//! source and target have the same sides in the same order, each with parameters that say which points correspond.
+//!
+//! 1. The chain: an order and directions of the features, the same on both ([`super::chain`]).
+//! 2. The features are marked for cutting and the chords between them split ([`super::cutting`]).
+//! 3. Arcs on the source, and along their images on the target ([`super::arcs`]).
+//! 4. Corners that meet across edges that are not cut become one vertex; the boundary of the disk falls into sides.
+//!
+//! Input: the features are disjoint, slits simple paths of two or more edges off the boundary, loops whole boundary
+//! loops. Paper: Shi, Zeng, Su et al., "Hyperbolic Harmonic Mapping for Constrained Brain Surface Registration", CVPR
+//! 2013, steps 1 and 2 of the slicing; the chain of arcs takes the place of its pants and hexagons. Cost: O(B n log n)
+//! at the most for B features.
+
+mod openings;
+#[cfg(test)]
+mod tests;
+
+use super::arcs::{self, Carry};
+use super::chain;
+use super::cutting::{Cutting, Seam};
+use super::features::{Feature, Piece};
+use crate::control::Watch;
+use crate::error::Error;
+use crate::mesh::geometry::Vector;
+
+pub(super) use openings::Opened;
+
+/// A corner without another across its edge.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts are split.
+#[derive(Debug, Clone)]
+pub(super) struct Sliced {
+    /// (n, 3): the points of the piece and of the midpoints of split edges, before cutting.
+    pub points: Vec<Vector>,
+    /// (m, 3): faces before cutting.
+    pub faces: Vec<[u32; 3]>,
+    /// (m,): where each face lies in the piece.
+    pub places: Vec<Place>,
+    /// Cut along the features alone.
+    pub surface: Opened,
+    /// Cut along features and arcs: a disk.
+    pub disk: Opened,
+    /// The boundary of the disk run through with the disk on the left: left bank of feature 1 of the chain, arc 1, left
+    /// bank of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B − 1 (backwards), …,
+    /// right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last vertex (of the disk) of the one
+    /// before.
+    pub sides: Vec<Side>,
+}
+
+impl Sliced {
+    /// For each vertex of the disk the vertex of the surface.
+    pub(super) fn surface_vertices(&self) -> Vec<u32> {
+        let mut vertices = vec![0; self.disk.vertex_of.len()];
+        for (disk, surface) in self.disk.faces.iter().zip(&self.surface.faces) {
+            (0..3).for_each(|k| vertices[disk[k] as usize] = surface[k]);
+        }
+        vertices
+    }
+}
+
+/// A part of a face of the piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// The face of the piece.
+    pub face: u32,
+    /// The barycentric coordinates in it of each corner of the part; exact, as all splits are at midpoints.
+    pub corners: [[f64; 3]; 3],
+}
+
+/// One side of the boundary of the disk.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Side {
+    /// Whether it is a side of an arc rather than a bank.
+    pub is_arc: bool,
+    /// Which feature of the chain, or which arc: both from 0.
+    pub index: usize,
+    /// Vertices of the disk in the order of travel, at least two.
+    pub vertices: Vec<u32>,
+    /// Their parameters: increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0 on the others. On a
+    /// bank those of the feature, on an arc shares of its length in space.
+    pub parameters: Vec<f64>,
+}
+
+/// Source and target cut open, with corresponding sides.
+#[derive(Debug, Clone)]
+pub(super) struct SlicedPair {
+    /// The source.
+    pub source: Sliced,
+    /// The target.
+    pub target: Sliced,
+    /// The features in the order of the chain, each with whether it is reversed.
+    pub chain: Vec<(usize, bool)>,
+    /// Whether all arcs on the target follow the carried ones; otherwise the homotopy class may be another.
+    pub followed: bool,
+}
+
+/// Cuts both pieces open along their features and along arcs of the same homotopy class.
+///
+/// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on the sphere of
+/// the target, so that the features of the source go onto those of the target; `None` where it cannot.
+///
+/// # Errors
+/// [`Error::Uncuttable`] for features that are no paths of edges or touch each other and [`Error::NoArc`] where two
+/// cannot be joined, both of either surface; [`Error::CancelledEarly`].
+pub(super) fn slice_pair(
+    source: &Piece,
+    target: &Piece,
+    carry: Carry<'_>,
+    watch: &Watch<'_>,
+) -> Result<SlicedPair, Error> {
+    let (of_source, of_target) =
+        (|error: Error| error.of_surface("source"), |error: Error| error.of_surface("target"));
+    // 1. Order and directions.
+    let chain = chain::order(source, target);
+    let [source_features, target_features] = [source, target].map(|piece| chain::features(piece, &chain));
+    // 2. Cut along the features.
+    let mut source = cut_features(source).map_err(of_source)?;
+    let mut target = cut_features(target).map_err(of_target)?;
+    // 3. Cut along arcs.
+    let links = chain::links(&chain, &source_features);
+    let source_arcs = arcs::source_arcs(&mut source, &links, watch).map_err(of_source)?;
+    let guides = arcs::guides(&source, &source_arcs, carry);
+    let links = chain::links(&chain, &target_features);
+    let (target_arcs, followed) = arcs::target_arcs(&mut target, &links, guides, watch).map_err(of_target)?;
+    // 4. Open both.
+    let source = open(source, &chain, &source_features, &source_arcs).map_err(of_source)?;
+    let target = open(target, &chain, &target_features, &target_arcs).map_err(of_target)?;
+    Ok(SlicedPair { source, target, chain, followed })
+}
+
+/// Marks the features of a piece for cutting and splits the chords between them.
+fn cut_features(piece: &Piece) -> Result<Cutting, Error> {
+    let mut cutting = Cutting::new(piece);
+    for (index, feature) in piece.features.iter().enumerate() {
+        let is_free = outline(feature).iter().all(|&vertex| !cutting.is_cut(vertex));
+        let banks = if feature.is_loop { vec![&feature.left, &feature.right] } else { vec![&feature.left] };
+        let are_paths = banks.iter().all(|bank| cutting.mark(&bank.vertices, Seam::Feature));
+        if !is_free || !are_paths {
+            return Err(Error::Uncuttable { feature: index });
+        }
+    }
+    let vertices = cutting.cut_vertices();
+    cutting.split_chords(&vertices);
+    Ok(cutting)
+}
+
+/// The vertices of a feature once around: along its left bank and back along the right one.
+fn outline(feature: &Feature) -> Vec<u32> {
+    let back = feature.right.vertices.iter().rev().skip(1);
+    let mut vertices: Vec<u32> = feature.left.vertices.iter().chain(back).copied().collect();
+    vertices.pop();
+    vertices
+}
+
+/// Opens a surface along its features, and along its arcs besides.
+fn open(
+    cutting: Cutting,
+    chain: &[(usize, bool)],
+    features: &[Feature],
+    arcs: &[Vec<u32>],
+) -> Result<Sliced, Error> {
+    let opposite_unless = |is_open: fn(Seam) -> bool| {
+        let pairs = cutting.opposite.iter().zip(&cutting.seams);
+        pairs.map(|(&across, &seam)| if is_open(seam) { NONE } else { across }).collect()
+    };
+    let surface = Opened::new(&cutting.faces, opposite_unless(|seam| seam == Seam::Feature));
+    let disk = Opened::new(&cutting.faces, opposite_unless(|seam| seam != Seam::None));
+    let boundary = match features.first() {
+        Some(first) => {
+            let edge = cutting.half_edge(first.left.vertices[0], first.left.vertices[1]);
+            disk.boundary_from(edge.ok_or(Error::Uncuttable { feature: chain[0].0 })?)
+        }
+        None => Vec::new(),
+    };
+    let sides = match_sides(expected_sides(&cutting, features, arcs), &boundary, &disk.vertex_of)
+        .map_err(|index| Error::Uncuttable { feature: chain[index].0 })?;
+    let Cutting { points, faces, places, .. } = cutting;
+    Ok(Sliced { points, faces, places, surface, disk, sides })
+}
+
+/// The sides in order, with vertices before cutting.
+fn expected_sides(cutting: &Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Vec<Side> {
+    let side = |is_arc, index, vertices: &[u32], parameters: &[f64]| Side {
+        is_arc,
+        index,
+        vertices: vertices.to_vec(),
+        parameters: parameters.to_vec(),
+    };
+    let (mut out, mut back) = (Vec::new(), Vec::new());
+    for (index, Feature { left, right, .. }) in features.iter().enumerate() {
+        out.push(side(false, index, &left.vertices, &left.parameters));
+        back.push(reversed(side(false, index, &right.vertices, &right.parameters)));
+        if let Some(arc) = arcs.get(index) {
+            let arc = side(true, index, arc, &shares_of_length(cutting, arc));
+            back.push(reversed(arc.clone()));
+            out.push(arc);
+        }
+    }
+    back.reverse();
+    out.append(&mut back);
+    out
+}
+
+fn reversed(mut side: Side) -> Side {
+    side.vertices.reverse();
+    side.parameters.reverse();
+    side
+}
+
+/// How far along its length each vertex of a path lies: from 0 to 1.
+fn shares_of_length(cutting: &Cutting, path: &[u32]) -> Vec<f64> {
+    let mut so_far = vec![0.0];
+    for ends in path.windows(2) {
+        so_far.push(so_far[so_far.len() - 1] + cutting.length(ends[0], ends[1]));
+    }
+    let whole = so_far[so_far.len() - 1];
+    so_far.into_iter().map(|length| length / whole).collect()
+}
+
+/// Gives the sides the vertices of the disk, as `boundary` runs through them.
+///
+/// Fails with the feature at or after which the boundary does not run along the sides.
+fn match_sides(mut sides: Vec<Side>, boundary: &[u32], vertex_of: &[u32]) -> Result<Vec<Side>, usize> {
+    let mut begin = 0;
+    for side in &mut sides {
+        for (place, vertex) in side.vertices.iter_mut().enumerate() {
+            let found = boundary[(begin + place) % boundary.len()];
+            if vertex_of[found as usize] != *vertex {
+                return Err(side.index);
+            }
+            *vertex = found;
+        }
+        begin += side.vertices.len() - 1;
+    }
+    match sides.last() {
+        Some(last) if begin != boundary.len() => Err(last.index),
+        _ => Ok(sides),
+    }
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Opening a surface along its cut edges, and walking along the boundary that this makes.
+
+use super::NONE;
+use crate::mesh::{next_corner, previous_corner, vertex_at};
+
+/// The faces with other vertices, after cutting.
+#[derive(Debug, Clone)]
+pub(in crate::hyperbolic) struct Opened {
+    /// (m, 3), in the order of [`Sliced::faces`](super::Sliced::faces).
+    pub faces: Vec<[u32; 3]>,
+    /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NONE`] on the boundary.
+    pub opposite: Vec<u32>,
+    /// The vertex before cutting.
+    pub vertex_of: Vec<u32>,
+}
+
+impl Opened {
+    /// Opens `faces` where `opposite` has no neighbours: the corners of each fan become one vertex.
+    ///
+    /// The vertices are numbered in the order of their lowest corners.
+    pub(super) fn new(faces: &[[u32; 3]], opposite: Vec<u32>) -> Self {
+        let mut opened = Self { faces: vec![[NONE; 3]; faces.len()], opposite, vertex_of: Vec::new() };
+        for corner in 0..3 * faces.len() as u32 {
+            if vertex_at(&opened.faces, corner) == NONE {
+                opened.number_fan(corner);
+                opened.vertex_of.push(vertex_at(faces, corner));
+            }
+        }
+        opened
+    }
+
+    /// Gives all corners of a fan the next number.
+    fn number_fan(&mut self, first: u32) {
+        let number = self.vertex_of.len() as u32;
+        for turn in [next_corner, previous_corner] {
+            let mut corner = first;
+            loop {
+                self.faces[corner as usize / 3][corner as usize % 3] = number;
+                let across = self.opposite[turn(corner) as usize];
+                if across == NONE {
+                    break;
+                }
+                corner = turn(across);
+                if corner == first {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The vertices of the boundary loop that begins with the edge opposite to a corner, the surface on the left.
+    pub(super) fn boundary_from(&self, corner: u32) -> Vec<u32> {
+        let step = |&edge: &u32| Some(self.next_boundary_edge(edge)).filter(|&next| next != corner);
+        let edges = std::iter::successors(Some(corner), step);
+        edges.map(|edge| vertex_at(&self.faces, next_corner(edge))).collect()
+    }
+
+    /// The boundary edge after another; an edge is named by the corner opposite to it.
+    pub(super) fn next_boundary_edge(&self, edge: u32) -> u32 {
+        let mut corner = previous_corner(edge);
+        loop {
+            let across = self.opposite[previous_corner(corner) as usize];
+            if across == NONE {
+                return previous_corner(corner);
+            }
+            corner = previous_corner(across);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Polylines on the unit sphere: resampling, and the distance of a point.
+//!
+//! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball enclose the
+//! halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
+
+use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
+
+/// The same polyline with further points, so that neighbours are about `spacing` apart at the most.
+pub(super) fn resampled(points: &[Vector], spacing: f64) -> Vec<Vector> {
+    let mut dense: Vec<Vector> = points.first().copied().into_iter().collect();
+    for ends in points.windows(2) {
+        let parts = (distance(ends[0], ends[1]) / spacing).ceil().max(1.0);
+        for part in 1..parts as usize {
+            let between = along(ends[0], ends[1], part as f64 / parts);
+            let length = norm(between);
+            // nothing lies between antipodes
+            if length > f64::EPSILON {
+                dense.push(scaled(between, 1.0 / length));
+            }
+        }
+        dense.push(ends[1]);
+    }
+    dense
+}
+
+/// A polyline of two or more points, prepared for distances.
+pub(super) struct Polyline {
+    points: Vec<Vector>,
+    /// Centre and radius; the children of ball i are balls 2 i + 1 and 2 i + 2.
+    balls: Vec<(Vector, f64)>,
+}
+
+impl Polyline {
+    /// Prepares for distances to the chords between consecutive points.
+    pub(super) fn new(points: Vec<Vector>) -> Self {
+        let n_chords = points.len() - 1;
+        let mut line = Self { points, balls: vec![([0.0; 3], 0.0); 2 * n_chords.next_power_of_two() - 1] };
+        line.enclose(0, 0, n_chords);
+        line
+    }
+
+    /// The distance of a point in space.
+    pub(super) fn distance(&self, x: Vector) -> f64 {
+        self.nearest(0, 0, self.points.len() - 1, x, f64::INFINITY)
+    }
+
+    /// Encloses the chords `low..high` in a ball, and their halves.
+    fn enclose(&mut self, ball: usize, low: usize, high: usize) {
+        let centre = self.points[usize::midpoint(low, high)];
+        let radius = self.points[low..=high].iter().map(|&point| distance(centre, point)).fold(0.0, f64::max);
+        self.balls[ball] = (centre, radius);
+        if high - low > 1 {
+            let middle = usize::midpoint(low, high);
+            self.enclose(2 * ball + 1, low, middle);
+            self.enclose(2 * ball + 2, middle, high);
+        }
+    }
+
+    /// The distance of the chords `low..high`, or `least` where that is less.
+    fn nearest(&self, ball: usize, low: usize, high: usize, x: Vector, least: f64) -> f64 {
+        let (centre, radius) = self.balls[ball];
+        if distance(centre, x) - radius >= least {
+            return least;
+        }
+        if high - low == 1 {
+            return least.min(chord_distance(self.points[low], self.points[high], x));
+        }
+        let middle = usize::midpoint(low, high);
+        let children = [(2 * ball + 1, low, middle), (2 * ball + 2, middle, high)];
+        let [one, other] = children.map(|(child, ..)| distance(self.balls[child].0, x));
+        let nearer_first = if one <= other { children } else { [children[1], children[0]] };
+        nearer_first.iter().fold(least, |least, &(ball, low, high)| self.nearest(ball, low, high, x, least))
+    }
+}
+
+/// The distance of a point from a straight line between two others.
+fn chord_distance(a: Vector, b: Vector, x: Vector) -> f64 {
+    let chord = sub(b, a);
+    let squared = dot(chord, chord);
+    let share = if squared > 0.0 { (dot(sub(x, a), chord) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    distance(x, along(a, b, share))
+}
+
+fn along(a: Vector, b: Vector, share: f64) -> Vector {
+    add(scaled(a, 1.0 - share), scaled(b, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spiral(n: usize) -> Vec<Vector> {
+        let point = |i: usize| {
+            let t = i as f64 / n as f64;
+            let (latitude, longitude) = (2.0 * t - 1.0, 20.0 * t);
+            [latitude.cos() * longitude.cos(), latitude.cos() * longitude.sin(), latitude.sin()]
+        };
+        (0..=n).map(point).collect()
+    }
+
+    #[test]
+    fn distances_are_those_to_the_nearest_chord() {
+        for n in [1, 2, 3, 7, 100] {
+            let points = spiral(n);
+            let line = Polyline::new(points.clone());
+            for x in spiral(37).into_iter().map(|[x, y, z]| [y, z, -x]) {
+                let chords = points.windows(2).map(|ends| chord_distance(ends[0], ends[1], x));
+                assert_eq!(line.distance(x), chords.fold(f64::INFINITY, f64::min));
+            }
+            assert!(points.iter().all(|&point| line.distance(point) == 0.0));
+        }
+    }
+
+    #[test]
+    fn resampling_keeps_the_points_and_fills_the_gaps() {
+        let points = spiral(30);
+        let dense = resampled(&points, 0.01);
+        assert!(dense.windows(2).all(|ends| distance(ends[0], ends[1]) < 0.012));
+        assert!(dense.iter().all(|&point| (norm(point) - 1.0).abs() < 1e-15));
+        assert!(points.iter().all(|point| dense.contains(point)));
+        assert_eq!(resampled(&points, 10.0), points);
+    }
+}

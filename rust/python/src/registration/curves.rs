@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::hyperbolic`'s registration.
+
+use authalic::hyperbolic::{self as core, Curves, FlowOptions, HyperbolicOptions, MetricMethod, Solver};
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::found::Outcome;
+use super::result::Registration;
+use super::{Arrays, found, mesh, surface};
+use crate::arrays::{from_index_list, index_list, points};
+use crate::errors::{MeshError, bad_array};
+use crate::options::parse_iterations;
+use crate::run::run;
+
+/// What proves that a registration by curves is one-to-one, with the curves in place.
+///
+/// A map is a homeomorphism whose faces are all positively oriented, whose area is the whole, and whose banks agree.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Certificates {
+    /// (j,) int64: source faces with an image that is not positively oriented in the target's metric; none in a homeomorphism.
+    folded: Py<PyArray1<i64>>,
+    /// The signed areas of all images in the target's hyperbolic metric.
+    area: f64,
+    /// What they must sum to: 2π(B − 2) for a surface with B curves and boundary loops.
+    expected_area: f64,
+    /// |area − expected_area| / expected_area.
+    area_error: f64,
+    /// The largest distance of a curve's image from its partner, in parts of the target's size.
+    curve_error: f64,
+    /// The largest distance between the images of the two banks of a curve, in parts of the target's size.
+    bank_error: f64,
+    /// The largest deviation from the identity of the changes of chart around a face.
+    cocycle_error: f64,
+    /// Vertices that rounding has put beyond the boundary.
+    outside: usize,
+    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map; NaN without a
+    /// hyperbolic metric.
+    energy_ratio: f64,
+    /// (float, float): the largest curvature that the hyperbolic metrics of source and target have left.
+    curvature: (f64, f64),
+}
+
+impl Certificates {
+    pub(super) fn new(py: Python<'_>, found: &core::Certificates) -> Self {
+        Self {
+            folded: from_index_list(py, found.folded.iter().copied()),
+            area: found.area,
+            expected_area: found.expected_area,
+            area_error: (found.area - found.expected_area).abs() / found.expected_area,
+            curve_error: found.curve_error,
+            bank_error: found.bank_error,
+            cocycle_error: found.cocycle_error,
+            outside: found.outside,
+            energy_ratio: found.energy_ratio,
+            curvature: found.curvature.into(),
+        }
+    }
+}
+
+#[pymethods]
+impl Certificates {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Certificates(folded={}, area_error={:.1e}, curve_error={:.1e}, bank_error={:.1e}, cocycle_error={:.1e}, \
+             energy_ratio={:.3})",
+            self.folded.bind(py).len()?,
+            self.area_error,
+            self.curve_error,
+            self.bank_error,
+            self.cocycle_error,
+            self.energy_ratio,
+        ))
+    }
+}
+
+/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that takes curve to curve.
+///
+/// Both surfaces are sliced along the curves, given the hyperbolic metric in which all slits and boundary loops are
+/// geodesics, and mapped by the hyperbolic harmonic map between them (Shi et al. 2013, by Newton's method), which is a homeomorphism
+/// whatever the curves are. `certificates` prove it.
+///
+/// Parameters
+/// ----------
+/// source : (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: one component without handles, closed or with boundary loops.
+/// target : (vertices, faces)
+///     Another, with (n_t, 3) and (m_t, 3) and as many boundary loops.
+/// source_curves : list of (k,) integer arrays
+///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common. Open ones
+///     are matched from start to end by shares of their length. Closed ones, whose first vertex stands again at the end or whose last vertex (of at least 8)
+///     has an edge to the first, have neither start nor direction. Loops of the boundary need not be named.
+/// target_curves : list of (k,) integer arrays
+///     Their partners on the target, in the same order.
+/// metric : "newton" or "ricci_flow"
+///     How the hyperbolic metrics are found: by Newton's method, or by the paper's Ricci flow (slow, then finished by Newton).
+/// solver : "newton" or "heat"
+///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow, ends with "max_iterations").
+/// max_iterations : int, optional
+///     Steps of the heat diffusion, 2000 by default.
+/// tolerance : float, optional
+///     The heat diffusion ends where no component of the gradient is larger; 1e-6 by default.
+/// source_sphere, target_sphere : (n, 3) and (n_t, 3) real arrays, optional
+///     Both surfaces on spheres around the origin, to tell how they lie over each other; conformal maps by default. They need
+///     not be aligned.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between steps and in long ones from within; False cancels.
+///
+/// Returns
+/// -------
+/// Registration
+///     With `certificates`, `warnings` and `energies`. Its domain, for `registered` and `target_registered`, is a rough map of the target to
+///     the unit sphere.
+///
+/// Raises
+/// ------
+/// MeshError
+///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, too short, touch
+///     each other or the boundary, or do not pair up: the message names the curve; nothing was computed.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     Double precision did not suffice, or the call was cancelled: no map before the last step is free of folds.
+///
+/// Examples
+/// --------
+/// >>> import authalic, numpy as np
+/// >>> t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+/// >>> z = np.linspace(-0.9, 0.9, 13)
+/// >>> rings = [[(1 - h * h) ** 0.5 * np.cos(a), (1 - h * h) ** 0.5 * np.sin(a), h] for h in z for a in t]
+/// >>> faces = [f for i in range(12) for j in range(24) for a, b in [(24 * i + j, 24 * i + (j + 1) % 24)]
+/// ...          for f in ([a, b, b + 24], [a, b + 24, a + 24])]
+/// >>> band = np.array(rings), np.array(faces)
+/// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
+/// >>> found = authalic.register_hyperbolic(band, band, source_curves=curves, target_curves=curves)
+/// >>> len(found.certificates.folded), bool(abs(found.positions - band[0]).max() < 1e-2)
+/// (0, True)
+#[pyfunction]
+#[pyo3(signature = (source, target, *, source_curves, target_curves, metric="newton", solver="newton",
+                    max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None, progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn register_hyperbolic(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    target: &Bound<'_, PyAny>,
+    source_curves: &Bound<'_, PyAny>,
+    target_curves: &Bound<'_, PyAny>,
+    metric: &str,
+    solver: &str,
+    max_iterations: Option<i64>,
+    tolerance: Option<f64>,
+    source_sphere: Option<&Bound<'_, PyAny>>,
+    target_sphere: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Registration> {
+    let mut options = HyperbolicOptions {
+        metric: choice("metric", metric, &metrics())?,
+        solver: choice("solver", solver, &SOLVERS)?,
+        ..Default::default()
+    };
+    options.heat_steps = max_iterations.map(parse_iterations).transpose()?.unwrap_or(options.heat_steps);
+    options.heat_tolerance = tolerance.unwrap_or(options.heat_tolerance);
+    let source = surface(source, ["source", "source vertices", "source faces"])?;
+    let target = surface(target, ["target", "target vertices", "target faces"])?;
+    let source_curves = curves(source_curves, "source_curves", source.0.len())?;
+    let target_curves = curves(target_curves, "target_curves", target.0.len())?;
+    let spheres = match (source_sphere, target_sphere) {
+        (None, None) => None,
+        (Some(ours), Some(theirs)) => {
+            Some([points::<3>(ours, "source_sphere")?, points::<3>(theirs, "target_sphere")?])
+        }
+        _ => return Err(PyValueError::new_err("source_sphere and target_sphere go together: give both or neither")),
+    };
+    let outcome = run(py, progress, move |observer| {
+        let meshes = (mesh(&source, "source")?, mesh(&target, "target")?);
+        let curves = Curves { source: &source_curves, target: &target_curves };
+        let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
+        let options = HyperbolicOptions { spheres, ..options };
+        let outcome = core::register_hyperbolic(&meshes.0, &meshes.1, &curves, &options, observer)?;
+        Ok(found(source, target, &meshes.0, Outcome::Curves(outcome.into())))
+    })?;
+    Registration::new(py, outcome)
+}
+
+const SOLVERS: [(&str, Solver); 2] = [("newton", Solver::Newton), ("heat", Solver::Heat)];
+
+fn metrics() -> [(&'static str, MetricMethod); 2] {
+    [("newton", MetricMethod::Newton), ("ricci_flow", MetricMethod::RicciFlow(FlowOptions::default()))]
+}
+
+/// The value of an option that has a few names.
+fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
+        let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        PyValueError::new_err(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
+    })
+}
+
+/// Vertex paths.
+fn curves(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<Vec<usize>>> {
+    let Ok(parts) = object.try_iter() else {
+        let found = object.get_type().name()?.to_string();
+        return Err(bad_array(object.py(), name, found, "a list of arrays of vertex indices".into()));
+    };
+    let path = |(curve, part): (usize, PyResult<Bound<'_, PyAny>>)| {
+        let part = part?;
+        index_list(&part, name, "place", n_vertices).map_err(|error| of_curve(part.py(), curve, &error))
+    };
+    parts.enumerate().map(path).collect()
+}
+
+/// The same error, of a curve.
+fn of_curve(py: Python<'_>, curve: usize, error: &PyErr) -> PyErr {
+    if !error.is_instance_of::<MeshError>(py) {
+        return error.clone_ref(py);
+    }
+    let named = MeshError::new_err(format!("curve {curve}: {}", error.value(py)));
+    for attribute in ["indices", "count"] {
+        let copied = error.value(py).getattr(attribute).and_then(|value| named.value(py).setattr(attribute, value));
+        if let Err(failure) = copied {
+            return failure;
+        }
+    }
+    named
+}

@@ -122,9 +122,32 @@ pub fn distortion(
     image: Image<'_>,
     targets: &[f64],
 ) -> Result<Distortion, Error> {
-    // 1. Signed areas of the image, and the scale c = A/|M| of the targets
     let image = Scaled::new(image)?;
-    let folded = folded(faces, image);
+    figures(points, faces, image, folded(faces, image), targets)
+}
+
+/// Measures a map of a surface onto another in space, where it is known otherwise which faces are `folded`.
+///
+/// # Errors
+/// As [`distortion`].
+pub(crate) fn distortion_in_space(
+    points: &[Vector],
+    faces: &[[u32; 3]],
+    image: &[Vector],
+    folded: Vec<usize>,
+    targets: &[f64],
+) -> Result<Distortion, Error> {
+    figures(points, faces, Scaled::new(Image::Sphere(image))?, folded, targets)
+}
+
+fn figures(
+    points: &[Vector],
+    faces: &[[u32; 3]],
+    image: Scaled<'_>,
+    folded: Vec<usize>,
+    targets: &[f64],
+) -> Result<Distortion, Error> {
+    // 1. Signed areas of the image, and the scale c = A/|M| of the targets
     let areas = signed_areas(faces, image, &folded);
     let scale = parallel::sum(areas.len(), |face| areas[face].abs())
         / parallel::sum(targets.len(), |face| targets[face]);

@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 use super::delaunay::Net;
 use super::harmonic::ChartMap;
 use super::moebius::{Complex, Moebius, orientation, seen_from};
-use crate::error::Elements;
 use crate::parallel;
 
 /// Figures that certify a registration by curves.
@@ -52,20 +51,25 @@ pub(super) struct PieceCertificates {
 pub(super) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
     let net = &map.input;
     let images = parallel::map(net.faces.len(), |face| image(map, net, face));
-    let folded = |face: &usize| {
-        let [a, b, c] = images[*face];
-        orientation(a, b, c) <= 0.0
-    };
     let outside = |vertex: usize| map.atlas.walk(map.places.faces[vertex], map.places.positions[vertex]);
     let is_outside = |vertex: &usize| map.places.held[*vertex].is_none() && outside(*vertex).is_outside;
     PieceCertificates {
-        folded: (0..images.len()).filter(folded).collect(),
+        folded: folded_faces(map),
         area: parallel::sum(images.len(), |face| signed_area(images[face])),
         expected_area: -2.0 * PI * chi as f64,
         cocycle_error: (0..images.len()).fold(0.0, |most: f64, face| most.max(cocycle(net, face))),
         outside: (0..map.places.faces.len()).filter(is_outside).count(),
         energy: map.energy(),
     }
+}
+
+/// Faces of the sliced source with an image that is not positively oriented, ascending.
+pub(super) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
+    let is_folded = parallel::map(map.input.faces.len(), |face| {
+        let [a, b, c] = image(map, &map.input, face);
+        orientation(a, b, c) <= 0.0
+    });
+    (0..is_folded.len()).filter(|&face| is_folded[face]).collect()
 }
 
 /// The image of a face in the chart of its first vertex.
@@ -89,19 +93,4 @@ fn cocycle(net: &Net, face: usize) -> f64 {
     // 1 ← 2, 2 ← 0 and 0 ← 1
     let Moebius { a, b } = from_first * from_second * from_third;
     (a.re.abs() - 1.0).abs().max(a.im.abs()).max(b.norm())
-}
-
-/// The faces of the surface that contain folded faces of its slices, ascending.
-pub(super) fn folded_faces(folded: &[usize], face_of: impl Fn(usize) -> usize) -> Vec<usize> {
-    let mut faces: Vec<usize> = folded.iter().map(|&face| face_of(face)).collect();
-    faces.sort_unstable();
-    faces.dedup();
-    faces
-}
-
-impl Certificates {
-    /// The folded faces for a message.
-    pub fn folded_elements(&self) -> Option<Elements> {
-        Elements::collect(self.folded.iter().copied())
-    }
 }

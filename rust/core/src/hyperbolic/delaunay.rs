@@ -17,8 +17,9 @@ use super::slice::{NONE, Opened};
 const CONVEX: f64 = 1e-9;
 /// Quadrilaterals with an angle nearer to π than this are not flipped.
 const STRAIGHT: f64 = 1e-12;
-/// Weights are at least this.
+/// Weights are at least this, those of edges that may not be flipped this.
 const LEAST_WEIGHT: f64 = 1e-4;
+const LEAST_KEPT: f64 = 1e-2;
 /// The square of the least height of a triangle of chords, in parts of its longest edge.
 const LEAST_AREA: f64 = 1e-3;
 
@@ -48,7 +49,9 @@ impl Net {
 
 /// Flips the edges of a net to the Delaunay triangulation of the metric in which they are `lengths` long; returns it with one weight for
 /// each corner's edge, the same from both sides.
-pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]]) -> (Net, Vec<f64>) {
+///
+/// Faces that are `kept` stay as they are: the weights of their edges are raised where they are not positive.
+pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Net, Vec<f64>) {
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
     // 1. Flip until no edge is left that should be
@@ -58,7 +61,9 @@ pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]]) -> (Net, Vec<f64>) {
     let mut flips_left = 100 * lengths.len();
     while let Some(corner) = queue.pop() {
         is_queued[corner as usize] = false;
-        if flips_left == 0 || !should_flip(&net, &lengths, &is_boundary, corner as usize) {
+        let is_kept = |corner: u32| corner != NONE && kept[corner as usize / 3];
+        let may_flip = flips_left > 0 && !is_kept(corner) && !is_kept(net.opposite[corner as usize]);
+        if !may_flip || !should_flip(&net, &lengths, &is_boundary, corner as usize) {
             continue;
         }
         flips_left -= 1;
@@ -76,7 +81,9 @@ pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]]) -> (Net, Vec<f64>) {
         NONE => 0.5 * halves[corner],
         across => 0.5 * (halves[corner] + halves[across as usize]),
     };
-    let weights = (0..halves.len()).map(|corner| weight(corner).max(LEAST_WEIGHT)).collect();
+    let is_kept = |corner: usize| kept[corner / 3] || net.opposite[corner] != NONE && kept[net.opposite[corner] as usize / 3];
+    let least = |corner: usize| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
+    let weights = (0..halves.len()).map(|corner| weight(corner).max(least(corner))).collect();
     (net, weights)
 }
 

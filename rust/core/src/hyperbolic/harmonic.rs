@@ -12,7 +12,7 @@
 //! Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
 
 use super::atlas::{Atlas, Walk};
-use super::delaunay::Net;
+use super::delaunay::{Net, delaunay};
 use super::initial::Places;
 use super::moebius::{Complex, Moebius, exponential, seen_from};
 use super::slice::NONE;
@@ -133,8 +133,21 @@ fn largest(values: &[Complex]) -> f64 {
 }
 
 impl<'a> ChartMap<'a> {
+    /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges are `lengths` long, but
+    /// for the faces that are `kept`.
+    pub(super) fn by_delaunay(
+        atlas: &'a Atlas<'a>,
+        places: Places,
+        input: Net,
+        lengths: &[[f64; 3]],
+        kept: &[bool],
+    ) -> Self {
+        let (intrinsic, weights) = delaunay(input.clone(), lengths, kept);
+        Self::new(atlas, places, input, intrinsic, weights)
+    }
+
     /// Takes the energy of `places` by the edges of `intrinsic` with `weights` per corner.
-    pub(super) fn new(
+    fn new(
         atlas: &'a Atlas<'a>,
         places: Places,
         input: Net,

@@ -45,9 +45,8 @@ mod sample_meshes;
 mod slice;
 mod track;
 
-use crate::error::{Elements, Error};
-use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, dot};
+use crate::error::Error;
+use crate::mesh::geometry::Vector;
 
 pub use certificates::Certificates;
 pub use curves::Curves;
@@ -94,7 +93,7 @@ impl Default for HyperbolicOptions<'_> {
 }
 
 impl HyperbolicOptions<'_> {
-    fn check(&self, source: &TriangleMesh, target: &TriangleMesh) -> Result<(), Error> {
+    fn check(&self) -> Result<(), Error> {
         if !(self.heat_tolerance >= 0.0 && self.heat_tolerance.is_finite()) {
             return Err(Error::InvalidOption {
                 name: "tolerance",
@@ -102,24 +101,6 @@ impl HyperbolicOptions<'_> {
                 expected: "a finite number ≥ 0".into(),
             });
         }
-        let Some(spheres) = self.spheres else { return Ok(()) };
-        for ((name, sphere), mesh) in ["source_sphere", "target_sphere"].into_iter().zip(spheres).zip([source, target]) {
-            check_sphere(name, sphere, mesh.n_vertices())?;
-        }
         Ok(())
-    }
-}
-
-/// Refuses positions that do not lie around the origin.
-fn check_sphere(name: &'static str, sphere: &[Vector], n_vertices: usize) -> Result<(), Error> {
-    if sphere.len() != n_vertices {
-        let (found, expected) = (format!("of shape ({}, 3)", sphere.len()), format!("of shape ({n_vertices}, 3)"));
-        return Err(Error::InvalidArray { name, found, expected });
-    }
-    let has_direction = |x: &Vector| dot(*x, *x) > 0.0 && dot(*x, *x).is_finite();
-    let bad = (0..n_vertices).filter(|&vertex| !has_direction(&sphere[vertex]));
-    match Elements::collect(bad) {
-        None => Ok(()),
-        Some(vertices) => Err(Error::MapNonFinite { name, vertices }),
     }
 }

@@ -4,8 +4,7 @@
 //! Three features or more have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013, algorithm 1), fewer are laid out flat.
 
 use super::atlas::Atlas;
-use super::certificates::{PieceCertificates, certify};
-use super::delaunay::delaunay;
+use super::certificates::{PieceCertificates, certify, folded_faces};
 use super::flat::flat_map;
 use super::harmonic::{ChartMap, Descent, newton};
 use super::heat::diffuse;
@@ -62,11 +61,14 @@ pub(super) fn map_piece(
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
     let (places, input) = initial_map(source, target, &atlas, &Watch::new(&mut phase, 0.0, "Initial map"))?;
     // 3. The harmonic one
-    let (intrinsic, weights) = delaunay(input.clone(), &ours.lengths);
-    let mut map = ChartMap::new(&atlas, places, input, intrinsic, weights);
+    let nothing = vec![false; source.faces.len()];
+    let mut map = ChartMap::by_delaunay(&atlas, places, input, &ours.lengths, &nothing);
     let mut phase = Phase { whole: observer, from: 0.75, to: 1.0 };
     let descent = match options.solver {
-        Solver::Newton => newton(&mut map, &mut phase)?,
+        Solver::Newton => {
+            let descent = newton(&mut map, &mut phase)?;
+            unfolded(&mut map, &ours.lengths, descent, &mut phase)?
+        }
         Solver::Heat => {
             let areas = vertex_areas(source, &ours);
             diffuse(&mut map, &areas, options.heat_steps, options.heat_tolerance, &mut phase)
@@ -76,6 +78,51 @@ pub(super) fn map_piece(
     let certificates = certify(&map, chi);
     let (locations, inverse) = (locations(&map), inverse(&map, source, target));
     Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
+}
+
+/// Rounds of unfolding, each keeping faces within one more ring; the last keeps all.
+const ROUNDS: usize = 6;
+
+/// Moves to a minimum in which no face of the source is folded.
+///
+/// The harmonic map embeds the triangulation by which its energy is taken. That is another one than the source's where edges were flipped, and
+/// very flat faces of the source can then be folded by rounding or by a hair. Faces around these are kept in the triangulation.
+fn unfolded(
+    map: &mut ChartMap<'_>,
+    lengths: &[[f64; 3]],
+    mut descent: Descent,
+    observer: &mut dyn Observer,
+) -> Result<Descent, Error> {
+    let n_vertices = map.places.faces.len();
+    let mut is_near = vec![false; n_vertices];
+    for round in 1..=ROUNDS {
+        let folded = folded_faces(map);
+        if folded.is_empty() {
+            break;
+        }
+        folded.iter().for_each(|&face| mark(&mut is_near, map.input.faces[face]));
+        for _ in 0..round {
+            grow(&mut is_near, &map.input.faces);
+        }
+        let is_kept = |face: &[u32; 3]| round == ROUNDS || face.iter().all(|&v| is_near[v as usize]);
+        let kept: Vec<bool> = map.input.faces.iter().map(is_kept).collect();
+        *map = ChartMap::by_delaunay(map.atlas, map.places.clone(), map.input.clone(), lengths, &kept);
+        let again = newton(map, observer)?;
+        descent.energies.extend(&again.energies[1..]);
+        (descent.gradient, descent.status) = (again.gradient, again.status);
+    }
+    Ok(descent)
+}
+
+fn mark(is_near: &mut [bool], face: [u32; 3]) {
+    face.iter().for_each(|&vertex| is_near[vertex as usize] = true);
+}
+
+/// Marks the neighbours of marked vertices.
+fn grow(is_near: &mut [bool], faces: &[[u32; 3]]) {
+    let before = is_near.to_vec();
+    let touches = |face: &&[u32; 3]| face.iter().any(|&vertex| before[vertex as usize]);
+    faces.iter().filter(touches).for_each(|&face| mark(is_near, face));
 }
 
 /// The points of the vertices of the sliced surface.

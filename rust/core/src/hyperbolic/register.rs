@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registration by landmark curves, the whole pipeline (Shi et al. 2013, algorithm 1).
 
-use super::certificates::{Certificates, PieceCertificates, folded_faces};
+use super::certificates::{Certificates, PieceCertificates};
 use super::features::Piece;
 use super::harmonic::Descent;
 use super::metric::Metric;
@@ -13,7 +13,7 @@ use super::regions::divided;
 use super::slice::{Sliced, SlicedPair, slice_pair};
 use super::{Curves, HyperbolicOptions};
 use crate::control::{History, Observer, Phase, Status, Watch};
-use crate::distortion::{Distortion, Image, distortion};
+use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub, triangle};
@@ -30,8 +30,9 @@ const STRAINED: f64 = 2.0;
 /// A registration by curves.
 #[derive(Debug, Clone)]
 pub struct CurveRegistration {
-    /// Where the source lies on the target. Its domain is the target's rough map to the sphere, its landmarks are the curves: the error of each is the
-    /// largest distance of its image from its partner in parts of the target's size.
+    /// Where the source lies on the target. Its landmarks are the curves: the error of each is the largest distance of its image from its
+    /// partner in parts of the target's size. Its figures are those of the map in space, with the folds of [`Self::certificates`]; its domain is
+    /// the target's rough map to the sphere, where straight faces may fold a little along the curves.
     pub registration: SphereRegistration,
     /// The way back, where the target lies on the source, of the same map.
     pub inverse: SphereRegistration,
@@ -72,7 +73,7 @@ pub fn register_hyperbolic(
 ) -> Result<CurveRegistration, Error> {
     let history = History::start();
     // 1. Refuse what cannot be registered before any work
-    options.check(source, target)?;
+    options.check()?;
     let pairs = curves.check(source, target)?;
     let same_side;
     let target = match is_closed(source) && is_closed(target) && inside_out(source, target) {
@@ -161,7 +162,7 @@ impl Found {
             }
         }
         let face_of = |face: usize| ours.face_of[source.places[face].face as usize] as usize;
-        self.folded.extend(folded_faces(&map.certificates.folded, face_of));
+        self.folded.extend(map.certificates.folded.iter().map(|&face| face_of(face)));
         self.certificates.push(map.certificates);
         if let Some((metrics, descent)) = map.hyperbolic {
             self.metrics.push(metrics);
@@ -194,9 +195,14 @@ impl Found {
         let warnings = self.warnings(placement, &certificates);
         // 3. Both directions as registrations
         let maps = [rough_map(meshes[0], &placement.source)?, rough_map(meshes[1], &placement.target)?];
-        let parts = |from: usize, to: usize| (meshes[from], meshes[to], maps[from].clone(), maps[to].clone());
-        let there = self.registration(parts(0, 1), locations, registered, there_error, history)?;
-        let inverse = self.registration(parts(1, 0), inverse, back, back_error, history)?;
+        let parts = |from: usize, to: usize| (meshes[to], maps[from].clone(), maps[to].clone());
+        let mut there = self.registration(parts(0, 1), locations, registered, there_error, history)?;
+        let mut inverse = self.registration(parts(1, 0), inverse, back, back_error, history)?;
+        // 4. Figures of the map in space; the way back folds what the way there folds
+        there.distortion = in_space(&there, meshes, certificates.folded.clone())?;
+        inverse.distortion = in_space(&inverse, [meshes[1], meshes[0]], Vec::new())?;
+        there.target_distortion = inverse.distortion.clone();
+        inverse.target_distortion = there.distortion.clone();
         let Self { metrics, descents, .. } = self;
         Ok(CurveRegistration { registration: there, inverse, certificates, metrics, descents, warnings })
     }
@@ -218,7 +224,7 @@ impl Found {
 
     fn registration(
         &self,
-        (mesh, other, source_map, target_map): (&TriangleMesh, &TriangleMesh, SphereMap, SphereMap),
+        (other, source_map, target_map): (&TriangleMesh, SphereMap, SphereMap),
         locations: Vec<Location>,
         registered: Vec<Vector>,
         landmark_error: Vec<f64>,
@@ -227,7 +233,7 @@ impl Found {
         let missed: Vec<usize> =
             (0..landmark_error.len()).filter(|&curve| landmark_error[curve] > MISSED).collect();
         Ok(Registration {
-            distortion: figures(mesh, &registered)?,
+            distortion: source_map.distortion.clone(),
             registered,
             target_registered: target_map.positions.clone(),
             target_faces: other.faces().to_vec(),
@@ -343,8 +349,14 @@ fn to_segment(x: Vector, [from, to]: [Vector; 2]) -> f64 {
     distance(x, add(from, scaled(along, part)))
 }
 
-fn figures(mesh: &TriangleMesh, map: &[Vector]) -> Result<Distortion, Error> {
-    distortion(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
+/// The figures of a map from one surface in space onto another.
+fn in_space(
+    found: &SphereRegistration,
+    [mesh, other]: [&TriangleMesh; 2],
+    folded: Vec<usize>,
+) -> Result<Distortion, Error> {
+    let image = found.positions(other.points());
+    distortion_in_space(mesh.points(), mesh.faces(), &image, folded, mesh.face_areas())
 }
 
 /// The rough map to the sphere as a map like others.
@@ -353,7 +365,7 @@ fn rough_map(mesh: &TriangleMesh, positions: &[Vector]) -> Result<SphereMap, Err
     Ok(SphereMap {
         positions: positions.to_vec(),
         status: Status::Converged,
-        distortion: figures(mesh, positions)?,
+        distortion: distortion(mesh.points(), mesh.faces(), Image::Sphere(positions), mesh.face_areas())?,
         seconds: history.seconds(),
         history,
     })

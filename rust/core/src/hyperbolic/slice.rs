@@ -11,8 +11,8 @@
 //!
 //! Input: the features are disjoint, slits simple paths of two or more edges off the boundary, loops whole boundary
 //! loops. Paper: Shi, Zeng, Su et al., "Hyperbolic Harmonic Mapping for Constrained Brain Surface Registration", CVPR
-//! 2013, steps 1 and 2 of the slicing; the chain of arcs takes the place of its pants and hexagons. Cost: O(B n log n)
-//! at the most for B features.
+//! 2013, which slices along the landmarks, too; the chain of arcs takes the place of its pants and hexagons. Cost:
+//! O(B n log n) at the most for B features.
 
 mod openings;
 #[cfg(test)]
@@ -100,8 +100,8 @@ pub(super) struct SlicedPair {
 
 /// Cuts both pieces open along their features and along arcs of the same homotopy class.
 ///
-/// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on the sphere of
-/// the target, so that the features of the source go onto those of the target; `None` where it cannot.
+/// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on the sphere
+/// of the target, so that the features of the source go onto those of the target; `None` where it cannot.
 ///
 /// # Errors
 /// [`Error::Uncuttable`] for features that are no paths of edges or touch each other and [`Error::NoArc`] where two

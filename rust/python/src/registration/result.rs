@@ -60,10 +60,11 @@ pub struct Registration {
     /// says.
     #[pyo3(get)]
     status: &'static str,
-    /// The figures of `registered` against the source's areas; its authalic_energy is that of h.
+    /// The figures of `registered` against the source's areas; its authalic_energy is that of h. By curves the figures of the
+    /// map in space, `positions` against the source.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere. On the disk those of
+    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere, by curves of the way back in space. On the disk those of
     /// the target's own map, but where landmarks could be met only by carrying the target's.
     #[pyo3(get)]
     target_distortion: Py<Distortion>,

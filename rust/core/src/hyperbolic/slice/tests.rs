@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::*;
 use crate::control::Silent;
 use crate::hyperbolic::features::Bank;
-use crate::hyperbolic::polyline::Polyline;
+use crate::hyperbolic::track::Polyline;
 use crate::mesh::geometry::{add, area, distance, dot, norm, scaled, triangle};
 use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
 
@@ -14,7 +14,8 @@ use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, v
 fn icosphere(level: usize) -> (Vec<Vector>, Vec<[u32; 3]>) {
     let g = f64::midpoint(1.0, 5f64.sqrt());
     let signs = [[-1.0, g], [1.0, g], [-1.0, -g], [1.0, -g]];
-    let turned = [|[a, b]: [f64; 2]| [a, b, 0.0], |[a, b]| [0.0, a, b], |[a, b]| [b, 0.0, a]];
+    let turned =
+        [|[a, b]: [f64; 2]| [a, b, 0.0], |[a, b]: [f64; 2]| [0.0, a, b], |[a, b]: [f64; 2]| [b, 0.0, a]];
     let mut points: Vec<Vector> = turned.iter().flat_map(|turn| signs.map(turn)).map(unit).collect();
     let mut faces: Vec<[u32; 3]> = [
         [0, 11, 5],
@@ -270,9 +271,8 @@ fn check_sides(piece: &Piece, chain: &[(usize, bool)], sliced: &Sliced) {
     let n_features = chain.len();
     assert_eq!(sides.len(), 2 * (2 * n_features - 1));
     let features = chain::features(piece, chain);
-    let whole = Opened { vertex_of: sliced.disk.vertex_of.clone(), ..sliced.disk.clone() };
-    let before =
-        |side: &Side| -> Vec<u32> { side.vertices.iter().map(|&v| whole.vertex_of[v as usize]).collect() };
+    let vertex_of = &sliced.disk.vertex_of;
+    let before = |side: &Side| -> Vec<u32> { side.vertices.iter().map(|&v| vertex_of[v as usize]).collect() };
     for (place, side) in sides.iter().enumerate() {
         let following = &sides[(place + 1) % sides.len()];
         assert_eq!(side.vertices.last(), following.vertices.first());
@@ -466,7 +466,7 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
     let detour = |line: &[Vector]| {
         let [from, to] = [line[0], line[line.len() - 1]];
         let ends = [from, [from[0], from[1], -0.3], [0.0, 0.0, -1.0], [to[0], to[1], -0.3], to].map(unit);
-        Some(crate::hyperbolic::polyline::resampled(&ends, 0.01))
+        Some(crate::hyperbolic::track::resampled(&ends, 0.01))
     };
     let mut silent = Silent;
     let watch = Watch::new(&mut silent, 0.0, "");
@@ -522,6 +522,24 @@ fn features_that_touch_or_are_no_paths_are_refused() {
             true => assert!(result.is_ok()),
             false => assert_eq!(result.unwrap_err(), Error::Uncuttable { feature: 1 }.of_surface("source")),
         }
+    }
+}
+
+#[test]
+fn slits_that_touch_themselves_are_refused() {
+    let sphere = sphere(3);
+    let surface = Cutting::new(&sphere);
+    let a = middle_vertex(&sphere);
+    let around: Vec<u32> = surface.neighbours(a).collect();
+    let far = nearest(&sphere, scaled(sphere.points[a as usize], -1.0));
+    let other = straight(&surface, surface.neighbours(far).next().unwrap(), far, 3);
+    let noose = vec![around[3], a, around[0], around[1], a];
+    let there_and_back = vec![around[0], a, around[3], a, around[0]];
+    for touching in [noose, there_and_back] {
+        let piece = with_slits(sphere.clone(), &[touching, other.clone()]);
+        let mut silent = Silent;
+        let watch = Watch::new(&mut silent, 0.0, "");
+        assert!(slice_pair(&piece, &piece, &identity, &watch).is_err());
     }
 }
 

@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
 
-from . import landmarks, markers, ui, ui_landmarks
+from . import curve_markers, landmark_curves, landmarks, markers, ui, ui_landmarks
+from .operators import landmark_curves as curve_operators
 from .operators import landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
 from .operators import landmarks as landmark_operators
 from .operators import register as register_operator
 
 # In this order; unregistered in the reverse one.
 _MODULES = (
+    landmark_curves,
     landmarks,
     markers,
+    curve_markers,
     unwrap,
     sphere_shape_key,
     measure,
     landmark_operators,
+    curve_operators,
     landmark_pick,
     landmark_files,
     register_operator,

@@ -2,15 +2,20 @@
 """Landmark pairs as JSON. Plain logic, no bpy.
 
     {"format": "authalic-landmarks", "version": 1, "source": "Head A", "target": "Head B",
-     "pairs": [{"name": "Nose", "source": 12, "target": 345}]}
+     "pairs": [{"name": "Nose", "source": 12, "target": 345}],
+     "curves": [{"name": "Brow", "source": [3, 4, 9], "target": [7, 8, 12]}]}
 
-"source" and "target" of a pair are numbers of vertices, from 0, of the objects of those names.
+"source" and "target" of a pair are numbers of vertices, from 0, of the objects of those names; of a curve
+those of all vertices along its edges, of a closed one the first again at the end. A file without curves has
+no "curves".
 """
 
 import json
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, field
 
 FORMAT, VERSION = "authalic-landmarks", 1
+_NUMBERS = re.compile(r"\[\n[\d,\s]+\]")  # lists of numbers, which are to be one line
 
 
 class CannotRead(Exception):
@@ -19,11 +24,15 @@ class CannotRead(Exception):
 
 @dataclass
 class Landmarks:
-    """The names of two objects and pairs (name, source vertex, target vertex)."""
+    """The names of two objects, pairs (name, source vertex, target vertex), and pairs of curves.
+
+    These are (name, source vertices, target vertices); None where a file says nothing about curves.
+    """
 
     source: str
     target: str
     pairs: list
+    curves: list | None = field(default=None)
 
 
 def to_text(landmarks):
@@ -36,7 +45,12 @@ def to_text(landmarks):
         "target": landmarks.target,
         "pairs": listed,
     }
-    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+    if landmarks.curves:
+        content["curves"] = [
+            {"name": name, "source": list(a), "target": list(b)} for name, a, b in landmarks.curves
+        ]
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    return _NUMBERS.sub(lambda found: f"[{', '.join(found[0][1:-1].replace(',', ' ').split())}]", text) + "\n"
 
 
 def from_text(text):
@@ -52,8 +66,16 @@ def from_text(text):
     listed = content.get("pairs")
     if not isinstance(listed, list):
         raise CannotRead('"pairs" is missing or not a list')
-    found = [_pair(item, number) for number, item in enumerate(listed, 1)]
-    return Landmarks(_name(content, "source"), _name(content, "target"), found)
+    curves = content.get("curves")
+    if curves is not None and not isinstance(curves, list):
+        raise CannotRead('"curves" is not a list')
+    return Landmarks(
+        source=_name(content, "source"),
+        target=_name(content, "target"),
+        pairs=[_pair(item, f"pair {number}", _vertex, number) for number, item in enumerate(listed, 1)],
+        curves=curves
+        and [_pair(item, f"curve {number}", _path, number) for number, item in enumerate(curves, 1)],
+    )
 
 
 def _name(content, key):
@@ -63,19 +85,36 @@ def _name(content, key):
     return value
 
 
-def _pair(item, number):
+def _pair(item, what, read, number):
+    """(name, source, target) of one entry, of which `read` reads either end."""
     if not isinstance(item, dict):
-        raise CannotRead(f"pair {number} is {json.dumps(item)}, not an object with a name and two vertices")
-    name = item.get("name", f"Landmark {number}")
+        raise CannotRead(f"{what} is {json.dumps(item)}, not an object with a name, a source and a target")
+    name = item.get("name", f"{_CALLED[read]} {number}")
     if not isinstance(name, str):
-        raise CannotRead(f"the name of pair {number} is {json.dumps(name)}, not a text")
-    return name, _vertex(item, number, "source"), _vertex(item, number, "target")
+        raise CannotRead(f"the name of {what} is {json.dumps(name)}, not a text")
+    for side in ("source", "target"):
+        if side not in item:
+            raise CannotRead(f'{what} has no "{side}"')
+    return name, *(read(item[side], f"the {side} of {what}") for side in ("source", "target"))
 
 
-def _vertex(item, number, side):
-    if side not in item:
-        raise CannotRead(f'pair {number} has no "{side}"')
-    value = item[side]
-    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise CannotRead(f"the {side} of pair {number} is {json.dumps(value)}, not the number of a vertex")
+def _vertex(value, what):
+    if not _is_vertex(value):
+        raise CannotRead(f"{what} is {json.dumps(value)}, not the number of a vertex")
     return value
+
+
+def _path(value, what):
+    if not isinstance(value, list):
+        raise CannotRead(f"{what} is {json.dumps(value)}, not a list of vertices")
+    bad = [item for item in value if not _is_vertex(item)]
+    if bad:
+        raise CannotRead(f"{what} has {json.dumps(bad[0])}, not the number of a vertex")
+    return tuple(value)
+
+
+def _is_vertex(value):
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+_CALLED = {_vertex: "Landmark", _path: "Curve"}

@@ -1,88 +1,142 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Undo of landmarks in edit mode, where Blender takes back changes of meshes alone.
 
-The list of pairs is a part of the object: when a step of edit mode is undone or redone, it stays as it is, or
-becomes what it was when edit mode was entered. The marks on the vertices come and go with the steps. So the
-list is made to follow the marks: a pair returns whose mark is there again, and one leaves whose mark went
-away, or that has come without. A pair whose vertex was deleted, which changes the number of vertices, stays.
+The lists of pairs of points and of curves are a part of the object: when a step of edit mode is undone or
+redone, they stay as they are, or become what they were when edit mode was entered. The marks on the meshes
+come and go with the steps. So the lists are made to follow the marks: a pair returns whose mark is there
+again, and one leaves whose mark went away, or that has come without. A pair whose vertices or edges were
+deleted, which changes their number, stays.
 """
+
+from typing import NamedTuple
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import vertex_marks
+from . import curve_marks, marks, vertex_marks
 
-# All pairs seen of late: (session id of the source, mark there) -> (place in the list, the pair's values).
+
+class Listed(NamedTuple):
+    """A list of pairs: its property on objects, the mark of a pair and all its values."""
+
+    name: str
+    mark: str
+    kept: tuple
+
+
+POINTS = Listed(
+    "authalic_landmarks", "source_mark", ("name", "source_mark", "target_mark", "waiting", "error")
+)
+CURVES = Listed("authalic_landmark_curves", "mark", ("name", "mark", "error"))
+# All pairs seen of late: (list, session id of the source, mark) -> (place in the list, the pair's values).
 _known = {}
-# Before the step: session id of a source -> marks in its list, size of its mesh in edit mode, marks there.
+# The keys of the curves of sources, by session id, which are a part of the object too.
+_keys = {}
+# Before the step: (list, session id of a source) -> marks in its list, and what `_state` found.
 _before = {}
-_KEPT = ("name", "source_mark", "target_mark", "waiting", "error")
 
 
-def remember(source, index):
+def remember(source, index, listed=POINTS):
     """To be called before a pair is removed, the mark of which goes too."""
-    landmark = source.authalic_landmarks[index]
-    values = {name: getattr(landmark, name) for name in _KEPT}
-    _known[source.session_uid, landmark.source_mark] = index, values
+    pair = getattr(source, listed.name)[index]
+    values = {name: getattr(pair, name) for name in listed.kept}
+    _known[listed.name, source.session_uid, getattr(pair, listed.mark)] = index, values
 
 
 def forget(source, mark):
-    """The same if the mark stays, for the sake of another pair: it says nothing about this one."""
-    _known.pop((source.session_uid, mark), None)
+    """The same if the mark of a point stays, for the sake of another pair: it says nothing about this one."""
+    _known.pop((POINTS.name, source.session_uid, mark), None)
 
 
 @persistent
 def _look(_scene, *_):
     _before.clear()
     for source in _sources():
-        for index in range(len(source.authalic_landmarks)):
-            remember(source, index)
-        size, marks = _state(source.data)
-        _before[source.session_uid] = _listed(source), size, marks
+        if source.authalic_curve_key:
+            _keys[source.session_uid] = source.authalic_curve_key
+        for listed in (POINTS, CURVES):
+            for index in range(len(getattr(source, listed.name))):
+                remember(source, index, listed)
+            _before[listed.name, source.session_uid] = _marks(source, listed), *_state(source, listed)
 
 
 @persistent
 def _follow(_scene, *_):
+    curve_marks.forget()
     for source in _sources():
-        if source.data.is_editmode:
-            listed, size, marks = _before.get(source.session_uid, (set(), None, set()))
-            new_size, new_marks = _state(source.data)
-            went = marks - new_marks if size == new_size else set()
-            came = _listed(source) - listed - new_marks
-            _drop(source, went | came)
-            _restore(source, new_marks)
+        if not source.authalic_curve_key and _edited(source, CURVES):
+            source.authalic_curve_key = _keys.get(source.session_uid, "")
+        for listed in (POINTS, CURVES):
+            if _edited(source, listed):
+                _update(source, listed)
     _before.clear()
+
+
+def _update(source, listed):
+    """Makes a list follow the marks that a step has brought or taken away."""
+    in_list, size, there = _before.get((listed.name, source.session_uid), (set(), None, set()))
+    new_size, found = _state(source, listed)
+    present = _only_marks(found)
+    went = _only_marks(there) - present if size == new_size else set()
+    came = _marks(source, listed) - in_list - present
+    _drop(source, listed, went | came)
+    _restore(source, listed, present & (in_list | _only_marks(found - there)))
 
 
 def _sources():
     return [obj for obj in bpy.data.objects if obj.type == "MESH"]
 
 
-def _listed(source):
-    return {landmark.source_mark for landmark in source.authalic_landmarks}
+def _marks(source, listed):
+    return {getattr(pair, listed.mark) for pair in getattr(source, listed.name)}
 
 
-def _state(mesh):
-    if not mesh.is_editmode:
+def _edited(source, listed):
+    """The meshes in edit mode that have marks of a list."""
+    objects = [source] if listed is POINTS else [source, source.authalic_target]
+    return [obj.data for obj in objects if obj is not None and obj.type == "MESH" and obj.data.is_editmode]
+
+
+def _state(source, listed):
+    """The sizes of the meshes in edit mode, and (side, mark) of the marks there."""
+    meshes = _edited(source, listed)
+    if not meshes:
         return None, set()
-    return vertex_marks.element_counts(mesh), set(vertex_marks.find(mesh))
+    sizes = [marks.element_counts(mesh) for mesh in meshes]
+    if listed is POINTS:
+        return sizes, {("source", mark) for mark in vertex_marks.find(source.data)}
+    return sizes, {(side, mark) for side in ("source", "target") for mark in _of_curves(source, side)}
 
 
-def _drop(source, marks):
-    for index in reversed(range(len(source.authalic_landmarks))):
-        if source.authalic_landmarks[index].source_mark in marks:
-            remember(source, index)
-            source.authalic_landmarks.remove(index)
+def _of_curves(source, side):
+    """The marks of curves on a side."""
+    obj = source if side == "source" else source.authalic_target
+    if obj is None or obj.type != "MESH" or not source.authalic_curve_key:
+        return ()
+    return curve_marks.find(obj.data, curve_marks.key(source, side))
 
 
-def _restore(source, marks):
-    missing = [(source.session_uid, mark) for mark in marks - _listed(source)]
+def _only_marks(found):
+    return {mark for _, mark in found}
+
+
+def _drop(source, listed, gone):
+    pairs = getattr(source, listed.name)
+    for index in reversed(range(len(pairs))):
+        if getattr(pairs[index], listed.mark) in gone:
+            remember(source, index, listed)
+            pairs.remove(index)
+
+
+def _restore(source, listed, wanted):
+    pairs = getattr(source, listed.name)
+    missing = [(listed.name, source.session_uid, mark) for mark in wanted - _marks(source, listed)]
     back = [_known[key] for key in missing if key in _known]
     for index, values in sorted(back, key=lambda one: one[0]):
-        landmark = source.authalic_landmarks.add()
+        pair = pairs.add()
         for name, value in values.items():
-            setattr(landmark, name, value)
-        source.authalic_landmarks.move(len(source.authalic_landmarks) - 1, index)
+            setattr(pair, name, value)
+        pairs.move(len(pairs) - 1, index)
 
 
 _HANDLERS = (
@@ -102,4 +156,5 @@ def unregister():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     _known.clear()
+    _keys.clear()
     _before.clear()

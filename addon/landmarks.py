@@ -122,12 +122,12 @@ def replace(source, wanted):
 
     Raises `CannotPair` and then changes nothing.
     """
-    _check_target(source)
+    check_target(source)
     for side, obj in ((1, source), (2, source.authalic_target)):
         first = {}
         for pair in wanted:
             name, vertex = pair[0], pair[side]
-            _check_vertex(obj, vertex)
+            check_vertex(obj, vertex)
             if vertex in first:
                 raise CannotPair(
                     f'vertex {vertex} of {obj.name} is in two pairs, "{first[vertex]}", "{name}"'
@@ -160,17 +160,8 @@ def clear(source):
         remove(source, index)
 
 
-def _check_new(source, source_vertex, target_vertex):
-    _check_target(source)
-    there = pairs(source)
-    for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
-        _check_vertex(obj, vertex)
-        other = next((pair for pair in there if pair[side] == vertex), None)
-        if other is not None:
-            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{other.name}" already')
-
-
-def _check_target(source):
+def check_target(source):
+    """Raises `CannotPair` unless pairs can be added to a source object."""
     problem = target_problem(source)
     if problem:
         raise CannotPair(f"{source.name}: {problem}")
@@ -179,10 +170,21 @@ def _check_target(source):
             raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
 
 
-def _check_vertex(obj, vertex):
+def check_vertex(obj, vertex):
+    """Raises `CannotPair` unless an object has a vertex."""
     count = vertex_marks.vertex_count(obj.data)
     if not 0 <= vertex < count:
         raise CannotPair(f"{obj.name} has no vertex {vertex}, its {count} vertices are 0 to {count - 1}")
+
+
+def _check_new(source, source_vertex, target_vertex):
+    check_target(source)
+    there = pairs(source)
+    for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
+        check_vertex(obj, vertex)
+        other = next((pair for pair in there if pair[side] == vertex), None)
+        if other is not None:
+            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{other.name}" already')
 
 
 def _free_name(source):
@@ -264,6 +266,8 @@ def _target_changed(source, _context):
         landmark.error = -1.0
         if landmark.waiting != NONE and target_problem(source) is None:
             _bind(landmark, "target", landmark.waiting)
+    for curve in source.authalic_landmark_curves:
+        curve.error = -1.0
 
 
 def register():

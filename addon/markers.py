@@ -14,8 +14,8 @@ from gpu_extras.batch import batch_for_shader
 from . import landmarks, vertex_points
 
 _COLORS = {"source": (0.16, 0.55, 1.0), "target": (1.0, 0.58, 0.1)}
-_PROBLEM, _ACTIVE, _DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
-_RADIUS, _SIDES, _BEHIND = 5.0, 24, 0.22
+PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
+_RADIUS, _SIDES, BEHIND = 5.0, 24, 0.22
 _handle = None
 # What picking shows besides: markers of vertices that are no landmarks yet.
 hints = []
@@ -36,7 +36,8 @@ def shown(context):
     """The markers for what is selected: of sources and of those whose target is."""
     if not context.scene.authalic_show_landmarks:
         return list(hints)
-    return [marker for source in _sources(context) for marker in _of(source, context)] + hints
+    listed = [source for source in sources(context) if source.authalic_landmarks]
+    return [marker for source in listed for marker in _of(source, context)] + hints
 
 
 def redraw(context):
@@ -47,13 +48,20 @@ def redraw(context):
                 area.tag_redraw()
 
 
-def _sources(context):
+def sources(context):
+    """The mesh objects that are selected, and those whose target is."""
     chosen = {context.object, *context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
     return [
         obj
         for obj in context.view_layer.objects
-        if obj.type == "MESH" and obj.authalic_landmarks and chosen & {obj, obj.authalic_target}
+        if obj.type == "MESH" and chosen & {obj, obj.authalic_target}
     ]
+
+
+def is_drawn(context):
+    """Whether there is a view to draw on, with its overlays turned on."""
+    space = context.space_data
+    return not bpy.app.background and space is not None and space.overlay.show_overlays
 
 
 def _of(source, context):
@@ -68,18 +76,17 @@ def _of(source, context):
 
 def _draw():
     context = bpy.context
-    space = context.space_data
-    if bpy.app.background or space is None or not space.overlay.show_overlays:
+    if not is_drawn(context):
         return
     scale = context.preferences.system.ui_scale
     placed = [found for marker in shown(context) if (found := _place(marker, context))]
     placed.sort(key=lambda found: (found[2], found[0].is_active))  # those in front over the others
     gpu.state.blend_set("ALPHA")
     for marker, pixel, is_front in placed:
-        _draw_disc(marker, pixel, scale, 1.0 if is_front else _BEHIND)
+        _draw_disc(marker, pixel, scale, 1.0 if is_front else BEHIND)
     gpu.state.blend_set("NONE")
     for marker, pixel, is_front in placed:
-        _draw_text(marker, pixel, scale, 1.0 if is_front else _BEHIND)
+        _draw_text(marker, pixel, scale, 1.0 if is_front else BEHIND)
 
 
 def _place(marker, context):
@@ -89,7 +96,12 @@ def _place(marker, context):
         return None
     point, normal = vertex_points.in_world(obj, marker.vertex, context.evaluated_depsgraph_get())
     pixel = location_3d_to_region_2d(context.region, context.region_data, point)
-    return pixel and (marker, pixel, normal.length == 0 or normal.dot(_to_eye(context, point)) > -0.05)
+    return pixel and (marker, pixel, faces_eye(context, point, normal))
+
+
+def faces_eye(context, point, normal):
+    """Whether a surface is seen from its front at a point."""
+    return normal.length == 0 or normal.dot(_to_eye(context, point)) > -0.05
 
 
 def _to_eye(context, point):
@@ -100,13 +112,13 @@ def _to_eye(context, point):
 
 
 def _draw_disc(marker, pixel, scale, alpha):
-    color = _PROBLEM if marker.has_problem else _COLORS[marker.side]
+    color = PROBLEM if marker.has_problem else _COLORS[marker.side]
     radius = _RADIUS * scale * (1.3 if marker.is_active else 1.0)
-    _disc(pixel, radius + 1.5 * scale, (*(_ACTIVE if marker.is_active else _DARK), alpha))
-    _disc(pixel, radius, (*color, alpha))
+    disc(pixel, radius + 1.5 * scale, (*(ACTIVE if marker.is_active else DARK), alpha))
+    disc(pixel, radius, (*color, alpha))
 
 
-def _disc(center, radius, color):
+def disc(center, radius, color):
     """A disc whose rim fades out over a pixel."""
     inner, outer = _circle(center, radius - 0.5), _circle(center, radius + 0.5)
     clear = (*color[:3], 0.0)
@@ -127,16 +139,22 @@ def _circle(center, radius):
 
 
 def _draw_text(marker, pixel, scale, alpha):
-    font = 0
-    blf.size(font, (14 if marker.is_active else 12) * scale)
+    color = PROBLEM if marker.has_problem else ACTIVE
+    label(marker.text, pixel, scale * (14 if marker.is_active else 12), (*color, alpha))
+
+
+def label(text, pixel, size, color):
+    """A text of a size to the right of a pixel, on a dark ground."""
+    font, scale = 0, bpy.context.preferences.system.ui_scale
+    blf.size(font, size)
     left, bottom = pixel[0] + 11 * scale, pixel[1] + 4 * scale
-    width, height = blf.dimensions(font, marker.text)
+    width, height = blf.dimensions(font, text)
     gpu.state.blend_set("ALPHA")
-    _plate(left - 3 * scale, bottom - 3 * scale, width + 6 * scale, height + 6 * scale, 0.6 * alpha)
+    _plate(left - 3 * scale, bottom - 3 * scale, width + 6 * scale, height + 6 * scale, 0.6 * color[3])
     gpu.state.blend_set("NONE")
-    blf.color(font, *(_PROBLEM if marker.has_problem else _ACTIVE), alpha)
+    blf.color(font, *color)
     blf.position(font, left, bottom, 0)
-    blf.draw(font, marker.text)
+    blf.draw(font, text)
 
 
 def _plate(left, bottom, width, height, alpha):
@@ -144,7 +162,7 @@ def _plate(left, bottom, width, height, alpha):
     right, top = left + width, bottom + height
     corners = [(left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0)]
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    shader.uniform_float("color", (*_DARK, alpha))
+    shader.uniform_float("color", (*DARK, alpha))
     batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)]).draw(shader)
 
 
@@ -156,7 +174,7 @@ def register():
     global _handle
     bpy.types.Scene.authalic_show_landmarks = BoolProperty(
         name="Show Markers",
-        description="Draw numbered markers on the landmarks of selected objects",
+        description="Draw the landmarks and landmark curves of selected objects, with their numbers",
         default=True,
         update=_toggled,
     )

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The registration panel of the 3D view: the target, the list of landmarks, and what is done with them."""
 
-import textwrap
-
 import bpy
 
-from . import landmarks, ui_register
+from . import landmarks, ui_curves, ui_register, ui_text
 
-_LETTER = 7.5  # pixels that a letter takes on average
 _shown = []  # the pairs of the list that is being drawn
 
 
@@ -26,14 +23,8 @@ class AUTHALIC_UL_landmarks(bpy.types.UIList):
         if pair.problem is not None:
             row.label(icon="ERROR")
         elif item.error >= 0:
-            error = row.row()
-            error.alignment = "RIGHT"
-            error.active = False
-            error.label(text=f"{item.error:.2f} %", translate=False)
-        vertices = row.row()
-        vertices.alignment = "RIGHT"
-        vertices.active = False
-        vertices.label(text=f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}", translate=False)
+            ui_text.draw_aside(row, f"{item.error:.2f} %")
+        ui_text.draw_aside(row, f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}")
 
 
 class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
@@ -59,6 +50,7 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         split.label(text=source.name, icon="OBJECT_DATA", translate=False)
         column.prop(source, "authalic_target")
         _draw_landmarks(layout, source, context)
+        ui_curves.draw_curves(layout, source, context)
         layout.separator()
         ui_register.draw_register(layout, context)
 
@@ -98,32 +90,15 @@ def _draw_landmarks(layout, source, context):
     row = layout.row(align=True)
     row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
     row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"
-    _draw_error(layout, source)
-    _draw_problems(layout, source, context)
+    ui_text.draw_error(layout, source.authalic_landmarks, source.authalic_landmark_index)
+    ui_text.draw_problems(layout, _lines(source), context)
 
 
-def _draw_error(layout, source):
-    """How far the last registration missed the active pair, if there was one."""
-    index = source.authalic_landmark_index
-    error = source.authalic_landmarks[index].error if index < len(_shown) else -1.0
-    if error >= 0:
-        row = layout.row()
-        row.active = False
-        row.label(text=f"Missed by {error:.2g} % of the target's size", translate=False)
-
-
-def _draw_problems(layout, source, context):
-    """The active pair's problem in words, or how many there are elsewhere in the list."""
+def _lines(source):
+    """What is wrong with the target, or with the pairs."""
     if target := landmarks.target_problem(source):
-        lines = [target] if source.authalic_target is not None or _shown else []
-    else:
-        lines = _problems(source.authalic_landmark_index)
-    if not lines:
-        return
-    box = layout.box().column(align=True)
-    width = int(context.region.width / (_LETTER * context.preferences.system.ui_scale)) - 8
-    for number, line in enumerate(textwrap.wrap("; ".join(lines), max(width, 16))):
-        box.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
+        return [target] if source.authalic_target is not None or _shown else []
+    return _problems(source.authalic_landmark_index)
 
 
 def _problems(active):
@@ -141,6 +116,7 @@ _CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_registrati
 
 
 def register():
+    ui_curves.register()
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
@@ -148,3 +124,4 @@ def register():
 def unregister():
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)
+    ui_curves.unregister()

@@ -24,6 +24,19 @@ def in_world(obj, vertex, depsgraph):
     return matrix @ point, turned.normalized()
 
 
+def many_in_world(obj, vertices, depsgraph):
+    """The points (k, 3) of some vertices in the world."""
+    mesh = obj.data
+    if mesh.is_editmode:
+        elements = bmesh.from_edit_mesh(mesh).verts
+        elements.ensure_lookup_table()
+    else:
+        elements = _shown_mesh(obj, depsgraph).vertices
+    points = np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
+    matrix = np.array(obj.matrix_world)
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
 def surface(obj, depsgraph):
     """What is seen of an object, in its own coordinates, for finding vertices.
 

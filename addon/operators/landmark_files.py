@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.landmark_export and authalic.landmark_import: pairs of landmarks as JSON files."""
+"""authalic.landmark_export and authalic.landmark_import: pairs of landmarks and of curves as JSON files."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import landmark_files, landmarks, messages
+from .. import landmark_curves, landmark_files, landmarks, messages
 from . import poll
 
 
@@ -32,32 +32,36 @@ class _File:
 
 
 class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):
-    """Write the pairs of landmarks to a JSON file, with the numbers of their vertices"""
+    """Write the landmarks and landmark curves to a JSON file, with the numbers of their vertices"""
 
     bl_idname = "authalic.landmark_export"
     bl_label = "Export Landmarks"
 
     @classmethod
     def poll(cls, context):
-        return poll.has_landmarks(cls, context)
+        return poll.has_points_or_curves(cls, context)
 
     def run(self, source, path):
-        listed = landmarks.pairs(source)
-        sound = [pair[:3] for pair in listed if pair.problem is None]
-        left = [f"{pair.name}: {pair.problem}" for pair in listed if pair.problem is not None]
-        if not sound:
+        pairs, curves = landmarks.pairs(source), landmark_curves.pairs(source)
+        sound = [pair[:3] for pair in pairs if pair.problem is None]
+        whole = [
+            (one.name, one.source.vertices, one.target.vertices) for one in curves if one.problem is None
+        ]
+        left = [f"{pair.name}: {pair.problem}" for pair in (*pairs, *curves) if pair.problem is not None]
+        if not sound and not whole:
             raise landmarks.CannotPair(f"nothing was written, {messages.listed(left)}")
-        content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound)
+        content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound, whole)
         path.write_text(landmark_files.to_text(content), encoding="utf-8")
-        done = f"Wrote {messages.count(len(sound), 'landmark')} to {path.name}"
+        done = f"Wrote {_counted(sound, whole)} to {path.name}"
         self.report(*(({"WARNING"}, f"{done}, not {messages.listed(left)}") if left else ({"INFO"}, done)))
         return {"FINISHED"}
 
 
 class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
-    """Read the pairs of landmarks from a JSON file, in place of those there are.
+    """Read landmarks and landmark curves from a JSON file, in place of those there are.
 
-    Where there is no target yet, the mesh object that the file names becomes it"""
+    A file without curves leaves these alone. Where there is no target yet, the mesh object that the file
+    names becomes it"""
 
     bl_idname = "authalic.landmark_import"
     bl_label = "Import Landmarks"
@@ -73,16 +77,26 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
         if before is None and named is not None and named != source and named.type == "MESH":
             source.authalic_target = named
         try:
+            landmark_curves.check_all(source, found.curves or [])
             landmarks.replace(source, found.pairs)
+            if found.curves is not None:
+                landmark_curves.replace(source, found.curves)
         except landmarks.CannotPair:
             source.authalic_target = before
             raise
         target = source.authalic_target.name
-        done = f"Read {messages.count(len(found.pairs), 'landmark')} of {source.name} and {target}"
+        done = f"Read {_counted(found.pairs, found.curves)} of {source.name} and {target}"
         others = (found.source, found.target) != (source.name, target)
         note = f', in the file those of "{found.source}" and "{found.target}"' if others else ""
         self.report({"INFO"}, done + note)
         return {"FINISHED"}
+
+
+def _counted(pairs, curves):
+    """ "3 landmarks", "2 landmark curves", or both."""
+    counted = ((pairs, "landmark"), (curves, "landmark curve"))
+    parts = [messages.count(len(found), noun) for found, noun in counted if found]
+    return " and ".join(parts) or "no landmarks"
 
 
 def register():

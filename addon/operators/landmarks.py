@@ -5,8 +5,8 @@ import bmesh
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from .. import landmarks, vertex_points
-from . import poll
+from .. import landmarks
+from . import poll, views
 
 _GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
 
@@ -140,9 +140,7 @@ class AUTHALIC_OT_landmark_jump(_LandmarkOperator, bpy.types.Operator):
         obj = source if is_source else source.authalic_target
         source.authalic_landmark_index = index
         _select_vertex(obj, vertex)
-        if obj.visible_get():
-            obj.select_set(True)
-        _look_at(context, *vertex_points.in_world(obj, vertex, context.evaluated_depsgraph_get()))
+        views.show(context, obj, vertex)
         self.report({"INFO"}, f"{pair.name}: vertex {vertex} of {obj.name}")
         return {"FINISHED"}
 
@@ -179,19 +177,6 @@ def _select_vertex(obj, vertex):
     edit.select_history.clear()
     edit.select_history.add(edit.verts[vertex])
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
-
-
-def _look_at(context, point, normal):
-    """Puts a point into the middle of the 3D view, if there is one, and turns to its front."""
-    view = getattr(context.space_data, "region_3d", None)
-    if view is None:
-        return
-    if view.view_perspective == "CAMERA":
-        view.view_perspective = "PERSP"
-    towards = view.view_rotation @ vertex_points.Z
-    if normal.dot(towards) < 0.2 and normal.length > 0:
-        view.view_rotation = normal.to_track_quat("Z", "Y")
-    view.view_location = point
 
 
 _CLASSES = (

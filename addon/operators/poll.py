@@ -52,3 +52,24 @@ def has_landmarks(operator, context):
         operator.poll_message_set("There are no landmarks yet")
         return False
     return True
+
+
+def has_curves(operator, context):
+    """An active mesh that has landmark curves."""
+    if not has_source(operator, context):
+        return False
+    if not landmarks.source(context).authalic_landmark_curves:
+        operator.poll_message_set("There are no landmark curves yet")
+        return False
+    return True
+
+
+def has_points_or_curves(operator, context):
+    """An active mesh that has landmarks of either kind."""
+    if not has_source(operator, context):
+        return False
+    source = landmarks.source(context)
+    if not source.authalic_landmarks and not source.authalic_landmark_curves:
+        operator.poll_message_set("There are no landmarks yet")
+        return False
+    return True

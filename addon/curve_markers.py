@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The landmark curves of the source and of its target, drawn over the 3D view.
+
+A curve has the same color on both, and its number at a dot where it starts; an open one ends in an arrow.
+"""
+
+import math
+from typing import NamedTuple
+
+import bpy
+import gpu
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix, Vector
+
+from . import landmark_curves, landmarks, markers, paths, vertex_points
+
+# Blender's bone color sets that differ well from each other and from the red of a problem.
+_COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)
+_WIDTH, _ACTIVE_WIDTH, _RIM = 3.0, 4.0, 2.5
+_DOT, _ARROW = 4.5, 11.0
+# How much nearer to the eye lines are drawn than the surface they lie on, as a part of the distance.
+_NEARER = 2e-3
+_handles = []
+
+
+class Line(NamedTuple):
+    """A path on the object of a name, from start to end if it is whole, and how it is drawn."""
+
+    object_name: str
+    edges: tuple
+    is_whole: bool
+    is_closed: bool
+    number: int
+    is_active: bool
+    has_problem: bool
+
+
+def icon(number):
+    """The icon with the color of the curve of a number, from 0."""
+    return f"COLORSET_{_COLOR_SETS[number % len(_COLOR_SETS)]:02}_VEC"
+
+
+def shown(context):
+    """The lines for what is selected: of sources and of those whose target is."""
+    if not context.scene.authalic_show_landmarks:
+        return []
+    listed = [source for source in markers.sources(context) if source.authalic_landmark_curves]
+    return [line for source in listed for line in _of(source, context)]
+
+
+def _of(source, context):
+    active, is_meant = source.authalic_landmark_curve_index, source == landmarks.source(context)
+    for number, pair in enumerate(landmark_curves.pairs(source, drawing=True)):
+        for side in landmark_curves.SIDES:
+            path = getattr(pair, side)
+            if path.edges:
+                yield Line(
+                    object_name=landmark_curves.side_object(source, side).name,
+                    edges=tuple(paths.edges(path.vertices)) or path.edges,
+                    is_whole=bool(path.vertices),
+                    is_closed=path.is_closed,
+                    number=number,
+                    is_active=is_meant and number == active,
+                    has_problem=pair.problem is not None,
+                )
+
+
+def _draw_lines():
+    context = bpy.context
+    if not markers.is_drawn(context):
+        return
+    lines = sorted(_seen(context), key=lambda one: one[0].is_active)
+    gpu.state.blend_set("ALPHA")
+    for depth_test, alpha in (("NONE", markers.BEHIND), ("LESS_EQUAL", 1.0)):
+        gpu.state.depth_test_set(depth_test)
+        with gpu.matrix.push_pop():
+            gpu.matrix.load_matrix(_towards_eye(context) @ gpu.matrix.get_model_view_matrix())
+            for line, obj in lines:
+                _draw_line(line, obj, context, alpha)
+    gpu.state.depth_test_set("NONE")
+    gpu.state.blend_set("NONE")
+
+
+def _seen(context):
+    """(line, object) of the lines on objects that are seen in the view."""
+    for line in shown(context):
+        obj = context.view_layer.objects.get(line.object_name)
+        if obj is not None and obj.visible_get(viewport=context.space_data):
+            yield line, obj
+
+
+def _towards_eye(context):
+    """What brings points in the space of the view nearer to the eye, at the same pixels."""
+    view = context.region_data
+    if view.is_perspective:
+        return Matrix.Diagonal((*[1 - _NEARER] * 3, 1))
+    return Matrix.Translation((0, 0, _NEARER * view.view_distance))
+
+
+def _draw_line(line, obj, context, alpha):
+    vertices = [vertex for edge in line.edges for vertex in edge]
+    points = vertex_points.many_in_world(obj, vertices, context.evaluated_depsgraph_get()).tolist()
+    scale = context.preferences.system.ui_scale
+    width = (_ACTIVE_WIDTH if line.is_active else _WIDTH) * scale
+    rim = markers.ACTIVE if line.is_active else markers.DARK
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    batch = batch_for_shader(shader, "LINES", {"pos": points})
+    shader.uniform_float("viewportSize", (context.region.width, context.region.height))
+    for color, wide in ((rim, width + _RIM * scale), (_color(line, context), width)):
+        shader.uniform_float("lineWidth", wide)
+        shader.uniform_float("color", (*color, alpha))
+        batch.draw(shader)
+
+
+def _color(line, context):
+    if line.has_problem:
+        return markers.PROBLEM
+    sets = context.preferences.themes[0].bone_color_sets
+    return tuple(sets[_COLOR_SETS[line.number % len(_COLOR_SETS)] - 1].active)
+
+
+def _draw_ends():
+    context = bpy.context
+    if not markers.is_drawn(context):
+        return
+    scale = context.preferences.system.ui_scale
+    for line, obj in sorted(_seen(context), key=lambda one: one[0].is_active):
+        first = _end(obj, line.edges[0], context)
+        color = _color(line, context)
+        gpu.state.blend_set("ALPHA")
+        if line.is_whole and not line.is_closed:
+            _draw_arrow(_end(obj, line.edges[-1][::-1], context), color, scale)
+        if first is not None:
+            _draw_start(line, first, color, scale)
+        gpu.state.blend_set("NONE")
+
+
+def _end(obj, edge, context):
+    """(pixel of the first vertex of an edge, pixel of the other one, how opaque), or None if not in view."""
+    graph = context.evaluated_depsgraph_get()
+    ends = [vertex_points.in_world(obj, vertex, graph) for vertex in edge]
+    pixels = [location_3d_to_region_2d(context.region, context.region_data, point) for point, _ in ends]
+    if None in pixels:
+        return None
+    is_front = markers.faces_eye(context, *ends[0])
+    return *pixels, 1.0 if is_front else markers.BEHIND
+
+
+def _draw_start(line, end, color, scale):
+    pixel, _, alpha = end
+    rim = markers.ACTIVE if line.is_active else markers.DARK
+    if line.is_whole:
+        markers.disc(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
+        markers.disc(pixel, _DOT * scale, (*color, alpha))
+    text = markers.PROBLEM if line.has_problem else markers.ACTIVE
+    markers.label(str(line.number + 1), pixel, scale * (14 if line.is_active else 12), (*text, alpha))
+
+
+def _draw_arrow(end, color, scale):
+    """An arrow head whose tip is at the end."""
+    if end is None:
+        return
+    tip, before, alpha = end
+    along = (tip - before).normalized() if (tip - before).length > 0 else Vector((1, 0))
+    for length, shade in ((_ARROW + 4, markers.DARK), (_ARROW, color)):
+        wing = Vector((-along.y, along.x)) * length * math.tan(math.radians(28)) * scale
+        point, back = tip + along * 0.35 * length * scale, tip - along * 0.65 * length * scale
+        corners = [(*place, 0.0) for place in (point, back + wing, back - wing)]
+        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+        shader.uniform_float("color", (*shade, alpha))
+        batch_for_shader(shader, "TRIS", {"pos": corners}).draw(shader)
+
+
+def register():
+    add = bpy.types.SpaceView3D.draw_handler_add
+    _handles.append(add(_draw_lines, (), "WINDOW", "POST_VIEW"))
+    _handles.append(add(_draw_ends, (), "WINDOW", "POST_PIXEL"))
+
+
+def unregister():
+    while _handles:
+        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")

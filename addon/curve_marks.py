@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Paths along edges that can be found again after a mesh was edited, by marks (see `marks`).
+
+All edges of a path have its mark, and so have the parts into which they are divided. Its first vertex has the
+mark too, its last one the negative of it. The attributes are those of a key: no two paths of the same key
+share an edge on one mesh.
+"""
+
+from typing import NamedTuple
+
+import bmesh
+import numpy as np
+
+from . import marks, paths
+from .marks import element_counts
+
+_NAME = "authalic_curve_"
+_BITS = 24
+# What was found last: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}).
+_seen = {}
+
+
+class Path(NamedTuple):
+    """A marked path as it is today.
+
+    `vertices` are from its start to its end, a loop's first one again at the end; none if it is not certain,
+    and then the problem in words, to be read behind the name of the curve and before that of the object.
+    `edges` are pairs of vertices.
+    """
+
+    vertices: tuple
+    edges: tuple
+    problem: str | None
+
+    @property
+    def is_closed(self):
+        return paths.is_closed(self.vertices)
+
+
+ABSENT = Path((), (), "has no edges")
+
+
+class NoEdge(Exception):
+    """No edge joins two vertices."""
+
+
+class _Found(NamedTuple):
+    """A path, the numbers of its edges, and what its ends had for marks."""
+
+    path: Path
+    edges: list
+    ends: list
+
+
+def new():
+    """A mark that no path has."""
+    return marks.new(_BITS)
+
+
+def key(source, side):
+    """The key of the curves of a source object on its "source" or "target" mesh; "" if it has none yet."""
+    own = source.authalic_curve_key
+    return f"{side}_{own}" if own else ""
+
+
+def put(mesh, key, mark, path):
+    """Gives the edges of a path (vertices) a mark in place of those that have it. Raises `NoEdge`."""
+    edges = _edges_of(mesh, path)
+    clear(mesh, key, mark)
+    _of_edges(key).write(mesh, edges, mark)
+    _mark_ends(mesh, key, mark, path)
+
+
+def reverse(mesh, key, mark):
+    """Makes the end of a path its start."""
+    path = find(mesh, key).get(mark, ABSENT)
+    if path.vertices:
+        _mark_ends(mesh, key, mark, path.vertices[::-1])
+
+
+def clear(mesh, key, mark):
+    """Takes a mark off a mesh; with the last one go the attributes."""
+    _seen.pop((mesh.session_uid, key), None)
+    for kind in (_of_edges(key), _of_ends(key)):
+        there = kind.all(mesh)
+        own = [element for element, value in there.items() if abs(value) == mark]
+        kind.write(mesh, own, 0)
+        if len(own) == len(there):
+            kind.drop(mesh)
+
+
+def find(mesh, key, *, drawing=False):
+    """{mark: `Path`} of the paths of a key on a mesh.
+
+    With `drawing`, what was found before is taken for true unless one of these paths is not where it was or
+    the mesh has more or fewer elements: fast enough for drawing.
+    """
+    counts, found = _seen.get((mesh.session_uid, key), (None, {}))
+    if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, found):
+        found = _search(mesh, key)
+        _seen[mesh.session_uid, key] = element_counts(mesh), found
+    return {mark: one.path for mark, one in found.items()}
+
+
+def forget():
+    """What was found before counts no longer, as after undo."""
+    _seen.clear()
+
+
+def check(mesh, path):
+    """Raises `NoEdge` unless edges join the consecutive vertices of a path."""
+    _edges_of(mesh, path)
+
+
+def owners(mesh, key, path):
+    """The marks that the edges of a path have. Raises `NoEdge`."""
+    return set(_of_edges(key).of(mesh, _edges_of(mesh, path))) - {0}
+
+
+def ends_of_edges(mesh, edges):
+    """The two vertices of each of some edges."""
+    if not mesh.is_editmode:
+        return [tuple(mesh.edges[edge].vertices) for edge in edges]
+    edit = bmesh.from_edit_mesh(mesh)
+    edit.verts.index_update()
+    edit.edges.ensure_lookup_table()
+    return [tuple(vertex.index for vertex in edit.edges[edge].verts) for edge in edges]
+
+
+def _of_edges(key):
+    return marks.Marks(_NAME + key, "EDGE")
+
+
+def _of_ends(key):
+    return marks.Marks(f"{_NAME}{key}_ends", "POINT")
+
+
+def _search(mesh, key):
+    edges, ends = {}, {}
+    for edge, mark in _of_edges(key).all(mesh).items():
+        edges.setdefault(mark, []).append(edge)
+    for vertex, mark in _of_ends(key).all(mesh).items():
+        ends.setdefault(mark, []).append(vertex)
+    found = {}
+    for mark, own in edges.items():
+        path = _path(ends_of_edges(mesh, own), ends.get(mark, []), ends.get(-mark, []))
+        terminal = [path.vertices[0], path.vertices[-1]] if path.vertices else []
+        found[mark] = _Found(path, own, list(zip(terminal, _of_ends(key).of(mesh, terminal), strict=True)))
+    return found
+
+
+def _path(edges, starts, ends):
+    """The `Path` along edges, of which some vertices are marked as the start and the end."""
+    edges = tuple(edges)
+    try:
+        line = paths.ordered(edges)
+    except paths.NoPath as problem:
+        return Path((), edges, f"has edges that {problem}")
+    if paths.is_closed(line):
+        inside = [vertex for vertex in starts if vertex in line]
+        return Path(paths.started(line, inside[0]) if inside else line, edges, None)
+    tips = line[0], line[-1]
+    first = next((vertex for vertex in starts if vertex in tips), None)
+    last = next((vertex for vertex in ends if vertex in tips), None)
+    directed = paths.along(line, first, last)
+    if directed is None:
+        return Path((), edges, "has lost " + _lost(first, last))
+    return Path(directed, edges, None)
+
+
+def _lost(first, last):
+    if first is None and last is None:
+        return "its start and its end"
+    return "its start" if first is None else "its end"
+
+
+def _holds(mesh, key, found):
+    """Whether the paths that were found have their marks, edges and ends still."""
+    edges = [edge for one in found.values() for edge in one.edges]
+    values = [mark for mark, one in found.items() for _ in one.edges]
+    ends = [end for one in found.values() for end in one.ends]
+    return (
+        _of_edges(key).of(mesh, edges) == values
+        and ends_of_edges(mesh, edges) == [pair for one in found.values() for pair in one.path.edges]
+        and _of_ends(key).of(mesh, [vertex for vertex, _ in ends]) == [value for _, value in ends]
+    )
+
+
+def _mark_ends(mesh, key, mark, path):
+    _seen.pop((mesh.session_uid, key), None)
+    own = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
+    _of_ends(key).write(mesh, own, 0)
+    _of_ends(key).write(mesh, [path[0]], mark)
+    if not paths.is_closed(path):
+        _of_ends(key).write(mesh, [path[-1]], -mark)
+
+
+def _edges_of(mesh, path):
+    """The edges between consecutive vertices of a path."""
+    if mesh.is_editmode:
+        return _edited_edges(bmesh.from_edit_mesh(mesh), path)
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    count = len(mesh.vertices)
+    keys = _keys(ends.reshape(-1, 2), count)
+    order = np.argsort(keys)
+    wanted = _keys(np.array(paths.edges(path)).reshape(-1, 2), count)
+    places = np.searchsorted(keys, wanted, sorter=order).clip(max=max(len(keys) - 1, 0))
+    bad = np.flatnonzero(keys[order[places]] != wanted) if len(keys) else np.zeros(1, int)
+    if len(bad):
+        raise NoEdge("no edge joins vertices {} and {}".format(*paths.edges(path)[bad[0]]))
+    return order[places].tolist()
+
+
+def _keys(pairs, count):
+    pairs = np.sort(pairs.astype(np.int64), axis=1)
+    return pairs[:, 0] * count + pairs[:, 1]
+
+
+def _edited_edges(edit, path):
+    edit.verts.ensure_lookup_table()
+    edit.edges.index_update()
+    found = []
+    for first, second in paths.edges(path):
+        edge = edit.edges.get((edit.verts[first], edit.verts[second]))
+        if edge is None:
+            raise NoEdge(f"no edge joins vertices {first} and {second}")
+        found.append(edge.index)
+    return found

@@ -1,0 +1,350 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pairs of landmark curves: a path along edges of a source object and the one of its target it belongs to.
+
+They live on the source object, as `authalic_landmark_curves`, beside the landmark points and for the same
+target. What a curve keeps is a mark, and the edges of both meshes have it (see `curve_marks`), so that its
+paths are found again after the meshes were edited. `pairs` is the one truth on which vertices those are
+today, in which order, and where a path is missing or broken.
+"""
+
+import uuid
+from typing import NamedTuple
+
+import bpy
+from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
+
+from . import curve_marks, curve_selection, landmark_undo, landmarks, messages, paths
+from .landmarks import NONE, CannotPair
+
+SIDES = ("source", "target")
+_FEWEST = 2, 3  # edges of an open and of a closed curve
+
+
+class Curve(NamedTuple):
+    """A pair of curves as it is today: two `curve_marks.Path`, and the problem in words or None."""
+
+    name: str
+    source: curve_marks.Path
+    target: curve_marks.Path
+    problem: str | None
+
+
+def _numbers(side):
+    return lambda curve: " ".join(str(vertex) for vertex in _path(curve.id_data, curve, side).vertices)
+
+
+class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
+    """One pair of curves. Its vertices are numbers of today, whatever was edited since they were set."""
+
+    name: StringProperty(name="Name", description="The name of this pair of curves")
+    source_vertices: StringProperty(
+        name="Source Vertices",
+        description="The vertices on this object from start to end; of a loop the first one again at the end",
+        get=_numbers("source"),
+    )
+    target_vertices: StringProperty(
+        name="Target Vertices",
+        description="The vertices on the target from start to end; of a loop the first one again at the end",
+        get=_numbers("target"),
+    )
+    mark: IntProperty(options={"HIDDEN"})
+    error: FloatProperty(
+        name="Error",
+        description="How far the last registration missed this pair, in percent of the target's size. "
+        "Negative if there was none",
+        default=-1.0,
+    )
+
+
+def pairs(source, *, drawing=False):
+    """All pairs of curves of a source object, as a list of `Curve`, with what is wrong with each in words.
+
+    With `drawing`, large meshes are not searched anew unless they have changed visibly.
+    """
+    without_target = landmarks.target_problem(source)
+    objects = _objects(source)
+    found = [_found(source, side, drawing) for side in SIDES]
+    listed, taken = [], {}
+    for index, curve in enumerate(source.authalic_landmark_curves):
+        own = [on_side.get(curve.mark, curve_marks.ABSENT) for on_side in found]
+        problem = without_target or _problem(taken, (index, curve.name), own, objects)
+        listed.append(Curve(curve.name, *own, problem))
+    return listed
+
+
+def side_object(source, side):
+    """The object of the "source" or the "target" side, or None."""
+    return source if side == "source" else source.authalic_target
+
+
+def add(source, source_path, target_path, *, name="", index=NONE):
+    """Adds a pair, or sets the paths of the pair of an index, and makes it the active one; returns it.
+
+    Paths are vertices from start to end, those of a loop end with the first one again; None leaves a side as
+    it is. Raises `CannotPair` and then changes nothing.
+    """
+    landmarks.check_target(source)
+    given = {side: tuple(path) for side, path in zip(SIDES, (source_path, target_path), strict=True) if path}
+    if not given:
+        raise CannotPair("A curve needs a path on the source or on the target")
+    for side, path in given.items():
+        _check(source, side, path, index)
+    curves = source.authalic_landmark_curves
+    if index == NONE:
+        name, index = name or _free_name(source), len(curves)
+        curve = curves.add()
+        curve.name, curve.mark = name, curve_marks.new()
+    curve = curves[index]
+    source.authalic_curve_key = source.authalic_curve_key or uuid.uuid4().hex[:8]
+    for side, path in given.items():
+        curve_marks.put(side_object(source, side).data, curve_marks.key(source, side), curve.mark, path)
+    curve.error = -1.0
+    source.authalic_landmark_curve_index = index
+    return curve
+
+
+def place_for(source, selected):
+    """The index of the pair to which selected paths {side: path} belong, -1 for a new one; and these paths.
+
+    Alone, a path completes the active pair if that lacks its side, or else the first one that does. Of two,
+    one that the active pair has already is not meant.
+    """
+    listed, active = pairs(source), source.authalic_landmark_curve_index
+    if len(selected) == 2 and active < len(listed):
+        others = {side: path for side, path in selected.items() if not _has(listed[active], side, path)}
+        missing = [side for side in others if getattr(listed[active], side).problem]
+        if len(others) == 1 and missing:
+            return active, others
+    if len(selected) != 1:
+        return NONE, selected
+    (side,) = selected
+    lacking = [index for index, pair in enumerate(listed) if getattr(pair, side).problem]
+    return (active if active in lacking else lacking[0] if lacking else NONE), selected
+
+
+def directed(source, index, selected, loose):
+    """Selected paths {side: path}, those of the sides `loose` turned to run as their partners do."""
+    partners = dict.fromkeys(SIDES, ())
+    if index != NONE:
+        pair = pairs(source)[index]
+        partners = {side: getattr(pair, side).vertices for side in SIDES}
+    partners |= selected
+    for side, other in (SIDES, SIDES[::-1]):
+        if side in loose and partners[other]:
+            objects = side_object(source, side), side_object(source, other)
+            partners[side] = curve_selection.like(objects[0], partners[side], objects[1], partners[other])
+    return {side: partners[side] for side in selected}
+
+
+def reverse(source, index, side):
+    """Makes the end of a pair's path on one side its start. Raises `CannotPair` and then changes nothing."""
+    curve, obj = source.authalic_landmark_curves[index], side_object(source, side)
+    path = getattr(pairs(source)[index], side)
+    if path.problem:
+        raise CannotPair(f"{curve.name}: {_worded(path, obj)}")
+    if path.is_closed:
+        raise CannotPair(f"{curve.name} is closed and has no direction")
+    sharing = _sharing(source, curve, side)
+    if sharing is not None:
+        raise CannotPair(f"{sharing.name} has this path on {obj.name} too; reverse the other side")
+    curve_marks.reverse(obj.data, curve_marks.key(source, side), curve.mark)
+    curve.error = -1.0
+
+
+def remove(source, index):
+    """Removes the pair of an index; the one that takes its place is the active one."""
+    landmark_undo.remember(source, index, landmark_undo.CURVES)
+    curve = source.authalic_landmark_curves[index]
+    for side in SIDES:
+        obj = side_object(source, side)
+        # In another mode the marks would stay away when the step is undone.
+        is_writable = obj is not None and obj.type == "MESH" and obj.data.is_editable
+        is_own = is_writable and source.authalic_curve_key and _sharing(source, curve, side) is None
+        if is_own and obj.data.is_editmode == source.data.is_editmode:
+            curve_marks.clear(obj.data, curve_marks.key(source, side), curve.mark)
+    source.authalic_landmark_curves.remove(index)
+    last = len(source.authalic_landmark_curves) - 1
+    source.authalic_landmark_curve_index = max(min(source.authalic_landmark_curve_index, last), 0)
+
+
+def clear(source):
+    """Removes all pairs."""
+    for index in reversed(range(len(source.authalic_landmark_curves))):
+        remove(source, index)
+
+
+def replace(source, wanted):
+    """Puts pairs (name, source path, target path) in place of all there are, or of none of them.
+
+    Raises `CannotPair` and then changes nothing.
+    """
+    check_all(source, wanted)
+    clear(source)
+    for name, source_path, target_path in wanted:
+        add(source, source_path, target_path, name=name)
+
+
+def check_all(source, wanted):
+    """Raises `CannotPair` unless pairs (name, source path, target path) could be those of the source."""
+    landmarks.check_target(source)
+    for side, obj in zip((1, 2), _objects(source), strict=True):
+        taken = {}
+        for number, pair in enumerate(wanted):
+            _check_path(obj, pair[side])
+            for vertex in pair[side]:
+                other = taken.setdefault(vertex, number)
+                if other != number:
+                    names = f'"{wanted[other][0]}" and "{pair[0]}"'
+                    raise CannotPair(f"the curves {names} meet at vertex {vertex} of {obj.name}")
+
+
+def _objects(source):
+    return [side_object(source, side) for side in SIDES]
+
+
+def _found(source, side, drawing):
+    """{mark: path} of a side."""
+    obj = side_object(source, side)
+    if obj is None or obj.type != "MESH" or not source.authalic_curve_key:
+        return {}
+    return curve_marks.find(obj.data, curve_marks.key(source, side), drawing=drawing)
+
+
+def _path(source, curve, side):
+    return _found(source, side, False).get(curve.mark, curve_marks.ABSENT)
+
+
+def _worded(path, obj):
+    return f"{path.problem} on {obj.name}"
+
+
+def _problem(taken, numbered, own, objects):
+    """What is wrong with a pair whose paths are on two objects; `taken` are the vertices of earlier ones."""
+    broken = [_worded(*part) for part in zip(own, objects, strict=True) if part[0].problem]
+    touching = _touching(taken, numbered, own, objects)
+    return broken[0] if broken else touching or _unlike(own, objects)
+
+
+def _touching(taken, numbered, own, objects):
+    """What is wrong if an earlier curve has a vertex of a path; else remembers them in `taken`."""
+    for side, path, obj in zip(SIDES, own, objects, strict=True):
+        for vertex in path.vertices:
+            other = taken.setdefault((side, vertex), numbered)
+            if other != numbered:
+                return f'meets "{other[1]}" at vertex {vertex} of {obj.name}; curves must not meet'
+    return None
+
+
+def _unlike(own, objects):
+    """What is wrong with two paths that are fine by themselves."""
+    for path, obj in zip(own, objects, strict=True):
+        few = _too_few(path.vertices)
+        if few:
+            return f"{few} on {obj.name}"
+    if own[0].is_closed != own[1].is_closed:
+        closed, opened = objects if own[0].is_closed else objects[::-1]
+        return f"is closed on {closed.name} and open on {opened.name}; both must be either"
+    return None
+
+
+def _too_few(path):
+    count, fewest = len(path) - 1, _FEWEST[paths.is_closed(path)]
+    return None if count >= fewest else f"has {messages.count(count, 'edge')} where {fewest} are the least"
+
+
+def _has(pair, side, path):
+    """Whether a path is that of a pair, in either direction."""
+    return set(paths.edges(path)) <= {way for edge in getattr(pair, side).edges for way in (edge, edge[::-1])}
+
+
+def _check(source, side, path, index):
+    """Raises `CannotPair` unless a path can be that of the pair of an index, or of a new one."""
+    obj, curves = side_object(source, side), source.authalic_landmark_curves
+    _check_path(obj, path)
+    own = curves[index] if index != NONE else None
+    for curve, pair in zip(curves, pairs(source), strict=True):
+        shared = {vertex for edge in getattr(pair, side).edges for vertex in edge}.intersection(path)
+        if shared and curve != own:
+            raise CannotPair(
+                f'the curve "{pair.name}" has {_vertices(shared)} of {obj.name} already; curves must not meet'
+            )
+    for other, curve in _others(source, side):
+        if curve.mark in _owners(source, side, path) or (own is not None and curve.mark == own.mark):
+            raise CannotPair(f'edges of {obj.name} are in the curve "{curve.name}" of {other.name} already')
+
+
+def _vertices(numbers):
+    numbers = sorted(numbers)
+    if len(numbers) == 1:
+        return f"vertex {numbers[0]}"
+    return f"{len(numbers)} vertices ({messages.numbers(numbers)})"
+
+
+def _check_path(obj, path):
+    """Raises `CannotPair` unless vertices are a path along edges of an object."""
+    if not path:
+        raise CannotPair(f"a curve has no vertices on {obj.name}")
+    for vertex in path:
+        landmarks.check_vertex(obj, vertex)
+    problem = _too_few(path)
+    if problem is None and (twice := paths.repeated(path)) is not None:
+        problem = f"comes to vertex {twice} twice"
+    if problem is not None:
+        raise CannotPair(f"the curve {problem} on {obj.name}")
+    try:
+        curve_marks.check(obj.data, path)
+    except curve_marks.NoEdge as missing:
+        raise CannotPair(f"{obj.name}: {missing}; a curve runs along edges") from None
+
+
+def _owners(source, side, path):
+    """The marks that edges of a path have already."""
+    if not source.authalic_curve_key:
+        return set()
+    return curve_marks.owners(side_object(source, side).data, curve_marks.key(source, side), path)
+
+
+def _others(source, side):
+    """(object, curve) of copies of the source with the same mesh on a side: these share paths with it."""
+    mesh, key = side_object(source, side).data, source.authalic_curve_key
+    for other in bpy.data.objects:
+        if key and other != source and other.authalic_curve_key == key:
+            obj = side_object(other, side)
+            if obj is not None and obj.data == mesh:
+                yield from ((other, curve) for curve in other.authalic_landmark_curves)
+
+
+def _sharing(source, curve, side):
+    """An object that has a path of the source's curve too, or None."""
+    if side_object(source, side) is None:
+        return None
+    return next((other for other, own in _others(source, side) if own.mark == curve.mark), None)
+
+
+def _free_name(source):
+    taken = {curve.name for curve in source.authalic_landmark_curves}
+    number = len(source.authalic_landmark_curves) + 1
+    while f"Curve {number}" in taken:
+        number += 1
+    return f"Curve {number}"
+
+
+def register():
+    bpy.utils.register_class(AUTHALIC_PG_landmark_curve)
+    bpy.types.Object.authalic_landmark_curves = CollectionProperty(
+        type=AUTHALIC_PG_landmark_curve,
+        name="Landmark Curves",
+        description="Pairs of paths along edges, here and on the target",
+    )
+    bpy.types.Object.authalic_landmark_curve_index = IntProperty(
+        name="Active Curve", description="The pair of curves that is selected in the list", min=0
+    )
+    # Names the attributes with the marks of this object's curves on both meshes.
+    bpy.types.Object.authalic_curve_key = StringProperty(options={"HIDDEN"})
+
+
+def unregister():
+    del bpy.types.Object.authalic_curve_key
+    del bpy.types.Object.authalic_landmark_curve_index
+    del bpy.types.Object.authalic_landmark_curves
+    bpy.utils.unregister_class(AUTHALIC_PG_landmark_curve)

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.landmark_curve_add, _remove, _clear, _select, _reverse: the pairs of curves of the source."""
+
+import re
+
+import bpy
+from bpy.props import EnumProperty, IntProperty, StringProperty
+
+from .. import curve_selection, landmark_curves, landmarks, messages
+from . import poll, views
+
+_GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
+_SIDES = (
+    ("SOURCE", "Source", "The path on this object"),
+    ("TARGET", "Target", "The path on the target"),
+)
+
+
+class _CurveOperator:
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+
+    @classmethod
+    def poll(cls, context):
+        return poll.has_curves(cls, context)
+
+    def execute(self, context):
+        try:
+            return self.run(context, landmarks.source(context))
+        except landmarks.CannotPair as problem:
+            self.report({"ERROR"}, str(problem)[:1].upper() + str(problem)[1:])
+            return {"CANCELLED"}
+
+    def chosen(self, source):
+        """The index of the pair that is meant."""
+        index, count = self.index, len(source.authalic_landmark_curves)
+        index = source.authalic_landmark_curve_index if index == landmarks.NONE else index
+        if not 0 <= index < count:
+            last = f", its {count} are 0 to {count - 1}" if count else ""
+            raise landmarks.CannotPair(f"{source.name} has no curve {index}{last}")
+        return index
+
+
+def _index(meaning="-1 for the active one"):
+    return IntProperty(
+        name="Index",
+        description=f"The place of the pair of curves in the list, from 0. {meaning}",
+        min=landmarks.NONE,
+        default=landmarks.NONE,
+        options=_GIVEN,
+    )
+
+
+def _side(meaning, default):
+    return EnumProperty(name="Side", description=meaning, items=_SIDES, default=default)
+
+
+def _path(name, where):
+    return StringProperty(
+        name=name,
+        description=f"The numbers of the vertices {where} from start to end, of a loop the first one again "
+        "at the end. Empty for the selected edges",
+        default="",
+        options=_GIVEN,
+    )
+
+
+class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
+    """Make the selected edges a landmark curve: an open path or a closed loop, on this object or its target.
+
+    Edges on one object alone complete the active curve if it lacks a path there. Open curves are matched
+    start to start: a path starts at its end that is nearer to the active vertex or edge"""
+
+    bl_idname = "authalic.landmark_curve_add"
+    bl_label = "Add Landmark Curve"
+
+    name: StringProperty(name="Name", description="Empty for a number", default="", options=_GIVEN)
+    index: _index("-1 for a new pair, or for one that lacks the path")
+    source_vertices: _path("Source Vertices", "on this object")
+    target_vertices: _path("Target Vertices", "on the target")
+
+    @classmethod
+    def poll(cls, context):
+        return poll.has_target(cls, context)
+
+    def run(self, _context, source):
+        index = landmarks.NONE if self.index == landmarks.NONE else self.chosen(source)
+        given = {"source": _numbers(self.source_vertices), "target": _numbers(self.target_vertices)}
+        given = {side: path for side, path in given.items() if path}
+        if not given:
+            given, index = _selected(source, index)
+        landmark_curves.add(source, given.get("source"), given.get("target"), name=self.name, index=index)
+        pair = landmark_curves.pairs(source)[source.authalic_landmark_curve_index]
+        said = [_described(path, landmark_curves.side_object(source, side)) for side, path in given.items()]
+        self.report({"INFO"}, f"{pair.name}: {', '.join([*said, *filter(None, [pair.problem])])}")
+        return {"FINISHED"}
+
+
+class AUTHALIC_OT_landmark_curve_remove(_CurveOperator, bpy.types.Operator):
+    """Remove a pair of landmark curves. The edges themselves stay"""
+
+    bl_idname = "authalic.landmark_curve_remove"
+    bl_label = "Remove Landmark Curve"
+    index: _index()
+
+    def run(self, _context, source):
+        index = self.chosen(source)
+        name = source.authalic_landmark_curves[index].name
+        landmark_curves.remove(source, index)
+        self.report({"INFO"}, f"Removed {name}, {len(source.authalic_landmark_curves)} left")
+        return {"FINISHED"}
+
+
+class AUTHALIC_OT_landmark_curve_clear(_CurveOperator, bpy.types.Operator):
+    """Remove all pairs of landmark curves. The edges themselves stay"""
+
+    bl_idname = "authalic.landmark_curve_clear"
+    bl_label = "Clear Landmark Curves"
+
+    def run(self, _context, source):
+        count = len(source.authalic_landmark_curves)
+        landmark_curves.clear(source)
+        self.report({"INFO"}, f"Removed {messages.count(count, 'landmark curve')} of {source.name}")
+        return {"FINISHED"}
+
+
+class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
+    """Select the edges of a landmark curve and bring them into view"""
+
+    bl_idname = "authalic.landmark_curve_select"
+    bl_label = "Select Landmark Curve"
+    index: _index()
+    side: _side("Whose edges to select", "SOURCE")
+
+    def run(self, context, source):
+        index = self.chosen(source)
+        pair, side = landmark_curves.pairs(source)[index], self.side.lower()
+        obj = landmark_curves.side_object(source, side)
+        path = getattr(pair, side)
+        if not path.edges:
+            raise landmarks.CannotPair(f"{pair.name}: {pair.problem}")
+        source.authalic_landmark_curve_index = index
+        curve_selection.select(obj, path.edges)
+        views.show(context, obj, _middle(path))
+        self.report({"INFO"}, f"{pair.name}: {_described(path.vertices, obj, len(path.edges))}")
+        return {"FINISHED"}
+
+
+class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
+    """Let an open landmark curve start at its other end: open curves are matched start to start"""
+
+    bl_idname = "authalic.landmark_curve_reverse"
+    bl_label = "Reverse Landmark Curve"
+    index: _index()
+    side: _side("Whose path to reverse", "TARGET")
+
+    def run(self, _context, source):
+        index, side = self.chosen(source), self.side.lower()
+        landmark_curves.reverse(source, index, side)
+        source.authalic_landmark_curve_index = index
+        obj = landmark_curves.side_object(source, side)
+        pair = landmark_curves.pairs(source)[index]
+        start = getattr(pair, side).vertices[0]
+        self.report({"INFO"}, f"{pair.name} starts at vertex {start} of {obj.name} now")
+        return {"FINISHED"}
+
+
+def _numbers(text):
+    """The vertices in a text."""
+    words = [word for word in re.split(r"[\s,]+", text) if word]
+    bad = next((word for word in words if not word.isdecimal()), None)
+    if bad is not None:
+        raise landmarks.CannotPair(f'"{bad}" is not the number of a vertex')
+    return tuple(map(int, words))
+
+
+def _selected(source, index):
+    """The paths {side: path} of selected edges, and the index of their pair, -1 for a new one."""
+    found = {
+        side: path
+        for side in landmark_curves.SIDES
+        if (path := curve_selection.path(landmark_curves.side_object(source, side)))
+    }
+    if not found:
+        raise landmarks.CannotPair(
+            f"Select edges of {source.name} or of {source.authalic_target.name} in Edit Mode: one open path "
+            "or one closed loop"
+        )
+    chosen = {side: path for side, (path, _) in found.items()}
+    if index == landmarks.NONE:
+        index, chosen = landmark_curves.place_for(source, chosen)
+    loose = [side for side in chosen if not found[side][1]]
+    return landmark_curves.directed(source, index, chosen, loose), index
+
+
+def _middle(path):
+    """A vertex halfway along."""
+    return path.vertices[len(path.vertices) // 2] if path.vertices else path.edges[0][0]
+
+
+def _described(path, obj, count=None):
+    edges = messages.count(len(path) - 1 if count is None else count, "edge")
+    if not path:
+        return f"{edges} of {obj.name}"
+    if path[0] == path[-1]:
+        return f"a loop of {edges} of {obj.name}"
+    return f"{edges} of {obj.name} from vertex {path[0]} to {path[-1]}"
+
+
+_CLASSES = (
+    AUTHALIC_OT_landmark_curve_add,
+    AUTHALIC_OT_landmark_curve_remove,
+    AUTHALIC_OT_landmark_curve_clear,
+    AUTHALIC_OT_landmark_curve_select,
+    AUTHALIC_OT_landmark_curve_reverse,
+)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

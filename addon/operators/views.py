@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What brings a place on an object into view."""
+
+from .. import vertex_points
+
+
+def show(context, obj, vertex):
+    """Selects an object and puts one of its vertices into the middle of the 3D view, if there is one."""
+    if obj.visible_get():
+        obj.select_set(True)
+    _look_at(context, *vertex_points.in_world(obj, vertex, context.evaluated_depsgraph_get()))
+
+
+def _look_at(context, point, normal):
+    """Puts a point into the middle of the 3D view and turns to its front."""
+    view = getattr(context.space_data, "region_3d", None)
+    if view is None:
+        return
+    if view.view_perspective == "CAMERA":
+        view.view_perspective = "PERSP"
+    towards = view.view_rotation @ vertex_points.Z
+    if normal.dot(towards) < 0.2 and normal.length > 0:
+        view.view_rotation = normal.to_track_quat("Z", "Y")
+    view.view_location = point

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The part of the registration panel with the list of landmark curves, and what is done with them."""
+
+import bpy
+
+from . import curve_markers, landmark_curves, landmarks, ui_text
+
+_shown = []  # the pairs of the list that is being drawn
+
+
+class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
+    """Number and color, name, last error and edges of each pair, and a warning where a path is missing."""
+
+    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, index=0):
+        pair = _shown[index] if index < len(_shown) else None
+        row = layout.row(align=True)
+        number = row.row()
+        number.ui_units_x = 1.1
+        number.label(text=str(index + 1), translate=False)
+        row.label(icon=curve_markers.icon(index))
+        row.prop(item, "name", text="", emboss=False)
+        if pair is None:
+            return
+        if pair.problem is not None:
+            row.label(icon="ERROR")
+        elif item.error >= 0:
+            ui_text.draw_aside(row, f"{item.error:.2f} %")
+        ui_text.draw_aside(row, f"{_edges(pair.source)} → {_edges(pair.target)}")
+
+
+class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
+    bl_label = "Landmark Curves"
+
+    def draw(self, _context):
+        layout = self.layout
+        for side in ("SOURCE", "TARGET"):
+            operator = layout.operator(
+                "authalic.landmark_curve_reverse",
+                text=f"Reverse {side.capitalize()}",
+                icon="ARROW_LEFTRIGHT",
+            )
+            operator.side = side
+        layout.separator()
+        layout.operator("authalic.landmark_import", icon="IMPORT")
+        layout.operator("authalic.landmark_export", icon="EXPORT")
+        layout.separator()
+        layout.operator("authalic.landmark_curve_clear", icon="X")
+
+
+def draw_curves(layout, source, context):
+    """A panel within the panel, closed until it is wanted."""
+    header, body = layout.panel("AUTHALIC_PT_landmark_curves", default_closed=True)
+    count = len(source.authalic_landmark_curves)
+    header.label(text=f"Landmark Curves ({count})" if count else "Landmark Curves")
+    if body is None:
+        return
+    _shown[:] = landmark_curves.pairs(source, drawing=True)
+    row = body.row()
+    row.template_list(
+        "AUTHALIC_UL_landmark_curves",
+        "",
+        source,
+        "authalic_landmark_curves",
+        source,
+        "authalic_landmark_curve_index",
+        rows=4 if _shown else 3,
+    )
+    column = row.column(align=True)
+    column.operator("authalic.landmark_curve_add", text="", icon="ADD")
+    column.operator("authalic.landmark_curve_remove", text="", icon="REMOVE")
+    column.separator()
+    column.menu("AUTHALIC_MT_landmark_curves", text="", icon="DOWNARROW_HLT")
+    row = body.row(align=True)
+    for side in ("SOURCE", "TARGET"):
+        operator = row.operator(
+            "authalic.landmark_curve_select", text=f"To {side.capitalize()}", icon="VIEWZOOM"
+        )
+        operator.side = side
+    row = body.row()
+    row.operator("authalic.landmark_curve_reverse", text="Reverse Target", icon="ARROW_LEFTRIGHT")
+    ui_text.draw_error(body, source.authalic_landmark_curves, source.authalic_landmark_curve_index)
+    ui_text.draw_problems(body, _problems(source), context)
+
+
+def _problems(source):
+    """The active pair's problem in words, or how many there are elsewhere in the list."""
+    if not _shown:
+        return ["Select edges in Edit Mode and add them"] if not landmarks.target_problem(source) else []
+    active = source.authalic_landmark_curve_index
+    bad = [number for number, pair in enumerate(_shown) if pair.problem is not None]
+    if active in bad:
+        pair = _shown[active]
+        lacking = pair.source.problem or pair.target.problem
+        hint = "; select its edges there in Edit Mode and add them" if lacking else ""
+        return [f"{pair.name}: {pair.problem}{hint}"]
+    return [f"{len(bad)} of the curves cannot be used"] if bad else []
+
+
+def _edges(path):
+    if path.problem:
+        return "?"
+    return f"○{len(path.edges)}" if path.is_closed else str(len(path.edges))
+
+
+_CLASSES = (AUTHALIC_UL_landmark_curves, AUTHALIC_MT_landmark_curves)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures and problems of landmarks in words, as panels show them."""
+
+import textwrap
+
+_LETTER = 7.5  # pixels that a letter takes on average
+
+
+def draw_aside(row, text):
+    """A figure at the right end of a row of a list, greyed out."""
+    part = row.row()
+    part.alignment = "RIGHT"
+    part.active = False
+    part.label(text=text, translate=False)
+
+
+def draw_error(layout, pairs, index):
+    """How far the last registration missed the active one of some pairs, if there was one."""
+    error = pairs[index].error if index < len(pairs) else -1.0
+    if error >= 0:
+        row = layout.row()
+        row.active = False
+        row.label(text=f"Missed by {error:.2g} % of the target's size", translate=False)
+
+
+def draw_problems(layout, lines, context, icon="ERROR"):
+    """Some sentences in a box, as wide as the panel."""
+    if not lines:
+        return
+    box = layout.box().column(align=True)
+    width = int(context.region.width / (_LETTER * context.preferences.system.ui_scale)) - 8
+    for number, line in enumerate(textwrap.wrap("; ".join(lines), max(width, 16))):
+        box.label(text=line, icon="BLANK1" if number else icon, translate=False)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmark curves for the tests: two grids of 7 and of 9 vertices a side, and paths on them."""
+
+import heapq
+from itertools import pairwise
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from pairing import part
+
+ROW = (8, 9, 10, 11)  # inside Head A
+OTHER = (22, 23, 24, 25)
+ROW_B = (10, 11, 12, 13, 14)  # inside Head B
+OTHER_B = (38, 39, 40)
+LOOP = (16, 17, 18, 25, 32, 31, 30, 23, 16)
+LOOP_B = (20, 21, 22, 31, 40, 39, 38, 29, 20)
+
+
+def text(path):
+    return " ".join(map(str, path))
+
+
+def add(source=(), target=(), **options):
+    options |= {"source_vertices": text(source), "target_vertices": text(target)}
+    assert bpy.ops.authalic.landmark_curve_add(**options) == {"FINISHED"}
+
+
+def listed(obj=None):
+    """(name, source path, target path, problem) of each."""
+    found = part("landmark_curves").pairs(obj or bpy.data.objects["Head A"])
+    return [(one.name, one.source.vertices, one.target.vertices, one.problem) for one in found]
+
+
+def refused(words, call, **options):
+    before = listed()
+    with pytest.raises(RuntimeError, match=words):
+        call(**options)
+    assert listed() == before
+
+
+def select_path(obj, *paths, active=None):
+    """Selects the edges of some paths and nothing else in edit mode; `active` is a vertex or an edge."""
+    edit = bmesh.from_edit_mesh(obj.data)
+    for elements in (edit.faces, edit.edges, edit.verts):
+        for one in elements:
+            one.select = False
+    edit.verts.ensure_lookup_table()
+    for path in paths:
+        for first, second in pairwise(path):
+            edge_between(edit, first, second).select_set(True)
+    edit.select_history.clear()
+    if active is not None:
+        chosen = edge_between(edit, *active) if isinstance(active, tuple) else edit.verts[active]
+        edit.select_history.add(chosen)
+    bmesh.update_edit_mesh(obj.data)
+
+
+def edge_between(edit, first, second):
+    return edit.edges.get((edit.verts[first], edit.verts[second]))
+
+
+def selected_edges(obj):
+    """The selected edges as sorted pairs of vertices, in either mode."""
+    if obj.data.is_editmode:
+        edit = bmesh.from_edit_mesh(obj.data)
+        found = [[vertex.index for vertex in edge.verts] for edge in edit.edges if edge.select]
+    else:
+        found = [list(edge.vertices) for edge in obj.data.edges if edge.select]
+    return sorted(tuple(sorted(pair)) for pair in found)
+
+
+def route(obj, *stops):
+    """The vertices along edges of an object on short ways from stop (a point) to stop."""
+    points = np.array([vertex.co for vertex in obj.data.vertices])
+    near = [int(np.argmin(np.linalg.norm(points - stop, axis=1))) for stop in stops]
+    around = {}
+    for first, second in (tuple(edge.vertices) for edge in obj.data.edges):
+        around.setdefault(first, []).append(second)
+        around.setdefault(second, []).append(first)
+    path = [near[0]]
+    for first, last in pairwise(near):
+        path += _shortest(points, around, first, last)[1:]
+    return tuple(path)
+
+
+def _shortest(points, around, first, last):
+    heap, before = [(0.0, first, first)], {}
+    while last not in before:
+        length, vertex, origin = heapq.heappop(heap)
+        if vertex in before:
+            continue
+        before[vertex] = origin
+        for other in around[vertex]:
+            step = float(np.linalg.norm(points[other] - points[vertex]))
+            heapq.heappush(heap, (length + step, other, vertex))
+    path = [last]
+    while path[-1] != first:
+        path.append(before[path[-1]])
+    return path[::-1]

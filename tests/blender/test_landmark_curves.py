@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmark curves: added, refused, listed, reversed, selected, removed, and how they are drawn."""
+
+from itertools import pairwise
+from unittest import mock
+
+import bmesh
+import bpy
+import curving
+import meshes
+import pairing
+import pytest
+from curving import LOOP, LOOP_B, OTHER, OTHER_B, ROW, ROW_B
+
+call = bpy.ops.authalic
+
+
+@pytest.fixture
+def heads():
+    return pairing.heads()
+
+
+def test_add_by_numbers(heads):
+    curving.add(ROW, ROW_B)
+    curving.add(OTHER, OTHER_B, name="Brow")
+    assert curving.listed() == [("Curve 1", ROW, ROW_B, None), ("Brow", OTHER, OTHER_B, None)]
+    stored = heads[0].authalic_landmark_curves
+    assert [(c.source_vertices, c.error) for c in stored] == [("8 9 10 11", -1), ("22 23 24 25", -1)]
+    assert stored[1].target_vertices == "38 39 40" and heads[0].authalic_landmark_curve_index == 1
+
+
+def test_numbers_may_have_commas_and_are_not_remembered(heads):
+    call.landmark_curve_add(source_vertices="8, 9,10", target_vertices="10,11,  12", name="Brow")
+    assert curving.listed() == [("Brow", (8, 9, 10), (10, 11, 12), None)]
+    curving.refused("Select edges of Head A or of Head B in Edit Mode", call.landmark_curve_add)
+
+
+def test_closed(heads):
+    curving.add(LOOP, LOOP_B)
+    assert curving.listed() == [("Curve 1", LOOP, LOOP_B, None)]
+    assert part_curves(heads[0])[0].source.is_closed
+
+
+def part_curves(obj):
+    return pairing.part("landmark_curves").pairs(obj)
+
+
+def test_one_side_after_the_other(heads):
+    curving.add(ROW)
+    assert curving.listed() == [("Curve 1", ROW, (), "has no edges on Head B")]
+    curving.add(target=ROW_B, index=0)
+    assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
+    curving.add(OTHER, index=0)
+    assert curving.listed() == [("Curve 1", OTHER, ROW_B, None)]
+
+
+def test_add_selected_edges_of_both(heads):
+    source, target = heads
+    meshes.edit(*heads)
+    curving.select_path(source, ROW)
+    curving.select_path(target, ROW_B)
+    call.landmark_curve_add()
+    curving.select_path(source, LOOP, active=25)
+    curving.select_path(target, LOOP_B)
+    call.landmark_curve_add()
+    turned = (25, 32, 31, 30, 23, 16, 17, 18, 25)
+    # the row has vertices 8 to 11, the loop does not touch it
+    assert curving.listed()[0] == ("Curve 1", ROW, ROW_B, None)
+    (_, found, other, problem) = curving.listed()[1]
+    assert found in (turned, turned[::-1]) and set(other) == set(LOOP_B) and problem is None
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert curving.listed()[0] == ("Curve 1", ROW, ROW_B, None)
+
+
+def test_selected_edges_complete_the_active_curve(heads):
+    source, target = heads
+    meshes.edit(*heads)
+    curving.select_path(source, ROW)
+    curving.select_path(target)
+    call.landmark_curve_add()
+    curving.select_path(source, OTHER)
+    call.landmark_curve_add()
+    assert [one[2] for one in curving.listed()] == [(), ()] and source.authalic_landmark_curve_index == 1
+    curving.select_path(source)
+    curving.select_path(target, OTHER_B)
+    call.landmark_curve_add()
+    curving.select_path(target, ROW_B)
+    call.landmark_curve_add()
+    assert curving.listed() == [("Curve 1", ROW, ROW_B, None), ("Curve 2", OTHER, OTHER_B, None)]
+
+
+def test_edges_that_are_selected_still_are_not_added_again(heads):
+    source, target = heads
+    meshes.edit(*heads)
+    curving.select_path(target)
+    curving.select_path(source, ROW)
+    call.landmark_curve_add()
+    curving.select_path(target, ROW_B)
+    call.landmark_curve_add()
+    assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
+
+
+def test_the_target_may_come_first(heads):
+    source, target = heads
+    meshes.edit(target, source)
+    curving.select_path(source)
+    curving.select_path(target, ROW_B)
+    call.landmark_curve_add()
+    assert curving.listed(source) == [("Curve 1", (), ROW_B, "has no edges on Head A")]
+    assert not target.authalic_landmark_curves
+    bpy.ops.object.mode_set(mode="OBJECT")
+    meshes.edit(source)
+    curving.select_path(source, ROW)
+    call.landmark_curve_add()
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+
+
+@pytest.mark.parametrize(
+    ("active", "first"), [(None, 8), (8, 8), (11, 11), (10, 11), ((9, 8), 8), ((10, 11), 11), ((9, 10), 8)]
+)
+def test_where_a_path_starts(heads, active, first):
+    source, _ = heads
+    meshes.edit(source)
+    curving.select_path(source, ROW, active=active)
+    call.landmark_curve_add()
+    assert curving.listed()[0][1][0] == first
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_path_without_an_active_end_runs_as_its_partner(heads, turned):
+    source, target = heads
+    curving.add(ROW[::-1])
+    if turned:
+        target.rotation_euler.z = 3.14
+        bpy.context.view_layer.update()
+    meshes.edit(*heads)
+    curving.select_path(source)
+    curving.select_path(target, ROW_B)
+    call.landmark_curve_add()
+    assert curving.listed(source)[0][2] == (ROW_B if turned else ROW_B[::-1])
+
+
+@pytest.mark.parametrize(
+    ("paths", "words"),
+    [
+        (
+            [(8, 9, 10), (22, 23, 24)],
+            "The 4 selected edges of Head A make up 2 pieces; select the edges",
+        ),
+        ([(8, 9, 10), (9, 16)], r"The 3 selected edges of Head A branch at 1 vertex \(9\)"),
+        ([(8, 9, 10, 11), (2, 9, 16), (30, 31)], r"make up 2 pieces and branch at 1 vertex \(9\)"),
+        ([(8, 9)], "The curve has 1 edge where 2 are the least on Head A"),
+    ],
+)
+def test_what_is_no_path(heads, paths, words):
+    meshes.edit(*heads)
+    curving.select_path(heads[1])
+    curving.select_path(heads[0], *paths)
+    curving.refused(words, call.landmark_curve_add)
+
+
+@pytest.mark.parametrize("in_edit", [False, True])
+def test_refusals(heads, in_edit):
+    if in_edit:
+        meshes.edit(*heads)
+    curving.add(ROW, ROW_B)
+
+    def refused(words, source="22 23 24", target="38 39 40", **options):
+        options |= {"source_vertices": source, "target_vertices": target}
+        curving.refused(words, call.landmark_curve_add, **options)
+
+    refused('The curve "Curve 1" has vertex 11 of Head A already; curves must not meet', source="4 11 18")
+    refused('The curve "Curve 1" has 2 vertices .12, 13. of Head B already', target="21 12 13")
+    refused("Head A has no vertex 49, its 49 vertices are 0 to 48", source="47 48 49")
+    refused("Head A: no edge joins vertices 22 and 24", source="22 24 25")
+    refused("The curve comes to vertex 23 twice on Head A", source="22 23 24 23")
+    refused("The curve has 1 edge where 2 are the least", source="22 23")
+    refused("The curve has 2 edges where 3 are the least", source="22 23 22")
+    refused('"2x" is not the number of a vertex', source="2x 3")
+    refused("Head A has no curve 7, its 1 are 0 to 0", index=7)
+    for name in ("remove", "select", "reverse"):
+        curving.refused("has no curve 1", getattr(call, f"landmark_curve_{name}"), index=1)
+    heads[0].authalic_target = None
+    with pytest.raises(RuntimeError, match="no target object"):
+        call.landmark_curve_add(source_vertices="22 23 24")
+
+
+def test_there_must_be_curves_and_meshes(heads):
+    for name in ("remove", "clear", "select", "reverse"):
+        curving.refused("no landmark curves", getattr(call, f"landmark_curve_{name}"))
+    bpy.ops.object.camera_add()
+    curving.refused("mesh object", call.landmark_curve_add)
+
+
+def test_open_and_closed_do_not_match(heads):
+    curving.add(LOOP, ROW_B)
+    curving.add(ROW, LOOP_B)
+    said = [problem for *_, problem in curving.listed()]
+    assert said[0] == "is closed on Head A and open on Head B; both must be either"
+    assert said[1] == "is closed on Head B and open on Head A; both must be either"
+
+
+def test_remove_and_clear(heads):
+    for source, target in ((ROW, ROW_B), (OTHER, OTHER_B), ((36, 37, 38), (64, 65, 66))):
+        curving.add(source, target)
+    call.landmark_curve_remove(index=1)
+    assert [one[1] for one in curving.listed()] == [ROW, (36, 37, 38)]
+    curving.add(OTHER, OTHER_B)
+    assert curving.listed()[2] == ("Curve 4", OTHER, OTHER_B, None)
+    call.landmark_curve_clear()
+    assert curving.listed() == []
+    for obj in heads:
+        assert not [one.name for one in obj.data.attributes if "authalic" in one.name]
+
+
+def test_reverse(heads):
+    curving.add(ROW, ROW_B)
+    call.landmark_curve_reverse()
+    assert curving.listed() == [("Curve 1", ROW, ROW_B[::-1], None)]
+    call.landmark_curve_reverse(side="SOURCE")
+    assert curving.listed() == [("Curve 1", ROW[::-1], ROW_B[::-1], None)]
+    curving.add(LOOP, LOOP_B)
+    curving.refused("Curve 2 is closed and has no direction", call.landmark_curve_reverse)
+    curving.add((36, 37, 38))
+    curving.refused("Curve 3: has no edges on Head B", call.landmark_curve_reverse)
+
+
+def test_select(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    curving.add(LOOP, LOOP_B)
+    assert call.landmark_curve_select(index=0, side="TARGET") == {"FINISHED"}
+    assert source.authalic_landmark_curve_index == 0
+    assert curving.selected_edges(target) == [(10, 11), (11, 12), (12, 13), (13, 14)]
+    meshes.edit(source)
+    call.landmark_curve_select(index=1, side="SOURCE")
+    pairs = pairwise(LOOP)
+    assert curving.selected_edges(source) == sorted(tuple(sorted(pair)) for pair in pairs)
+    assert not any(face.select for face in bmesh.from_edit_mesh(source.data).faces)
+
+
+def test_two_sources_share_paths_of_one_target(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    other = meshes.add_grid("Other")
+    other.authalic_target = target
+    meshes.select(other)
+    curving.add(OTHER, ROW_B[::-1])
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+    assert curving.listed(other) == [("Curve 1", OTHER, ROW_B[::-1], None)]
+    call.landmark_curve_clear()
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+
+
+def test_source_and_target_share_a_mesh():
+    first = meshes.add_grid("Head A")
+    second = bpy.data.objects.new("Second", first.data)
+    bpy.context.collection.objects.link(second)
+    first.authalic_target, second.authalic_target = second, first
+    meshes.select(first)
+    curving.add(ROW, ROW[::-1])
+    meshes.select(second)
+    curving.add(OTHER, ROW)
+    assert curving.listed(first) == [("Curve 1", ROW, ROW[::-1], None)]
+    assert curving.listed(second) == [("Curve 1", OTHER, ROW, None)]
+
+
+def test_a_copy_of_the_source_shares_the_paths_on_the_target(heads):
+    source, _ = heads
+    curving.add(ROW, ROW_B)
+    meshes.select(source)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    assert curving.listed(copy) == curving.listed(source)
+    curving.refused("Head A has this path on Head B too; reverse the other side", call.landmark_curve_reverse)
+    call.landmark_curve_reverse(side="SOURCE")
+    assert curving.listed(copy) == [("Curve 1", ROW[::-1], ROW_B, None)]
+    with pytest.raises(RuntimeError, match='Edges of Head B are in the curve "Curve 1" of Head A already'):
+        call.landmark_curve_add(index=0, target_vertices="38 39 40")
+    call.landmark_curve_remove()
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+
+
+def test_a_deleted_target_is_told(heads):
+    curving.add(ROW, ROW_B)
+    bpy.data.objects.remove(heads[1])
+    bpy.context.view_layer.update()
+    assert curving.listed() == [("Curve 1", ROW, (), "there is no target object, choose one")]
+    assert call.landmark_curve_remove() == {"FINISHED"}
+
+
+def test_lines(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    curving.add(LOOP)
+    markers = pairing.part("curve_markers")
+    meshes.select(target, source)
+    found = markers.shown(bpy.context)
+    assert [(line.object_name, line.number, line.is_active, line.has_problem) for line in found] == [
+        ("Head A", 0, False, False),
+        ("Head B", 0, False, False),
+        ("Head A", 1, True, True),
+    ]
+    assert found[0].edges == ((8, 9), (9, 10), (10, 11)) and found[2].is_closed
+    assert markers.icon(0) != markers.icon(1) and markers.icon(10) == markers.icon(0)
+    icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+    assert all(markers.icon(number) in icons for number in range(10))
+    assert all(len(markers._color(line, bpy.context)) == 3 for line in found)
+    bpy.context.scene.authalic_show_landmarks = False
+    assert markers.shown(bpy.context) == []
+    markers._draw_lines()  # without a window nothing is drawn
+    markers._draw_ends()
+
+
+def test_the_list_shows_edges_and_errors(heads):
+    source, _ = heads
+    curving.add(ROW, ROW_B)
+    curving.add(LOOP, LOOP_B)
+    curving.add((36, 37, 38))
+    source.authalic_landmark_curves[0].error = 0.125
+    panel = pairing.part("ui_curves")
+    panel._shown[:] = part_curves(source)
+    said = []
+    for index, item in enumerate(source.authalic_landmark_curves):
+        layout = mock.MagicMock()
+        layout.row.return_value = layout
+        panel.AUTHALIC_UL_landmark_curves.draw_item(None, None, layout, source, item, 0, None, "", index)
+        said.append([c.kwargs["text"] for c in layout.label.call_args_list if "text" in c.kwargs])
+    assert said == [["1", "0.12 %", "3 → 4"], ["2", "○8 → ○8"], ["3", "2 → ?"]]
+    assert panel._problems(source) == [
+        "Curve 3: has no edges on Head B; select its edges there in Edit Mode and add them"
+    ]
+
+
+def test_everything_has_words():
+    for name in ("add", "remove", "clear", "select", "reverse"):
+        operator = getattr(bpy.ops.authalic, f"landmark_curve_{name}").get_rna_type()
+        assert operator.description and not operator.description.endswith(".")
+        own = [p for p in operator.properties if p.identifier in ("index", "side", "source_vertices")]
+        assert all(p.name and p.description and not p.description.endswith(".") for p in own)
+
+
+def test_unregistering_leaves_nothing(extension):
+    names = ("authalic_landmark_curves", "authalic_landmark_curve_index", "authalic_curve_key")
+    assert all(hasattr(bpy.types.Object, name) for name in names)
+    bpy.ops.preferences.addon_disable(module=extension)
+    assert not any(hasattr(bpy.types.Object, name) for name in names)
+    bpy.ops.preferences.addon_enable(module=extension)

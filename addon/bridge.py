@@ -12,7 +12,16 @@ import numpy as np
 
 import authalic
 
-from . import domains, messages, polygons, projection, registering, spherical, triangulation
+from . import (
+    curve_registering,
+    domains,
+    messages,
+    polygons,
+    projection,
+    registering,
+    spherical,
+    triangulation,
+)
 from .domains import Unsuitable
 from .results import Island, Mapping, Measurement, Refusal, SphereShape, UnwrapSettings
 from .solver import Solver, weight
@@ -157,24 +166,30 @@ def sphere_shape(surface, solver=None, progress=_keep_going):
 def register(source, target, pairs, settings, progress=_keep_going):
     """The `registering.Registered` of two `Side`s by pairs (name, source vertex, target vertex).
 
-    One that was made before is not made again. When `progress` returns False, as it is by then. Raises
-    `Unsuitable`, in the words of an artist, where there is none.
+    By curves the pairs are (name, source vertices, target vertices). One that was made before is not made
+    again. When `progress` returns False, as it is by then. Raises `Unsuitable`, in the words of an artist,
+    where there is none.
     """
-    key = registering.key(source, target, pairs)
+    key, settings = registering.key(source, target, pairs), settings.that_count
     found = _registrations.get(key, settings)
     if found is None:
+        make = _registered if settings.method == "POINTS" else _registered_by_curves
         try:
-            found = _registered(source, target, pairs, settings, progress)
+            found = make(source, target, pairs, settings, progress)
         except (authalic.MeshError, authalic.SolverError) as error:
-            raise Unsuitable(registering.in_mesh_terms(str(error), source, target)) from error
+            message = registering.in_mesh_terms(str(error), source, target)
+            if settings.method == "CURVES":
+                message = curve_registering.in_words(message, (source, target), pairs)
+            raise Unsuitable(message) from error
         _registrations.put(key, settings, found)
     _registrations.touch(key, settings)
     return found
 
 
-def kept(source, target, pairs):
-    """The latest registration of these meshes by these pairs in this session, or None."""
-    return _registrations.get(registering.key(source, target, pairs), None)
+def kept(source, target, pairs, curves=()):
+    """The latest registration of these meshes by these pairs or by these curves in this session, or None."""
+    methods = (("POINTS", pairs), ("CURVES", curves))
+    return _registrations.latest([(registering.key(source, target, own), method) for method, own in methods])
 
 
 def morphed(registered, source, target, align):
@@ -193,9 +208,29 @@ def pull(registered, values, per):
     return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
 
 
+def _registered_by_curves(source, target, curves, _settings, progress):
+    sides = source, target
+    patches = [_patches(one) for one in sides]
+    for one, part in zip(sides, patches, strict=True):
+        registering.check_piece(one, part)
+    paths = curve_registering.check_curves(sides, curves, [registering.boundaries(part) for part in patches])
+    native = authalic.register_hyperbolic(
+        *((one.points, one.faces) for one in sides),
+        source_curves=paths[0],
+        target_curves=paths[1],
+        progress=progress,
+    )
+    return curve_registering.registered(native, sides, curves)
+
+
+def _patches(one):
+    """The pieces of a side; a bad coordinate is for the solver to name."""
+    return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
+
+
 def _registered(source, target, pairs, settings, progress):
     sides = source, target
-    patches = [authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces) for one in sides]
+    patches = [_patches(one) for one in sides]
     shape = registering.domain(sides, patches, settings.domain)
     borders = [np.concatenate([np.empty(0, int), *registering.boundaries(part)]) for part in patches]
     landmarks = registering.check_landmarks(sides, pairs, shape, borders)

@@ -3,7 +3,7 @@
 
 import hashlib
 from collections import OrderedDict
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
@@ -19,14 +19,21 @@ _SEEN = 5e-6  # errors above this are not 0.000 %
 
 @dataclass
 class Settings:
-    """`domain` is "AUTO", "DISK" or "SPHERE", `weight` that of the landmarks at first.
+    """`method` is "POINTS" or "CURVES", and the others are of points alone.
 
-    `angle_weight` is the slider from areas, 0, to angles, 1.
+    `domain` is "AUTO", "DISK" or "SPHERE", `weight` that of the landmarks at first, `angle_weight` the slider
+    from areas, 0, to angles, 1.
     """
 
     domain: str = "AUTO"
     weight: float = 1.0
     angle_weight: float = 0.0
+    method: str = "POINTS"
+
+    @property
+    def that_count(self):
+        """The same, but for options that make no difference."""
+        return self if self.method == "POINTS" else Settings(method=self.method)
 
 
 @dataclass
@@ -68,7 +75,8 @@ class Registered:
     `places` (u, 3) and `target_places` are the points of either in the common domain, the unit sphere or the
     unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
     `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain,
-    `folds` counts those of both.
+    `folds` counts those of both. By curves the `domain` is "CURVES", the common domain a sphere, and
+    `remarks` say what should be looked at.
     """
 
     native: object
@@ -84,6 +92,11 @@ class Registered:
     folds: int
     status: str
     seconds: float
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def by_curves(self):
+        return self.domain == "CURVES"
 
     @property
     def ended_early(self):
@@ -93,7 +106,7 @@ class Registered:
     def worst(self):
         """The few pairs (name, error) with the largest errors, the largest first; none if all meet."""
         order = np.argsort(-self.errors, kind="stable")[:_WORST]
-        least = max(_SEEN, _NEXT_WORST * self.errors.max())
+        least = max(_SEEN, _NEXT_WORST * self.errors.max(initial=0))
         return [(self.names[pair], float(self.errors[pair])) for pair in order if self.errors[pair] >= least]
 
 
@@ -163,19 +176,25 @@ _NOT_WANTED = {
 
 def _shape(one, patches):
     """What one side is, which must be a single piece without handles and with one boundary at the most."""
+    patch = check_piece(one, patches)
+    loops = [one.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
+    if len(loops) > 1:
+        holes = _holes(loops[1:])
+        raise Unsuitable(f"{one.name}: has {len(loops)} boundaries where one is allowed; fill {holes}")
+    return "DISK" if loops else "SPHERE"
+
+
+def check_piece(one, patches):
+    """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
     try:
         _check_one_piece(len(one.points), patches)
-        patch = patches[0]
-        if patch.genus is None:
+        if patches[0].genus is None:
             raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
-        if patch.genus > 0:
-            raise Unsuitable(f"has {domains.handles(patch)}, like a torus; close it up or remesh it")
-        loops = [one.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
-        if len(loops) > 1:
-            raise Unsuitable(f"has {len(loops)} boundaries where one is allowed; fill {_holes(loops[1:])}")
+        if patches[0].genus > 0:
+            raise Unsuitable(f"has {domains.handles(patches[0])}, like a torus; close it up or remesh it")
     except Unsuitable as problem:
         raise Unsuitable(f"{one.name}: {problem}") from problem
-    return "DISK" if loops else "SPHERE"
+    return patches[0]
 
 
 def _check_one_piece(count, patches):
@@ -235,13 +254,17 @@ def _refuse(pairs, bad, problem):
 
 
 def key(source, target, pairs):
-    """A hash of all that a registration depends on but its settings: both sides and the landmarks."""
+    """A hash of all that a registration depends on but its settings: both sides and the landmarks.
+
+    Pairs are (name, vertex, vertex), or (name, vertices, vertices) of curves.
+    """
     digest = hashlib.blake2b(digest_size=16)
     for one in (source, target):
         digest.update(one.name.encode())
         for array in (one.points, one.faces, one.vertices, one.corners):
             digest.update(np.int64(array.shape).tobytes() + np.ascontiguousarray(array).tobytes())
-    digest.update(repr([(name, int(first), int(second)) for name, first, second in pairs]).encode())
+    listed = [(name, np.array(first).tolist(), np.array(second).tolist()) for name, first, second in pairs]
+    digest.update(repr(listed).encode())
     return digest.digest()
 
 
@@ -290,11 +313,14 @@ class Kept:
         self._found = OrderedDict()
 
     def get(self, key_, settings):
-        """One of these meshes and settings that ran to its end; with `settings` None the latest, or None."""
-        if settings is not None:
-            found = self._found.get((key_, astuple(settings)))
-            return found if found is not None and not found.ended_early else None
-        return next((found for (own, _), found in reversed(self._found.items()) if own == key_), None)
+        """One of these meshes and settings that ran to its end, or None."""
+        found = self._found.get((key_, astuple(settings)))
+        return found if found is not None and not found.ended_early else None
+
+    def latest(self, keys):
+        """The latest of some (key, method), or None."""
+        listed = reversed(self._found.items())
+        return next((found for (own, used), found in listed if (own, Settings(*used).method) in keys), None)
 
     def put(self, key_, settings, registered):
         self._found.pop((key_, astuple(settings)), None)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import animation, bridge, landmarks, mesh_io, messages, registering, shape_keys
+from .. import animation, bridge, landmark_curves, landmarks, mesh_io, messages, registering, shape_keys
 from ..job import Job
 
 UV_MAP = "Authalic Registered"
@@ -36,15 +36,26 @@ class Settings:
 
 @dataclass
 class Couple:
-    """The two objects, both surfaces as they were read and as sides of a registration, and the landmarks."""
+    """The two objects, both surfaces as they were read and as sides of a registration, and the landmarks.
+
+    `pairs` are those of points, `curves` those of curves, `problems` for either method what is wrong with its
+    pairs. `to_source` is the matrix (4, 4) from the world into the source's space.
+    """
 
     source: object
     target: object
     surfaces: list
     sides: list
     pairs: list
+    curves: list
+    problems: dict
     to_source: np.ndarray
-    """The matrix (4, 4) from the world into the source's space."""
+
+    def landmarks(self, method):
+        """The pairs that a method goes by. Raises `CannotRegister` where they are not sound."""
+        if self.problems[method]:
+            raise CannotRegister(messages.listed(self.problems[method]))
+        return self.pairs if method == "POINTS" else self.curves
 
 
 @dataclass
@@ -59,18 +70,10 @@ class Report:
 
     def __str__(self):
         one = self.registered
-        line = ", ".join(
-            [
-                f"{self.key} on {one.source.name}: {messages.count(len(one.names), 'landmark pair')}",
-                f"landmark error mean {100 * one.errors.mean():.3f} % and max {100 * one.errors.max():.3f} % "
-                f"of the size of {one.target.name}{_worst(one)}",
-                messages.count(one.folds, "fold"),
-                f"authalic energy {one.energy:.3g}",
-                one.status.replace("_", " "),
-                f"{self.seconds:.2f} s",
-            ]
-        )
-        return "; ".join([line, *self.notes])
+        figures = _figures_of_curves(one) if one.by_curves else _figures_of_points(one)
+        ending = [one.status.replace("_", " "), f"{self.seconds:.2f} s"]
+        line = ", ".join([*figures, *ending])
+        return "; ".join([f"{self.key} on {one.source.name}: {line}", *self.notes])
 
 
 def job(context, settings):
@@ -82,6 +85,7 @@ def job(context, settings):
     if settings.frames is not None and settings.frames[0] >= settings.frames[1]:
         raise CannotRegister(f"The morph has to end after frame {settings.frames[0]}, where it starts")
     couple = chosen(context)
+    couple.landmarks(settings.registration.method)
     key = key_name(couple.target)
     reason = shape_keys.why_not(couple.source.data, key)
     if reason is not None:
@@ -96,7 +100,8 @@ def job(context, settings):
         check_unchanged(couple)
         shape_keys.write(couple.source, key, positions)
         notes = _write_uv_maps(couple, registered, settings.target_uv)
-        for landmark, error in zip(couple.source.authalic_landmarks, registered.errors.tolist(), strict=True):
+        listed = _listed(couple.source)[1 if registered.by_curves else 0]
+        for landmark, error in zip(listed, registered.errors.tolist(), strict=True):
             landmark.error = 100 * error
         if settings.frames is not None:
             animation.rise(couple.source, key, *settings.frames)
@@ -122,12 +127,15 @@ def chosen(context):
         raise CannotRegister(f"{source.name}: its mesh is linked from another file; make it local")
     surfaces = [shape_keys.read(obj) for obj in objects]
     matrices = [np.array(obj.matrix_world) for obj in objects]
+    points, curves = landmarks.pairs(source), landmark_curves.pairs(source)
     return Couple(
         source=source,
         target=target,
         surfaces=surfaces,
         sides=[registering.side(*part) for part in zip(surfaces, matrices, strict=True)],
-        pairs=_pairs(source),
+        pairs=[pair[:3] for pair in points],
+        curves=[(curve.name, curve.source.vertices, curve.target.vertices) for curve in curves],
+        problems={"POINTS": _problems("Landmark", points), "CURVES": _problems("Curve", curves)},
         to_source=np.linalg.inv(matrices[0]),
     )
 
@@ -135,7 +143,7 @@ def chosen(context):
 def registration(couple, settings, progress):
     """The registration of a `Couple`; raises `CannotRegister`."""
     try:
-        return bridge.register(*couple.sides, couple.pairs, settings, progress)
+        return bridge.register(*couple.sides, couple.landmarks(settings.method), settings, progress)
     except bridge.Unsuitable as reason:
         raise CannotRegister(str(reason)) from reason
 
@@ -151,8 +159,14 @@ def check_unchanged(couple):
         is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
         if not is_there or len(obj.data.vertices) != len(surface.positions):
             raise CannotRegister(f"{surface.name} has changed meanwhile; nothing was written")
-    if len(couple.source.authalic_landmarks) != len(couple.pairs):
+    counts = [len(couple.pairs), len(couple.curves)]
+    if [len(listed) for listed in _listed(couple.source)] != counts:
         raise CannotRegister("The landmarks have changed meanwhile; nothing was written")
+
+
+def _listed(source):
+    """The lists of points and of curves."""
+    return source.authalic_landmarks, source.authalic_landmark_curves
 
 
 def _check(obj):
@@ -165,13 +179,8 @@ def _check(obj):
         raise CannotRegister(f"{obj.name} is scaled to nothing along an axis; clear its scale")
 
 
-def _pairs(source):
-    """(name, source vertex, target vertex) of the landmarks, which must be sound."""
-    found = landmarks.pairs(source)
-    problems = [f'Landmark "{name}": {problem}' for name, _, _, problem in found if problem]
-    if problems:
-        raise CannotRegister(messages.listed(problems))
-    return [(name, first, second) for name, first, second, _ in found]
+def _problems(kind, pairs):
+    return [f'{kind} "{pair.name}": {pair.problem}' for pair in pairs if pair.problem]
 
 
 def _positions(couple, registered, align):
@@ -213,11 +222,34 @@ def _write_uv_map(obj, side, plane):
 def warnings(registered):
     """What is not as it was asked for."""
     notes = [messages.ENDED_EARLY] if registered.ended_early else []
-    if registered.missed and not registered.ended_early:
+    if registered.missed and registered.by_curves and not registered.ended_early:
+        notes.append(f"curves that do not meet: {messages.listed(registered.missed)}")
+    elif registered.missed and not registered.ended_early:
         notes.append(f"pairs that do not meet without a fold: {messages.listed(registered.missed)}")
         if registered.domain == "DISK" and len(registered.names) >= _MIRRORED:
             notes.append("if most do not, the normals of the two may face opposite ways: flip those of one")
-    return notes
+    return [*notes, *registered.remarks]
+
+
+def _figures_of_points(one):
+    mean, most = 100 * one.errors.mean(), 100 * one.errors.max()
+    error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {one.target.name}"
+    return [
+        messages.count(len(one.names), "landmark pair"),
+        f"{error}{_worst(one)}",
+        messages.count(one.folds, "fold"),
+        f"authalic energy {one.energy:.3g}",
+    ]
+
+
+def _figures_of_curves(one):
+    most = 100 * one.errors.max(initial=0)
+    error = f"curve error max {most:.3f} % of the size of {one.target.name}{_worst(one)}"
+    return [
+        messages.count(len(one.names), "landmark curve") if one.names else "boundaries alone",
+        *([error] if one.names else []),
+        messages.count(one.folds, "fold"),
+    ]
 
 
 def _worst(registered):

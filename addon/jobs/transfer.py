@@ -108,10 +108,12 @@ def _nothing(couple, refusals):
 def _registration(couple, settings, progress):
     """The one with the settings, or without any the latest of these meshes and landmarks."""
     if settings is None:
-        found = bridge.kept(*couple.sides, couple.pairs)
+        found = bridge.kept(*couple.sides, couple.pairs, couple.curves)
         if found is not None:
             return found
-    return register.registration(couple, settings or registering.Settings(), progress)
+        method = "CURVES" if couple.curves and not couple.pairs else "POINTS"
+        settings = registering.Settings(method=method)
+    return register.registration(couple, settings, progress)
 
 
 def _turn(registered, couple):

@@ -12,6 +12,24 @@ from .modal import Modal
 class Registering:
     """Properties of registrations and their part of a panel."""
 
+    method: EnumProperty(
+        name="Method",
+        description="What of the two surfaces comes to lie over each other",
+        items=(
+            (
+                "POINTS",
+                "Landmark Points",
+                "The landmarks, as nearly as faces can follow. Faces keep their shares of the area",
+            ),
+            (
+                "CURVES",
+                "Landmark Curves",
+                "The landmark curves all along, exactly, and boundaries. Faces keep their shapes as well as "
+                "can be",
+            ),
+        ),
+        default="POINTS",
+    )
     domain: EnumProperty(
         name="Domain",
         description="The shape by way of which the two surfaces are registered",
@@ -40,14 +58,15 @@ class Registering:
     )
 
     def registration(self):
-        return registering.Settings(self.domain, self.weight, self.angle_weight)
+        return registering.Settings(self.domain, self.weight, self.angle_weight, self.method)
 
 
 class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
-    Faces keep their shares of the area as well as the landmarks allow, and the map folds none of them over.
-    Normals of both must face the same way, or the map is mirrored: recalculate or flip those of one"""
+    By points, faces keep their shares of the area as well as these allow; by curves, their shapes. The map
+    folds none of them over. Normals of both must face the same way, or the map is mirrored: recalculate or
+    flip those of one"""
 
     bl_idname = "authalic.register"
     bl_label = "Register and Morph"
@@ -104,8 +123,12 @@ def has_target(operator, context):
 def draw_options(layout, properties):
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
-    for name in ("domain", "angle_weight", "weight", "align", "target_uv", "animate"):
+    column.prop(properties, "method")
+    of_points = ("domain", "angle_weight", "weight")
+    for name in (*(of_points if properties.method == "POINTS" else ()), "align"):
         column.prop(properties, name, slider=name == "angle_weight")
+    for name in (*(("target_uv",) if properties.method == "POINTS" else ()), "animate"):
+        column.prop(properties, name)
     frames = column.column(align=True)
     frames.active = properties.animate
     frames.prop(properties, "frame_start")

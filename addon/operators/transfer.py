@@ -9,7 +9,7 @@ from ..jobs.register import CannotRegister
 from .modal import Modal
 from .register import Registering, has_target
 
-_OF_REGISTRATION = ("domain", "angle_weight", "weight")
+_OF_REGISTRATION = ("method", "domain", "angle_weight", "weight")
 _KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "shape_keys", "align")
 
 

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmark curves of two surfaces that are to be registered, and the figures. Plain numpy, no bpy."""
+
+import re
+
+import numpy as np
+
+from . import messages, paths
+from .domains import Unsuitable
+from .registering import Registered
+
+# "curve 3", "curves 0 and 2", "2 curves (0, 3)".
+_NUMBERS = re.compile(r"\bcurves? (\d+)(?: and (\d+))?\b|\b\d+ curves \(([\d, …]+)\)")
+
+
+def check_curves(sides, curves, boundaries):
+    """The curves of source and target as lists of paths of points of the sides.
+
+    `curves` are (name, source vertices, target vertices), `boundaries` the boundary loops of either side.
+    Raises `Unsuitable` with the names of the curves that cannot be.
+    """
+    if not curves and not any(boundaries):
+        raise Unsuitable(
+            f"{sides[0].name} needs a landmark curve; select edges that belong together on both and add them"
+        )
+    found, left = [], []
+    for number, (one, loops) in enumerate(zip(sides, boundaries, strict=True), 1):
+        own = [_points(one, curve[0], curve[number]) for curve in curves]
+        _check_edges(one, curves, own)
+        left.append(_without_curves(one, curves, own, loops))
+        found.append(own)
+    if left[0] != left[1]:
+        counts = [messages.count(*part) for part in zip(left, ["open boundary"] * 2, strict=True)]
+        raise Unsuitable(
+            f"{sides[0].name} has {counts[0]} and {sides[1].name} {counts[1]}, without those that are "
+            "curves; both must have as many: fill holes, or delete faces"
+        )
+    return found
+
+
+def registered(native, sides, curves):
+    """The figures of a registration by curves (`authalic.Registration`) of two sides."""
+    names = [name for name, _, _ in curves]
+    return Registered(
+        native=native,
+        source=sides[0],
+        target=sides[1],
+        domain="CURVES",
+        places=np.asarray(native.registered),
+        target_places=np.asarray(native.target_registered),
+        names=names,
+        errors=np.asarray(native.landmark_error, float),
+        missed=[names[curve] for curve in native.missed],
+        energy=float("nan"),
+        folds=len(native.certificates.folded),
+        status=native.status,
+        seconds=float(native.seconds),
+        remarks=[in_words(remark, sides, curves) for remark in native.warnings],
+    )
+
+
+def in_words(message, sides, curves):
+    """The library's message with the names of curves and objects, and with the numbers of their meshes."""
+    for one, argument in zip(sides, ("source_curves: ", "target_curves: "), strict=True):
+        if message.startswith(argument):
+            rest = messages.in_mesh_terms(message.removeprefix(argument), one.polygons, one.vertices)
+            message = f"{one.name}: {rest}"
+    names = [name for name, _, _ in curves]
+
+    def named(match):
+        numbers = [int(digits) for digits in re.findall(r"\d+", match[3] or match[0])]
+        if any(number >= len(names) for number in numbers):
+            return match[0]
+        quoted = [f'"{names[number]}"' for number in numbers]
+        noun = "curve" if len(quoted) == 1 else "curves"
+        return f"{noun} {' and '.join(quoted) if len(quoted) < 3 else ', '.join(quoted)}"
+
+    return _NUMBERS.sub(named, message)
+
+
+def _points(one, name, vertices):
+    """A path as points of a side."""
+    vertices = np.asarray(vertices)
+    if not len(vertices) or vertices.min() < 0 or vertices.max() >= one.count:
+        raise Unsuitable(f'Curve "{name}" is not on vertices of {one.name}; add it again')
+    points = one.points_of(vertices)
+    if (points < 0).any():
+        loose = messages.numbers(vertices[points < 0])
+        raise Unsuitable(f'Curve "{name}" is on loose vertices of {one.name} ({loose}); add one with faces')
+    return points
+
+
+def _check_edges(one, curves, own):
+    """Raises `Unsuitable` where an edge of a curve has no face."""
+    ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
+    there = np.unique(ends[:, 0] * len(one.points) + ends[:, 1])
+    for (name, *_), path in zip(curves, own, strict=True):
+        pairs = np.sort(np.column_stack([path[:-1], path[1:]]), axis=1).astype(np.int64)
+        bad = np.flatnonzero(~np.isin(pairs[:, 0] * len(one.points) + pairs[:, 1], there))
+        if len(bad):
+            first, second = one.vertices[path[bad[0] : bad[0] + 2]].tolist()
+            raise Unsuitable(
+                f'Curve "{name}" has the edge ({first}, {second}) of {one.name}, which has no face'
+            )
+
+
+def _without_curves(one, curves, own, loops):
+    """How many boundary loops are no curves. Raises `Unsuitable` where a curve has a part of one."""
+    left = len(loops)
+    for (name, *_), path in zip(curves, own, strict=True):
+        for loop in loops:
+            shared = np.intersect1d(path, loop)
+            if paths.is_closed(path) and len(shared) == len(loop) == len(path) - 1:
+                left -= 1
+            elif len(shared):
+                noun = "vertex" if len(shared) == 1 else "vertices"
+                raise Unsuitable(
+                    f'Curve "{name}" meets the boundary of {one.name} at {noun} '
+                    f"{messages.numbers(one.vertices[shared])}; end it inside, or make it a closed curve "
+                    "along the whole boundary"
+                )
+    return left

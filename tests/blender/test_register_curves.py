@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""authalic.register by landmark curves: the morph, what it says and refuses, and transfers after it."""
+
+import re
+
+import bpy
+import curving
+import meshes
+import numpy as np
+import pairs
+import pytest
+import spheres
+from mathutils import Matrix
+from pairs import TILTED, part
+
+KEY = "Morph → Twin"
+ROUTES = (
+    [(1, 0.3, 0), (0.6, 0.9, 0.3), (0, 1, 0.5)],
+    [(-1, 0.2, 0.4), (-0.6, -0.6, 0.5), (-0.1, -1, 0.2)],
+    [(0.4, -0.5, -1), (-0.3, 0.4, -1)],
+    [(0.3, -0.3, 1), (-0.3, 0.3, 1)],
+)
+
+
+def register(**options):
+    return bpy.ops.authalic.register(method="CURVES", **options)
+
+
+def couple(source, target, curves):
+    """Gives the source a target and curves (source path, target path)."""
+    source.authalic_target = target
+    meshes.select(source)
+    for paths in curves:
+        curving.add(*paths)
+    bpy.context.view_layer.update()
+    return source, target
+
+
+def balls(matrix=None, count=4):
+    """A bumpy sphere and its copy, with curves all around."""
+    source = meshes.bumpy(meshes.icosphere(3))
+    target = pairs.twin(source, matrix)
+    paths = [curving.route(source, *stops) for stops in ROUTES[:count]]
+    return couple(source, target, [(path, path) for path in paths])
+
+
+def sheets():
+    """A bumpy grid and its copy, with two curves inside."""
+    source = meshes.add_grid("Sheet", n=10)
+    target = pairs.twin(source)
+    paths = [curving.route(source, (x, -0.4, 0), (x, 0.4, 0)) for x in (-0.4, 0.4)]
+    return couple(source, target, [(path, path) for path in paths])
+
+
+def onto_another_sphere():
+    """A cube's sphere of quads and a bumpy one of triangles."""
+    source, target = meshes.cube_sphere(4), meshes.bumpy(meshes.icosphere(4), 0.1)
+    target.name = "Twin"
+    target.matrix_world = TILTED
+    curves = [[curving.route(obj, *stops) for obj in (source, target)] for stops in ROUTES]
+    return couple(source, target, curves)
+
+
+def from_polyline(points, corners):
+    """How far points (k, 3) are from a polyline (n, 3)."""
+    a, along = corners[:-1], np.diff(corners, axis=0)
+    place = np.einsum("knd,nd->kn", points[:, None] - a, along) / (along**2).sum(axis=1)
+    nearest = a + np.clip(place, 0, 1)[..., None] * along
+    return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
+
+
+def test_a_copy_is_found_again():
+    source, target = balls()
+    before = pairs.positions(source)
+    assert register() == {"FINISHED"}
+    blocks = source.data.shape_keys.key_blocks
+    assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0
+    assert (pairs.positions(source) == before).all() and target.data.shape_keys is None
+    np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.01 * pairs.size(before))
+
+
+def test_a_copy_that_is_moved_turned_and_scaled():
+    mirror = Matrix.Scale(-1, 4, (1, 0, 0)) @ TILTED
+    source, target = balls(mirror)
+    source.matrix_world = Matrix.Scale(-1, 4, (0, 1, 0)) @ TILTED
+    bpy.context.view_layer.update()
+    assert register() == {"FINISHED"}
+    expected = pairs.moved(pairs.positions(target), source.matrix_world.inverted() @ mirror)
+    np.testing.assert_allclose(pairs.positions(source, KEY), expected, atol=0.01 * pairs.size(expected))
+
+
+def test_another_surface(capfd):
+    source, target = onto_another_sphere()
+    assert register() == {"FINISHED"}
+    said = capfd.readouterr().out
+    goal = pairs.moved(pairs.positions(source, KEY), target.matrix_world.inverted())
+    extent = pairs.size(pairs.positions(target))
+    for curve in part("landmark_curves").pairs(source):
+        ends = goal[list(curve.source.vertices)]
+        line = pairs.positions(target)[list(curve.target.vertices)]
+        assert from_polyline(ends, line).max() < 1e-5 * extent
+        np.testing.assert_allclose(ends[[0, -1]], line[[0, -1]], atol=1e-5 * extent)
+    assert all(0 <= curve.error < 1e-5 for curve in source.authalic_landmark_curves)
+    assert re.search(rf"{KEY} on Cube: 4 landmark curves, curve error max 0\.000 % of the size of Twin", said)
+    assert re.search(r"0 folds, \w+, \d+\.\d+ s", said)
+    assert not source.data.uv_layers.get("Authalic Registered")
+
+
+def test_open_surfaces():
+    source, _ = sheets()
+    before = pairs.positions(source)
+    assert register() == {"FINISHED"}
+    np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.02 * pairs.size(before))
+
+
+def test_loops():
+    """Around the waists of two spheres, and a curve on either side of it."""
+    source = meshes.uv_sphere(24, 12)
+    target = pairs.twin(source)
+    points = pairs.positions(source)
+    waist = np.flatnonzero(np.abs(points[:, 2]) < 1e-5)
+    waist = waist[np.argsort(np.arctan2(points[waist, 1], points[waist, 0]))].tolist()
+    ends = [curving.route(source, (0.9, 0, z), (0, 0.9, z)) for z in (0.5, -0.5)]
+    loop = (*waist, waist[0])
+    couple(source, target, [(loop, (*loop[5:], *loop[1:6])), *((path, path) for path in ends)])
+    assert register() == {"FINISHED"}
+    key = pairs.positions(source, KEY)
+    assert np.abs(key[waist, 2]).max() < 1e-5
+    np.testing.assert_allclose(key, points, atol=0.05 * pairs.size(points))
+
+
+def test_align_and_animate():
+    source, _ = balls(TILTED)
+    before = pairs.positions(source)
+    register(align=True, animate=True, frame_end=20)
+    np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.01 * pairs.size(before))
+    assert source.data.shape_keys.animation_data is not None
+
+
+def test_points_are_not_needed_and_do_not_count():
+    source, _ = balls()
+    part("landmarks").add(source, 5, 7)
+    assert register() == {"FINISHED"}
+    assert source.authalic_landmarks[0].error == -1
+    with pytest.raises(RuntimeError, match="needs at least two landmark pairs"):
+        bpy.ops.authalic.register()
+
+
+def test_the_registration_is_kept_and_transfers_use_it(monkeypatch):
+    source, target = balls()
+    register()
+    group = target.vertex_groups.new(name="Top")
+    group.add([v.index for v in target.data.vertices if v.co.z > 0], 1.0, "REPLACE")
+    bridge, made = part("bridge"), []
+    monkeypatch.setattr(bridge, "_registered_by_curves", lambda *_: made.append(1))
+    monkeypatch.setattr(bridge, "_registered", lambda *_: made.append(1))
+    register(align=True)
+    meshes.select(source)
+    assert bpy.ops.authalic.transfer() == {"FINISHED"}
+    assert not made
+    weights = [vertex.groups[0].weight if vertex.groups else 0.0 for vertex in source.data.vertices]
+    heights = pairs.positions(source)[:, 2]
+    assert np.mean((np.array(weights) > 0.5) == (heights > 0)) > 0.97
+
+
+def test_transfer_by_curves_alone():
+    source, target = balls()
+    target.vertex_groups.new(name="All").add(range(len(target.data.vertices)), 1.0, "REPLACE")
+    assert bpy.ops.authalic.transfer() == {"FINISHED"}
+    assert "All" in source.vertex_groups
+    for name in list(source.vertex_groups.keys()):
+        source.vertex_groups.remove(source.vertex_groups[name])
+    assert bpy.ops.authalic.transfer(method="CURVES") == {"FINISHED"}
+    assert "All" in source.vertex_groups
+
+
+def refusal(pattern, obj=None, **options):
+    obj = obj or bpy.context.object
+    with pytest.raises(RuntimeError, match=pattern):
+        register(**options)
+    assert obj.data.shape_keys is None
+
+
+def test_there_must_be_a_curve_or_a_boundary():
+    balls(count=0)
+    refusal("Icosphere needs a landmark curve; select edges that belong together on both and add them")
+
+
+def test_broken_curves_are_named():
+    source, _ = balls(count=2)
+    path = part("landmark_curves").pairs(source)[1].target.vertices
+    twin = source.authalic_target
+    meshes.edit(twin)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    twin.data.vertices[path[2]].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="VERT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    meshes.select(source)
+    refusal('Curve "Curve 2": has .* on Twin')
+
+
+def test_a_side_that_is_missing():
+    source, _ = balls(count=1)
+    curving.add(curving.route(source, *ROUTES[1]))
+    refusal('Curve "Curve 2": has no edges on Twin')
+
+
+def test_curve_that_meets_the_boundary():
+    source, _ = sheets()
+    curving.add((0, 1, 2), (26, 27, 28), name="Rim")
+    refusal(r'Curve "Rim" meets the boundary of Sheet at vertices 0, 1, 2; end it inside', source)
+
+
+def test_other_boundaries():
+    vertices, faces = meshes.grid(n=8)
+    holed = meshes.add(vertices, [face for number, face in enumerate(faces) if number != 27], "Holed")
+    sheet = meshes.add_grid("Twin", n=8)
+    couple(holed, sheet, [((10, 11, 12), (10, 11, 12))])
+    refusal("Holed has 2 open boundaries and Twin 1 open boundary, without those that are curves", holed)
+
+
+def test_edges_without_faces():
+    vertices, faces = spheres.icosphere(2)
+    source = meshes.add([*vertices, (3, 0, 0)], faces, "Dusty")
+    far = int(np.argmax(-vertices[:, 0]))
+    mesh = source.data
+    mesh.edges.add(1)
+    mesh.edges[-1].vertices = (0, far)
+    mesh.update()
+    target = pairs.twin(source)
+    near = curving.route(source, vertices[far], vertices[far] + [0.2, 0.2, 0])
+    couple(source, target, [((0, *near), (0, *near))])
+    refusal(rf'Curve "Curve 1" has the edge \(0, {far}\) of Dusty, which has no face', source)
+
+
+def test_handle_and_pieces():
+    torus = meshes.torus()
+    couple(torus, pairs.twin(torus), [((0, 1, 2), (0, 1, 2))])
+    refusal("Torus: has a handle, like a torus; close it up or remesh it")
+
+
+def test_messages_of_the_library_name_curves_and_vertices():
+    balls(count=2)
+    sides = part("jobs.register").chosen(bpy.context).sides
+    curves = [("Brow", (), ()), ("Jaw", (), ()), ("Ear", (), ())]
+
+    def said(text):
+        return part("curve_registering").in_words(text, sides, curves)
+
+    assert said("source_curves: curves 0 and 2 meet at vertex 7: shorten one") == (
+        'Icosphere: curves "Brow" and "Ear" meet at vertex 7: shorten one'
+    )
+    assert (
+        said("curve 1 fits far better the other way round")
+        == 'curve "Jaw" fits far better the other way round'
+    )
+    assert said("give a partner to 2 curves (0, 1)") == 'give a partner to curves "Brow" and "Jaw"'
+    assert said("curve 9 is unknown") == "curve 9 is unknown"
+
+
+def test_a_curve_that_runs_the_other_way_is_told(capfd):
+    balls()
+    bpy.ops.authalic.landmark_curve_reverse(index=1)
+    assert register() == {"FINISHED"}
+    assert 'curve "Curve 2" fits far better the other way round' in capfd.readouterr().out
+
+
+def test_undo_and_redo():
+    source, _ = balls(count=3)
+    bpy.ops.ed.undo_push(message="Start")
+    name = source.name
+    bpy.ops.authalic.register("EXEC_DEFAULT", True, method="CURVES")
+    assert KEY in source.data.shape_keys.key_blocks
+    bpy.ops.ed.undo()
+    assert bpy.data.objects[name].data.shape_keys is None
+    bpy.ops.ed.redo()
+    assert KEY in bpy.data.objects[name].data.shape_keys.key_blocks
+
+
+@pytest.mark.parametrize("end", ["cancel", "end_early"])
+def test_stopped(end):
+    """Enter keeps what there is; where nothing is yet, it is an error, and neither writes half a morph."""
+    source, _ = balls()
+    registration = part("jobs.register")
+    settings = registration.Settings(part("registering").Settings(method="CURVES"))
+    job = registration.job(bpy.context, settings).start()
+    getattr(job, end)()
+    try:
+        report = job.apply()
+    except (part("job").Cancelled, registration.CannotRegister):
+        assert source.data.shape_keys is None
+    else:
+        assert end == "end_early" and report.registered.folds == 0
+
+
+def test_curves_that_changed_meanwhile():
+    source, _ = balls()
+    registration = part("jobs.register")
+    settings = registration.Settings(part("registering").Settings(method="CURVES"))
+    job = registration.job(bpy.context, settings).start()
+    job._thread.join()
+    part("landmark_curves").remove(source, 0)
+    with pytest.raises(registration.CannotRegister, match="changed meanwhile; nothing was written"):
+        job.apply()
+    assert source.data.shape_keys is None
+
+
+def test_progress_rises():
+    source, _ = balls()
+    source.data.vertices[0].co.z += 0.01  # not one that is kept
+    registration, seen = part("jobs.register"), []
+
+    def listen(fraction, message):
+        seen.append(fraction)
+        return True
+
+    settings = part("registering").Settings(method="CURVES")
+    registration.registration(registration.chosen(bpy.context), settings, listen)
+    assert len(seen) > 3 and seen == sorted(seen) and 0 <= seen[0] <= seen[-1] <= 1

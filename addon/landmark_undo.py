@@ -61,26 +61,38 @@ def _look(_scene, *_):
 
 
 @persistent
-def _follow(_scene, *_):
+def _after_undo(_scene, *_):
+    _follow(is_redone=False)
+
+
+@persistent
+def _after_redo(_scene, *_):
+    _follow(is_redone=True)
+
+
+def _follow(is_redone):
     curve_marks.forget()
     for source in _sources():
         if not source.authalic_curve_key and _edited(source, CURVES):
             source.authalic_curve_key = _keys.get(source.session_uid, "")
         for listed in (POINTS, CURVES):
             if _edited(source, listed):
-                _update(source, listed)
+                _update(source, listed, is_redone)
     _before.clear()
 
 
-def _update(source, listed):
+def _update(source, listed, is_redone):
     """Makes a list follow the marks that a step has brought or taken away."""
     in_list, size, there = _before.get((listed.name, source.session_uid), (set(), None, set()))
     new_size, found = _state(source, listed)
     present = _only_marks(found)
-    went = _only_marks(there) - present if size == new_size else set()
+    # A pair can have lost one of its two marks because it was removed, or because that was added later.
+    gone = _only_marks(there - found) if is_redone else _only_marks(there) - present
+    went = gone if size == new_size else set()
     came = _marks(source, listed) - in_list - present
     _drop(source, listed, went | came)
-    _restore(source, listed, present & (in_list | _only_marks(found - there)))
+    back = present & (in_list | _only_marks(found - there))
+    _restore(source, listed, back - went)
 
 
 def _sources():
@@ -142,8 +154,8 @@ def _restore(source, listed, wanted):
 _HANDLERS = (
     ("undo_pre", _look),
     ("redo_pre", _look),
-    ("undo_post", _follow),
-    ("redo_post", _follow),
+    ("undo_post", _after_undo),
+    ("redo_post", _after_redo),
 )
 
 

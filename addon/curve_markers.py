@@ -52,6 +52,7 @@ def shown(context):
 def _of(source, context):
     active, is_meant = source.authalic_landmark_curve_index, source == landmarks.source(context)
     for number, pair in enumerate(landmark_curves.pairs(source, drawing=True)):
+        is_half = any(not getattr(pair, side).edges for side in landmark_curves.SIDES)
         for side in landmark_curves.SIDES:
             path = getattr(pair, side)
             if path.edges:
@@ -62,7 +63,7 @@ def _of(source, context):
                     is_closed=path.is_closed,
                     number=number,
                     is_active=is_meant and number == active,
-                    has_problem=pair.problem is not None,
+                    has_problem=bool(path.problem if is_half else pair.problem),
                 )
 
 
@@ -158,14 +159,15 @@ def _draw_start(line, end, color, scale):
 
 
 def _draw_arrow(end, color, scale):
-    """An arrow head whose tip is at the end."""
+    """An arrow head at the end."""
     if end is None:
         return
     tip, before, alpha = end
     along = (tip - before).normalized() if (tip - before).length > 0 else Vector((1, 0))
     for length, shade in ((_ARROW + 4, markers.DARK), (_ARROW, color)):
         wing = Vector((-along.y, along.x)) * length * math.tan(math.radians(28)) * scale
-        point, back = tip + along * 0.35 * length * scale, tip - along * 0.65 * length * scale
+        middle = tip - along * 0.3 * _ARROW * scale  # of the circle within, so that the rim is even
+        point, back = middle + along * 0.68 * length * scale, middle - along * 0.32 * length * scale
         corners = [(*place, 0.0) for place in (point, back + wing, back - wing)]
         shader = gpu.shader.from_builtin("UNIFORM_COLOR")
         shader.uniform_float("color", (*shade, alpha))

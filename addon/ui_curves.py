@@ -82,6 +82,16 @@ def draw_curves(layout, source, context):
     ui_text.draw_problems(body, _problems(source), context)
 
 
+def draw_hint(layout, source, context):
+    """Why a registration by curves would not do what is wanted."""
+    pairs = landmark_curves.pairs(source, drawing=True)
+    bad = sum(pair.problem is not None for pair in pairs)
+    if not pairs:
+        ui_text.draw_problems(layout, ["No landmark curves yet, boundaries alone"], context, icon="INFO")
+    elif bad:
+        ui_text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
+
+
 def _problems(source):
     """The active pair's problem in words, or how many there are elsewhere in the list."""
     if not _shown:

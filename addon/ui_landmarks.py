@@ -52,7 +52,7 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         _draw_landmarks(layout, source, context)
         ui_curves.draw_curves(layout, source, context)
         layout.separator()
-        ui_register.draw_register(layout, context)
+        ui_register.draw_register(layout, source, context)
 
 
 class AUTHALIC_MT_landmarks(bpy.types.Menu):

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the registration panel below the landmarks: the two buttons and their options."""
 
+from . import ui_curves
 from .operators import register, transfer
 
 
-def draw_register(layout, context):
+def draw_register(layout, source, context):
     """What the buttons were used with last, and will be used with next, is below either."""
     last = context.window_manager.operator_properties_last
     for operator, module, icon in (("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")):
@@ -15,3 +16,5 @@ def draw_register(layout, context):
         column.use_property_split = True
         column.use_property_decorate = False
         module.draw_options(column, last(f"authalic.{operator}"))
+        if operator == "register" and last("authalic.register").method == "CURVES":
+            ui_curves.draw_hint(layout, source, context)

@@ -4,6 +4,7 @@
 import textwrap
 
 _LETTER = 7.5  # pixels that a letter takes on average
+_EXACT = 5e-4  # percent
 
 
 def draw_aside(row, text):
@@ -20,7 +21,8 @@ def draw_error(layout, pairs, index):
     if error >= 0:
         row = layout.row()
         row.active = False
-        row.label(text=f"Missed by {error:.2g} % of the target's size", translate=False)
+        said = "Meets its partner" if error < _EXACT else f"Missed by {error:.2g} % of the target's size"
+        row.label(text=said, translate=False)
 
 
 def draw_problems(layout, lines, context, icon="ERROR"):

@@ -7,7 +7,10 @@
 Without files it makes two heads of its own. Files of meshes may be .obj, .ply, .stl, or .npz with the arrays
 V and F; landmarks are a file as the extension exports it (panel Registration, authalic.landmark_export):
 
-    {"format": "authalic-landmarks", "version": 1, "pairs": [{"name": "Nose", "source": 12, "target": 345}]}
+    {"format": "authalic-landmarks", "version": 1, "pairs": [{"name": "Nose", "source": 12, "target": 345}],
+     "curves": [{"name": "Mouth", "source": [3, 4, 9], "target": [7, 8, 12]}]}
+
+With --method curves the landmark curves, paths along edges, come to lie over each other, not the points.
 
 The script needs Blender as the Python package `bpy` (`scripts/build` makes .venv/bpy-5; in an application run
 `blender --background --python morph.py -- OPTIONS`) and the extension, either in the profile that Blender
@@ -37,6 +40,12 @@ LANDMARKS = {  # directions from the middle of a made head: x to its left, -y to
     "Back": (0, 1, 0),
     "Below": (0, 0.15, -1),
 }
+CURVES = {  # from landmark to landmark, along the shortest way
+    "Mouth": ("Left Mouth", "Right Mouth"),
+    "Nose": ("Brow", "Nose"),
+    "Back": ("Crown", "Back"),
+    "Jaw": ("Chin", "Below"),
+}
 
 
 def main(options):
@@ -47,6 +56,8 @@ def main(options):
     else:
         source, target = make_heads()
     choose(source, target, options.landmarks)
+    if options.method == "curves" and not options.landmarks:
+        add_curves(source, target)
     key = morph(source, target, options)
     target.hide_render = True
     set_stage(source, key, options)
@@ -142,9 +153,35 @@ def choose(source, target, landmarks):
         bpy.ops.authalic.landmark_add(name=name, source_vertex=first, target_vertex=second)
 
 
+def add_curves(source, target):
+    """Pairs of landmark curves between the landmarks of made heads, selected as in Edit Mode by hand."""
+    source.select_set(True)
+    target.select_set(True)
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name, ends in CURVES.items():
+        bpy.ops.mesh.select_all(action="DESELECT")
+        for shape in (source, target):
+            select_vertices(shape, [shape["landmarks"][list(LANDMARKS).index(end)] for end in ends])
+        bpy.ops.mesh.shortest_path_select()
+        bpy.ops.authalic.landmark_curve_add(name=name)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def select_vertices(shape, chosen):
+    """Selects vertices in edit mode, the first of which becomes the active one: there a curve starts."""
+    edit = bmesh.from_edit_mesh(shape.data)
+    edit.verts.ensure_lookup_table()
+    edit.select_history.clear()
+    for vertex in reversed(chosen):
+        edit.verts[vertex].select_set(True)
+        edit.select_history.add(edit.verts[vertex])
+    bmesh.update_edit_mesh(shape.data)
+
+
 def morph(source, target, options):
     """Registers, which prints the figures, and key-frames; returns the name of the shape key."""
     bpy.ops.authalic.register(
+        method=options.method.upper(),
         align=options.align,
         angle_weight=options.angle_weight,
         animate=True,
@@ -233,6 +270,7 @@ def chosen_options():
     parser.add_argument(
         "--angle-weight", type=float, default=0.632, help="0 to 1, shapes against areas (%(default)s)"
     )
+    parser.add_argument("--method", choices=("points", "curves"), default="points", help="%(default)s")
     parser.add_argument("--no-align", dest="align", action="store_false", help="end where the target is")
     parser.add_argument(
         "--view", type=float, nargs=3, default=(-0.45, -1, 0.15), help="where the camera is, from the middle"
@@ -255,7 +293,8 @@ if __name__ == "__main__":
     if chosen.extension and "BLENDER_USER_RESOURCES" not in os.environ:
         os.environ["BLENDER_USER_RESOURCES"] = tempfile.mkdtemp(prefix="authalic-profile-")
 
-import bpy  # noqa: E402 (the profile is chosen first)
+import bpy  # noqa: E402, I001 (the profile is chosen first, and `bmesh` is there after `bpy`)
+import bmesh  # noqa: E402
 from mathutils import Euler, Vector  # noqa: E402
 
 if __name__ == "__main__":

@@ -299,7 +299,7 @@ def test_lines(heads):
     assert [(line.object_name, line.number, line.is_active, line.has_problem) for line in found] == [
         ("Head A", 0, False, False),
         ("Head B", 0, False, False),
-        ("Head A", 1, True, True),
+        ("Head A", 1, True, False),
     ]
     assert found[0].edges == ((8, 9), (9, 10), (10, 11)) and found[2].is_closed
     assert markers.icon(0) != markers.icon(1) and markers.icon(10) == markers.icon(0)

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Landmark curves are added, drawn and registered in a real window; see README.md beside this file."""
+
+import importlib
+from itertools import pairwise
+
+import bmesh
+import bpy
+from driver import call, check, click, picture, run, view
+
+A, B = "Ball", "Egg"
+_REGISTRATION = (860, 800 - 579)  # the head of the closed panel
+_CURVES = (860, 800 - 427)  # the head of the list of curves in the open one
+ROWS = (0.45, -0.05, -0.55)  # heights of the curves
+
+
+def part(name):
+    return importlib.import_module(f"bl_ext.user_default.authalic.{name}")
+
+
+def scene():
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    for name, x in ((A, -1.4), (B, 1.4)):
+        call(bpy.ops.mesh.primitive_ico_sphere_add, subdivisions=4, location=(x, 0, 0))
+        bpy.context.object.name = name
+    target, source = bpy.data.objects[B], bpy.data.objects[A]
+    for vertex in target.data.vertices:
+        x, y, z = vertex.co
+        vertex.co = (x * (0.8 - 0.2 * z), y * (0.8 - 0.2 * z), 1.2 * z)
+    source.authalic_target = target
+    source.select_set(True)
+    target.select_set(True)
+    bpy.context.view_layer.objects.active = source
+    call(bpy.ops.view3d.view_axis, type="FRONT")
+    space = view()["area"].spaces.active
+    space.region_3d.view_distance = 8
+    space.show_region_ui = True
+
+
+def tab():
+    region = next(region for region in view()["area"].regions if region.type == "UI")
+    region.active_panel_category = "Authalic"
+    view()["area"].tag_redraw()
+
+
+def route(edit, start, end):
+    """Vertices along edges from near one point to near another, always on to what is nearest to the end."""
+    nearest = lambda place: min(edit.verts, key=lambda one: sum((a - b) ** 2 for a, b in zip(one.co, place)))  # noqa: B905, E731
+    path, last = [nearest(start)], nearest(end)
+    while path[-1] != last:
+        around = [edge.other_vert(path[-1]) for edge in path[-1].link_edges]
+        path.append(min(around, key=lambda one: (one.co - last.co).length))
+    return path
+
+
+def select(name, height):
+    """A step that selects the edges of a path across the front and nothing else of an object."""
+
+    def chosen():
+        mesh = bpy.data.objects[name].data
+        edit = bmesh.from_edit_mesh(mesh)
+        for elements in (edit.faces, edit.edges, edit.verts):
+            for one in elements:
+                one.select = False
+        if height is not None:
+            wide = 0.6
+            path = route(edit, (-wide, -0.9, height), (wide, -0.9, height))
+            for first, second in pairwise(path):
+                edit.edges.get((first, second)).select_set(True)
+            edit.select_history.clear()
+            edit.select_history.add(path[0])
+        bmesh.update_edit_mesh(mesh)
+
+    return chosen
+
+
+def add():
+    assert call(bpy.ops.authalic.landmark_curve_add, "INVOKE_DEFAULT") == {"FINISHED"}
+
+
+def step(message):
+    """A step of undo, which operators that are called from a timer do not make."""
+    return lambda: call(bpy.ops.ed.undo_push, message=message)
+
+
+def mode(name):
+    return lambda: call(bpy.ops.object.mode_set, mode=name)
+
+
+def curves():
+    found = part("landmark_curves").pairs(bpy.data.objects[A])
+    return [(bool(one.source.vertices), bool(one.target.vertices), one.problem) for one in found]
+
+
+def register():
+    assert call(bpy.ops.authalic.register, "INVOKE_DEFAULT", method="CURVES") == {"RUNNING_MODAL"}
+
+
+def keys():
+    found = bpy.data.objects[A].data.shape_keys
+    return [key.name for key in found.key_blocks] if found else []
+
+
+def half():
+    bpy.data.objects[A].data.shape_keys.key_blocks[-1].value = 1.0
+
+
+MISSING = f"has no edges on {B}"
+PAIR = (True, True, None)
+
+STEPS = [
+    scene,
+    tab,
+    lambda: None,
+    *click(lambda: _REGISTRATION, ctrl=True),
+    lambda: None,
+    *click(lambda: _CURVES),
+    lambda: None,
+    picture("panel"),
+    mode("EDIT"),
+    select(A, ROWS[0]),
+    select(B, None),
+    add,
+    check("a curve on the source", curves, [(True, False, MISSING)]),
+    lambda: None,
+    picture("half_a_pair"),
+    select(B, ROWS[0]),
+    add,
+    check("its partner on the target", curves, [PAIR]),
+    step("One curve"),
+    select(A, ROWS[1]),
+    select(B, ROWS[1]),
+    add,
+    check("both at once", curves, [PAIR, PAIR]),
+    step("Two curves"),
+    lambda: call(bpy.ops.ed.undo),
+    check("undone", curves, [PAIR]),
+    lambda: call(bpy.ops.ed.redo),
+    check("redone", curves, [PAIR, PAIR]),
+    select(A, ROWS[2]),
+    select(B, ROWS[2]),
+    add,
+    lambda: call(bpy.ops.authalic.landmark_curve_reverse, index=2),
+    lambda: None,
+    picture("edit_mode"),
+    lambda: call(bpy.ops.authalic.landmark_curve_reverse, index=2),
+    mode("OBJECT"),
+    lambda: None,
+    picture("curves"),
+    register,
+    *[lambda: None] * 20,
+    check("the morph is there", keys, ["Basis", f"Morph → {B}"]),
+    half,
+    lambda: None,
+    picture("registered"),
+    lambda: call(bpy.ops.authalic.landmark_curve_select, index=1, side="TARGET"),
+    lambda: None,
+    picture("selected"),
+]
+
+run(STEPS)

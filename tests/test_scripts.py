@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.sparse import diags_array
+from scipy.sparse import coo_array, diags_array
+from scipy.sparse.csgraph import shortest_path
 
 import authalic
 
@@ -17,6 +18,12 @@ import bench_angle
 import bench_fuzz
 import bench_fuzz_cases
 import bench_fuzz_rust
+import bench_hyperbolic
+import bench_hyperbolic_harmonic
+import bench_hyperbolic_measures
+import bench_hyperbolic_methods
+import bench_hyperbolic_pairs
+import bench_hyperbolic_solvers
 import bench_meshes
 import bench_peers
 import bench_peers_methods
@@ -191,6 +198,112 @@ def test_the_curve_is_read_at_equal_angles():
     assert bench_angle.beside_cells("ear", 7, other, curve)[-1] == "0.250"
     too_flat = bench_angle.Point("Blender", np.nan, 0.8, 0.0, 1.1, 9.0, 0, 0.0)
     assert bench_angle.beside_cells("ear", 7, too_flat, curve)[-3].startswith("outside the curve, 1.200 to")
+
+
+def curved(vertices, faces):
+    """Four paths along the edges of a ball."""
+    ends = [
+        ([2, 1, 0], [0, 2, 1]),
+        ([-1, 2, 0], [-2, 0, 1]),
+        ([-1, -1, 1], [1, -1, 0]),
+        ([0, 1, -1], [1, 0, -1]),
+    ]
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    graph = coo_array((np.ones(len(sides)), sides.T), shape=(len(vertices),) * 2)
+    curves = []
+    for start, end in ends:
+        first, last = ((vertices @ direction).argmax() for direction in (start, end))
+        _, before = shortest_path(graph, unweighted=True, indices=last, return_predecessors=True)
+        path = [first]
+        while path[-1] != last:
+            path.append(before[path[-1]])
+        curves.append(np.array(path))
+    return curves
+
+
+def curved_surface(name):
+    vertices, faces = bench_meshes.icosphere(3)
+    surface = bench_meshes.built_spheres(level=3)[name][0]
+    fields = {"sulc": vertices[:, 0] + 0.1 * surface[:, 2]}
+    return bench_hyperbolic_pairs.Surface(surface, faces, curved(vertices, faces), vertices, surface, fields)
+
+
+@pytest.fixture
+def curved_pair():
+    """An ellipsoid onto a bumpy sphere."""
+    source, target = curved_surface("ellipsoid (built)"), curved_surface("bumpy sphere (built)")
+    return bench_hyperbolic_pairs.Pair("ellipsoid → bumps", source, target)
+
+
+def test_the_registrations_by_curves_have_rows_and_pictures(curved_pair, monkeypatch, tmp_path):
+    monkeypatch.setattr(bench_hyperbolic_pairs, "available", lambda: True)
+    monkeypatch.setattr(bench_hyperbolic_pairs, "standard", lambda: [curved_pair])
+    monkeypatch.setattr(bench_hyperbolic_pairs, "across", lambda kind, count: curved_pair)
+    monkeypatch.setattr(bench_hyperbolic, "COUNTS", (4,))
+    few = {"Newton (default)": {}, "heat diffusion": {"solver": "heat", "max_iterations": 20}}
+    monkeypatch.setattr(bench_hyperbolic_solvers, "SOLVERS", few)
+    target = tmp_path / "hyperbolic.md"
+    bench_hyperbolic.main([str(target), "--parts", "pairs", "curves", "solvers"])
+    text = target.read_text(encoding="utf-8")
+    assert "Error" not in text, text
+    for method in bench_hyperbolic_methods.METHODS:
+        assert re.search(rf"(?m)^\| ellipsoid → bumps \| 642 \| {method} \| \d", text), text
+    pictures = re.findall(r"!\[.*?\]\((.*?)\)", text)
+    assert len(pictures) == 6 and all((tmp_path / name).stat().st_size > 0 for name in pictures)
+
+
+def test_without_cortices_the_bench_of_curves_says_what_is_missing(monkeypatch, tmp_path):
+    monkeypatch.setattr(bench_meshes, "data_folder", lambda kind: None)
+    target = tmp_path / "hyperbolic.md"
+    bench_hyperbolic.main([str(target)])
+    assert "Not measured: neither ../shared/data nor" in target.read_text(encoding="utf-8")
+
+
+def test_the_conventional_registration_leaves_a_surface_where_it_is(curved_pair):
+    same = bench_hyperbolic_pairs.Pair("same", curved_pair.source, curved_pair.source)
+    found = bench_hyperbolic_methods.harmonic(same)
+    image = bench_hyperbolic_measures.interpolated(same.target.vertices, same.target, found)
+    assert np.allclose(image, same.source.vertices, atol=1e-9) and len(found.folded) == 0
+    measures = bench_hyperbolic_measures.measured(same, found)
+    assert measures.variation < 1e-9 and measures.correlation > 1 - 1e-9
+    assert np.allclose(measures.areas, 1) and measures.turned == 0
+
+
+def test_the_conventional_registration_takes_curves_to_their_places(curved_pair):
+    found = bench_hyperbolic_methods.harmonic(curved_pair)
+    image = bench_hyperbolic_measures.interpolated(curved_pair.target.vertices, curved_pair.target, found)
+    for ours, theirs in zip(curved_pair.source.curves, curved_pair.target.curves, strict=True):
+        path = curved_pair.target.vertices[theirs]
+        assert bench_hyperbolic_measures.distance(image[ours], path).max() < 1e-9
+        assert np.allclose(image[ours[[0, -1]]], path[[0, -1]])
+
+
+def test_a_disk_that_folds_is_noticed():
+    plane = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    assert (bench_hyperbolic_harmonic.signed_areas(plane, faces) > 0).all()
+    folded = bench_hyperbolic_harmonic.signed_areas(plane[[0, 1, 3, 2]], faces)
+    assert (folded > 0).tolist() == [True, False]
+
+
+def test_a_closed_curve_is_begun_where_its_partner_begins():
+    sphere = bench_meshes.icosphere(2)[0]
+    ring = np.argsort(np.arctan2(sphere[:, 1], sphere[:, 0]))[::9]
+    ours, moved = np.append(ring, ring[0]), np.roll(ring, 4)[::-1]
+    assert np.array_equal(
+        bench_hyperbolic_pairs.partner(ours, np.append(moved, moved[0]), sphere, sphere), ours
+    )
+
+
+def test_a_subdivided_surface_keeps_its_curves(curved_pair):
+    coarse, fine = curved_pair.source, bench_hyperbolic_pairs.split(curved_pair.source)
+    assert len(fine.faces) == 4 * len(coarse.faces)
+    assert all(np.array_equal(a[::2], b) for a, b in zip(fine.curves, coarse.curves, strict=True))
+    areas = [bench_hyperbolic_measures.face_areas(each.vertices, each.faces).sum() for each in (coarse, fine)]
+    assert np.isclose(*areas)
+    sides = np.sort(fine.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    steps = [np.sort(np.stack([curve[:-1], curve[1:]], axis=1), axis=1) for curve in fine.curves]
+    assert {*map(tuple, np.concatenate(steps).tolist())} <= {*map(tuple, sides.tolist())}
 
 
 def test_the_search_for_failures_has_a_table_and_a_replay(tmp_path, capsys):

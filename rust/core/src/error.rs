@@ -422,7 +422,9 @@ pub enum Error {
     },
 
     /// There is nothing to register closed surfaces by.
-    #[error("no curves on closed surfaces: give at least one pair, or use register_spheres, which needs none")]
+    #[error(
+        "no curves on closed surfaces: give at least one pair, or use register_spheres, which needs none"
+    )]
     NoCurves,
 
     /// A curve has too few edges.

@@ -70,9 +70,8 @@ impl<'a> Atlas<'a> {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         for step in 0..MOST_STEPS {
             let heights = self.heights(walk.face, walk.x);
-            let crossed = |k: &usize| {
-                heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NONE
-            };
+            let crossed =
+                |k: &usize| heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NONE;
             let candidates: Vec<usize> = (0..3).filter(crossed).collect();
             let lowest = || candidates.iter().copied().min_by(|&a, &b| heights[a].total_cmp(&heights[b]));
             let chosen = match candidates.len() {

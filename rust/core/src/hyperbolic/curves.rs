@@ -2,12 +2,16 @@
 //! Landmark curves, given as paths of vertices, and their check.
 //!
 //! A curve is open, or closed: then its first vertex stands again at its end, or an edge joins its last vertex to its
-//! first. Open curves run the same way on both surfaces; of closed ones neither start nor direction means anything.
+//! first and it has at least eight. Open curves run the same way on both surfaces; of closed ones neither start nor direction means anything.
 //!
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
+
+/// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may just bend around a face or
+/// two.
+const LEAST_RING: usize = 8;
 
 /// Pairs of curves, one on the source and one on the target, that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,8 +85,7 @@ impl Curves<'_> {
         let (source_paths, target_paths) = (ours.paths()?, theirs.paths()?);
         // 3. Pairs, and what they meet
         let pairs = source_paths.into_iter().zip(target_paths).enumerate();
-        let mut pairs: Vec<_> =
-            pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
+        let mut pairs: Vec<_> = pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
         let source_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.source[..]).collect();
         let target_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.target[..]).collect();
         ours.refuse_meetings(&source_vertices)?;
@@ -131,14 +134,16 @@ impl Side<'_> {
         if let Some(place) = given.iter().position(|&vertex| vertex >= n_vertices) {
             return Err(Error::CurveOutOfRange { name, curve, place, value: given[place], n_vertices });
         }
-        let vertices: Vec<u32> = given[..given.len() - usize::from(repeats_first)].iter().map(|&v| v as u32).collect();
+        let vertices: Vec<u32> =
+            given[..given.len() - usize::from(repeats_first)].iter().map(|&v| v as u32).collect();
         self.refuse_repetitions(curve, &vertices)?;
         let is_off = |ends: &[usize]| !is_edge(self.mesh, ends[0] as u32, ends[1] as u32);
         if let Some(place) = given.windows(2).position(is_off) {
             let vertices = Elements::collect([given[place], given[place + 1]]).expect("there are two");
             return Err(Error::CurveOffEdges { name, curve, place, vertices });
         }
-        let can_close = repeats_first || is_edge(self.mesh, vertices[vertices.len() - 1], vertices[0]);
+        let ends_meet = || is_edge(self.mesh, vertices[vertices.len() - 1], vertices[0]);
+        let can_close = repeats_first || (vertices.len() >= LEAST_RING && ends_meet());
         Ok(Path { vertices, repeats_first, can_close })
     }
 

@@ -55,7 +55,8 @@ pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Ne
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
     // 1. Flip until no edge is left that should be
-    let mut queue: Vec<u32> = (0..lengths.len() as u32).rev().filter(|&c| c < net.opposite[c as usize]).collect();
+    let mut queue: Vec<u32> =
+        (0..lengths.len() as u32).rev().filter(|&c| c < net.opposite[c as usize]).collect();
     let mut is_queued = vec![false; lengths.len()];
     queue.iter().for_each(|&corner| is_queued[corner as usize] = true);
     let mut flips_left = 100 * lengths.len();
@@ -81,7 +82,9 @@ pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Ne
         NONE => 0.5 * halves[corner],
         across => 0.5 * (halves[corner] + halves[across as usize]),
     };
-    let is_kept = |corner: usize| kept[corner / 3] || net.opposite[corner] != NONE && kept[net.opposite[corner] as usize / 3];
+    let is_kept = |corner: usize| {
+        kept[corner / 3] || net.opposite[corner] != NONE && kept[net.opposite[corner] as usize / 3]
+    };
     let least = |corner: usize| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
     let weights = (0..halves.len()).map(|corner| weight(corner).max(least(corner))).collect();
     (net, weights)

@@ -157,7 +157,8 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
         }
     }
     // the tips of the arc belong to both halves: they stand at ½
-    for &tip in [&sliced.sides[1].vertices[0], sliced.sides[1].vertices.last().expect("an arc has vertices")] {
+    for &tip in [&sliced.sides[1].vertices[0], sliced.sides[1].vertices.last().expect("an arc has vertices")]
+    {
         let place = &mut place[surface_vertex[tip as usize]];
         *place = place.map(|[_, y]| [0.5, y]);
     }

@@ -147,13 +147,7 @@ impl<'a> ChartMap<'a> {
     }
 
     /// Takes the energy of `places` by the edges of `intrinsic` with `weights` per corner.
-    fn new(
-        atlas: &'a Atlas<'a>,
-        places: Places,
-        input: Net,
-        intrinsic: Net,
-        weights: Vec<f64>,
-    ) -> Self {
+    fn new(atlas: &'a Atlas<'a>, places: Places, input: Net, intrinsic: Net, weights: Vec<f64>) -> Self {
         let is_held = |vertex: u32| places.held[vertex as usize].is_some();
         let counts = |&corner: &u32| {
             let across = intrinsic.opposite[corner as usize];
@@ -229,7 +223,8 @@ impl<'a> ChartMap<'a> {
     /// The pattern of the Hessian: two unknowns for each vertex that is not held, and one held vertex more for edges to have three corners.
     fn analysis(&self) -> Result<Analysis, Error> {
         let n = self.places.positions.len();
-        let mut dofs: Vec<u8> = self.places.held.iter().map(|held| if held.is_some() { 0 } else { 2 }).collect();
+        let mut dofs: Vec<u8> =
+            self.places.held.iter().map(|held| if held.is_some() { 0 } else { 2 }).collect();
         dofs.push(0);
         let clique = |&corner: &u32| match self.intrinsic.ends(corner as usize) {
             [tail, head] if tail == head => [tail, n as u32, n as u32],
@@ -306,7 +301,8 @@ fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     let mut matrix = [[0.0; 6]; 6];
     for row in 0..2 {
         for column in 0..2 {
-            let own = |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
+            let own =
+                |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
             // towards each other along one geodesic: the vectors at the ends are opposite, and so are their normals
             let both = pull.weight * (e[row] * f[column] + across * n[row] * o[column]);
             matrix[row][column] = own(e, n);

@@ -91,11 +91,12 @@ fn places_of_copies(
     let theirs = lifted(&layouts[1]);
     let locator = Locator::new(&theirs, &target.disk.faces);
     let mut copies = locator.locate_all(&ours, watch).ok_or(Error::CancelledEarly)?;
-    
+
     let corners = boundary_corners(&target.disk);
     // arcs last: where a bank ends in an arc, the faces along the arc are those that its two sides share
     for is_arc in [false, true] {
-        for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| side.is_arc == is_arc) {
+        for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| side.is_arc == is_arc)
+        {
             for (&vertex, &s) in ours.vertices.iter().zip(&ours.parameters) {
                 let (at, t) = segment(&theirs.parameters, s);
                 copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[at] as usize], t);
@@ -172,9 +173,7 @@ impl Links {
         Places {
             faces: (0..n).map(|vertex| copy(vertex).triangle).collect(),
             positions: parallel::map(n, |vertex| atlas.at(copy(vertex).triangle, copy(vertex).barycentric)),
-            held: (0..n)
-                .map(|vertex| self.is_boundary[vertex].then_some(copy(vertex).barycentric))
-                .collect(),
+            held: (0..n).map(|vertex| self.is_boundary[vertex].then_some(copy(vertex).barycentric)).collect(),
         }
     }
 

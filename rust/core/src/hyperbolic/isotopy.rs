@@ -106,7 +106,8 @@ fn kernel(distance: f64) -> f64 {
 
 /// The steps along all paths; `None` where some step would fold or the points are too close for the kernel.
 fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
-    let at = |i: usize| -> Vec<Vector> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
+    let at =
+        |i: usize| -> Vec<Vector> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
     let mut places = at(0);
     let mut steps = Vec::with_capacity(count);
     for i in 1..=count {
@@ -206,7 +207,10 @@ fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector>>; 2] {
         if ours.is_loop {
             let right = along([&ours.right, &theirs.right]);
             // start and end belong to both banks
-            points.iter_mut().zip(right).for_each(|(points, right)| points.extend(&right[1..right.len() - 1]));
+            points
+                .iter_mut()
+                .zip(right)
+                .for_each(|(points, right)| points.extend(&right[1..right.len() - 1]));
         }
         points
     });
@@ -222,7 +226,8 @@ fn longer(ours: &[Vector], theirs: &[Vector]) -> f64 {
 fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector>; 2] {
     let places = [0, 1].map(|side| banks[side].places(pieces[side]));
     let count = ((longer(&places[0], &places[1]) / spacing).ceil() as usize).max(2);
-    let point = |side: usize, k: usize| on_sphere(&places[side], &banks[side].parameters, k as f64 / count as f64);
+    let point =
+        |side: usize, k: usize| on_sphere(&places[side], &banks[side].parameters, k as f64 / count as f64);
     [0, 1].map(|side| (0..=count).map(|k| point(side, k)).collect())
 }
 

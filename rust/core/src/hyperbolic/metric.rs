@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic metric with geodesic boundary in the conformal class of a surface in space.
 //!
-//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformisation). Here every face becomes
-//! a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two ways to it:
+//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformisation). Here every face
+//! becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two ways to it:
 //!
 //! - [`MetricMethod::Newton`], the default: discrete conformal changes by vertex scaling (Bobenko, Pinkall, Springborn
 //!   2015), solved by Newton's method; where slivers keep it from a solution, by circle packings relaxed there;
 //! - [`MetricMethod::RicciFlow`], the discrete hyperbolic Ricci flow of the paper (Shi, Zeng, Su et al., CVPR 2013,
 //!   algorithm 2) on circle packings, finished by the same Newton's method.
 //!
-//! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse factorisations with one
-//! unknown per vertex, twice that with slivers; the flow takes hundreds of passes over the faces besides.
+//! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse factorisations with
+//! one unknown per vertex, twice that with slivers; the flow takes hundreds of passes over the faces besides.
 
 mod edges;
 mod newton;
@@ -59,12 +59,12 @@ pub struct Metric {
     pub flow: Option<FlowRecord>,
 }
 
-/// The hyperbolic metric with geodesic boundary of a surface with negative `euler_characteristic`; vertices of edges with
-/// one face are on its boundary, and no interior edge may join two of those.
+/// The hyperbolic metric with geodesic boundary of a surface with negative `euler_characteristic`; vertices of edges
+/// with one face are on its boundary, and no interior edge may join two of those.
 ///
 /// # Errors
-/// [`Error::NoHyperbolicMetric`] where numerics allow none, [`Error::FactorizationFailed`] where the mesh is too large,
-/// [`Error::CancelledEarly`] by the watch.
+/// [`Error::NoHyperbolicMetric`] where numerics allow none, [`Error::FactorizationFailed`] where the mesh is too
+/// large, [`Error::CancelledEarly`] by the watch.
 pub(super) fn hyperbolic_metric(
     points: &[Vector],
     faces: &[[u32; 3]],
@@ -101,8 +101,8 @@ fn by_newton(surface: &Surface<'_>, lengths: Vec<f64>, watch: &Watch<'_>) -> Res
     of_relaxed(surface, Relaxed { iterations: iterations + relaxed.iterations, ..relaxed })
 }
 
-/// Curvatures below this, left by vertex scaling, make its factors a start for circles.
-const GOOD_START: f64 = 1e-3;
+/// Where vertex scaling left no larger curvature than this, its factors are a start for circles.
+const GOOD_START: f64 = 1e-2;
 
 /// The packing with its circles grown and shrunk as vertex scaling does with edges.
 fn scaled_circles(packing: &Packing, factors: &[f64]) -> Vec<f64> {

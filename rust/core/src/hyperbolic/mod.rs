@@ -43,6 +43,8 @@ mod register;
 #[cfg(test)]
 mod sample_meshes;
 mod slice;
+#[cfg(test)]
+mod tests;
 mod track;
 
 use crate::error::Error;

@@ -49,8 +49,8 @@ impl Moebius {
         Self { a: self.a.conj(), b: -self.b }
     }
 
-    /// The isometry that takes p to `to_p` and the direction from p to q to that from `to_p` to `to_q`, hence q to `to_q`
-    /// where the distances agree.
+    /// The isometry that takes p to `to_p` and the direction from p to q to that from `to_p` to `to_q`, hence q to
+    /// `to_q` where the distances agree.
     pub fn between([p, q]: [Complex; 2], [to_p, to_q]: [Complex; 2]) -> Self {
         let turn = unit(seen_from(to_p, to_q)) * unit(seen_from(p, q)).conj();
         let half_turn = turn.sqrt();
@@ -66,7 +66,8 @@ impl Moebius {
         2.0 * self.half_translation().asinh()
     }
 
-    /// The ends of the axis on the unit circle, the repelling one first; meaningless where the translation length is 0.
+    /// The ends of the axis on the unit circle, the repelling one first; meaningless where the translation length is
+    /// 0.
     pub fn fixed_points(&self) -> [Complex; 2] {
         let root = self.half_translation().copysign(self.a.re);
         let end = |root: f64| unit(Complex::new(root, self.a.im) / self.b.conj());

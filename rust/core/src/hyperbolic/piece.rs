@@ -131,7 +131,7 @@ pub(super) fn sliced_points(sliced: &Sliced) -> Vec<Vector> {
 }
 
 /// A third of the hyperbolic area of the faces at each vertex.
-fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
+pub(super) fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
     let mut areas = vec![0.0; sliced.surface.vertex_of.len()];
     for (face, angles) in sliced.surface.faces.iter().zip(&metric.angles) {
         let area = std::f64::consts::PI - angles.iter().sum::<f64>();

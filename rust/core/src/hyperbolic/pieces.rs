@@ -32,11 +32,14 @@ pub(super) fn pieces(
     let (ours, theirs): (Vec<Feature>, Vec<Feature>) = features.map(|[ours, theirs]| (ours, theirs)).unzip();
     // 2. The pieces, each with the features at it
     let ours = Surface { mesh: source, regions: &divided.source, sphere: &placement.source, features: &ours };
-    let theirs = Surface { mesh: target, regions: &divided.target, sphere: &placement.target, features: &theirs };
-    (0..divided.source.count).map(|region| {
-        let partner = divided.partner[region];
-        (ours.piece(region as u32), theirs.piece(partner))
-    }).collect()
+    let theirs =
+        Surface { mesh: target, regions: &divided.target, sphere: &placement.target, features: &theirs };
+    (0..divided.source.count)
+        .map(|region| {
+            let partner = divided.partner[region];
+            (ours.piece(region as u32), theirs.piece(partner))
+        })
+        .collect()
 }
 
 /// A surface and what its pieces are made of; features are seen from the left of closed curves.
@@ -76,7 +79,9 @@ impl Surface<'_> {
         };
         match (left == region, right == region) {
             (true, _) => Some(feature.clone()),
-            (false, true) => Some(Feature { left: feature.right.clone(), right: feature.left.clone(), is_loop: true }),
+            (false, true) => {
+                Some(Feature { left: feature.right.clone(), right: feature.left.clone(), is_loop: true })
+            }
             (false, false) => None,
         }
     }
@@ -94,7 +99,8 @@ fn renumbered(mesh: &TriangleMesh, face_of: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>)
     let mut number = vec![UNUSED; mesh.n_vertices()];
     let given = face_of.iter().map(|&face| mesh.faces()[face as usize]);
     given.clone().flatten().for_each(|vertex| number[vertex as usize] = 0);
-    let vertex_of: Vec<u32> = (0..mesh.n_vertices() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
+    let vertex_of: Vec<u32> =
+        (0..mesh.n_vertices() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
     vertex_of.iter().zip(0..).for_each(|(&vertex, new)| number[vertex as usize] = new);
     (given.map(|face| face.map(|vertex| number[vertex as usize])).collect(), vertex_of)
 }

@@ -2,8 +2,8 @@
 //! Rough places of both surfaces on the unit sphere, the source laid over the target by the curves.
 //!
 //! Nearly conformal maps to the sphere, boundary loops filled, then the rotation that brings points of equal parameter on
-//! paired curves together. Closed curves have no common start: the best one and the rotation are found in turns. Where
-//! curves leave a rotation open, the one is taken that lays the surfaces over each other as they lie in space.
+//! paired curves together. Closed curves have no common start: the best one and the rotation are found in turns. An open
+//! curve that clearly runs the other way on the target is told, and laid over its partner for all that. Where curves leave a rotation open, the one is taken that lays the surfaces over each other as they lie in space.
 //!
 //! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorisations.
 
@@ -61,6 +61,8 @@ struct Samples {
     closed: bool,
     /// How many points the target's start lies ahead.
     shift: usize,
+    /// Whether an open curve fits clearly better the other way round.
+    backwards: bool,
 }
 
 /// Places two surfaces on the sphere, by `spheres` (source, target) where given.
@@ -76,7 +78,9 @@ pub(super) fn placed(
 ) -> Result<Placement, Error> {
     // 1. Either surface by itself
     let [source, target] = match spheres {
-        Some([source, target]) => [normalised(meshes[0], "source", source)?, normalised(meshes[1], "target", target)?],
+        Some([source, target]) => {
+            [normalised(meshes[0], "source", source)?, normalised(meshes[1], "target", target)?]
+        }
         None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
     };
     // 2. A rotation by what needs no start, then starts and rotation in turns
@@ -88,12 +92,17 @@ pub(super) fn placed(
     samples.extend(loops.iter().map(of_pair));
     for _ in 0..ROUNDS {
         samples.iter_mut().filter(|samples| samples.closed).for_each(|samples| samples.find_shift(rotation));
+        if samples.len() >= FEWEST {
+            let open = samples.iter_mut().filter(|samples| !samples.closed);
+            open.for_each(|samples| samples.find_direction(rotation));
+        }
         rotation = rotation_over(samples.iter().flat_map(Samples::pairs));
     }
     // 3. What would fit better
+    let backwards = (0..samples.len()).filter(|&curve| samples[curve].backwards).collect();
     let source = parallel::map(source.len(), |vertex| unit(rotate(rotation, source[vertex])));
     let shifts = samples.iter().map(|samples| samples.shift as f64 / CLOSED_SAMPLES as f64).collect();
-    let (mirrored, backwards) = (fits_mirrored(&samples), backwards(&samples, rotation));
+    let mirrored = fits_mirrored(&mut samples);
     Ok(Placement { source, target, loops, shifts, mirrored, backwards })
 }
 
@@ -133,20 +142,42 @@ impl Samples {
             true => closed_samples(vertices, meshes[side].points(), spheres[side]),
             false => open_samples(vertices, meshes[side].points(), spheres[side]),
         };
-        Self { source: of(&pair.source, 0), target: of(&pair.target, 1), closed: pair.closed, shift: 0 }
+        Self {
+            source: of(&pair.source, 0),
+            target: of(&pair.target, 1),
+            closed: pair.closed,
+            shift: 0,
+            backwards: false,
+        }
     }
 
     /// Points that belong together, with what they weigh: every curve the same.
     fn pairs(&self) -> impl Iterator<Item = (Vector, Vector, f64)> {
         let n = self.source.len();
-        (0..n).map(move |k| (self.source[k], self.target[(k + self.shift) % n], 1.0 / n as f64))
+        let partner = move |k: usize| if self.backwards { n - 1 - k } else { (k + self.shift) % n };
+        (0..n).map(move |k| (self.source[k], self.target[partner(k)], 1.0 / n as f64))
+    }
+
+    /// How far the points are apart after a rotation, √ of the mean square.
+    fn left_over(&self, rotation: Rotation) -> f64 {
+        left_over(&self.pairs().collect::<Vec<_>>(), rotation)
+    }
+
+    /// Finds out whether an open curve fits clearly better the other way round.
+    fn find_direction(&mut self, rotation: Rotation) {
+        let [given, turned] = [false, true].map(|backwards| {
+            self.backwards = backwards;
+            self.left_over(rotation)
+        });
+        self.backwards = is_clearly_better(turned, given);
     }
 
     /// Finds the start of the target's curve that brings the rotated source's nearest.
     fn find_shift(&mut self, rotation: Rotation) {
         let n = self.source.len();
         let turned: Vec<Vector> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
-        let fit = |shift: usize| -> f64 { (0..n).map(|k| dot(turned[k], self.target[(k + shift) % n])).sum() };
+        let fit =
+            |shift: usize| -> f64 { (0..n).map(|k| dot(turned[k], self.target[(k + shift) % n])).sum() };
         let fits = parallel::map(n, fit);
         // max_by takes the last of equals, so from the back
         self.shift = (0..n).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
@@ -251,7 +282,8 @@ fn is_clearly_better(better: f64, than: f64) -> bool {
 }
 
 /// Whether open curves fit clearly better after a reflection of the source.
-fn fits_mirrored(samples: &[Samples]) -> bool {
+fn fits_mirrored(samples: &mut [Samples]) -> bool {
+    samples.iter_mut().for_each(|samples| samples.backwards = false);
     let open = || samples.iter().filter(|samples| !samples.closed);
     if open().count() < FEWEST {
         return false;
@@ -260,20 +292,6 @@ fn fits_mirrored(samples: &[Samples]) -> bool {
     let mirrored: Vec<_> = given.iter().map(|&([x, y, z], to, weight)| ([x, y, -z], to, weight)).collect();
     let best = |pairs: &[(Vector, Vector, f64)]| left_over(pairs, rotation_over(pairs.iter().copied()));
     is_clearly_better(best(&mirrored), best(&given))
-}
-
-/// The open curves that fit clearly better the other way round.
-fn backwards(samples: &[Samples], rotation: Rotation) -> Vec<usize> {
-    let is_backwards = |samples: &Samples| {
-        let given: Vec<_> = samples.pairs().collect();
-        let n = given.len();
-        let turned: Vec<_> = (0..n).map(|k| (given[k].0, given[n - 1 - k].1, 1.0)).collect();
-        !samples.closed && is_clearly_better(left_over(&turned, rotation), left_over(&given, rotation))
-    };
-    match samples.len() < FEWEST {
-        true => Vec::new(),
-        false => (0..samples.len()).filter(|&curve| is_backwards(&samples[curve])).collect(),
-    }
 }
 
 #[cfg(test)]

@@ -66,7 +66,9 @@ pub(super) fn divided(
         }
     }
     // 2. What lies on the left must be the same
-    (0..pairs.len()).filter(|&curve| closed[curve]).try_for_each(|curve| check_sides(curve, &ours, &theirs))?;
+    (0..pairs.len())
+        .filter(|&curve| closed[curve])
+        .try_for_each(|curve| check_sides(curve, &ours, &theirs))?;
     // 3. So regions on the same sides belong together
     let mut partner = vec![0; ours.count];
     for curve in (0..pairs.len()).filter(|&curve| closed[curve]) {
@@ -212,7 +214,8 @@ fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<u32>, usize) {
         while let Some(face) = pending.pop() {
             for corner in 3 * face..3 * face + 3 {
                 let across = mesh.opposite(corner).unwrap_or(NO_CORNER);
-                if across == NO_CORNER || is_wall[corner as usize] || of_face[across as usize / 3] != OUTSIDE {
+                if across == NO_CORNER || is_wall[corner as usize] || of_face[across as usize / 3] != OUTSIDE
+                {
                     continue;
                 }
                 of_face[across as usize / 3] = count;

@@ -4,9 +4,9 @@
 use super::certificates::{Certificates, PieceCertificates};
 use super::features::Piece;
 use super::harmonic::Descent;
+use super::isotopy::Isotopy;
 use super::metric::Metric;
 use super::piece::{PieceMap, map_piece};
-use super::isotopy::Isotopy;
 use super::pieces::pieces;
 use super::placement::{Placement, placed};
 use super::regions::divided;
@@ -142,7 +142,14 @@ impl Found {
     }
 
     /// Brings the map of a piece back to the surfaces.
-    fn take(&mut self, ours: &Piece, theirs: &Piece, sliced: &SlicedPair, map: PieceMap, target: &TriangleMesh) {
+    fn take(
+        &mut self,
+        ours: &Piece,
+        theirs: &Piece,
+        sliced: &SlicedPair,
+        map: PieceMap,
+        target: &TriangleMesh,
+    ) {
         let SlicedPair { source, target: cut, .. } = sliced;
         self.is_sure &= sliced.followed;
         for (copy, location) in map.locations.iter().enumerate() {
@@ -188,7 +195,8 @@ impl Found {
         let paths = [curves.source, curves.target];
         let [there_error, back_error] =
             [(&locations, 0, 1), (&inverse, 1, 0)].map(|(locations, from, to)| -> Vec<f64> {
-                let error = |curve: usize| strays(&paths[from][curve], &paths[to][curve], locations, meshes[to]);
+                let error =
+                    |curve: usize| strays(&paths[from][curve], &paths[to][curve], locations, meshes[to]);
                 (0..paths[0].len()).map(error).collect()
             });
         let certificates = self.certificates(&there_error);
@@ -265,9 +273,8 @@ impl Found {
         let most = |value: fn(&PieceCertificates) -> f64| all.iter().map(value).fold(0.0, f64::max);
         let hyperbolic_area: f64 =
             all.iter().filter(|piece| piece.energy > 0.0).map(|piece| piece.expected_area).sum();
-        let residual = |surface: usize| {
-            self.metrics.iter().map(|metrics| metrics[surface].residual).fold(0.0, f64::max)
-        };
+        let residual =
+            |surface: usize| self.metrics.iter().map(|metrics| metrics[surface].residual).fold(0.0, f64::max);
         Certificates {
             folded: self.folded.clone(),
             area: all.iter().map(|piece| piece.area).sum(),
@@ -283,7 +290,9 @@ impl Found {
 
     fn warnings(&self, placement: &Placement, certificates: &Certificates) -> Vec<String> {
         let backwards = |curve: &usize| {
-            format!("curve {curve} fits far better the other way round: reverse its path on one of the surfaces")
+            format!(
+                "curve {curve} fits far better the other way round: reverse its path on one of the surfaces"
+            )
         };
         let mut warnings: Vec<String> = placement.backwards.iter().map(backwards).collect();
         if !self.is_sure {

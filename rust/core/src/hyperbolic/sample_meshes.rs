@@ -34,15 +34,29 @@ pub(super) fn sphere(level: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
     (points.iter().enumerate().map(uneven).collect(), faces)
 }
 
-/// A mesh of other places for the vertices, without the faces for which `is_hole` holds at their middle.
+/// What is left without the faces for which `is_hole` holds at their middle.
+pub(super) fn without(
+    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
+    is_hole: impl Fn(Vector) -> bool,
+) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    let kept: Vec<[u32; 3]> = faces.iter().filter(|face| !is_hole(middle(points, **face))).copied().collect();
+    let number: BTreeMap<u32, u32> = {
+        let mut used: Vec<u32> = kept.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        used.into_iter().zip(0..).collect()
+    };
+    let points = number.keys().map(|&v| points[v as usize]).collect();
+    (points, kept.iter().map(|face| face.map(|v| number[&v])).collect())
+}
+
+/// A mesh with its vertices moved.
 pub(super) fn mesh(
     (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
     place: impl Fn(Vector) -> Vector,
-    is_hole: impl Fn(Vector) -> bool,
 ) -> TriangleMesh {
-    let kept = faces.iter().filter(|face| !is_hole(middle(points, **face))).copied();
     let places: Vec<Vector> = points.iter().map(|&x| place(x)).collect();
-    TriangleMesh::new(&places, &kept.collect::<Vec<_>>()).unwrap()
+    TriangleMesh::new(&places, faces).unwrap()
 }
 
 fn middle(points: &[Vector], face: [u32; 3]) -> Vector {
@@ -51,7 +65,9 @@ fn middle(points: &[Vector], face: [u32; 3]) -> Vector {
 
 /// The vertex nearest to a direction.
 pub(super) fn nearest_vertex(points: &[Vector], direction: Vector) -> usize {
-    (0..points.len()).max_by(|&a, &b| dot(points[a], direction).total_cmp(&dot(points[b], direction))).unwrap()
+    (0..points.len())
+        .max_by(|&a, &b| dot(points[a], direction).total_cmp(&dot(points[b], direction)))
+        .unwrap()
 }
 
 /// A path of fewest edges from the vertex nearest to one direction to that nearest to another.
@@ -80,7 +96,11 @@ pub(super) fn path((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), from: Vector,
 }
 
 /// The closed curve around the faces within an angle of a direction, those on its left; its first vertex not repeated.
-pub(super) fn circle((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), centre: Vector, angle: f64) -> Vec<usize> {
+pub(super) fn circle(
+    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
+    centre: Vector,
+    angle: f64,
+) -> Vec<usize> {
     let inside = faces.iter().filter(|face| dot(middle(points, **face), unit(centre)) > angle.cos());
     let edges: Vec<[u32; 2]> = inside.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     let is_border = |edge: &&[u32; 2]| !edges.contains(&[edge[1], edge[0]]);

@@ -51,11 +51,7 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     ///
     /// # Panics
     /// Where the arrays are not those of the surfaces registered.
-    pub fn inverse(
-        &self,
-        source_faces: &[[u32; 3]],
-        observer: &mut dyn Observer,
-    ) -> Result<Self, Error> {
+    pub fn inverse(&self, source_faces: &[[u32; 3]], observer: &mut dyn Observer) -> Result<Self, Error> {
         let source = lifted(&self.registered);
         let watch = Watch::new(observer, 0.0, "Looking up places");
         let locator = Locator::new(&source, source_faces);

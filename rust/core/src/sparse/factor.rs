@@ -208,7 +208,10 @@ mod tests {
         let mut matrix = [4.0, 2.0, -2.0, f64::NAN, 5.0, 3.0, f64::NAN, f64::NAN, 6.0];
         let mut x = [2.0, 21.0, 22.0, 4.0, 42.0, 44.0];
         assert!(solve_positive_definite(&mut matrix, &mut x));
-        [1.0, 2.0, 3.0, 2.0, 4.0, 6.0].iter().zip(x).for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
+        [1.0, 2.0, 3.0, 2.0, 4.0, 6.0]
+            .iter()
+            .zip(x)
+            .for_each(|(expected, x)| assert!((x - expected).abs() < 1e-14));
         assert!(!solve_positive_definite(&mut [1.0, 2.0, 2.0, 1.0], &mut [1.0, 1.0]));
     }
 

@@ -119,11 +119,7 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
-pub(crate) fn rough_conformal(
-    mesh: &TriangleMesh,
-    weights: &[f64],
-    watch: &Watch<'_>,
-) -> Result<Map, Error> {
+pub(crate) fn rough_conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
     conformal_within(LARGEST_COTANGENT, mesh, weights, watch)
 }
 

@@ -170,7 +170,11 @@ pub fn register_hyperbolic(
         (Some(ours), Some(theirs)) => {
             Some([points::<3>(ours, "source_sphere")?, points::<3>(theirs, "target_sphere")?])
         }
-        _ => return Err(PyValueError::new_err("source_sphere and target_sphere go together: give both or neither")),
+        _ => {
+            return Err(PyValueError::new_err(
+                "source_sphere and target_sphere go together: give both or neither",
+            ));
+        }
     };
     let outcome = run(py, progress, move |observer| {
         let meshes = (mesh(&source, "source")?, mesh(&target, "target")?);
@@ -217,7 +221,8 @@ fn of_curve(py: Python<'_>, curve: usize, error: &PyErr) -> PyErr {
     }
     let named = MeshError::new_err(format!("curve {curve}: {}", error.value(py)));
     for attribute in ["indices", "count"] {
-        let copied = error.value(py).getattr(attribute).and_then(|value| named.value(py).setattr(attribute, value));
+        let copied =
+            error.value(py).getattr(attribute).and_then(|value| named.value(py).setattr(attribute, value));
         if let Err(failure) = copied {
             return failure;
         }

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use authalic::mesh::geometry::{face_areas, normalized};
 use authalic::hyperbolic::CurveRegistration;
+use authalic::mesh::geometry::{face_areas, normalized};
 use authalic::registration::{DiskRegistration, Location, SphereRegistration, similarity};
 use authalic::{Error, Observer, registration};
 

@@ -14,8 +14,8 @@ use pyo3::prelude::*;
 use crate::arrays::{Pairs, from_points, index_list, indices, points};
 use crate::errors::bad_array;
 use crate::run::run;
-use found::{Found, Outcome, Surface};
 pub use curves::{Certificates, register_hyperbolic};
+use found::{Found, Outcome, Surface};
 pub use result::Registration;
 
 /// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to landmarks.

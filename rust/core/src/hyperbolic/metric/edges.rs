@@ -9,8 +9,8 @@
 //!   packing, Memoirs AMS 805, 2004): circles of radius r, u = ln tanh(r/2) < 0, around the vertices, and
 //!   cosh l = cosh r_i cosh r_j + I sinh r_i sinh r_j for the inversive distance I of two circles.
 //!
-//! With I = cos φ the latter is Thurston's packing of circles that meet under the angle φ. The circles of a mesh in space
-//! that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be 0, the tangential
+//! With I = cos φ the latter is Thurston's packing of circles that meet under the angle φ. The circles of a mesh in
+//! space that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be 0, the tangential
 //! packing, which knows nothing of the surface's shape; so I is kept as it is.
 
 use crate::mesh::geometry::{Vector, distance};
@@ -30,8 +30,11 @@ pub(super) struct Edges {
 impl Edges {
     /// Numbers the edges of all faces.
     pub(super) fn new(n_vertices: usize, faces: &[[u32; 3]]) -> Self {
-        let mut edges =
-            Self { ends: Vec::new(), of_face: vec![[0; 3]; faces.len()], on_boundary: vec![false; n_vertices] };
+        let mut edges = Self {
+            ends: Vec::new(),
+            of_face: vec![[0; 3]; faces.len()],
+            on_boundary: vec![false; n_vertices],
+        };
         for (ends, entries) in EdgeTable::new(n_vertices, faces).edges() {
             for corner in entries.iter().map(|entry| corner_of_entry(entry) as usize) {
                 edges.of_face[corner / 3][corner % 3] = edges.ends.len() as u32;
@@ -128,10 +131,10 @@ impl Conformal {
     }
 }
 
-/// No factor of a vertex scaling changes by more in one step.
+/// No factor of a vertex scaling changes by more than this in one step.
 const LONGEST_MOVE: f64 = 6.0;
 
-/// Nor does that of a circle use up more of what is left to 0, where its radius is infinite.
+/// That of a circle uses up at most this part of what is left to 0, where the radius is infinite.
 const SHARE_OF_ROOM: f64 = 0.9;
 
 /// 1 − e^(2u).
@@ -190,8 +193,9 @@ mod tests {
         let exact = conformal.length_derivatives(0, factors);
         for end in 0..2 {
             let step = 1e-6 * factors[end].abs().min(1.0);
-            let moved =
-                |by: f64| conformal.length(0, std::array::from_fn(|k| factors[k] + if k == end { by } else { 0.0 }));
+            let moved = |by: f64| {
+                conformal.length(0, std::array::from_fn(|k| factors[k] + if k == end { by } else { 0.0 }))
+            };
             let difference = (moved(step) - moved(-step)) / (2.0 * step);
             assert!((difference - exact[end]).abs() < 1e-6 * exact[end].abs(), "{difference} {exact:?}");
         }

@@ -2,8 +2,8 @@
 //! Newton's method for the factors that give every vertex its angle sum.
 //!
 //! The curvatures K (the angle sum wanted less that of the corners) are the gradient of a convex function of the
-//! factors, for vertex scaling (Bobenko, Pinkall, Springborn 2015) and for inversive distances (F. Luo 2011) alike. So
-//! the slope K · d along a Newton direction says all that a line search needs; the function is never evaluated.
+//! factors, for vertex scaling (Bobenko, Pinkall, Springborn 2015) and for inversive distances (F. Luo 2011) alike.
+//! So the slope K · d along a Newton direction says all that a line search needs; the function is never evaluated.
 //!
 //! In each iteration:
 //!
@@ -24,10 +24,13 @@ use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
 /// Solved when no curvature is larger than this.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-12;
 
 /// As good as solved where rounding allows no better.
 const ALMOST: f64 = 1e-8;
+
+/// Faces that are degenerate while no curvature is larger than this are taken to remain so.
+const SETTLED: f64 = 1e-3;
 
 /// Iterations at the most, and without a gain of half after which rounding is taken for the reason.
 const MOST_ITERATIONS: usize = 60;
@@ -77,8 +80,7 @@ impl State {
     /// The metric of a surface with these factors.
     pub(super) fn new(surface: &Surface<'_>, conformal: &Conformal, factors: &[f64]) -> Self {
         let edges = &surface.edges;
-        let lengths =
-            parallel::map(edges.len(), |edge| conformal.length(edge, edges.at_ends(edge, factors)));
+        let lengths = parallel::map(edges.len(), |edge| conformal.length(edge, edges.at_ends(edge, factors)));
         let angles = parallel::map(surface.faces.len(), |face| angles(edges.around(face, &lengths)));
         let mut curvatures = surface.angle_sums.clone();
         for (face, angles) in surface.faces.iter().zip(&angles) {
@@ -104,8 +106,8 @@ impl State {
     }
 }
 
-/// Lowers the curvatures from `factors`, which are moved along, until they vanish or rounding or degenerate faces allow
-/// no better. Returns the last metric and the number of iterations.
+/// Lowers the curvatures from `factors`, which are moved along, until they vanish, or rounding allows no better, or
+/// nothing but degenerate faces is left to be seen to. Returns the last metric and the number of iterations.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`] by the watch.
@@ -118,14 +120,15 @@ pub(super) fn flatten(
     let mut factor = Factor::new(&surface.analysis);
     // 1. Curvatures
     let mut state = State::new(surface, conformal, factors);
-    let mut best = [f64::INFINITY; PATIENCE];
+    let mut earlier = [f64::INFINITY; PATIENCE];
     for done in 0..MOST_ITERATIONS {
         let residual = state.residual();
-        let is_stuck = residual < ALMOST && residual > 0.5 * best[done % PATIENCE];
-        if residual < TOLERANCE || is_stuck {
+        let is_stuck = residual < ALMOST && residual > 0.5 * earlier[done % PATIENCE];
+        let has_degenerate = state.degenerate().next().is_some();
+        if residual < TOLERANCE || is_stuck || (has_degenerate && residual < SETTLED) {
             return Ok((state, done));
         }
-        best[done % PATIENCE] = residual;
+        earlier[done % PATIENCE] = residual;
         // 2. The Newton direction
         let Some(direction) = direction(surface, conformal, factors, &state, &mut factor, watch)? else {
             return Ok((state, done));
@@ -167,13 +170,22 @@ fn direction(
 }
 
 /// The derivative of the length of every edge by the factors of its ends.
-fn length_derivatives(surface: &Surface<'_>, conformal: &Conformal, factors: &[f64]) -> Vec<[f64; 2]> {
+pub(super) fn length_derivatives(
+    surface: &Surface<'_>,
+    conformal: &Conformal,
+    factors: &[f64],
+) -> Vec<[f64; 2]> {
     let edges = &surface.edges;
     parallel::map(edges.len(), |edge| conformal.length_derivatives(edge, edges.at_ends(edge, factors)))
 }
 
 /// What a face adds to the Hessian: the derivatives of minus its angles by the factors of its vertices.
-fn hessian(surface: &Surface<'_>, by_factors: &[[f64; 2]], state: &State, face: usize) -> [[f64; 3]; 3] {
+pub(super) fn hessian(
+    surface: &Surface<'_>,
+    by_factors: &[[f64; 2]],
+    state: &State,
+    face: usize,
+) -> [[f64; 3]; 3] {
     let edges = &surface.edges;
     let by_sides = angle_derivatives(edges.around(face, &state.lengths), &state.angles[face]);
     let mut hessian = [[0.0; 3]; 3];
@@ -197,8 +209,8 @@ fn padded(matrix: [[f64; 3]; 3], shift: f64) -> [[f64; 6]; 6] {
     padded
 }
 
-/// Factors and metric at the end of the first of ever shorter steps that is not past the minimum along the direction, or
-/// has at most half of the slope there; `None` where rounding leaves no such step.
+/// Factors and metric at the end of the first of ever shorter steps that is not past the minimum along the direction,
+/// or has at most half of the slope there; `None` where rounding leaves no such step.
 fn step(
     surface: &Surface<'_>,
     conformal: &Conformal,

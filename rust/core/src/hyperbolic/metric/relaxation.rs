@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A hyperbolic metric where slivers keep the given edge lengths from having one.
 //!
-//! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close to π may
-//! end up breaking the triangle inequality. Packings of tangential circles always have one (W. Thurston), and never break
-//! it. So the inversive distances of edges at such faces are moved towards 1, the tangential value, until all is well: a
-//! third of the way at a time, at the faces themselves first, then around them, in the end everywhere. Conformality is
-//! given up only there.
+//! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close to π
+//! may end up breaking the triangle inequality. Packings of tangential circles always have one (W. Thurston), and
+//! never break it. So the inversive distances of edges at such faces are moved towards 1, the tangential value, until
+//! all is well: a third of the way at a time, at the faces themselves first, then around them, in the end everywhere.
+//! Conformality is given up only there.
 //!
 //! Cost: a Newton solve from the last factors for each round, usually one or two.
 
@@ -78,9 +78,8 @@ pub(super) fn bad_faces(surface: &Surface<'_>, state: &State) -> Vec<usize> {
         return thin;
     }
     let large = 0.5 * state.residual();
-    let is_curved = |&face: &usize| {
-        surface.faces[face].iter().any(|&v| state.curvatures[v as usize].abs() >= large)
-    };
+    let is_curved =
+        |&face: &usize| surface.faces[face].iter().any(|&v| state.curvatures[v as usize].abs() >= large);
     all.filter(is_curved).collect()
 }
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The discrete hyperbolic Ricci flow: R. Shi, W. Zeng, Z. Su et al., Hyperbolic harmonic mapping for constrained brain
-//! surface registration (CVPR 2013), algorithm 2.
+//! The discrete hyperbolic Ricci flow: R. Shi, W. Zeng, Z. Su et al., Hyperbolic harmonic mapping for constrained
+//! brain surface registration (CVPR 2013), algorithm 2.
 //!
 //! In each step:
 //!
 //! 1. edge lengths from the radii by the hyperbolic cosine law, angles from the lengths, curvatures K from the angles;
 //! 2. every circle shrinks or grows: r ← r − ε K sinh r.
 //!
-//! That is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper fixes ε; here
-//! it grows slowly from step to step, and is halved where a step goes past the minimum along its direction, for a fixed
-//! one either wastes steps or diverges, depending on the worst vertex of the mesh.
+//! That is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper fixes ε;
+//! here it grows slowly from step to step, and is halved where a step goes past the minimum along its direction, for
+//! a fixed one either wastes steps or diverges, depending on the worst vertex of the mesh.
 //!
-//! The edge weights of the paper are angles φ at which circles meet. They are replaced by inversive distances, for which
-//! see [`edges`](super::edges): with angles, the metric would not depend on the surface's shape.
+//! The edge weights of the paper are angles φ at which circles meet. They are replaced by inversive distances, for
+//! which see [`edges`](super::edges): with angles, the metric would not depend on the surface's shape.
 //!
 //! The flow converges linearly and ends far from the precision that maps through the metric need for charts of the
-//! hyperbolic plane to close up around vertices. So its result is only where Newton's method starts; [`FlowRecord`] says
-//! how far it came by itself. Cost of a step: a pass over the faces.
+//! hyperbolic plane to close up around vertices. So its result is only where Newton's method starts; [`FlowRecord`]
+//! says how far it came by itself. Cost of a step: a pass over the faces.
 
 use super::edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
 use super::newton::{State, Surface};
@@ -93,8 +93,7 @@ fn shorten(
     step: &mut f64,
 ) -> Option<(Vec<f64>, State)> {
     for _ in 0..MOST_TRIALS {
-        let moved =
-            parallel::map(radii.len(), |v| radii[v] - *step * state.curvatures[v] * radii[v].sinh());
+        let moved = parallel::map(radii.len(), |v| radii[v] - *step * state.curvatures[v] * radii[v].sinh());
         if moved.iter().all(|&radius| radius > 0.0) {
             let next = State::new(surface, conformal, &factors(&moved));
             if parallel::dot(&state.curvatures, &next.curvatures) >= 0.0 {

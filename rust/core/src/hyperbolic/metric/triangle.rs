@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The angles of a hyperbolic triangle with given sides, and their derivatives.
 //!
-//! Half-angle formulas throughout: the cosine laws lose half of the digits where a triangle is small or thin. Sides that
-//! break the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended, angles are continuous
-//! functions of all sides, and the curvatures they add up to remain the gradient of a convex function (F. Luo, Rigidity
-//! of polyhedral surfaces III, Geometry & Topology 15, 2011).
+//! Half-angle formulas throughout: the cosine laws lose half of the digits where a triangle is small or thin. Sides
+//! that break the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended, angles are
+//! continuous functions of all sides, and the curvatures they add up to remain the gradient of a convex function (F.
+//! Luo, Rigidity of polyhedral surfaces III, Geometry & Topology 15, 2011).
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,8 @@ pub(super) fn angles([a, b, c]: [f64; 3]) -> [f64; 3] {
     }
     let half_perimeter = (0.5 * (a + b + c)).sinh();
     let [x, y, z] = slack.map(f64::sinh);
-    let angle = |own: f64, one: f64, other: f64| 2.0 * (one * other).sqrt().atan2((half_perimeter * own).sqrt());
+    let angle =
+        |own: f64, one: f64, other: f64| 2.0 * (one * other).sqrt().atan2((half_perimeter * own).sqrt());
     [angle(x, y, z), angle(y, z, x), angle(z, x, y)]
 }
 

@@ -1,1 +1,91 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+use super::super::curves::Curves;
+use super::super::regions::divided;
+use super::super::sample_meshes::{circle, mesh, path, sphere, without};
+use super::*;
+use crate::control::Silent;
+use crate::optimize::rotation::rotation_of;
 
+fn ellipsoid([x, y, z]: Vector) -> Vector {
+    [x, 0.8 * y + 0.1 * x * x, 0.6 * z]
+}
+
+fn place(
+    source: &TriangleMesh,
+    target: &TriangleMesh,
+    ours: &[Vec<usize>],
+    theirs: &[Vec<usize>],
+) -> Placement {
+    let pairs = Curves { source: ours, target: theirs }.check(source, target).unwrap();
+    let divided = divided(source, target, pairs).unwrap();
+    placed([source, target], &divided, None, &Watch::new(&mut Silent, 0.0, "")).unwrap()
+}
+
+fn arcs() -> Vec<Vec<usize>> {
+    let sphere = sphere(3);
+    let arc = |from, to| path(&sphere, from, to);
+    vec![
+        arc([1.0, 0.2, 0.3], [0.3, 1.0, 0.2]),
+        arc([-1.0, 0.0, 0.2], [-0.5, 0.4, 1.0]),
+        arc([0.2, -1.0, -0.4], [0.6, -0.2, -1.0]),
+    ]
+}
+
+#[test]
+fn a_turned_copy_is_laid_over_its_original() {
+    let turn = rotation_of([0.5, -0.1, 0.7, 0.5]);
+    let source = mesh(&sphere(3), ellipsoid);
+    let target = mesh(&sphere(3), |x| rotate(turn, ellipsoid(x)));
+    let ring = circle(&sphere(3), [0.3, -1.0, 0.8], 0.4);
+    for curves in [arcs(), vec![arcs()[0].clone(), ring.clone()]] {
+        let placement = place(&source, &target, &curves, &curves);
+        let apart = |v: usize| distance(placement.source[v], placement.target[v]);
+        assert!((0..source.n_vertices()).all(|v| apart(v) < 1e-6));
+        assert!(!placement.mirrored && placement.backwards.is_empty());
+        assert!(placement.shifts.iter().all(|&shift| shift == 0.0));
+    }
+}
+
+#[test]
+fn curves_that_fit_the_other_way_round_and_mirrored_surfaces_are_told() {
+    let source = mesh(&sphere(3), ellipsoid);
+    let mut curves = arcs();
+    curves.push(path(&sphere(3), [1.0, -0.7, 0.5], [0.2, -0.9, 0.8]));
+    let mut turned = curves.clone();
+    turned[1].reverse();
+    let placement = place(&source, &source, &curves, &turned);
+    assert_eq!((placement.backwards, placement.mirrored), (vec![1], false));
+    let (points, faces) = sphere(3);
+    let flipped = (points, faces.iter().map(|&[a, b, c]| [a, c, b]).collect());
+    let mirrored = mesh(&flipped, |x| ellipsoid(x).map(|x| -x));
+    assert!(place(&source, &mirrored, &curves, &curves).mirrored);
+}
+
+#[test]
+fn boundary_loops_find_their_partners() {
+    let holes = |[x, y, z]: Vector| x > 0.9 || y > 0.93 || z < -0.91;
+    let raw = without(&sphere(3), holes);
+    let [source, target] = [mesh(&raw, ellipsoid), mesh(&raw, |x| ellipsoid(x).map(|x| 2.0 * x))];
+    let placement = place(&source, &target, &[], &[]);
+    assert_eq!(placement.loops.len(), 3);
+    for (pair, loop_vertices) in placement.loops.iter().zip(source.boundary_loops()) {
+        assert!(pair.source == *loop_vertices && pair.target == *loop_vertices && pair.on_boundary);
+    }
+}
+
+#[test]
+fn given_spheres_are_taken_and_checked() {
+    let source = mesh(&sphere(3), ellipsoid);
+    let pairs = Curves { source: &arcs(), target: &arcs() }.check(&source, &source).unwrap();
+    let divided = divided(&source, &source, pairs).unwrap();
+    let turn = rotation_of([0.6, 0.0, 0.0, 0.8]);
+    let theirs = sphere(3).0;
+    let ours: Vec<Vector> = theirs.iter().map(|&x| scaled(rotate(turn, x), 7.0)).collect();
+    let place = |spheres| placed([&source; 2], &divided, Some(spheres), &Watch::new(&mut Silent, 0.0, ""));
+    let placement = place([&ours[..], &theirs]).unwrap();
+    assert!(placement.source.iter().zip(&theirs).all(|(&x, &y)| distance(x, y) < 1e-7));
+    assert!(matches!(place([&ours[1..], &theirs[..]]), Err(Error::Surface { surface: "source", .. })));
+    let zeros = vec![[0.0; 3]; ours.len()];
+    let error = place([&ours[..], &zeros]).unwrap_err();
+    assert!(error.to_string().contains("places on the sphere"), "{error}");
+}

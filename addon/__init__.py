@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
 
-from . import curve_markers, landmark_curves, landmarks, markers, ui, ui_landmarks
+from . import curve_markers, landmark_curves, landmarks, markers, scene_changes, ui, ui_landmarks
 from .operators import landmark_curves as curve_operators
 from .operators import landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
 from .operators import landmarks as landmark_operators
@@ -9,6 +9,7 @@ from .operators import register as register_operator
 
 # In this order; unregistered in the reverse one.
 _MODULES = (
+    scene_changes,
     landmark_curves,
     landmarks,
     markers,

@@ -13,7 +13,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix, Vector
 
-from . import landmark_curves, landmarks, markers, paths, vertex_points
+from . import landmark_curves, landmarks, markers, marks, paths, scene_changes, vertex_points
 
 # Blender's bone color sets that differ well from each other and from the red of a problem.
 _COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)
@@ -22,6 +22,8 @@ _DOT, _ARROW = 4.5, 11.0
 # How much nearer to the eye lines are drawn than the surface they lie on, as a part of the distance.
 _NEARER = 2e-3
 _handles = []
+# Lines ready to be drawn: (name of an object, edges) -> `_Shape`; and the `scene_changes` by then.
+_shapes, _made = {}, None
 
 
 class Line(NamedTuple):
@@ -34,6 +36,14 @@ class Line(NamedTuple):
     number: int
     is_active: bool
     has_problem: bool
+
+
+class _Shape(NamedTuple):
+    """A line in the coordinates of its object; (point, normal) of either end and of the vertex next to it."""
+
+    batch: object
+    first: list
+    last: list
 
 
 def icon(number):
@@ -71,24 +81,49 @@ def _draw_lines():
     context = bpy.context
     if not markers.is_drawn(context):
         return
-    lines = sorted(_seen(context), key=lambda one: one[0].is_active)
+    drawn = _prepared(context)
     gpu.state.blend_set("ALPHA")
     for depth_test, alpha in (("NONE", markers.BEHIND), ("LESS_EQUAL", 1.0)):
         gpu.state.depth_test_set(depth_test)
         with gpu.matrix.push_pop():
             gpu.matrix.load_matrix(_towards_eye(context) @ gpu.matrix.get_model_view_matrix())
-            for line, obj in lines:
-                _draw_line(line, obj, context, alpha)
+            for line, obj, shape in drawn:
+                _draw_line(line, obj, shape, context, alpha)
     gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("NONE")
 
 
-def _seen(context):
-    """(line, object) of the lines on objects that are seen in the view."""
-    for line in shown(context):
-        obj = context.view_layer.objects.get(line.object_name)
-        if obj is not None and obj.visible_get(viewport=context.space_data):
-            yield line, obj
+def _prepared(context):
+    """(line, object, `_Shape`) of the lines on objects that are seen in the view, the active ones last."""
+    global _made
+    if _made != scene_changes.count():
+        _shapes.clear()
+        _made = scene_changes.count()
+    lines = sorted(shown(context), key=lambda line: line.is_active)
+    seen = [(line, context.view_layer.objects.get(line.object_name)) for line in lines]
+    seen = [(line, obj) for line, obj in seen if obj and obj.visible_get(viewport=context.space_data)]
+    new = [(line, obj) for line, obj in seen if _key(line) not in _shapes]
+    held = [marks.hold(obj.data) for _, obj in new]
+    for line, obj in new:
+        _shapes[_key(line)] = _shape(line, obj, context.evaluated_depsgraph_get())
+    del held
+    return [(line, obj, _shapes[_key(line)]) for line, obj in seen]
+
+
+def _key(line):
+    return line.object_name, line.edges
+
+
+def _shape(line, obj, graph):
+    vertices = [vertex for edge in line.edges for vertex in edge]
+    points = vertex_points.many(obj, vertices, graph).tolist()
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    ends = [[vertex_points.local(obj, vertex, graph) for vertex in edge] for edge in _end_edges(line)]
+    return _Shape(batch_for_shader(shader, "LINES", {"pos": points}), *ends)
+
+
+def _end_edges(line):
+    return line.edges[0], line.edges[-1][::-1]
 
 
 def _towards_eye(context):
@@ -99,19 +134,18 @@ def _towards_eye(context):
     return Matrix.Translation((0, 0, _NEARER * view.view_distance))
 
 
-def _draw_line(line, obj, context, alpha):
-    vertices = [vertex for edge in line.edges for vertex in edge]
-    points = vertex_points.many_in_world(obj, vertices, context.evaluated_depsgraph_get()).tolist()
+def _draw_line(line, obj, shape, context, alpha):
     scale = context.preferences.system.ui_scale
     width = (_ACTIVE_WIDTH if line.is_active else _WIDTH) * scale
     rim = markers.ACTIVE if line.is_active else markers.DARK
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
-    batch = batch_for_shader(shader, "LINES", {"pos": points})
     shader.uniform_float("viewportSize", (context.region.width, context.region.height))
-    for color, wide in ((rim, width + _RIM * scale), (_color(line, context), width)):
-        shader.uniform_float("lineWidth", wide)
-        shader.uniform_float("color", (*color, alpha))
-        batch.draw(shader)
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(obj.matrix_world)
+        for color, wide in ((rim, width + _RIM * scale), (_color(line, context), width)):
+            shader.uniform_float("lineWidth", wide)
+            shader.uniform_float("color", (*color, alpha))
+            shape.batch.draw(shader)
 
 
 def _color(line, context):
@@ -126,21 +160,20 @@ def _draw_ends():
     if not markers.is_drawn(context):
         return
     scale = context.preferences.system.ui_scale
-    for line, obj in sorted(_seen(context), key=lambda one: one[0].is_active):
-        first = _end(obj, line.edges[0], context)
+    for line, obj, shape in _prepared(context):
+        first, last = (_end(obj, end, context) for end in (shape.first, shape.last))
         color = _color(line, context)
         gpu.state.blend_set("ALPHA")
         if line.is_whole and not line.is_closed:
-            _draw_arrow(_end(obj, line.edges[-1][::-1], context), color, scale)
+            _draw_arrow(last, color, scale)
         if first is not None:
             _draw_start(line, first, color, scale)
         gpu.state.blend_set("NONE")
 
 
-def _end(obj, edge, context):
-    """(pixel of the first vertex of an edge, pixel of the other one, how opaque), or None if not in view."""
-    graph = context.evaluated_depsgraph_get()
-    ends = [vertex_points.in_world(obj, vertex, graph) for vertex in edge]
+def _end(obj, end, context):
+    """(pixel of the end, pixel of the vertex next to it, how opaque), or None if not in view."""
+    ends = [vertex_points.to_world(obj, *place) for place in end]
     pixels = [location_3d_to_region_2d(context.region, context.region_data, point) for point, _ in ends]
     if None in pixels:
         return None
@@ -183,3 +216,4 @@ def register():
 def unregister():
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+    _shapes.clear()

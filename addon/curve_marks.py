@@ -11,13 +11,14 @@ from typing import NamedTuple
 import bmesh
 import numpy as np
 
-from . import marks, paths
+from . import marks, paths, scene_changes
 from .marks import element_counts
 
 _NAME = "authalic_curve_"
 _BITS = 24
-# What was found last: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}).
-_seen = {}
+# What was found last: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}), and the
+# `scene_changes` when it was true last.
+_seen, _true = {}, {}
 
 
 class Path(NamedTuple):
@@ -80,7 +81,7 @@ def reverse(mesh, key, mark):
 
 def clear(mesh, key, mark):
     """Takes a mark off a mesh; with the last one go the attributes."""
-    _seen.pop((mesh.session_uid, key), None)
+    _drop(mesh, key)
     for kind in (_of_edges(key), _of_ends(key)):
         there = kind.all(mesh)
         own = [element for element, value in there.items() if abs(value) == mark]
@@ -92,19 +93,24 @@ def clear(mesh, key, mark):
 def find(mesh, key, *, drawing=False):
     """{mark: `Path`} of the paths of a key on a mesh.
 
-    With `drawing`, what was found before is taken for true unless one of these paths is not where it was or
-    the mesh has more or fewer elements: fast enough for drawing.
+    With `drawing`, what was found before is taken for true unless geometry has changed, and then if the paths
+    are where they were and the mesh has as many elements: fast enough for drawing.
     """
-    counts, found = _seen.get((mesh.session_uid, key), (None, {}))
-    if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, found):
-        found = _search(mesh, key)
-        _seen[mesh.session_uid, key] = element_counts(mesh), found
+    held, own = marks.hold(mesh), (mesh.session_uid, key)
+    counts, found = _seen.get(own, (None, {}))
+    if not drawing or _true.get(own) != scene_changes.count():
+        if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, found):
+            found = _search(mesh, key)
+            _seen[own] = element_counts(mesh), found
+        _true[own] = scene_changes.count()
+    del held
     return {mark: one.path for mark, one in found.items()}
 
 
 def forget():
     """What was found before counts no longer, as after undo."""
     _seen.clear()
+    _true.clear()
 
 
 def check(mesh, path):
@@ -125,6 +131,12 @@ def ends_of_edges(mesh, edges):
     edit.verts.index_update()
     edit.edges.ensure_lookup_table()
     return [tuple(vertex.index for vertex in edit.edges[edge].verts) for edge in edges]
+
+
+def _drop(mesh, key):
+    _seen.pop((mesh.session_uid, key), None)
+    _true.pop((mesh.session_uid, key), None)
+    scene_changes.note()
 
 
 def _of_edges(key):
@@ -187,7 +199,7 @@ def _holds(mesh, key, found):
 
 
 def _mark_ends(mesh, key, mark, path):
-    _seen.pop((mesh.session_uid, key), None)
+    _drop(mesh, key)
     own = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
     _of_ends(key).write(mesh, own, 0)
     _of_ends(key).write(mesh, [path[0]], mark)

@@ -11,7 +11,7 @@ from bpy.props import BoolProperty
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
-from . import landmarks, vertex_points
+from . import landmarks, marks, vertex_points
 
 _COLORS = {"source": (0.16, 0.55, 1.0), "target": (1.0, 0.58, 0.1)}
 PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
@@ -79,7 +79,9 @@ def _draw():
     if not is_drawn(context):
         return
     scale = context.preferences.system.ui_scale
+    held = [marks.hold(obj.data) for obj in sources(context)]
     placed = [found for marker in shown(context) if (found := _place(marker, context))]
+    del held
     placed.sort(key=lambda found: (found[2], found[0].is_active))  # those in front over the others
     gpu.state.blend_set("ALPHA")
     for marker, pixel, is_front in placed:

@@ -26,6 +26,15 @@ def element_counts(mesh):
     return len(edit.verts), len(edit.edges), len(edit.faces)
 
 
+def hold(mesh):
+    """What is to be kept while a mesh in edit mode is read piece by piece.
+
+    With the last thing that Python knows of it, Blender gives up what it keeps for all its elements, and
+    makes it anew for the next.
+    """
+    return bmesh.from_edit_mesh(mesh) if mesh.is_editmode else None
+
+
 class Marks:
     """The marks in the attribute of a name, on the vertices ("POINT") or the edges ("EDGE") of meshes."""
 

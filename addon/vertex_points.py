@@ -18,23 +18,37 @@ _HIDDEN_LAYERS = 64
 
 def in_world(obj, vertex, depsgraph):
     """The point and the normal, of length 1 or 0, of a vertex in the world."""
-    point, normal = _local(obj, vertex, depsgraph)
+    return to_world(obj, *local(obj, vertex, depsgraph))
+
+
+def to_world(obj, point, normal):
+    """The same of a point and a normal in the coordinates of the object."""
     matrix = obj.matrix_world
     turned = matrix.to_3x3().inverted_safe().transposed() @ normal
     return matrix @ point, turned.normalized()
 
 
-def many_in_world(obj, vertices, depsgraph):
-    """The points (k, 3) of some vertices in the world."""
+def local(obj, vertex, depsgraph):
+    """The point and the normal of a vertex in the coordinates of the object."""
+    mesh = obj.data
+    if mesh.is_editmode:
+        edit = bmesh.from_edit_mesh(mesh)
+        edit.verts.ensure_lookup_table()
+        one = edit.verts[vertex]
+    else:
+        one = _shown_mesh(obj, depsgraph).vertices[vertex]
+    return one.co.copy(), one.normal.copy()
+
+
+def many(obj, vertices, depsgraph):
+    """The points (k, 3) of some vertices in the coordinates of the object."""
     mesh = obj.data
     if mesh.is_editmode:
         elements = bmesh.from_edit_mesh(mesh).verts
         elements.ensure_lookup_table()
     else:
         elements = _shown_mesh(obj, depsgraph).vertices
-    points = np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
-    matrix = np.array(obj.matrix_world)
-    return points @ matrix[:3, :3].T + matrix[:3, 3]
+    return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
 
 
 def surface(obj, depsgraph):
@@ -67,17 +81,6 @@ def _shown_mesh(obj, depsgraph):
     renumbered = any(each.show_viewport and each.type in _RENUMBERING for each in obj.modifiers)
     added = len(shown.vertices) - len(mesh.vertices)
     return shown if added == 0 or (added > 0 and not renumbered) else mesh
-
-
-def _local(obj, vertex, depsgraph):
-    mesh = obj.data
-    if mesh.is_editmode:
-        edit = bmesh.from_edit_mesh(mesh)
-        edit.verts.ensure_lookup_table()
-        one = edit.verts[vertex]
-    else:
-        one = _shown_mesh(obj, depsgraph).vertices[vertex]
-    return one.co.copy(), one.normal.copy()
 
 
 def _cast_on_shown(obj):

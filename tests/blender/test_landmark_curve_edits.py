@@ -352,3 +352,27 @@ def test_a_bad_file_changes_nothing(heads, tmp_path, curves, words):
     path.write_text(json.dumps(content))
     pairing.refused(words, call.landmark_import, filepath=str(path))
     assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
+
+
+@pytest.mark.parametrize("in_edit", [False, True])
+def test_drawing_looks_again_only_after_changes(heads, monkeypatch, in_edit):
+    source, _ = heads
+    curving.add(ROW, ROW_B)
+    if in_edit:
+        meshes.edit(*heads)
+    module, find = pairing.part("curve_marks"), pairing.part("landmark_curves").pairs
+    find(source, drawing=True)
+    looked, holds = [], module._holds
+    monkeypatch.setattr(module, "_holds", lambda *given: looked.append(1) or holds(*given))
+    find(source, drawing=True)
+    source.location.x += 1
+    bpy.context.view_layer.update()
+    find(source, drawing=True)
+    assert not looked
+    if in_edit:
+        bpy.ops.transform.translate(value=(0, 0, 1))
+    else:
+        source.data.vertices[0].co.z += 1
+        source.data.update()
+    bpy.context.view_layer.update()
+    assert find(source, drawing=True)[0].source.vertices == ROW and looked

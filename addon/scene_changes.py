@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether any geometry has changed since something was looked at, so that drawing need not look again."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+_count = 0
+
+
+def count():
+    """A number that is another one after every change of a mesh, its shape keys or modifiers."""
+    return _count
+
+
+def note():
+    """A change that Blender tells of later, if at all."""
+    global _count
+    _count += 1
+
+
+@persistent
+def _look(_scene, graph):
+    if any(update.is_updated_geometry for update in graph.updates):
+        note()
+
+
+@persistent
+def _changed(*_):
+    note()
+
+
+_HANDLERS = (
+    ("depsgraph_update_post", _look),
+    ("frame_change_post", _changed),
+    ("load_post", _changed),
+    ("undo_post", _changed),
+    ("redo_post", _changed),
+)
+
+
+def register():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)

@@ -243,11 +243,12 @@ def test_the_registrations_by_curves_have_rows_and_pictures(curved_pair, monkeyp
     few = {"Newton (default)": {}, "heat diffusion": {"solver": "heat", "max_iterations": 20}}
     monkeypatch.setattr(bench_hyperbolic_solvers, "SOLVERS", few)
     target = tmp_path / "hyperbolic.md"
-    bench_hyperbolic.main([str(target), "--parts", "pairs", "curves", "solvers"])
+    bench_hyperbolic.main([str(target), "--parts", "pairs", "cuts", "curves", "solvers"])
     text = target.read_text(encoding="utf-8")
     assert "Error" not in text, text
     for method in bench_hyperbolic_methods.METHODS:
         assert re.search(rf"(?m)^\| ellipsoid → bumps \| 642 \| {method} \| \d", text), text
+    assert re.search(r"(?m)^\| ellipsoid → bumps \| 4 \| \d\.\d+ / \d\.\d+ / \d", text), text
     pictures = re.findall(r"!\[.*?\]\((.*?)\)", text)
     assert len(pictures) == 6 and all((tmp_path / name).stat().st_size > 0 for name in pictures)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Registration by landmark curves of cortices: the paper's measures, beside two methods by points.
 
-Usage: python bench_hyperbolic.py TARGET_FILE [--parts pairs curves solvers large] [--timeout 900]
+Usage: python bench_hyperbolic.py TARGET_FILE [--parts pairs cuts curves solvers large] [--timeout 900]
 
 The pictures go beside the target.
 """
@@ -16,6 +16,7 @@ from pathlib import Path
 import bench_hyperbolic_pairs
 import bench_hyperbolic_plots
 import bench_hyperbolic_solvers
+import numpy as np
 from bench_hyperbolic_measures import measured
 from bench_hyperbolic_methods import HARMONIC, HYPERBOLIC, METHODS, SPHERES
 from bench_peers_worker import message
@@ -51,6 +52,12 @@ they are mapped, weighted by area. *Area distortion* is max(J, 1/J) of the faces
 percentiles."""
 RATIO_COLUMNS = ("pair", "method", "sulc difference", "area distortion − 1", "seconds")
 RATIO_NOTE = f"Figures over those of {HYPERBOLIC}: above 1, {HYPERBOLIC} is better."
+CUT_COLUMNS = (
+    "pair", "cuts", "flipped, % of area", "sulc, r", "sulc, mean difference", "area distortion",
+)  # fmt: skip
+CUT_NOTE = f"""\
+"{HARMONIC}" depends on the curve along which the surfaces are opened, in the tables above the first one: the
+least, the median and the greatest figure over all open curves."""
 COUNT_COLUMNS = (*COLUMNS[2:4], *COLUMNS[4:8], *COLUMNS[9:])
 LARGE_COLUMNS = (
     "method", "V", "s", "peak memory, MiB", "before the call, MiB", "flipped, % of area",
@@ -128,6 +135,25 @@ def write_ratios(report, found):
         for name, other in measures.items():
             if ours and name != HYPERBOLIC:
                 report.row((pair, name, *(f"{ratio:.2f}" for ratio in ratios(other, ours))))
+
+
+def write_cuts(report, options):
+    """The conventional method, opened along each of the curves."""
+    report.section("The conventional method by the curve that is opened", CUT_NOTE)
+    report.columns(CUT_COLUMNS)
+    for pair in bench_hyperbolic_pairs.standard():
+        found = []
+        for first in bench_hyperbolic_pairs.open_curves(pair):
+            opened = bench_hyperbolic_pairs.begun_with(pair, first)
+            found.append(measured(opened, METHODS[HARMONIC](opened)))
+        figures = [[each.flipped for each in found], [each.correlation for each in found]]
+        figures += [[each.difference["sulc"] for each in found], [each.areas.mean() for each in found]]
+        report.row((pair.name, len(found), *(spread(values) for values in figures)))
+
+
+def spread(values):
+    """The least, the median and the greatest."""
+    return " / ".join(f"{value:.3f}" for value in np.quantile(values, (0, 0.5, 1)))
 
 
 def ratios(other, ours):
@@ -221,7 +247,13 @@ def large_cells(figures):
     )  # fmt: skip
 
 
-PARTS = {"pairs": write_pairs, "curves": write_counts, "solvers": write_solvers, "large": write_large}
+PARTS = {
+    "pairs": write_pairs,
+    "cuts": write_cuts,
+    "curves": write_counts,
+    "solvers": write_solvers,
+    "large": write_large,
+}
 
 
 if __name__ == "__main__":

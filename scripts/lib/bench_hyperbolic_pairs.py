@@ -90,6 +90,21 @@ def hcp():
     return Pair("HCP left → right, midthickness, 5 curves", left, replaced(right, theirs))
 
 
+def begun_with(pair, first):
+    """The pair with another curve as its first."""
+
+    def moved(surface):
+        curves = surface.curves
+        return replaced(surface, [curves[first], *curves[:first], *curves[first + 1 :]])
+
+    return Pair(pair.name, moved(pair.source), moved(pair.target))
+
+
+def open_curves(pair):
+    """The numbers of the curves that are not closed."""
+    return [k for k, curve in enumerate(pair.source.curves) if curve[0] != curve[-1]]
+
+
 def subdivided(pair, times):
     """The pair with every face split into four, so many times."""
     source, target = pair.source, pair.target

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
-from . import curve_marks, curve_selection, landmark_undo, landmarks, messages, paths
+from . import curve_marks, landmark_undo, landmarks, messages, paths
 from .landmarks import NONE, CannotPair
 
 SIDES = ("source", "target")
@@ -101,39 +101,6 @@ def add(source, source_path, target_path, *, name="", index=NONE):
     curve.error = -1.0
     source.authalic_landmark_curve_index = index
     return curve
-
-
-def place_for(source, selected):
-    """The index of the pair to which selected paths {side: path} belong, -1 for a new one; and these paths.
-
-    Alone, a path completes the active pair if that lacks its side, or else the first one that does. Of two,
-    one that the active pair has already is not meant.
-    """
-    listed, active = pairs(source), source.authalic_landmark_curve_index
-    if len(selected) == 2 and active < len(listed):
-        others = {side: path for side, path in selected.items() if not _has(listed[active], side, path)}
-        missing = [side for side in others if getattr(listed[active], side).problem]
-        if len(others) == 1 and missing:
-            return active, others
-    if len(selected) != 1:
-        return NONE, selected
-    (side,) = selected
-    lacking = [index for index, pair in enumerate(listed) if getattr(pair, side).problem]
-    return (active if active in lacking else lacking[0] if lacking else NONE), selected
-
-
-def directed(source, index, selected, loose):
-    """Selected paths {side: path}, those of the sides `loose` turned to run as their partners do."""
-    partners = dict.fromkeys(SIDES, ())
-    if index != NONE:
-        pair = pairs(source)[index]
-        partners = {side: getattr(pair, side).vertices for side in SIDES}
-    partners |= selected
-    for side, other in (SIDES, SIDES[::-1]):
-        if side in loose and partners[other]:
-            objects = side_object(source, side), side_object(source, other)
-            partners[side] = curve_selection.like(objects[0], partners[side], objects[1], partners[other])
-    return {side: partners[side] for side in selected}
 
 
 def reverse(source, index, side):
@@ -250,11 +217,6 @@ def _unlike(own, objects):
 def _too_few(path):
     count, fewest = len(path) - 1, _FEWEST[paths.is_closed(path)]
     return None if count >= fewest else f"has {messages.count(count, 'edge')} where {fewest} are the least"
-
-
-def _has(pair, side, path):
-    """Whether a path is that of a pair, in either direction."""
-    return set(paths.edges(path)) <= {way for edge in getattr(pair, side).edges for way in (edge, edge[::-1])}
 
 
 def _check(source, side, path, index):

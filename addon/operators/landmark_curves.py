@@ -6,7 +6,7 @@ import re
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from .. import curve_selection, landmark_curves, landmarks, messages
+from .. import curve_pairing, curve_selection, landmark_curves, landmarks, messages
 from . import poll, views
 
 _GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
@@ -187,9 +187,9 @@ def _selected(source, index):
         )
     chosen = {side: path for side, (path, _) in found.items()}
     if index == landmarks.NONE:
-        index, chosen = landmark_curves.place_for(source, chosen)
+        index, chosen = curve_pairing.place_for(source, chosen)
     loose = [side for side in chosen if not found[side][1]]
-    return landmark_curves.directed(source, index, chosen, loose), index
+    return curve_pairing.directed(source, index, chosen, loose), index
 
 
 def _middle(path):

@@ -248,7 +248,7 @@ def open_ended(curve):
 
 def assert_unfolded_on_sphere(result, pair, rings=1):
     """Seen from the centre of a star-shaped target no image is turned over, but a few next to curves:
-    the images of faces have the sides of the hyperbolic metric, straight ones may differ where that is steep."""
+    their images have the sides of the hyperbolic metric, straight ones may differ where that is steep."""
     image = directions(meshes.Mesh(result.positions, pair.source.faces))
     near = np.zeros(len(image), bool)
     near[np.concatenate(pair.source_curves)] = True

@@ -250,7 +250,7 @@ fn path(opposite: &[u32], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
         if face == to {
             return motion;
         }
-        for corner in (3 * face as usize)..(3 * face as usize + 3) {
+        for corner in [0, 1, 2].map(|k| 3 * face as usize + k) {
             let across = opposite[corner];
             if across != NONE && !motions.contains_key(&(across / 3)) {
                 motions.insert(across / 3, atlas.transitions[corner] * motion);

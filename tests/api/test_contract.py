@@ -14,8 +14,10 @@ import authalic
 from . import meshes
 
 NAMES = {
+    "Certificates",
     "DiskMap",
     "Distortion",
+    "HyperbolicStructure",
     "MeshError",
     "Patch",
     "Registration",
@@ -26,7 +28,9 @@ NAMES = {
     "disk_map",
     "distortion",
     "homotopy",
+    "hyperbolic_structure",
     "register_disks",
+    "register_hyperbolic",
     "register_spheres",
     "sphere_map",
     "stretch_hessian",
@@ -66,6 +70,18 @@ KEYWORDS = {
     "cut": {"seams": None},
     "register_disks": REGISTRATION,
     "register_spheres": REGISTRATION,
+    "register_hyperbolic": {
+        "source_curves": inspect.Parameter.empty,
+        "target_curves": inspect.Parameter.empty,
+        "metric": "newton",
+        "solver": "newton",
+        "max_iterations": None,
+        "tolerance": None,
+        "source_sphere": None,
+        "target_sphere": None,
+        "progress": None,
+    },
+    "hyperbolic_structure": {"curves": inspect.Parameter.empty, "metric": "newton", "progress": None},
     "homotopy": {"align": False},
 }
 POSITIONAL = {
@@ -76,6 +92,8 @@ POSITIONAL = {
     "cut": ["vertices", "faces"],
     "register_disks": ["source", "target"],
     "register_spheres": ["source", "target"],
+    "register_hyperbolic": ["source", "target"],
+    "hyperbolic_structure": ["vertices", "faces"],
     "homotopy": ["vertices", "registration", "t"],
 }
 FUNCTIONS = sorted(KEYWORDS)
@@ -136,7 +154,19 @@ def test_a_keyword_given_by_position_is_refused(name):
         getattr(authalic, name)(*arguments, None)
 
 
-@pytest.mark.parametrize("name", [*FUNCTIONS, "DiskMap", "SphereMap", "Distortion", "Patch", "Registration"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *FUNCTIONS,
+        "DiskMap",
+        "SphereMap",
+        "Distortion",
+        "Patch",
+        "Registration",
+        "Certificates",
+        "HyperbolicStructure",
+    ],
+)
 def test_everything_is_documented(name):
     assert len(getattr(authalic, name).__doc__) > 20
 
@@ -161,8 +191,8 @@ def test_the_examples_in_the_docstrings_run(name):
 
 
 def test_every_attribute_of_the_results_is_documented():
-    kinds = (authalic.DiskMap, authalic.SphereMap, authalic.Distortion, authalic.Patch, authalic.Registration)
-    for kind in kinds:
+    maps = (authalic.DiskMap, authalic.SphereMap, authalic.Registration, authalic.HyperbolicStructure)
+    for kind in (*maps, authalic.Distortion, authalic.Patch, authalic.Certificates):
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 

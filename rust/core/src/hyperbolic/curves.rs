@@ -100,6 +100,13 @@ impl Curves<'_> {
             }
         }
         check_loops(source, target, &pairs)?;
+        // 5. Closed curves from a start and in a direction of their own
+        for pair in pairs.iter_mut().filter(|pair| pair.closed) {
+            start_canonically(&mut pair.source, source);
+            if pair.gap.is_none() {
+                start_canonically(&mut pair.target, target);
+            }
+        }
         Ok(pairs)
     }
 
@@ -198,6 +205,18 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
     }
     let gap = (closed && !target.repeats_first).then_some(Gap::AtEnd);
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
+}
+
+/// Runs through a closed curve from the vertex with the least coordinates on, towards the lesser of its neighbours, so that it does not
+/// matter where and which way it was begun.
+fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
+    let point = |vertex: u32| mesh.points()[vertex as usize];
+    let is_less = |a: u32, b: u32| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
+    let first = (1..closed.len()).fold(0, |best, k| if is_less(closed[k], closed[best]) { k } else { best });
+    closed.rotate_left(first);
+    if is_less(closed[closed.len() - 1], closed[1]) {
+        closed[1..].reverse();
+    }
 }
 
 fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]) -> Result<(), Error> {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::found::Outcome;
 use super::result::Registration;
-use super::{Arrays, found, mesh, surface};
+use super::{found, mesh, surface};
 use crate::arrays::{from_index_list, index_list, points};
 use crate::errors::{MeshError, bad_array};
 use crate::options::parse_iterations;
@@ -96,14 +96,16 @@ impl Certificates {
 /// metric : "newton" or "ricci_flow"
 ///     How the hyperbolic metrics are found: by Newton's method, or by the paper's Ricci flow (slow, then finished by Newton).
 /// solver : "newton" or "heat"
-///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow, ends with "max_iterations").
+///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow; on all but small meshes it ends
+///     with "max_iterations").
 /// max_iterations : int, optional
 ///     Steps of the heat diffusion, 2000 by default.
 /// tolerance : float, optional
 ///     The heat diffusion ends where no component of the gradient is larger; 1e-6 by default.
-/// source_sphere, target_sphere : (n, 3) and (n_t, 3) real arrays, optional
-///     Both surfaces on spheres around the origin, to tell how they lie over each other; conformal maps by default. They need
-///     not be aligned.
+/// source_sphere : (n, 3) real array, optional
+///     The source on a sphere around the origin, to tell how the surfaces lie over each other; a conformal map by default.
+/// target_sphere : (n_t, 3) real array, optional
+///     The target likewise; both or neither. They need not be aligned.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between steps and in long ones from within; False cancels.
 ///
@@ -209,17 +211,19 @@ fn curves(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> P
     };
     let path = |(curve, part): (usize, PyResult<Bound<'_, PyAny>>)| {
         let part = part?;
-        index_list(&part, name, "place", n_vertices).map_err(|error| of_curve(part.py(), curve, &error))
+        index_list(&part, name, "place", n_vertices).map_err(|error| of_curve(part.py(), name, curve, &error))
     };
     parts.enumerate().map(path).collect()
 }
 
 /// The same error, of a curve.
-fn of_curve(py: Python<'_>, curve: usize, error: &PyErr) -> PyErr {
+fn of_curve(py: Python<'_>, name: &str, curve: usize, error: &PyErr) -> PyErr {
     if !error.is_instance_of::<MeshError>(py) {
         return error.clone_ref(py);
     }
-    let named = MeshError::new_err(format!("curve {curve}: {}", error.value(py)));
+    let message = error.value(py).to_string();
+    let rest = message.strip_prefix(name).unwrap_or(&message);
+    let named = MeshError::new_err(format!("{name}: curve {curve} {}", rest.trim_start()));
     for attribute in ["indices", "count"] {
         let copied =
             error.value(py).getattr(attribute).and_then(|value| named.value(py).setattr(attribute, value));

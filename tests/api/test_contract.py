@@ -19,6 +19,7 @@ NAMES = {
     "Distortion",
     "HyperbolicStructure",
     "MeshError",
+    "Pants",
     "Patch",
     "Registration",
     "SolverError",
@@ -192,7 +193,7 @@ def test_the_examples_in_the_docstrings_run(name):
 
 def test_every_attribute_of_the_results_is_documented():
     maps = (authalic.DiskMap, authalic.SphereMap, authalic.Registration, authalic.HyperbolicStructure)
-    for kind in (*maps, authalic.Distortion, authalic.Patch, authalic.Certificates):
+    for kind in (*maps, authalic.Distortion, authalic.Patch, authalic.Certificates, authalic.Pants):
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 

@@ -584,6 +584,26 @@ pub enum Error {
         target_count: usize,
     },
 
+    /// A closed curve inside a surface divides it.
+    #[error(
+        "curves: curve {curve} is closed and divides the surface: open it, \
+         or remove the faces on one side of it, which makes it a boundary loop"
+    )]
+    CurveDivides {
+        /// The curve.
+        curve: usize,
+    },
+
+    /// Too few features for a hyperbolic metric.
+    #[error(
+        "the surface has {found} features (curves and boundary loops), but a hyperbolic metric with geodesic boundary \
+         needs at least three: add curves"
+    )]
+    TooFewFeatures {
+        /// How many there are.
+        found: usize,
+    },
+
     /// The curves of one surface look like a mirror image of the other's.
     #[error(
         "the curves fit far better when one surface is mirrored, like a left and a right hemisphere: mirror one of \

@@ -11,7 +11,9 @@ __all__ = [
     "Certificates",
     "DiskMap",
     "Distortion",
+    "HyperbolicStructure",
     "MeshError",
+    "Pants",
     "Patch",
     "Registration",
     "SolverError",
@@ -21,6 +23,7 @@ __all__ = [
     "disk_map",
     "distortion",
     "homotopy",
+    "hyperbolic_structure",
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
@@ -30,6 +33,7 @@ __all__ = [
 
 _Reals: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int64]
+_Complex: TypeAlias = NDArray[np.complex128]
 _Progress: TypeAlias = Callable[[float, str], bool | None]
 _Surface: TypeAlias = tuple[ArrayLike, ArrayLike]
 _Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
@@ -197,6 +201,55 @@ class Certificates:
     @property
     def curvature(self) -> tuple[float, float]: ...
 
+@final
+class Pants:
+    @property
+    def boundary_lengths(self) -> _Reals: ...
+    @property
+    def hexagons(self) -> _Reals: ...
+    @property
+    def angles(self) -> _Reals: ...
+    @property
+    def placement(self) -> _Complex: ...
+
+@final
+class HyperbolicStructure:
+    @property
+    def vertices(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def vertex_of(self) -> _Indices: ...
+    @property
+    def disk_faces(self) -> _Indices: ...
+    @property
+    def positions(self) -> _Reals: ...
+    @property
+    def disk_vertex_of(self) -> _Indices: ...
+    @property
+    def order(self) -> _Indices: ...
+    @property
+    def reversed(self) -> NDArray[np.bool_]: ...
+    @property
+    def banks(self) -> list[tuple[_Indices, _Indices]]: ...
+    @property
+    def arcs(self) -> list[tuple[_Indices, _Indices]]: ...
+    @property
+    def generators(self) -> _Complex: ...
+    @property
+    def boundary_lengths(self) -> _Reals: ...
+    @property
+    def pants(self) -> list[Pants]: ...
+    @property
+    def pants_curves(self) -> list[_Reals]: ...
+    @property
+    def lengths(self) -> _Reals: ...
+    @property
+    def curvature(self) -> float: ...
+    @property
+    def area(self) -> float: ...
+    def cover(self, copies: int) -> tuple[list[tuple[int, ...]], _Complex]: ...
+
 def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
 def distortion(
     vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
@@ -267,3 +320,11 @@ def register_hyperbolic(
     progress: _Progress | None = None,
 ) -> Registration: ...
 def homotopy(vertices: ArrayLike, registration: Registration, t: float, *, align: bool = False) -> _Reals: ...
+def hyperbolic_structure(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    *,
+    curves: Iterable[ArrayLike],
+    metric: Literal["newton", "ricci_flow"] = "newton",
+    progress: _Progress | None = None,
+) -> HyperbolicStructure: ...

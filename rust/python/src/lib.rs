@@ -12,6 +12,7 @@ mod options;
 mod registration;
 mod run;
 mod sphere;
+mod structure;
 
 use pyo3::prelude::*;
 
@@ -26,6 +27,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<sphere::SphereMap>()?;
     module.add_class::<registration::Registration>()?;
     module.add_class::<registration::Certificates>()?;
+    module.add_class::<structure::HyperbolicStructure>()?;
+    module.add_class::<structure::Pants>()?;
     module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
@@ -34,5 +37,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(registration::register_disks, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_spheres, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_hyperbolic, module)?)?;
+    module.add_function(wrap_pyfunction!(structure::hyperbolic_structure, module)?)?;
     module.add_function(wrap_pyfunction!(registration::homotopy, module)?)
 }

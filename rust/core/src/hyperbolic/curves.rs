@@ -79,35 +79,10 @@ impl Curves<'_> {
         source.require_genus_zero().map_err(|error| error.of_surface("source"))?;
         target.require_genus_zero().map_err(|error| error.of_surface("target"))?;
         self.check_counts(source, target)?;
-        // 2. Each curve by itself
+        // 2. The curves
         let ours = Side { name: "source_curves", mesh: source, curves: self.source };
         let theirs = Side { name: "target_curves", mesh: target, curves: self.target };
-        let (source_paths, target_paths) = (ours.paths()?, theirs.paths()?);
-        // 3. Pairs, and what they meet
-        let pairs = source_paths.into_iter().zip(target_paths).enumerate();
-        let mut pairs: Vec<_> = pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
-        let source_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.source[..]).collect();
-        let target_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.target[..]).collect();
-        ours.refuse_meetings(&source_vertices)?;
-        theirs.refuse_meetings(&target_vertices)?;
-        // 4. The boundary
-        for (curve, pair) in pairs.iter_mut().enumerate() {
-            let bounds = ours.bounds(curve, &pair.source, pair.closed)?;
-            pair.on_boundary = theirs.bounds(curve, &pair.target, pair.closed)?;
-            if bounds != pair.on_boundary {
-                let name = if bounds { ours.name } else { theirs.name };
-                return Err(Error::CurveBoundsOneSide { name, curve });
-            }
-        }
-        check_loops(source, target, &pairs)?;
-        // 5. Closed curves from a start and in a direction of their own
-        for pair in pairs.iter_mut().filter(|pair| pair.closed) {
-            start_canonically(&mut pair.source, source);
-            if pair.gap.is_none() {
-                start_canonically(&mut pair.target, target);
-            }
-        }
-        Ok(pairs)
+        checked(&ours, &theirs)
     }
 
     fn check_counts(&self, source: &TriangleMesh, target: &TriangleMesh) -> Result<(), Error> {
@@ -122,6 +97,44 @@ impl Curves<'_> {
             false => Ok(()),
         }
     }
+}
+
+/// Checks curves by themselves, then pairs of them with what they meet.
+fn checked(ours: &Side<'_>, theirs: &Side<'_>) -> Result<Vec<CurvePair>, Error> {
+    // 1. Each curve by itself
+    let (source_paths, target_paths) = (ours.paths()?, theirs.paths()?);
+    // 2. Pairs, and what they meet
+    let pairs = source_paths.into_iter().zip(target_paths).enumerate();
+    let mut pairs: Vec<_> = pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
+    let source_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.source[..]).collect();
+    let target_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.target[..]).collect();
+    ours.refuse_meetings(&source_vertices)?;
+    theirs.refuse_meetings(&target_vertices)?;
+    // 3. The boundary
+    for (curve, pair) in pairs.iter_mut().enumerate() {
+        let bounds = ours.bounds(curve, &pair.source, pair.closed)?;
+        pair.on_boundary = theirs.bounds(curve, &pair.target, pair.closed)?;
+        if bounds != pair.on_boundary {
+            let name = if bounds { ours.name } else { theirs.name };
+            return Err(Error::CurveBoundsOneSide { name, curve });
+        }
+    }
+    check_loops(ours.mesh, theirs.mesh, &pairs)?;
+    // 4. Closed curves from a start and in a direction of their own
+    for pair in pairs.iter_mut().filter(|pair| pair.closed) {
+        start_canonically(&mut pair.source, ours.mesh);
+        if pair.gap.is_none() {
+            start_canonically(&mut pair.target, theirs.mesh);
+        }
+    }
+    Ok(pairs)
+}
+
+/// The same for curves of one surface, each its own partner.
+pub(super) fn check_alone(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
+    mesh.require_genus_zero()?;
+    let side = Side { name: "curves", mesh, curves };
+    checked(&side, &side)
 }
 
 impl Side<'_> {

@@ -12,7 +12,8 @@
 //! 5. `delaunay`, `harmonic`: the harmonic map by Newton, or by the paper's heat diffusion (`heat`);
 //! 6. `certificates`: the proof that it is one-to-one.
 //!
-//! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: pants, hexagons and the Fuchsian group.
+//! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: the Fuchsian group
+//! (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
 //!
 //! Input: two [`TriangleMesh`]es and pairs of [`Curves`]. Cost: some twenty sparse factorisations.
 
@@ -25,6 +26,7 @@ mod cutting;
 mod delaunay;
 mod features;
 mod flat;
+mod fuchsian;
 mod harmonic;
 mod heat;
 mod initial;
@@ -33,6 +35,7 @@ mod isotopy;
 mod layout;
 mod metric;
 pub mod moebius;
+mod pants;
 mod paths;
 mod piece;
 mod pieces;
@@ -43,8 +46,10 @@ mod register;
 #[cfg(test)]
 mod sample_meshes;
 mod slice;
+mod structure;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod track;
 
 use crate::error::Error;
@@ -52,9 +57,12 @@ use crate::mesh::geometry::Vector;
 
 pub use certificates::Certificates;
 pub use curves::Curves;
+pub use fuchsian::CoverCopy;
 pub use harmonic::Descent;
 pub use metric::{FlowOptions, FlowRecord, Metric, MetricMethod};
+pub use pants::Pants;
 pub use register::{CurveRegistration, register_hyperbolic};
+pub use structure::{HyperbolicStructure, hyperbolic_structure};
 
 /// How the harmonic energy is minimised.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -314,7 +314,7 @@ impl Found {
 }
 
 /// A place in the sliced piece as one on the surface.
-fn on_surface(piece: &Piece, cut: &Sliced, location: &Location) -> Location {
+pub(super) fn on_surface(piece: &Piece, cut: &Sliced, location: &Location) -> Location {
     let place = &cut.places[location.triangle as usize];
     let barycentric =
         [0, 1, 2].map(|k| (0..3).map(|corner| location.barycentric[corner] * place.corners[corner][k]).sum());
@@ -327,7 +327,7 @@ fn point(mesh: &TriangleMesh, location: &Location) -> Vector {
 }
 
 /// The vertex of the surface that a vertex of its slice is; midpoints of split edges are none.
-fn surface_vertex(piece: &Piece, sliced: &Sliced, copy: usize) -> Option<usize> {
+pub(super) fn surface_vertex(piece: &Piece, sliced: &Sliced, copy: usize) -> Option<usize> {
     piece.vertex_of.get(sliced.surface.vertex_of[copy] as usize).map(|&vertex| vertex as usize)
 }
 

@@ -92,8 +92,6 @@ pub(super) struct SlicedPair {
     pub source: Sliced,
     /// The target.
     pub target: Sliced,
-    /// The features in the order of the chain, each with whether it is reversed.
-    pub chain: Vec<(usize, bool)>,
     /// Whether all arcs on the target follow the carried ones; otherwise the homotopy class may be another.
     pub followed: bool,
 }
@@ -129,7 +127,19 @@ pub(super) fn slice_pair(
     // 4. Open both.
     let source = open(source, &chain, &source_features, &source_arcs).map_err(of_source)?;
     let target = open(target, &chain, &target_features, &target_arcs).map_err(of_target)?;
-    Ok(SlicedPair { source, target, chain, followed })
+    Ok(SlicedPair { source, target, followed })
+}
+
+/// Cuts one piece open along its features and along arcs; returns the chain too.
+///
+/// # Errors
+/// As [`slice_pair`], without naming a surface.
+pub(super) fn slice_alone(piece: &Piece, watch: &Watch<'_>) -> Result<(Sliced, Vec<(usize, bool)>), Error> {
+    let chain = chain::order(piece, piece);
+    let features = chain::features(piece, &chain);
+    let mut cutting = cut_features(piece)?;
+    let arcs = arcs::source_arcs(&mut cutting, &chain::links(&chain, &features), watch)?;
+    Ok((open(cutting, &chain, &features, &arcs)?, chain))
 }
 
 /// Marks the features of a piece for cutting and splits the chords between them.

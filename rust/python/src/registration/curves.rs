@@ -165,8 +165,8 @@ pub fn register_hyperbolic(
     options.heat_tolerance = tolerance.unwrap_or(options.heat_tolerance);
     let source = surface(source, ["source", "source vertices", "source faces"])?;
     let target = surface(target, ["target", "target vertices", "target faces"])?;
-    let source_curves = curves(source_curves, "source_curves", source.0.len())?;
-    let target_curves = curves(target_curves, "target_curves", target.0.len())?;
+    let source_curves = vertex_paths(source_curves, "source_curves", source.0.len())?;
+    let target_curves = vertex_paths(target_curves, "target_curves", target.0.len())?;
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
         (Some(ours), Some(theirs)) => {
@@ -191,12 +191,13 @@ pub fn register_hyperbolic(
 
 const SOLVERS: [(&str, Solver); 2] = [("newton", Solver::Newton), ("heat", Solver::Heat)];
 
-fn metrics() -> [(&'static str, MetricMethod); 2] {
+/// The ways to a hyperbolic metric by their names.
+pub(crate) fn metrics() -> [(&'static str, MetricMethod); 2] {
     [("newton", MetricMethod::Newton), ("ricci_flow", MetricMethod::RicciFlow(FlowOptions::default()))]
 }
 
 /// The value of an option that has a few names.
-fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
+pub(crate) fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
     choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
         let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
         PyValueError::new_err(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
@@ -204,7 +205,11 @@ fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T
 }
 
 /// Vertex paths.
-fn curves(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<Vec<usize>>> {
+pub(crate) fn vertex_paths(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+    n_vertices: usize,
+) -> PyResult<Vec<Vec<usize>>> {
     let Ok(parts) = object.try_iter() else {
         let found = object.get_type().name()?.to_string();
         return Err(bad_array(object.py(), name, found, "a list of arrays of vertex indices".into()));

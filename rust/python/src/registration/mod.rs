@@ -15,6 +15,7 @@ use crate::arrays::{Pairs, from_points, index_list, indices, points};
 use crate::errors::bad_array;
 use crate::run::run;
 pub use curves::{Certificates, register_hyperbolic};
+pub(crate) use curves::{choice, metrics, vertex_paths};
 use found::{Found, Outcome, Surface};
 pub use result::Registration;
 

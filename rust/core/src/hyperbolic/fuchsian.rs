@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The Fuchsian group of a sliced surface: its disk laid out in the hyperbolic plane, and the isometries between the sides of this.
+//!
+//! A surface with a hyperbolic metric is the hyperbolic plane (the part of it between the boundary lines) modulo a group of isometries. The
+//! surface cut along B − 1 arcs is a fundamental domain, and the group is free on the isometries g_k that take the left copy of arc k to the
+//! right one (Shi et al. 2013, section 3). Faces are laid out by composing the isometries between their charts, so that no face has
+//! its shape from another one's places.
+//!
+//! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+
+use super::atlas::Atlas;
+use super::initial::boundary_corners;
+use super::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
+use super::slice::{NONE, Side, Sliced};
+use crate::mesh::geometry::{Vector, add, scaled};
+use crate::parallel;
+
+/// A copy of the fundamental domain in the universal cover.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoverCopy {
+    /// The generators that lead to it, without cancelling neighbours: k for the k-th one, counted from 1, and −k for its inverse. The
+    /// last one acts first; the domain itself has none.
+    pub word: Vec<i32>,
+    /// The isometry that takes the fundamental domain there.
+    pub motion: Moebius,
+}
+
+/// A disk laid out in the hyperbolic plane.
+#[derive(Debug, Clone)]
+pub(super) struct Development<'a> {
+    sliced: &'a Sliced,
+    atlas: &'a Atlas<'a>,
+    /// (m,): from the chart of each face to the plane.
+    pub frames: Vec<Moebius>,
+}
+
+impl<'a> Development<'a> {
+    /// Lays the disk out around the chart of one face, which stays where it is.
+    pub(super) fn around(face: u32, sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
+        let mut frames = vec![Moebius::default(); atlas.charts.len()];
+        let mut is_placed = vec![false; frames.len()];
+        is_placed[face as usize] = true;
+        let mut queue = VecDeque::from([face]);
+        while let Some(face) = queue.pop_front() {
+            for corner in 3 * face..3 * face + 3 {
+                let across = sliced.disk.opposite[corner as usize];
+                if across == NONE || is_placed[across as usize / 3] {
+                    continue;
+                }
+                is_placed[across as usize / 3] = true;
+                frames[across as usize / 3] =
+                    frames[face as usize] * atlas.transitions[corner as usize].inverse();
+                queue.push_back(across / 3);
+            }
+        }
+        Self { sliced, atlas, frames }
+    }
+
+    /// Lays the disk out around a face in its middle, so that no part is farther out than it must be.
+    pub(super) fn centred(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
+        let first = Self::around(0, sliced, atlas);
+        // the mean on the hyperboloid is where the sum of cosh(distance) is least: the farthest count most
+        let middle = first.frames.iter().fold([0.0; 3], |sum, frame| add(sum, weighted(frame.apply(ORIGIN))));
+        let middle = from_hyperboloid(middle);
+        let far =
+            parallel::map(first.frames.len(), |face| distance(middle, first.frames[face].apply(ORIGIN)));
+        let nearest = (0..far.len()).min_by(|&a, &b| far[a].total_cmp(&far[b])).unwrap_or(0);
+        Self::around(nearest as u32, sliced, atlas)
+    }
+
+    /// The places of the vertices of the disk, by those of their faces that lie nearest to the origin.
+    pub(super) fn positions(&self) -> Vec<Complex> {
+        let n_vertices = self.sliced.disk.vertex_of.len();
+        let mut nearest = vec![f64::INFINITY; n_vertices];
+        let mut positions = vec![ORIGIN; n_vertices];
+        for (face, corners) in self.sliced.disk.faces.iter().enumerate() {
+            let (frame, far) = (self.frames[face], self.frames[face].b.norm());
+            for (k, &vertex) in corners.iter().enumerate() {
+                if far < nearest[vertex as usize] {
+                    nearest[vertex as usize] = far;
+                    positions[vertex as usize] = frame.apply(self.atlas.charts[face][k]);
+                }
+            }
+        }
+        positions
+    }
+
+    /// (B − 1,): the isometries that take the left copy of each arc to the right one; Re a > 0.
+    pub(super) fn generators(&self) -> Vec<Moebius> {
+        let corners = boundary_corners(&self.sliced.disk);
+        let arcs = self.sliced.sides.iter().filter(|side| side.is_arc);
+        arcs.take(self.sliced.sides.len() / 4).map(|side| self.generator(side, &corners)).collect()
+    }
+
+    /// The isometry from the left copy of an arc to the right one, by that of its edges whose copies lie nearest to the origin.
+    fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
+        let candidates = edges(side, corners).map(|corner| {
+            let across = self.sliced.surface.opposite[corner as usize];
+            let [left, right] = [corner, across].map(|corner| self.frames[corner as usize / 3]);
+            (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner as usize] * left.inverse())
+        });
+        let nearest = candidates.min_by(|one, other| one.0.total_cmp(&other.0));
+        let generator = nearest.map_or(Moebius::default(), |(_, generator)| generator);
+        match generator.a.re < 0.0 {
+            true => Moebius { a: -generator.a, b: -generator.b },
+            false => generator,
+        }
+    }
+}
+
+const ORIGIN: Complex = Complex::new(0.0, 0.0);
+
+/// A point on the hyperboloid, scaled so that sums do not overflow.
+fn weighted(z: Complex) -> Vector {
+    scaled(to_hyperboloid(z), 1e-9)
+}
+
+/// The corners opposite to the edges of a side of the disk.
+pub(super) fn edges<'a>(side: &'a Side, corners: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    side.vertices[..side.vertices.len() - 1].iter().map(|&vertex| corners[vertex as usize])
+}
+
+/// The fundamental domain and its copies in the universal cover, at most `count` in all.
+///
+/// They grow outward from the domain: each is a neighbour, across a copy of an arc, of an earlier one, and of all such neighbours the one whose
+/// middle is nearest to the origin comes next.
+pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
+    let letters: Vec<i32> = (1..=generators.len() as i32).flat_map(|k| [k, -k]).collect();
+    let motion = |letter: i32| {
+        let generator = generators[letter.unsigned_abs() as usize - 1];
+        if letter > 0 { generator } else { generator.inverse() }
+    };
+    let mut copies = vec![CoverCopy { word: Vec::new(), motion: Moebius::default() }];
+    let mut pending = BinaryHeap::new();
+    for at in 0.. {
+        if copies.len() >= count || at >= copies.len() {
+            break;
+        }
+        // 1. The neighbours of the newest copy
+        for &letter in &letters {
+            if copies[at].word.last() != Some(&-letter) {
+                let next = copies[at].motion * motion(letter);
+                // the bits of floats that are not negative are ordered like these
+                pending.push(Reverse((next.b.norm().to_bits(), at, letter)));
+            }
+        }
+        // 2. The nearest of all
+        if let Some(Reverse((_, from, letter))) = pending.pop() {
+            let word = copies[from].word.iter().copied().chain([letter]).collect();
+            copies.push(CoverCopy { word, motion: copies[from].motion * motion(letter) });
+        }
+    }
+    copies.truncate(count);
+    copies
+}

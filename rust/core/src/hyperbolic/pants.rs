@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Pairs of pants between closed geodesics, and the two right-angled hexagons of each.
+//!
+//! Two generators g and h of a Fuchsian group whose axes are disjoint span a pair of pants: its boundaries are the axes of g, of g⁻¹h (or of h g⁻¹, a
+//! copy of the same curve) and of h. The common perpendiculars of these lines divide it into two congruent hexagons, which are convex in Klein's model
+//! (Shi et al. 2013, section 3.1 and figure 3). Half the lengths of the boundaries determine it by the law of cosines of right-angled hexagons. Where it
+//! lies is linear algebra on the hyperboloid: a line is its unit normal in the Lorentz product, a common perpendicular the Lorentz cross product of
+//! two normals.
+//!
+//! Cost: constant.
+
+use super::moebius::{Complex, Moebius, exponential, from_hyperboloid, seen_from, to_klein};
+use crate::mesh::geometry::{Vector, cross, dot, scaled};
+
+/// A pair of pants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pants {
+    /// The lengths of the boundaries: the pants curve before, the feature, the pants curve after; at the ends of the chain the first and the
+    /// last feature stand for curves.
+    pub boundary_lengths: [f64; 3],
+    /// The corners of both hexagons in Klein's model. Their sides 0–1, 2–3 and 4–5 lie on the boundaries in the order of the lengths and are half
+    /// as long, the others are the perpendiculars; 5–0 is common to both and lies on the imaginary axis with its middle in the origin. The first
+    /// lies on the right, at the left bank of the feature, counter-clockwise; the second is its mirror image.
+    pub hexagons: [[Complex; 6]; 2],
+    /// The inner angles, π/2 but for rounding.
+    pub angles: [[f64; 6]; 2],
+    /// From the disk of the hexagons to that of the fundamental domain.
+    pub placement: Moebius,
+}
+
+/// The pair of pants between the axes of two generators; its placement leads to the disk in which these act.
+pub(super) fn pants(g: Moebius, h: Moebius) -> Pants {
+    // 1. The boundaries: both axes, and between them the feature by its left bank
+    let motions = [g, g.inverse() * h, h];
+    let lengths = motions.map(|motion| motion.translation_length());
+    // 2. A hexagon by half their lengths, and its mirror image
+    let right = hexagon(lengths.map(|length| 0.5 * length));
+    let hexagons = [right, right.map(|corner| -corner.conj())];
+    // 3. Where it belongs: axes of long curves nearly touch, so by the perpendicular between the first and the feature
+    let [before, feature] = [motions[0], motions[1]].map(axis);
+    let placement = Moebius::between([right[1], right[2]], feet(before, feature));
+    Pants {
+        boundary_lengths: lengths,
+        angles: hexagons.map(angles),
+        hexagons: hexagons.map(|corners| corners.map(to_klein)),
+        placement,
+    }
+}
+
+/// The corners of the right-angled hexagon whose alternate sides 0–1, 2–3 and 4–5 have these lengths, counter-clockwise, its side 5–0 in the middle of
+/// the imaginary axis.
+fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
+    let half = Complex::new(0.0, (0.25 * between(a, c, b)).tanh());
+    let (low, high) = (-half, half);
+    let [low_end, high_end] = [exponential(low, a.into()), exponential(high, c.into())];
+    let turned = |from: Complex, at: Complex, turn: Complex, length: f64| {
+        let back = seen_from(at, from);
+        exponential(at, -back / back.norm() * turn * length)
+    };
+    let [left, right] = [Complex::i(), -Complex::i()];
+    let from = turned(low, low_end, left, between(a, b, c));
+    let to = turned(high, high_end, right, between(c, b, a));
+    [low, low_end, from, to, high_end, high]
+}
+
+/// The length of the side between those of lengths a and b in a right-angled hexagon whose third alternate side has length c. By the law of cosines, with
+/// cosh − 1 formed without cancellation.
+fn between(a: f64, b: f64, c: f64) -> f64 {
+    let twice_square = (c.cosh() + (a - b).cosh()) / (a.sinh() * b.sinh());
+    2.0 * (0.5 * twice_square).sqrt().asinh()
+}
+
+/// The inner angles of a polygon.
+fn angles(corners: [Complex; 6]) -> [f64; 6] {
+    std::array::from_fn(|k| {
+        let [before, after] = [5, 1].map(|step| seen_from(corners[k], corners[(k + step) % 6]));
+        (before * after.conj()).arg().abs()
+    })
+}
+
+/// The unit normal of the axis of a translation.
+fn axis(motion: Moebius) -> Vector {
+    let [from, to] = motion.fixed_points().map(|end| [end.re, end.im, 1.0]);
+    let chord = [to[0] - from[0], to[1] - from[1], 0.0];
+    let half_square = 0.5 * dot(chord, chord);
+    scaled(lorentz_cross(from, chord), 1.0 / half_square)
+}
+
+/// Where the common perpendicular of two disjoint lines meets the first and the second.
+fn feet(one: Vector, other: Vector) -> [Complex; 2] {
+    let perpendicular = lorentz_cross(one, other);
+    [one, other].map(|line| {
+        let foot = lorentz_cross(line, perpendicular);
+        from_hyperboloid(scaled(foot, foot[2].signum()))
+    })
+}
+
+/// Orthogonal to both in the Lorentz product x x' + y y' − t t'.
+fn lorentz_cross(one: Vector, other: Vector) -> Vector {
+    let [x, y, t] = cross(one, other);
+    [x, y, -t]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::super::moebius::{distance, from_klein};
+    use super::*;
+
+    /// Translations to the left along two lines at equal distances below and above the origin.
+    fn two_translations(lengths: [f64; 2]) -> [Moebius; 2] {
+        let along = |length: f64| {
+            let step = Complex::new((0.5 * length).tanh(), 0.0);
+            Moebius::between([step, Complex::default()], [Complex::default(), -step])
+        };
+        let up = Complex::new(0.0, 0.6);
+        let lift = Moebius::between([Complex::default(), up], [up, Complex::new(0.0, 0.9)]);
+        [lift.inverse() * along(lengths[0]) * lift, lift * along(lengths[1]) * lift.inverse()]
+    }
+
+    #[test]
+    fn hexagons_are_right_angled_congruent_and_half_the_pants() {
+        for lengths in [[1.0, 2.0], [3.0, 3.0], [0.5, 4.0]] {
+            let [g, h] = two_translations(lengths);
+            let pants = pants(g, h);
+            assert!((pants.boundary_lengths[0] - lengths[0]).abs() < 1e-12);
+            assert!((pants.boundary_lengths[2] - lengths[1]).abs() < 1e-12);
+            for (hexagon, angles) in pants.hexagons.iter().zip(pants.angles) {
+                assert!(angles.iter().all(|angle| (angle - FRAC_PI_2).abs() < 1e-11), "{angles:?}");
+                assert!((4.0 * PI - angles.iter().sum::<f64>() - PI).abs() < 1e-11);
+                let corners = hexagon.map(from_klein);
+                for (side, length) in pants.boundary_lengths.iter().enumerate() {
+                    let half = distance(corners[2 * side], corners[2 * side + 1]);
+                    assert!((half - 0.5 * length).abs() < 1e-10, "side {side}: {half} of {length}");
+                }
+            }
+            assert!((0..6).all(|k| {
+                let [p, q, r] = [0, 1, 2].map(|step| pants.hexagons[0][(k + step) % 6]);
+                ((q - p).conj() * (r - q)).im > 0.0
+            }));
+            assert!(pants.hexagons[0][1].re > 0.1 && pants.hexagons[0][0].im < 0.0);
+            for (one, other) in pants.hexagons[0].iter().zip(pants.hexagons[1]) {
+                assert!((one + other.conj()).norm() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn the_placement_takes_hexagons_to_the_axes() {
+        for lengths in [[1.0, 2.0], [3.0, 3.0], [0.5, 4.0]] {
+            let [g, h] = two_translations(lengths);
+            let pants = pants(g, h);
+            for hexagon in pants.hexagons {
+                let placed = hexagon.map(|corner| pants.placement.apply(from_klein(corner)));
+                for (motion, corners) in [(g, [0, 1]), (h, [4, 5])] {
+                    let along = corners.map(|k| distance(placed[k], motion.apply(placed[k])));
+                    assert!(along.iter().all(|&moved| (moved - motion.translation_length()).abs() < 1e-10));
+                }
+            }
+            // the other bank: the mirror image lies on the axis of h g⁻¹
+            let other = h * g.inverse();
+            let corner = pants.placement.apply(from_klein(pants.hexagons[1][2]));
+            assert!((distance(corner, other.apply(corner)) - other.translation_length()).abs() < 1e-10);
+        }
+    }
+}

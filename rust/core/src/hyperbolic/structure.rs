@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The hyperbolic structure of a surface with landmark curves: the objects of the paper's theory (Shi et al. 2013, section 3), by themselves.
+//!
+//! The surface sliced along its curves gets the hyperbolic metric with geodesic boundaries; a chain of arcs makes it a disk, the fundamental domain of
+//! a Fuchsian group, whose generators cut it into pairs of pants along closed geodesics and these into hexagons. The registration needs none of
+//! this.
+//!
+//! Input: a surface of genus 0 with at least three features, open curves and boundary loops. Cost: that of the metric, and B layouts of the disk for B
+//! features.
+
+#[cfg(test)]
+mod tests;
+
+use std::f64::consts::PI;
+
+use super::atlas::Atlas;
+use super::curves::{CurvePair, check_alone};
+use super::features::Piece;
+use super::fuchsian::{CoverCopy, Development, cover, edges};
+use super::initial::boundary_corners;
+use super::metric::{Metric, MetricMethod, hyperbolic_metric};
+use super::moebius::{Complex, Moebius};
+use super::pants::{Pants, pants};
+use super::piece::sliced_points;
+use super::pieces::pieces;
+use super::placement::placed;
+use super::regions::divided;
+use super::register::{on_surface, surface_vertex};
+use super::slice::{Side, Sliced, slice_alone};
+use super::trace::closed_geodesic;
+use crate::control::{Observer, Watch};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, triangle};
+use crate::registration::Location;
+
+/// A surface sliced along its features, with its hyperbolic metric, its Fuchsian group and its pants.
+///
+/// The chain runs through all B features, curves as given and then the other boundary loops, each with the bank that has the surface on its left
+/// and the one that has it on its right; arc k leads from the k-th feature of the chain to the next.
+#[derive(Debug, Clone)]
+pub struct HyperbolicStructure {
+    /// (n,): the vertices of the sliced surface on the surface given.
+    pub vertices: Vec<Location>,
+    /// (m, 3): its faces; some of those given are divided.
+    pub faces: Vec<[u32; 3]>,
+    /// (n,): the vertices given; `None` for midpoints of edges.
+    pub vertex_of: Vec<Option<u32>>,
+    /// (m, 3): the same faces, of the surface cut along the arcs too: a disk.
+    pub disk_faces: Vec<[u32; 3]>,
+    /// Where the vertices of the disk lie in the Poincaré disk: the fundamental domain.
+    pub positions: Vec<Complex>,
+    /// The vertices of the sliced surface that those of the disk are.
+    pub disk_vertex_of: Vec<u32>,
+    /// (B,): the features in the order of the chain, each with whether it runs from its end to its start.
+    pub chain: Vec<(usize, bool)>,
+    /// (B,): left and right bank of each feature of the chain, as vertices of the disk along the chain.
+    pub banks: Vec<[Vec<u32>; 2]>,
+    /// (B − 1,): left and right copy of each arc, as vertices of the disk along the chain.
+    pub arcs: Vec<[Vec<u32>; 2]>,
+    /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right one. That of arc k goes around the first k
+    /// features of the chain.
+    pub generators: Vec<Moebius>,
+    /// (B,): the lengths of the features once around, in the order in which they were given.
+    pub boundary_lengths: Vec<f64>,
+    /// (B − 2,): the pairs of pants along the chain.
+    pub pants: Vec<Pants>,
+    /// (B − 3,): the closed geodesics between them, as places on the surface given, the first once more at the end.
+    pub pants_curves: Vec<Vec<Location>>,
+    /// (B − 3,): their lengths.
+    pub lengths: Vec<f64>,
+    /// The largest curvature that the metric has left.
+    pub curvature: f64,
+    /// The hyperbolic area; 2π(B − 2) but for rounding.
+    pub area: f64,
+    surface_faces: Vec<[u32; 3]>,
+}
+
+impl HyperbolicStructure {
+    /// The fundamental domain and its copies in the universal cover, from the middle outward, at most `count` in all.
+    pub fn cover(&self, count: usize) -> Vec<CoverCopy> {
+        cover(&self.generators, count)
+    }
+
+    /// Places on the surface given, in space by its `vertices`.
+    ///
+    /// # Panics
+    /// Where `vertices` are fewer than the surface's.
+    pub fn in_space(&self, places: &[Location], vertices: &[Vector]) -> Vec<Vector> {
+        let point =
+            |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle as usize]));
+        places.iter().map(point).collect()
+    }
+}
+
+/// Computes the hyperbolic structure of a surface of genus 0, closed or with boundary, sliced along open curves.
+///
+/// Curves are paths of vertices along edges, as for [`super::register_hyperbolic`]; closed ones must be loops of the boundary, all of which are
+/// features whether they are named or not.
+///
+/// # Errors
+/// Surfaces of another topology, curves that are no simple edge paths or touch, [`Error::CurveDivides`] for closed ones inside and
+/// [`Error::TooFewFeatures`] for fewer than three features are refused before any work. [`Error::NoHyperbolicMetric`] where double precision does not suffice;
+/// [`Error::CancelledEarly`].
+pub fn hyperbolic_structure(
+    mesh: &TriangleMesh,
+    curves: &[Vec<usize>],
+    metric: MetricMethod,
+    observer: &mut dyn Observer,
+) -> Result<HyperbolicStructure, Error> {
+    // 1. The surface with its features
+    let pairs = checked(mesh, curves)?;
+    let piece = piece(mesh, pairs, &Watch::new(observer, 0.0, "Laying out the surface"))?;
+    // 2. Cut open
+    let (sliced, chain) = slice_alone(&piece, &Watch::new(observer, 0.1, "Cutting open"))?;
+    // 3. Its metric
+    let chi = 2 - chain.len() as i64;
+    let watch = Watch::new(observer, 0.15, "Hyperbolic metric");
+    let metric = hyperbolic_metric(&sliced_points(&sliced), &sliced.surface.faces, chi, metric, &watch)?;
+    // 4. The fundamental domain and the group
+    let atlas = Atlas::new(&sliced.surface, &metric);
+    let domain = Development::centred(&sliced, &atlas);
+    // 5. The pants, and the geodesics between them
+    if !observer.progress(0.9, "Pants") {
+        return Err(Error::CancelledEarly);
+    }
+    let pants = all_pants(&domain, &sliced, &atlas);
+    let (pants_curves, lengths) = pants_curves(&domain, &sliced, &atlas, &piece)?;
+    // 6. All in one
+    let [banks, arcs] = [false, true].map(|is_arc| both_sides(&sliced.sides, is_arc));
+    let structure = HyperbolicStructure {
+        vertices: vertices(&piece, &sliced),
+        faces: sliced.surface.faces.clone(),
+        vertex_of: vertex_of(&piece, &sliced),
+        disk_faces: sliced.disk.faces.clone(),
+        positions: domain.positions(),
+        disk_vertex_of: sliced.surface_vertices(),
+        banks,
+        arcs,
+        generators: domain.generators(),
+        boundary_lengths: boundary_lengths(&sliced, &metric, &chain),
+        chain,
+        pants,
+        pants_curves,
+        lengths,
+        curvature: metric.residual,
+        area: metric.angles.iter().map(|angles| PI - angles.iter().sum::<f64>()).sum(),
+        surface_faces: mesh.faces().to_vec(),
+    };
+    observer.progress(1.0, "Done");
+    Ok(structure)
+}
+
+/// The curves, if they and the boundary make for a hyperbolic surface.
+fn checked(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
+    let pairs = check_alone(mesh, curves)?;
+    if let Some(curve) = pairs.iter().position(|pair| pair.closed && !pair.on_boundary) {
+        return Err(Error::CurveDivides { curve });
+    }
+    let slits = pairs.iter().filter(|pair| !pair.on_boundary).count();
+    match slits + mesh.boundary_loops().len() {
+        found if found < 3 => Err(Error::TooFewFeatures { found }),
+        _ => Ok(pairs),
+    }
+}
+
+/// The surface as one piece.
+fn piece(mesh: &TriangleMesh, pairs: Vec<CurvePair>, watch: &Watch<'_>) -> Result<Piece, Error> {
+    let divided = divided(mesh, mesh, pairs)?;
+    let placement = placed([mesh, mesh], &divided, None, watch)?;
+    Ok(pieces(mesh, mesh, &divided, &placement).swap_remove(0).0)
+}
+
+/// Every pair of pants, by a layout around the left bank of its feature so that it is as precise far out as in the middle.
+fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Vec<Pants> {
+    let corners = boundary_corners(&sliced.disk);
+    let last = domain.generators().len();
+    let of_feature = |k: usize| {
+        let bank: Vec<u32> = edges(&sliced.sides[2 * k + 2], &corners).collect();
+        let face = bank[bank.len() / 2] / 3;
+        let generators = Development::around(face, sliced, atlas).generators();
+        let pants = pants(generators[k], generators[k + 1]);
+        Pants { placement: domain.frames[face as usize] * pants.placement, ..pants }
+    };
+    (0..last - 1).map(of_feature).collect()
+}
+
+/// The geodesics between the pants, and their lengths, each by a layout around the edge of its arc that is nearest to it.
+fn pants_curves(
+    domain: &Development<'_>,
+    sliced: &Sliced,
+    atlas: &Atlas<'_>,
+    piece: &Piece,
+) -> Result<(Vec<Vec<Location>>, Vec<f64>), Error> {
+    let corners = boundary_corners(&sliced.disk);
+    let generators = domain.generators();
+    let traced = (0..generators.len() - 2).map(|k| {
+        let far = |face: u32| {
+            let [from, to] = generators[k + 1].fixed_points();
+            let [from, to] = [from, to].map(|end| domain.frames[face as usize].inverse().apply(end));
+            (from + to).norm()
+        };
+        let faces = edges(&sliced.sides[2 * k + 3], &corners).map(|corner| corner / 3);
+        let face = faces.min_by(|&a, &b| far(a).total_cmp(&far(b)))?;
+        let generator = Development::around(face, sliced, atlas).generators()[k + 1];
+        let line = generator.fixed_points();
+        closed_geodesic(atlas, &sliced.surface, face, line, generator.translation_length())
+    });
+    let lost = || Error::FactorizationFailed { what: "the pants curves".into() };
+    let traced = traced.collect::<Option<Vec<_>>>().ok_or_else(lost)?;
+    let on_given = |place: &Location| on_surface(piece, sliced, place);
+    Ok(traced.iter().map(|curve| (curve.places.iter().map(on_given).collect(), curve.length)).unzip())
+}
+
+/// Left and right copies of the banks, or of the arcs, along the chain.
+fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<u32>; 2]> {
+    let half = sides.len() / 2;
+    let left = (0..half).filter(|&at| sides[at].is_arc == is_arc);
+    left.map(|at| {
+        let right = sides[sides.len() - 1 - at].vertices.iter().rev().copied().collect();
+        [sides[at].vertices.clone(), right]
+    })
+    .collect()
+}
+
+/// The lengths of the features once around, by their own numbers.
+fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -> Vec<f64> {
+    let corners = boundary_corners(&sliced.disk);
+    let length = |corner: u32| metric.lengths[corner as usize / 3][corner as usize % 3];
+    let mut lengths = vec![0.0; chain.len()];
+    for side in sliced.sides.iter().filter(|side| !side.is_arc) {
+        lengths[chain[side.index].0] += edges(side, &corners).map(length).sum::<f64>();
+    }
+    lengths
+}
+
+/// The vertices of the sliced surface on the surface given.
+fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
+    let mut vertices = vec![Location::default(); sliced.surface.vertex_of.len()];
+    for (face, corners) in sliced.surface.faces.iter().enumerate() {
+        for (k, &vertex) in corners.iter().enumerate() {
+            let mut barycentric = [0.0; 3];
+            barycentric[k] = 1.0;
+            let place = Location { triangle: face as u32, barycentric };
+            vertices[vertex as usize] = on_surface(piece, sliced, &place);
+        }
+    }
+    vertices
+}
+
+fn vertex_of(piece: &Piece, sliced: &Sliced) -> Vec<Option<u32>> {
+    let copies = 0..sliced.surface.vertex_of.len();
+    copies.map(|copy| surface_vertex(piece, sliced, copy).map(|vertex| vertex as u32)).collect()
+}

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Closed geodesics on a hyperbolic surface, followed from face to face.
+//!
+//! A line of the plane is known by its ends on the unit circle, and these are carried along from chart to chart. Going forward errors of the end
+//! ahead grow and those of the end behind shrink, so that the line is followed twice: once to find the edges that it crosses, from
+//! which follows exactly where it closes up, and then with each end carried in the direction in which it keeps its digits.
+//!
+//! Input: an atlas, and the ends of the axis of a deck transformation in one of its charts. Cost: linear in the edges crossed.
+
+use super::atlas::Atlas;
+use super::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
+use super::slice::{NONE, Opened};
+use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
+use crate::mesh::{next_corner, previous_corner};
+use crate::registration::Location;
+
+/// The line has closed up where it crosses the first edge again after its length but for this share.
+const ROUNDING: f64 = 1e-3;
+/// It is lost where it has not closed up after this many lengths.
+const LOST: f64 = 1.5;
+
+/// A closed geodesic.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ClosedGeodesic {
+    /// Where it crosses edges, the first place once more at the end.
+    pub places: Vec<Location>,
+    /// Its length.
+    pub length: f64,
+}
+
+/// A line in the chart of a face, by its ends: it comes from the first and goes to the second.
+type Line = [Complex; 2];
+
+/// Follows the closed geodesic of about the given length that goes along a line in the chart of `face`; `None` where rounding has lost it.
+pub(super) fn closed_geodesic(
+    atlas: &Atlas<'_>,
+    surface: &Opened,
+    face: u32,
+    line: Line,
+    length: f64,
+) -> Option<ClosedGeodesic> {
+    // 1. The edges that it crosses
+    let walk = atlas.walk(face, middle(line));
+    let start = exit(atlas, walk.face, moved(walk.motion, line))?;
+    let corners = crossings(atlas, surface, start, moved(walk.motion, line), length)?;
+    // 2. The line once more, from what closes it
+    let lines = lines(atlas, &corners);
+    // 3. The crossings
+    let mut places: Vec<Location> =
+        corners.iter().zip(&lines).map(|(&corner, &line)| crossing(atlas, corner, line).0).collect();
+    places.push(places[0]);
+    Some(ClosedGeodesic { places, length: holonomy(atlas, &corners).translation_length() })
+}
+
+/// The point of a line that is nearest to the origin.
+fn middle([from, to]: Line) -> Complex {
+    from_klein(0.5 * (from + to))
+}
+
+/// A line as another chart sees it.
+fn moved(motion: Moebius, line: Line) -> Line {
+    line.map(|end| on_circle(motion.apply(end)))
+}
+
+fn on_circle(end: Complex) -> Complex {
+    end / end.norm()
+}
+
+/// How far a point of the hyperboloid lies on the left of a line.
+fn height([from, to]: Line, point: Vector) -> f64 {
+    let chord = to - from;
+    let normal = cross([from.re, from.im, 1.0], [chord.re, chord.im, 0.0]);
+    2.0 * dot(normal, point) / chord.norm_sqr()
+}
+
+/// The height of a corner's vertex above a line in the chart of its face.
+fn corner_height(atlas: &Atlas<'_>, corner: u32, line: Line) -> f64 {
+    height(line, to_hyperboloid(atlas.charts[corner as usize / 3][corner as usize % 3]))
+}
+
+/// The corner opposite to the edge through which a line leaves a face; `None` where it misses the face.
+fn exit(atlas: &Atlas<'_>, face: u32, line: Line) -> Option<u32> {
+    let is_left = |corner| corner_height(atlas, corner, line) >= 0.0;
+    (3 * face..3 * face + 3).find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
+}
+
+/// The edges that a line crosses from one on until it closes up, each by the corner opposite to it in the face that is left.
+fn crossings(
+    atlas: &Atlas<'_>,
+    surface: &Opened,
+    start: u32,
+    mut line: Line,
+    length: f64,
+) -> Option<Vec<u32>> {
+    let (mut corner, mut corners, mut travelled) = (start, Vec::new(), 0.0);
+    while travelled < LOST * length {
+        if corner == start && travelled > (1.0 - ROUNDING) * length {
+            return Some(corners);
+        }
+        let (across, tau) = (surface.opposite[corner as usize], atlas.transitions[corner as usize]);
+        if across == NONE {
+            return None;
+        }
+        let entry = tau.apply(crossing(atlas, corner, line).1);
+        corners.push(corner);
+        line = moved(tau, line);
+        corner = ahead(atlas, surface, across, line);
+        travelled += distance(entry, crossing(atlas, corner, line).1);
+    }
+    None
+}
+
+/// The edge through which a line leaves a face that it has entered through another edge.
+fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
+    let (one, other) = match corner_height(atlas, entered, line) >= 0.0 {
+        true => (next_corner(entered), previous_corner(entered)),
+        false => (previous_corner(entered), next_corner(entered)),
+    };
+    // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them do so
+    if surface.opposite[one as usize] == NONE { other } else { one }
+}
+
+/// The isometry from a chart once around to the same one.
+fn holonomy(atlas: &Atlas<'_>, corners: &[u32]) -> Moebius {
+    corners.iter().fold(Moebius::default(), |motion, &corner| atlas.transitions[corner as usize] * motion)
+}
+
+/// The closed line in the chart of every face that it leaves.
+fn lines(atlas: &Atlas<'_>, corners: &[u32]) -> Vec<Line> {
+    // seen from charts that come to meet it, the line moves backward
+    let [to, from] = holonomy(atlas, corners).fixed_points();
+    let mut lines = vec![[from, to]; corners.len()];
+    for at in 1..corners.len() {
+        let tau = atlas.transitions[corners[at - 1] as usize];
+        lines[at][0] = on_circle(tau.apply(lines[at - 1][0]));
+    }
+    let mut end = to;
+    for at in (1..corners.len()).rev() {
+        end = on_circle(atlas.transitions[corners[at] as usize].inverse().apply(end));
+        lines[at][1] = end;
+    }
+    lines
+}
+
+/// Where a line crosses the edge opposite to a corner: the place on the flat face, and that in the chart.
+fn crossing(atlas: &Atlas<'_>, corner: u32, line: Line) -> (Location, Complex) {
+    let ends = [next_corner(corner), previous_corner(corner)];
+    let [right, left] = ends.map(|corner| corner_height(atlas, corner, line));
+    let weights = [left.max(f64::MIN_POSITIVE), (-right).max(f64::MIN_POSITIVE)];
+    let [from, to] = [0, 1].map(|k| {
+        let (face, corner) = (ends[k] as usize / 3, ends[k] as usize % 3);
+        (to_hyperboloid(atlas.charts[face][corner]), weights[k] / atlas.mu[face][corner])
+    });
+    let place = Location::on_edge(corner, to.1 / (from.1 + to.1));
+    (place, from_hyperboloid(add(scaled(from.0, weights[0]), scaled(to.0, weights[1]))))
+}

@@ -97,13 +97,14 @@ impl<'a> Scaled<'a> {
     }
 }
 
-/// Faces whose exact orientation in the plane is not positive, ascending. Coordinates must be finite and moderate.
+/// Faces whose exact orientation in the plane is not positive, ascending. Coordinates must be finite and
+/// moderate.
 pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
-/// Faces whose exact orientation around the origin is not positive, ascending: those that an outward oriented map onto
-/// the sphere folds. Coordinates must be finite and moderate.
+/// Faces whose exact orientation around the origin is not positive, ascending: those that an outward oriented
+/// map onto the sphere folds. Coordinates must be finite and moderate.
 pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
@@ -114,8 +115,8 @@ pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
 /// [`TriangleMesh`](crate::mesh::TriangleMesh), or validate first.
 ///
 /// # Errors
-/// [`Error::MapNonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image has no
-/// area.
+/// [`Error::MapNonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
+/// has no area.
 pub fn distortion(
     points: &[Vector],
     faces: &[[u32; 3]],

@@ -696,7 +696,8 @@ impl Error {
         }
     }
 
-    /// Whether the arrays given are at fault: the mesh, its seams, its density, its initial map, its landmarks or curves.
+    /// Whether the arrays given are at fault: the mesh, its seams, its density, its initial map, its
+    /// landmarks or curves.
     pub fn is_mesh_error(&self) -> bool {
         match self {
             Self::Surface { error, .. } => error.is_mesh_error(),

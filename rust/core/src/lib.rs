@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Area-preserving (authalic) maps of triangle meshes: [`disk_map`] for surfaces with a boundary, [`sphere_map`] for
-//! closed ones.
+//! Area-preserving (authalic) maps of triangle meshes: [`disk_map`] for surfaces with a boundary,
+//! [`sphere_map`] for closed ones.
 //!
 //! ```
 //! use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};

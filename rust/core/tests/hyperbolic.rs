@@ -148,7 +148,8 @@ fn curves_that_cannot_be_cut_along_are_refused_before_any_work() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// Whatever the surfaces and the curves: nothing folds, the whole target is covered, curves lie on curves.
+    /// Whatever the surfaces and the curves: nothing folds, the whole target is covered, curves lie on
+    /// curves.
     #[test]
     fn random_curves_on_random_spheres(seed in 0u64..100_000, count in 1usize..9) {
         let mut random = Random::new(seed);

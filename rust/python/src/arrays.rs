@@ -79,7 +79,8 @@ impl<'py> Values<'py> {
         Ok(array.as_slice()?.to_vec())
     }
 
-    /// Rows of the same dtype as an array of another shape; a row is what is left of the shape after `axes` of them.
+    /// Rows of the same dtype as an array of another shape; a row is what is left of the shape after `axes`
+    /// of them.
     pub fn taken(&self, axes: usize, rows: &[u32], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
         let py = self.array.py();
         let (first, rest) = self.array.shape().split_at(axes);
@@ -192,7 +193,8 @@ fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyRes
     }
 }
 
-/// Indices of the `n_vertices` vertices, or an error that names the rows (the noun says what they are) with others.
+/// Indices of the `n_vertices` vertices, or an error that names the rows (the noun says what they are) with
+/// others.
 fn narrow<const N: usize>(
     py: Python<'_>,
     name: &'static str,

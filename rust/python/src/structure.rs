@@ -12,14 +12,18 @@ use crate::arrays::{Pairs, from_index_list, from_indices, from_points, indices, 
 use crate::registration::{choice, metrics, vertex_paths};
 use crate::run::run;
 
+/// Rows (a, b).
+type Isometries = Py<PyArray2<Complex64>>;
+
 /// A pair of pants between closed geodesics, and its two right-angled hexagons.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Pants {
-    /// (3,) float64: the lengths of its boundaries: the pants curve before, the feature, the pants curve after; at the ends of the chain the first and
-    /// the last feature stand for curves.
+    /// (3,) float64: the lengths of its boundaries: the pants curve before, the feature, the pants curve
+    /// after; at the ends of the chain the first and the last feature stand for curves.
     boundary_lengths: Py<PyArray1<f64>>,
-    /// (2, 6, 2) float64: the corners of the hexagons in Klein's model. Sides 0–1, 2–3 and 4–5 lie on the boundaries in the order of the lengths and are
-    /// half as long; side 5–0 is common to both. The first is counter-clockwise, the second its mirror image.
+    /// (2, 6, 2) float64: the corners of the hexagons in Klein's model. Sides 0–1, 2–3 and 4–5 lie on the
+    /// boundaries in the order of the lengths and are half as long; side 5–0 is common to both. The first is
+    /// counter-clockwise, the second its mirror image.
     hexagons: Py<PyArray3<f64>>,
     /// (2, 6) float64: the inner angles, π/2 but for rounding.
     angles: Py<PyArray2<f64>>,
@@ -51,9 +55,10 @@ impl Pants {
 
 /// A surface sliced along curves, with its hyperbolic metric, its Fuchsian group and its pairs of pants.
 ///
-/// A chain runs through all B features, curves as given and then the boundary loops that are not among them; an arc leads from each to the
-/// next. Cut along features and arcs the surface is a disk, the fundamental domain. Isometries of the Poincaré disk are rows (a, b) of z ↦ (a z +
-/// b) / (conj(b) z + conj(a)) with |a|² − |b|² = 1.
+/// A chain runs through all B features, curves as given and then the boundary loops that are not among them;
+/// an arc leads from each to the next. Cut along features and arcs the surface is a disk, the fundamental
+/// domain. Isometries of the Poincaré disk are rows (a, b) of z ↦ (a z + b) / (conj(b) z + conj(a)) with |a|²
+/// − |b|² = 1.
 #[pyclass(frozen, module = "authalic")]
 pub struct HyperbolicStructure {
     /// (n, 3) float64: the vertices of the sliced surface; those of slits stand on both banks.
@@ -80,23 +85,25 @@ pub struct HyperbolicStructure {
     /// (B,) bool: whether the chain runs through them from end to start.
     #[pyo3(get)]
     reversed: Py<PyArray1<bool>>,
-    /// B pairs of (k,) int64: left and right bank of each feature of the chain, as vertices of the disk along the chain.
+    /// B pairs of (k,) int64: left and right bank of each feature of the chain, as vertices of the disk along
+    /// the chain.
     #[pyo3(get)]
     banks: Vec<Sides>,
     /// B − 1 pairs of (k,) int64: left and right copy of each arc, as vertices of the disk along the chain.
     #[pyo3(get)]
     arcs: Vec<Sides>,
-    /// (B − 1, 2) complex128: the generators of the Fuchsian group; each takes the left copy of its arc to the right one, and that of arc k goes around the
-    /// first k features of the chain.
+    /// (B − 1, 2) complex128: the generators of the Fuchsian group; each takes the left copy of its arc to
+    /// the right one, and that of arc k goes around the first k features of the chain.
     #[pyo3(get)]
-    generators: Py<PyArray2<Complex64>>,
+    generators: Isometries,
     /// (B,) float64: the lengths of the features once around, in the order in which they were given.
     #[pyo3(get)]
     boundary_lengths: Py<PyArray1<f64>>,
     /// B − 2 pairs of pants along the chain.
     #[pyo3(get)]
     pants: Vec<Py<Pants>>,
-    /// B − 3 arrays (k, 3) float64: the closed geodesics between the pants on the surface, the first point once more at the end.
+    /// B − 3 arrays (k, 3) float64: the closed geodesics between the pants on the surface, the first point
+    /// once more at the end.
     #[pyo3(get)]
     pants_curves: Vec<Py<PyArray2<f64>>>,
     /// (B − 3,) float64: their lengths.
@@ -148,7 +155,7 @@ impl HyperbolicStructure {
 }
 
 /// Isometries as rows (a, b).
-fn isometries(py: Python<'_>, motions: &[Moebius]) -> PyResult<Py<PyArray2<Complex64>>> {
+fn isometries(py: Python<'_>, motions: &[Moebius]) -> PyResult<Isometries> {
     let rows: Vec<Vec<Complex>> = motions.iter().map(|motion| vec![motion.a, motion.b]).collect();
     Ok(PyArray2::from_vec2(py, &rows)?.unbind())
 }
@@ -165,8 +172,8 @@ impl HyperbolicStructure {
     /// Returns
     /// -------
     /// words : list of tuple of int
-    ///     The generators that lead to each copy, without cancelling neighbours: k for the k-th one, counted from 1, and -k for its inverse; the
-    ///     last one acts first. The domain itself has ().
+    ///     The generators that lead to each copy, without cancelling neighbours: k for the k-th one, counted
+    ///     from 1, and -k for its inverse; the last one acts first. The domain itself has ().
     /// motions : (k, 2) complex128
     ///     The isometries that take the domain there.
     ///
@@ -174,7 +181,7 @@ impl HyperbolicStructure {
     /// ------
     /// ValueError
     ///     `copies` below 1.
-    fn cover(&self, py: Python<'_>, copies: i64) -> PyResult<(Vec<Py<PyAny>>, Py<PyArray2<Complex64>>)> {
+    fn cover(&self, py: Python<'_>, copies: i64) -> PyResult<(Vec<Py<PyAny>>, Isometries)> {
         let count = usize::try_from(copies).ok().filter(|&count| count > 0);
         let count =
             count.ok_or_else(|| PyValueError::new_err(format!("copies must be ≥ 1, but is {copies}")))?;
@@ -197,11 +204,13 @@ impl HyperbolicStructure {
     }
 }
 
-/// The hyperbolic structure of a surface of genus 0 sliced along curves: metric, Fuchsian group, pants and hexagons.
+/// The hyperbolic structure of a surface of genus 0 sliced along curves: metric, Fuchsian group, pants and
+/// hexagons.
 ///
-/// The objects of the theory behind `register_hyperbolic` (Shi et al. 2013, section 3), for pictures and further computation: the surface sliced along its curves
-/// has one hyperbolic metric with geodesic boundary, is laid out by it in the Poincaré disk, and falls into pairs of pants along closed
-/// geodesics and these into right-angled hexagons.
+/// The objects of the theory behind `register_hyperbolic` (Shi et al. 2013, section 3), for pictures and
+/// further computation: the surface sliced along its curves has one hyperbolic metric with geodesic boundary,
+/// is laid out by it in the Poincaré disk, and falls into pairs of pants along closed geodesics and these
+/// into right-angled hexagons.
 ///
 /// Parameters
 /// ----------
@@ -210,10 +219,12 @@ impl HyperbolicStructure {
 /// faces : (m, 3) integer array
 ///     Triangles: one component without handles, closed or with boundary loops.
 /// curves : list of (k,) integer arrays
-///     Paths of vertices along edges, each of at least two edges, without a vertex in common and off the boundary; or whole boundary loops, which are
-///     features anyway. Curves and boundary loops together must be at least three.
+///     Paths of vertices along edges, each of at least two edges, without a vertex in common and off the
+///     boundary; or whole boundary loops, which are features anyway. Curves and boundary loops together must
+///     be at least three.
 /// metric : "newton" or "ricci_flow"
-///     How the metric is found: by Newton's method, or by the paper's Ricci flow (slow, then finished by Newton).
+///     How the metric is found: by Newton's method, or by the paper's Ricci flow (slow, then finished by
+///     Newton).
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between steps and in long ones from within; False cancels.
 ///
@@ -224,8 +235,9 @@ impl HyperbolicStructure {
 /// Raises
 /// ------
 /// MeshError
-///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, touch each other or the boundary or divide the
-///     surface, fewer than three features: the message names the curve; nothing was computed.
+///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, touch
+///     each other or the boundary or divide the surface, fewer than three features: the message names the
+///     curve; nothing was computed.
 /// ValueError
 ///     An option out of its range.
 /// SolverError
@@ -239,11 +251,12 @@ impl HyperbolicStructure {
 /// >>> rings = [[(1 - h * h) ** 0.5 * np.cos(a), (1 - h * h) ** 0.5 * np.sin(a), h] for h in z for a in t]
 /// >>> faces = [f for i in range(12) for j in range(24) for a, b in [(24 * i + j, 24 * i + (j + 1) % 24)]
 /// ...          for f in ([a, b, b + 24], [a, b + 24, a + 24])]
-/// >>> found = authalic.hyperbolic_structure(rings, faces, curves=[[76, 100, 124, 148], [88, 112, 136, 160, 184]])
+/// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
+/// >>> found = authalic.hyperbolic_structure(rings, faces, curves=curves)
 /// >>> len(found.generators), len(found.pants), round(found.area / np.pi, 9)
 /// (3, 2, 4.0)
 /// >>> words, motions = found.cover(7)
-/// >>> motions.shape, bool(abs(found.pants[0].angles - np.pi / 2).max() < 1e-9)
+/// >>> motions.shape, all(abs(pants.angles - np.pi / 2).max() < 1e-9 for pants in found.pants)
 /// ((7, 2), True)
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, curves, metric="newton", progress=None))]

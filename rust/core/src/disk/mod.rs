@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Area-preserving maps of disks to the unit disk.
 //!
-//! [`disk_map`] is the entry. The default is guarded Gauss–Newton, our own. The papers' methods (Liu & Yueh 2023) start
-//! from a harmonic map with an arc-length boundary, take fixed-point steps and conjugate gradients. They cannot promise
-//! an unfolded map, so folds are unfolded, and where that fails the run is repeated from Tutte's embedding without ever
-//! leaving it. Every result is checked by exact predicates.
+//! [`disk_map`] is the entry. The default is guarded Gauss–Newton, our own. The papers' methods (Liu & Yueh
+//! 2023) start from a harmonic map with an arc-length boundary, take fixed-point steps and conjugate
+//! gradients. They cannot promise an unfolded map, so folds are unfolded, and where that fails the run is
+//! repeated from Tutte's embedding without ever leaving it. Every result is checked by exact predicates.
 //!
-//! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost: about 5 sparse
-//! Cholesky factorisations of the interior vertices, then about 12 with two unknowns per vertex (Gauss–Newton) or one
-//! solve per iteration (conjugate gradients).
+//! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost:
+//! about 5 sparse Cholesky factorisations of the interior vertices, then about 12 with two unknowns per
+//! vertex (Gauss–Newton) or one solve per iteration (conjugate gradients).
 
 mod boundary;
 mod certificate;
@@ -57,8 +57,8 @@ pub enum Boundary {
     /// too.
     #[default]
     Sliding,
-    /// Free to take any shape that does not cross itself, for Gauss–Newton only: with a weight of angles it takes the
-    /// shape that suits these. The map lies inside the unit circle.
+    /// Free to take any shape that does not cross itself, for Gauss–Newton only: with a weight of angles it
+    /// takes the shape that suits these. The map lies inside the unit circle.
     Free,
 }
 
@@ -71,19 +71,21 @@ pub struct DiskMapOptions<'a> {
     pub boundary: Boundary,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas alone.
+    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
+    /// alone.
     pub angle_weight: f64,
     /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic
     /// map where `None`.
     pub initial: Option<&'a [[f64; 2]]>,
-    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it takes,
-    /// 4 (24 below 10,000 vertices) where those leave the area ratio a deviation of 1 %, up to 60 else; the papers' methods: 50, as in the paper's tables. The five fixed-point steps
-    /// that come first, the unguarded steps that unfold (12 at the most) and a descent that follows where folds were
-    /// mended come on top, and where some targets are below 1 % of the mean up to eight for each of the floors that are
-    /// lowered step by step.
+    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
+    /// takes, 4 (24 below 10,000 vertices) where those leave the area ratio a deviation of 1 %, up to 60
+    /// else; the papers' methods: 50, as in the paper's tables. The five fixed-point steps that come first,
+    /// the unguarded steps that unfold (12 at the most) and a descent that follows where folds were mended
+    /// come on top, and where some targets are below 1 % of the mean up to eight for each of the floors that
+    /// are lowered step by step.
     pub max_iterations: Option<usize>,
-    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴ where
-    /// `None`. For the papers' methods √(gᵀM⁻¹g); 10⁻⁸ where `None`.
+    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
+    /// where `None`. For the papers' methods √(gᵀM⁻¹g); 10⁻⁸ where `None`.
     pub tolerance: Option<f64>,
     /// Fill all boundary loops but the longest virtually instead of refusing them; off.
     pub fill_holes: bool,

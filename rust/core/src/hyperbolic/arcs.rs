@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The arcs that join the features of a chain, on the source and, in the same homotopy class, on the target.
 //!
-//! Harmonic maps of surfaces with several boundaries are unique in a homotopy class only, and it is the arcs that say
-//! which one is meant: those of the source go onto those of the target. On the source an arc is a short path of edges
-//! that keeps clear of the cuts. Its image under a deformation of the sphere that carries the features of the source
-//! to those of the target is a polyline; the arc on the target is the path of edges that stays nearest to it.
+//! Harmonic maps of surfaces with several boundaries are unique in a homotopy class only, and it is the arcs
+//! that say which one is meant: those of the source go onto those of the target. On the source an arc is a
+//! short path of edges that keeps clear of the cuts. Its image under a deformation of the sphere that carries
+//! the features of the source to those of the target is a polyline; the arc on the target is the path of
+//! edges that stays nearest to it.
 //!
-//! Input: surfaces on which the features are marked and no chords are left. After each arc its chords are split, so
-//! that there is always a way for the next. Cost: a search by Dijkstra's algorithm for each arc.
+//! Input: surfaces on which the features are marked and no chords are left. After each arc its chords are
+//! split, so that there is always a way for the next. Cost: a search by Dijkstra's algorithm for each arc.
 
 use super::chain::Link;
 use super::cutting::{Cutting, Seam};
@@ -77,7 +78,8 @@ pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> V
     arcs.iter().map(guide).collect()
 }
 
-/// Cuts the target along an arc for each link; returns their vertices, and whether all follow carried polylines.
+/// Cuts the target along an arc for each link; returns their vertices, and whether all follow carried
+/// polylines.
 ///
 /// # Errors
 /// [`Error::NoArc`], [`Error::CancelledEarly`].

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! An atlas of a hyperbolic surface: every face by itself in the Poincaré disk, and the isometries between neighbours.
+//! An atlas of a hyperbolic surface: every face by itself in the Poincaré disk, and the isometries between
+//! neighbours.
 //!
-//! No global coordinates: developed over many faces they leave double precision, charts of single faces never do. A point
-//! is a face and a place in its chart, and walks from chart to chart.
+//! No global coordinates: developed over many faces they leave double precision, charts of single faces never
+//! do. A point is a face and a place in its chart, and walks from chart to chart.
 //!
 //! Input: the faces of a surface with the lengths and angles of a hyperbolic [`Metric`]. Cost: O(m).
 
@@ -26,7 +27,8 @@ const MOST_STEPS: usize = 100_000;
 pub(super) struct Atlas<'a> {
     /// (m, 3): the corners of each face in its chart, counter-clockwise.
     pub charts: Vec<[Complex; 3]>,
-    /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity on the boundary.
+    /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity
+    /// on the boundary.
     pub transitions: Vec<Moebius>,
     /// (m, 3): μ at the corners of each face.
     pub mu: Vec<[f64; 3]>,
@@ -105,14 +107,16 @@ impl<'a> Atlas<'a> {
 
     /// The point of a face with given barycentric coordinates on the flat face in space.
     ///
-    /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map that keeps circumcircles.
+    /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map
+    /// that keeps circumcircles.
     pub(super) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
         let (corners, mu) = (self.charts[face as usize], self.mu[face as usize]);
         let weighted = |k: usize| scaled(to_hyperboloid(corners[k]), barycentric[k] * mu[k]);
         from_hyperboloid(add(weighted(0), add(weighted(1), weighted(2))))
     }
 
-    /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not negative, 1 in sum.
+    /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not
+    /// negative, 1 in sum.
     pub(super) fn barycentric(&self, face: u32, x: Complex) -> [f64; 3] {
         let [a, b, c] = self.charts[face as usize].map(to_hyperboloid);
         let x = to_hyperboloid(x);

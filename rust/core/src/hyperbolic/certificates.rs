@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What proves that a map of sliced surfaces is a homeomorphism with the curves in place.
 //!
-//! Every face is positively oriented, the images' signed areas make up the whole surface, and both banks of a slit run
-//! through the same points in order: such a map is one-to-one and onto.
+//! Every face is positively oriented, the images' signed areas make up the whole surface, and both banks of a
+//! slit run through the same points in order: such a map is one-to-one and onto.
 
 use std::f64::consts::PI;
 
@@ -28,8 +28,8 @@ pub struct Certificates {
     pub cocycle_error: f64,
     /// Vertices that rounding has put beyond the boundary.
     pub outside: usize,
-    /// E ≥ about 1 over 2π(B − 2): the harmonic energy in parts of the area; 1 for an isometry. NaN where no piece has a hyperbolic
-    /// metric.
+    /// E ≥ about 1 over 2π(B − 2): the harmonic energy in parts of the area; 1 for an isometry. NaN where no
+    /// piece has a hyperbolic metric.
     pub energy_ratio: f64,
     /// The largest curvature that the metrics of source and target have left.
     pub curvature: [f64; 2],

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The order and direction in which features are joined by arcs.
 //!
-//! Every feature but the last is joined from its end to the start of the next, so that all features and arcs together
-//! are one simple path and cutting along it leaves a disk. Which order is taken decides nothing but how long the arcs
-//! are: from each of the 2 B first features with a direction on to the nearest tip left, on both spheres together, and
-//! of these chains the one with the shortest sum.
+//! Every feature but the last is joined from its end to the start of the next, so that all features and arcs
+//! together are one simple path and cutting along it leaves a disk. Which order is taken decides nothing but
+//! how long the arcs are: from each of the 2 B first features with a direction on to the nearest tip left, on
+//! both spheres together, and of these chains the one with the shortest sum.
 //!
 //! Cost: O(B³) for B features.
 

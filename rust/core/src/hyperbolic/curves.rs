@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Landmark curves, given as paths of vertices, and their check.
 //!
-//! A curve is open, or closed: then its first vertex stands again at its end, or an edge joins its last vertex to its
-//! first and it has at least eight. Open curves run the same way on both surfaces; of closed ones neither start nor direction means anything.
+//! A curve is open, or closed: then its first vertex stands again at its end, or an edge joins its last
+//! vertex to its first and it has at least eight. Open curves run the same way on both surfaces; of closed
+//! ones neither start nor direction means anything.
 //!
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 
-/// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may just bend around a face or
-/// two.
+/// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may
+/// just bend around a face or two.
 const LEAST_RING: usize = 8;
 
 /// Pairs of curves, one on the source and one on the target, that belong together.
@@ -63,13 +64,14 @@ struct Side<'a> {
 }
 
 impl Curves<'_> {
-    /// Refuses surfaces and curves that cannot be registered, before any work, and says which curves are closed.
+    /// Refuses surfaces and curves that cannot be registered, before any work, and says which curves are
+    /// closed.
     ///
     /// # Errors
-    /// Each names the argument, the curve and its vertices at fault: surfaces that are not one component of genus 0; other
-    /// numbers of curves or boundary loops on the target; no curves on closed surfaces; curves that are too short, leave
-    /// the mesh or its edges, meet themselves, each other or the boundary, unless they run along a whole loop of it; pairs
-    /// of which one is closed only or on the boundary only.
+    /// Each names the argument, the curve and its vertices at fault: surfaces that are not one component of
+    /// genus 0; other numbers of curves or boundary loops on the target; no curves on closed surfaces; curves
+    /// that are too short, leave the mesh or its edges, meet themselves, each other or the boundary, unless
+    /// they run along a whole loop of it; pairs of which one is closed only or on the boundary only.
     pub(super) fn check(
         &self,
         source: &TriangleMesh,
@@ -220,8 +222,8 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
 }
 
-/// Runs through a closed curve from the vertex with the least coordinates on, towards the lesser of its neighbours, so that it does not
-/// matter where and which way it was begun.
+/// Runs through a closed curve from the vertex with the least coordinates on, towards the lesser of its
+/// neighbours, so that it does not matter where and which way it was begun.
 fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
     let point = |vertex: u32| mesh.points()[vertex as usize];
     let is_less = |a: u32, b: u32| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
@@ -241,7 +243,8 @@ fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]
     }
 }
 
-/// The boundary loop that a closed curve runs along as a whole, from whichever vertex and in whichever direction.
+/// The boundary loop that a closed curve runs along as a whole, from whichever vertex and in whichever
+/// direction.
 pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[u32]) -> Option<usize> {
     mesh.boundary_loops().iter().position(|vertices| {
         let n = vertices.len();

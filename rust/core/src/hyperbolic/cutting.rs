@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A surface while it is being cut: its edges can be marked for cutting and split at their midpoints.
 //!
-//! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An edge between two such
-//! vertices that is not marked itself is a *chord*: a triangle with two sides on the boundary could not be given the
-//! angle it needs there, and a straight-line map with the boundary fixed would flatten it. So every chord is split.
-//! One pass over the neighbours of the vertices that are new on the cuts leaves none, as the new edges all end in a
-//! midpoint, which lies on no cut. It also leaves a way through between any two places of the boundary: every triangle
-//! has a vertex off the cuts, and neighbouring triangles share one.
+//! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An edge between
+//! two such vertices that is not marked itself is a *chord*: a triangle with two sides on the boundary could
+//! not be given the angle it needs there, and a straight-line map with the boundary fixed would flatten it.
+//! So every chord is split. One pass over the neighbours of the vertices that are new on the cuts leaves
+//! none, as the new edges all end in a midpoint, which lies on no cut. It also leaves a way through between
+//! any two places of the boundary: every triangle has a vertex off the cuts, and neighbouring triangles share
+//! one.
 //!
-//! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a vertex as
-//! many steps as it has neighbours.
+//! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a
+//! vertex as many steps as it has neighbours.
 
 use super::features::Piece;
 use super::slice::Place;
@@ -121,7 +122,8 @@ impl Cutting {
     /// Splits the chords at `vertices`, which all lie on cuts.
     pub(super) fn split_chords(&mut self, vertices: &[u32]) {
         for &vertex in vertices {
-            // Splits leave the corners around the vertex where they are and bring the far ends of its edges nearer.
+            // Splits leave the corners around the vertex where they are and bring the far ends of its edges
+            // nearer.
             let corners: Vec<u32> = self.corners(vertex).collect();
             for edge in corners.into_iter().map(previous_corner) {
                 if self.is_chord(edge) {
@@ -166,8 +168,9 @@ impl Cutting {
         self.points.len() as u32 - 1
     }
 
-    /// Divides a face between a corner and the midpoint of the edge opposite to it, keeps the part at the start of that
-    /// edge (or else at its end), appends the other and returns its corner where the face is divided.
+    /// Divides a face between a corner and the midpoint of the edge opposite to it, keeps the part at the
+    /// start of that edge (or else at its end), appends the other and returns its corner where the face is
+    /// divided.
     fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: u32) -> u32 {
         let [next, previous] = [next_corner(corner), previous_corner(corner)];
         let [kept, given] = if keeps_start { [next, previous] } else { [previous, next] };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The intrinsic Delaunay triangulation of a hyperbolic surface, whose cotangent weights are not negative.
 //!
-//! Edges are flipped within the metric; vertices and metric stay (Bobenko & Springborn 2007). Whether an edge is locally Delaunay is seen from
-//! the Euclidean triangles of its chords 2 sinh(l/2), which have the same circumcircles, and their cotangents are the
-//! weights of the harmonic energy.
+//! Edges are flipped within the metric; vertices and metric stay (Bobenko & Springborn 2007). Whether an edge
+//! is locally Delaunay is seen from the Euclidean triangles of its chords 2 sinh(l/2), which have the same
+//! circumcircles, and their cotangents are the weights of the harmonic energy.
 //!
-//! Edges can have the same ends or go from a vertex to itself, so everything is kept by half-edge. Edges that would join two vertices of the
-//! boundary are not made: they would lie in it after the map.
+//! Edges can have the same ends or go from a vertex to itself, so everything is kept by half-edge. Edges that
+//! would join two vertices of the boundary are not made: they would lie in it after the map.
 //!
 //! Cost: O(m) flips in practice.
 
@@ -47,8 +47,8 @@ impl Net {
     }
 }
 
-/// Flips the edges of a net to the Delaunay triangulation of the metric in which they are `lengths` long; returns it with one weight for
-/// each corner's edge, the same from both sides.
+/// Flips the edges of a net to the Delaunay triangulation of the metric in which they are `lengths` long;
+/// returns it with one weight for each corner's edge, the same from both sides.
 ///
 /// Faces that are `kept` stay as they are: the weights of their edges are raised where they are not positive.
 pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Net, Vec<f64>) {
@@ -108,7 +108,8 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
     let across = across as usize;
     let is_on_boundary = |corner: usize| is_boundary[net.faces[corner / 3][corner % 3] as usize];
     let (ours, theirs) = (chords(lengths, corner), chords(lengths, across));
-    // cosines of the angles opposite to the edge, up to the same factor as their cotangents have in Delaunay's condition
+    // cosines of the angles opposite to the edge, up to the same factor as their cotangents have in
+    // Delaunay's condition
     let cosine = |[e, a, b]: [f64; 3]| (a * a + b * b - e * e) / (a * b);
     if cosine(ours) + cosine(theirs) >= -CONVEX || is_on_boundary(corner) && is_on_boundary(across) {
         return false;
@@ -184,7 +185,8 @@ fn angle(a: f64, b: f64, c: f64) -> f64 {
     2.0 * near.sqrt().atan2(far.sqrt())
 }
 
-/// The length of the other diagonal of the two faces at an edge, from the angle between two sides at its tail.
+/// The length of the other diagonal of the two faces at an edge, from the angle between two sides at its
+/// tail.
 fn diagonal(lengths: &[f64], corner: usize, across: usize) -> f64 {
     let [_, _, pi] = sides(lengths, corner);
     let [_, iq, _] = sides(lengths, across);

@@ -17,8 +17,8 @@ pub(super) struct Bank {
 pub(super) struct Feature {
     /// From start to end with the surface on the left of travel.
     pub left: Bank,
-    /// From start to end with the surface on the right of travel: of a slit the same vertices, of a loop the rest of it
-    /// (start and end belong to both).
+    /// From start to end with the surface on the right of travel: of a slit the same vertices, of a loop the
+    /// rest of it (start and end belong to both).
     pub right: Bank,
     /// Whether it is a boundary loop of the piece.
     pub is_loop: bool,

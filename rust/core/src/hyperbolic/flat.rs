@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pieces with one or two features, which have no hyperbolic metric: the disk and the cylinder.
 //!
-//! Both surfaces are laid out on the same flat domain by weighted means, the features by their parameters on its straight or round
-//! boundary, and put on top of each other. One feature is laid on a circle; two on the ends of a cylinder of
-//! circumference 1, on which the arc between them says how often the map winds around.
+//! Both surfaces are laid out on the same flat domain by weighted means, the features by their parameters on
+//! its straight or round boundary, and put on top of each other. One feature is laid on a circle; two on the
+//! ends of a cylinder of circumference 1, on which the arc between them says how often the map winds around.
 //!
 //! Cost: one sparse Cholesky factorisation for either surface and a point location for each vertex.
 
@@ -138,7 +138,8 @@ fn held(sliced: &Sliced, place: impl Fn(usize, f64) -> Planar) -> Vec<Option<Pla
 /// The disk's vertices on the strip −½ ≤ x ≤ ½, 0 ≤ y ≤ 1, the arc at x = ±½ free to bend.
 fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error> {
     let (disk, surface) = (&sliced.disk, &sliced.surface);
-    // 1. Where the ends are: the sides are bank, arc and bank on the right half of the strip, and the same on the left half
+    // 1. Where the ends are: the sides are bank, arc and bank on the right half of the strip, and the same on
+    //    the left half
     let x = |side: usize, s: f64| 0.5 * if side < 3 { s } else { -s };
     let y = |side: usize| if side == 0 || side == 5 { 0.0 } else { 1.0 };
     let mut place = vec![None; surface.vertex_of.len()];

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The Fuchsian group of a sliced surface: its disk laid out in the hyperbolic plane, and the isometries between the sides of this.
+//! The Fuchsian group of a sliced surface: its disk laid out in the hyperbolic plane, and the isometries
+//! between the sides of this.
 //!
-//! A surface with a hyperbolic metric is the hyperbolic plane (the part of it between the boundary lines) modulo a group of isometries. The
-//! surface cut along B − 1 arcs is a fundamental domain, and the group is free on the isometries g_k that take the left copy of arc k to the
-//! right one (Shi et al. 2013, section 3). Faces are laid out by composing the isometries between their charts, so that no face has
-//! its shape from another one's places.
+//! A surface with a hyperbolic metric is the hyperbolic plane (the part of it between the boundary lines)
+//! modulo a group of isometries. The surface cut along B − 1 arcs is a fundamental domain, and the group is
+//! free on the isometries g_k that take the left copy of arc k to the right one (Shi et al. 2013, section 3).
+//! Faces are laid out by composing the isometries between their charts, so that no face has its shape from
+//! another one's places.
 //!
 //! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
 
@@ -21,8 +23,8 @@ use crate::parallel;
 /// A copy of the fundamental domain in the universal cover.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverCopy {
-    /// The generators that lead to it, without cancelling neighbours: k for the k-th one, counted from 1, and −k for its inverse. The
-    /// last one acts first; the domain itself has none.
+    /// The generators that lead to it, without cancelling neighbours: k for the k-th one, counted from 1, and
+    /// −k for its inverse. The last one acts first; the domain itself has none.
     pub word: Vec<i32>,
     /// The isometry that takes the fundamental domain there.
     pub motion: Moebius,
@@ -95,7 +97,8 @@ impl<'a> Development<'a> {
         arcs.take(self.sliced.sides.len() / 4).map(|side| self.generator(side, &corners)).collect()
     }
 
-    /// The isometry from the left copy of an arc to the right one, by that of its edges whose copies lie nearest to the origin.
+    /// The isometry from the left copy of an arc to the right one, by that of its edges whose copies lie
+    /// nearest to the origin.
     fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
         let candidates = edges(side, corners).map(|corner| {
             let across = self.sliced.surface.opposite[corner as usize];
@@ -125,8 +128,8 @@ pub(super) fn edges<'a>(side: &'a Side, corners: &'a [u32]) -> impl Iterator<Ite
 
 /// The fundamental domain and its copies in the universal cover, at most `count` in all.
 ///
-/// They grow outward from the domain: each is a neighbour, across a copy of an arc, of an earlier one, and of all such neighbours the one whose
-/// middle is nearest to the origin comes next.
+/// They grow outward from the domain: each is a neighbour, across a copy of an arc, of an earlier one, and of
+/// all such neighbours the one whose middle is nearest to the origin comes next.
 pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
     let letters: Vec<i32> = (1..=generators.len() as i32).flat_map(|k| [k, -k]).collect();
     let motion = |letter: i32| {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic harmonic map by Riemannian Newton.
 //!
-//! E = ½ Σ w_e d(f_i, T_ij f_j)² over the edges of the source, every image in the chart of its own face of the target.
-//! For positive weights E is geodesically convex, and its minimum in the homotopy class of a homeomorphism is an
-//! embedding (Colin de Verdière 1991; Shi et al. 2013, theorem 3.4), whatever is folded on the way there.
+//! E = ½ Σ w_e d(f_i, T_ij f_j)² over the edges of the source, every image in the chart of its own face of
+//! the target. For positive weights E is geodesically convex, and its minimum in the homotopy class of a
+//! homeomorphism is an embedding (Colin de Verdière 1991; Shi et al. 2013, theorem 3.4), whatever is folded
+//! on the way there.
 //!
-//! With q = δ_a(b) for the two ends, d = 2 artanh |q| and unit vectors e = q/|q| and n = i e, the second variation of the arc length gives the
-//! blocks e eᵀ + (d coth d) n nᵀ for one end, and −(e_i e_jᵀ + (d / sinh d) n_i n_jᵀ) for both.
+//! With q = δ_a(b) for the two ends, d = 2 artanh |q| and unit vectors e = q/|q| and n = i e, the second
+//! variation of the arc length gives the blocks e eᵀ + (d coth d) n nᵀ for one end, and −(e_i e_jᵀ + (d /
+//! sinh d) n_i n_jᵀ) for both.
 //!
-//! Input: a start in the right homotopy class, and the intrinsic Delaunay weights of the source's own hyperbolic metric.
-//! Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
+//! Input: a start in the right homotopy class, and the intrinsic Delaunay weights of the source's own
+//! hyperbolic metric. Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
 
 use super::atlas::{Atlas, Walk};
 use super::delaunay::{Net, delaunay};
@@ -77,7 +79,8 @@ struct Pull {
 /// Minimises E in place.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where the weights make the system singular in double precision; [`Error::CancelledEarly`].
+/// [`Error::FactorizationFailed`] where the weights make the system singular in double precision;
+/// [`Error::CancelledEarly`].
 pub(super) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Result<Descent, Error> {
     let analysis = map.analysis()?;
     let mut factor = Factor::<f64>::new(&analysis);
@@ -133,8 +136,8 @@ fn largest(values: &[Complex]) -> f64 {
 }
 
 impl<'a> ChartMap<'a> {
-    /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges are `lengths` long, but
-    /// for the faces that are `kept`.
+    /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges
+    /// are `lengths` long, but for the faces that are `kept`.
     pub(super) fn by_delaunay(
         atlas: &'a Atlas<'a>,
         places: Places,
@@ -220,7 +223,8 @@ impl<'a> ChartMap<'a> {
         sums
     }
 
-    /// The pattern of the Hessian: two unknowns for each vertex that is not held, and one held vertex more for edges to have three corners.
+    /// The pattern of the Hessian: two unknowns for each vertex that is not held, and one held vertex more
+    /// for edges to have three corners.
     fn analysis(&self) -> Result<Analysis, Error> {
         let n = self.places.positions.len();
         let mut dofs: Vec<u8> =
@@ -303,7 +307,8 @@ fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
         for column in 0..2 {
             let own =
                 |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
-            // towards each other along one geodesic: the vectors at the ends are opposite, and so are their normals
+            // towards each other along one geodesic: the vectors at the ends are opposite, and so are their
+            // normals
             let both = pull.weight * (e[row] * f[column] + across * n[row] * o[column]);
             matrix[row][column] = own(e, n);
             matrix[2 + row][2 + column] = own(f, o);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The nonlinear heat diffusion of Shi et al. (2013), algorithm 4: the explicit flow down the harmonic energy.
+//! The nonlinear heat diffusion of Shi et al. (2013), algorithm 4: the explicit flow down the harmonic
+//! energy.
 //!
-//! Every image moves along the geodesic of minus its gradient over its area, all by the longest time step that is stable on the whole
-//! surface. The energy falls with every step. It takes thousands of steps for what [`newton`](super::harmonic::newton) does in four, and is there
-//! for comparison.
+//! Every image moves along the geodesic of minus its gradient over its area, all by the longest time step
+//! that is stable on the whole surface. The energy falls with every step. It takes thousands of steps for
+//! what [`newton`](super::harmonic::newton) does in four, and is there for comparison.
 //!
 //! Cost: one pass over the edges per step.
 
@@ -17,7 +18,8 @@ const CAUTION: f64 = 0.9;
 /// Steps between two questions whether to go on.
 const BETWEEN_QUESTIONS: usize = 10;
 
-/// Lowers E in place for at most `max_steps` steps, until the largest component of the gradient is below `tolerance`.
+/// Lowers E in place for at most `max_steps` steps, until the largest component of the gradient is below
+/// `tolerance`.
 ///
 /// `areas` (n,) are the vertices' shares of the source's hyperbolic area.
 pub(super) fn diffuse(

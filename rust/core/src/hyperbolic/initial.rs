@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The initial map: both disks laid out on one polygon and put on top of each other.
 //!
-//! It takes the place of the paper's harmonic maps between hexagons (section 4, step 4), is one-to-one by the same
-//! theorem, and need not know any coordinates of the universal cover. Both banks of a feature are run through by the
-//! same parameter, so that they agree.
+//! It takes the place of the paper's harmonic maps between hexagons (section 4, step 4), is one-to-one by the
+//! same theorem, and need not know any coordinates of the universal cover. Both banks of a feature are run
+//! through by the same parameter, so that they agree.
 //!
-//! From it comes all that the harmonic map needs to know about its homotopy class: a place on the target for each vertex, and for each edge
-//! the isometry between the charts of its ends, along a path of faces that lies below the edge.
+//! From it comes all that the harmonic map needs to know about its homotopy class: a place on the target for
+//! each vertex, and for each edge the isometry between the charts of its ends, along a path of faces that
+//! lies below the edge.
 //!
 //! Cost: two sparse Cholesky factorisations, a point location for each vertex and a short walk for each edge.
 
@@ -106,8 +107,8 @@ fn places_of_copies(
     Ok(copies)
 }
 
-/// The segment of ascending or descending parameters in which `s` lies, and where in it; of two the one of lower parameters, whichever
-/// way they run.
+/// The segment of ascending or descending parameters in which `s` lies, and where in it; of two the one of
+/// lower parameters, whichever way they run.
 pub(super) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
     let n = parameters.len();
     let ascends = parameters[n - 1] > parameters[0];
@@ -177,7 +178,8 @@ impl Links {
         }
     }
 
-    /// For each corner of the sliced source the isometry from the chart of its edge's head to that of its tail.
+    /// For each corner of the sliced source the isometry from the chart of its edge's head to that of its
+    /// tail.
     fn transitions(
         &self,
         source: &Sliced,

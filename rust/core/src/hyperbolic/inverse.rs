@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The way back: where on the source each vertex of the target is.
 //!
-//! The image of a face of the source is a geodesic triangle. In the chart of one of its corners it is spread over the faces of the target that
-//! it covers, and the vertices found in it lie in that face, at the coordinates of the flat triangle that its corners span on the hyperboloid.
-//! Those on the boundary are found by their parameters, as on the way there.
+//! The image of a face of the source is a geodesic triangle. In the chart of one of its corners it is spread
+//! over the faces of the target that it covers, and the vertices found in it lie in that face, at the
+//! coordinates of the flat triangle that its corners span on the hyperboloid. Those on the boundary are found
+//! by their parameters, as on the way there.
 //!
 //! Cost: some ten faces of the target for every face of the source.
 
@@ -100,8 +101,8 @@ fn overlap(one: &[Complex; 3], other: &[Complex; 3]) -> bool {
     !separates(one, other) && !separates(other, one)
 }
 
-/// The coordinates of a point of Klein's model in a triangle that contains it, up to [`NEAR`], as those of the flat triangle on the
-/// hyperboloid.
+/// The coordinates of a point of Klein's model in a triangle that contains it, up to [`NEAR`], as those of
+/// the flat triangle on the hyperboloid.
 fn barycentric(triangle: &[Complex; 3], point: Complex) -> Option<[f64; 3]> {
     let ray = |k: Complex| -> Vector { [k.re, k.im, 1.0] };
     let [a, b, c] = triangle.map(|corner| to_hyperboloid(from_klein(corner)));

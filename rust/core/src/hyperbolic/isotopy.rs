@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A motion of the whole sphere that carries the features of a piece to those of its partner.
 //!
-//! Points of equal parameter move on paths: each curve turns as a whole about the axis of its own best rotation, and what
-//! is left over goes along great arcs, so that a curve that has to turn round spins instead of collapsing. In every small
-//! step the smooth displacement through those of the points, by a Matérn kernel of order 3/2, moves all else. Paths
-//! between the features keep their class: how they wind around the features.
+//! Points of equal parameter move on paths: each curve turns as a whole about the axis of its own best
+//! rotation, and what is left over goes along great arcs, so that a curve that has to turn round spins
+//! instead of collapsing. In every small step the smooth displacement through those of the points, by a
+//! Matérn kernel of order 3/2, moves all else. Paths between the features keep their class: how they wind
+//! around the features.
 //!
-//! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k ≤ 400 or so points per step, and k for
-//! every point carried and step.
+//! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k ≤ 400 or so points per
+//! step, and k for every point carried and step.
 
 use super::features::{Bank, Piece};
 use super::polyline::{length, on_sphere, unit};
@@ -23,7 +24,8 @@ const REACH: f64 = 0.25;
 const RIDGE: f64 = 1e-9;
 /// In how many steps the motion is tried.
 const STEPS: [usize; 3] = [60, 120, 240];
-/// No two points approach or leave each other by more than this share of their distance in one step, so that no step folds.
+/// No two points approach or leave each other by more than this share of their distance in one step, so that
+/// no step folds.
 const LARGEST_STRAIN: f64 = 0.5;
 /// Points that move less than this stay where they are.
 const AT_REST: f64 = 1e-9;
@@ -53,8 +55,8 @@ impl Isotopy {
         Self::new(&ours, &theirs, watch)
     }
 
-    /// The motion that takes every point of each curve of `source` to that of the same number on `target`, all of them unit
-    /// vectors and no two of one surface equal.
+    /// The motion that takes every point of each curve of `source` to that of the same number on `target`,
+    /// all of them unit vectors and no two of one surface equal.
     ///
     /// `None` where curves run into each other on the way, and where cancelled.
     pub(super) fn new(source: &[Vec<Vector>], target: &[Vec<Vector>], watch: &Watch<'_>) -> Option<Self> {
@@ -77,7 +79,8 @@ impl Isotopy {
 }
 
 impl Step {
-    /// The displacement through those of points at `places` on the way to `next`; `None` where the system is singular.
+    /// The displacement through those of points at `places` on the way to `next`; `None` where the system is
+    /// singular.
     fn through(places: Vec<Vector>, next: &[Vector]) -> Option<Self> {
         let k = places.len();
         let mut matrix = parallel::map(k * k, |entry| {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Planar layouts of cut surfaces on a convex polygon (Tutte 1963).
 //!
-//! With positive weights and a boundary on a convex polygon the solution is an embedding, as no edge joins two vertices of the boundary that is
-//! none of it. The weights are the cotangents in space, clamped.
+//! With positive weights and a boundary on a convex polygon the solution is an embedding, as no edge joins
+//! two vertices of the boundary that is none of it. The weights are the cotangents in space, clamped.
 //!
 //! Cost: one sparse Cholesky factorisation.
 
@@ -83,8 +83,9 @@ impl Laplace {
         Ok(Self { analysis, is_held })
     }
 
-    /// Solves Σ w (f_i − f_j − jump(face, k)) = 0, where the edge i → j opposite to corner k of a face goes beyond f_j by a jump, for the
-    /// vertices of `map` that are not held. Each corner's weight is half the edge's.
+    /// Solves Σ w (f_i − f_j − jump(face, k)) = 0, where the edge i → j opposite to corner k of a face goes
+    /// beyond f_j by a jump, for the vertices of `map` that are not held. Each corner's weight is half the
+    /// edge's.
     pub(super) fn solve(
         &self,
         faces: &[[u32; 3]],

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic metric with geodesic boundary in the conformal class of a surface in space.
 //!
-//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformisation). Here every face
-//! becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two ways to it:
+//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformisation). Here every
+//! face becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two
+//! ways to it:
 //!
-//! - [`MetricMethod::Newton`], the default: discrete conformal changes by vertex scaling (Bobenko, Pinkall, Springborn
-//!   2015), solved by Newton's method; where slivers keep it from a solution, by circle packings relaxed there;
-//! - [`MetricMethod::RicciFlow`], the discrete hyperbolic Ricci flow of the paper (Shi, Zeng, Su et al., CVPR 2013,
-//!   algorithm 2) on circle packings, finished by the same Newton's method.
+//! - [`MetricMethod::Newton`], the default: discrete conformal changes by vertex scaling (Bobenko, Pinkall,
+//!   Springborn 2015), solved by Newton's method; where slivers keep it from a solution, by circle packings
+//!   relaxed there;
+//! - [`MetricMethod::RicciFlow`], the discrete hyperbolic Ricci flow of the paper (Shi, Zeng, Su et al., CVPR
+//!   2013, algorithm 2) on circle packings, finished by the same Newton's method.
 //!
-//! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse factorisations with
-//! one unknown per vertex, twice that with slivers; the flow takes hundreds of passes over the faces besides.
+//! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse
+//! factorisations with one unknown per vertex, twice that with slivers; the flow takes hundreds of passes
+//! over the faces besides.
 
 mod edges;
 mod newton;
@@ -46,8 +49,8 @@ pub struct Metric {
     pub lengths: Vec<[f64; 3]>,
     /// (m, 3): the angle at each corner, in radians.
     pub angles: Vec<[f64; 3]>,
-    /// (n,): weights of the corners of a face for projective interpolation on it, the largest 1: with them points
-    /// between vertices fit together across edges as they do in space. All 1 after circle packing.
+    /// (n,): weights of the corners of a face for projective interpolation on it, the largest 1: with them
+    /// points between vertices fit together across edges as they do in space. All 1 after circle packing.
     pub mu: Vec<f64>,
     /// The largest difference between the angle sum at a vertex and 2π, π on the boundary.
     pub residual: f64,
@@ -59,12 +62,12 @@ pub struct Metric {
     pub flow: Option<FlowRecord>,
 }
 
-/// The hyperbolic metric with geodesic boundary of a surface with negative `euler_characteristic`; vertices of edges
-/// with one face are on its boundary, and no interior edge may join two of those.
+/// The hyperbolic metric with geodesic boundary of a surface with negative `euler_characteristic`; vertices
+/// of edges with one face are on its boundary, and no interior edge may join two of those.
 ///
 /// # Errors
-/// [`Error::NoHyperbolicMetric`] where numerics allow none, [`Error::FactorizationFailed`] where the mesh is too
-/// large, [`Error::CancelledEarly`] by the watch.
+/// [`Error::NoHyperbolicMetric`] where numerics allow none, [`Error::FactorizationFailed`] where the mesh is
+/// too large, [`Error::CancelledEarly`] by the watch.
 pub(super) fn hyperbolic_metric(
     points: &[Vector],
     faces: &[[u32; 3]],

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Registration of surfaces of genus 0 by landmark curves (Shi et al. 2013): a homeomorphism that takes curve to curve.
+//! Registration of surfaces of genus 0 by landmark curves (Shi et al. 2013): a homeomorphism that takes curve
+//! to curve.
 //!
-//! Both surfaces are sliced along the curves, which leaves spheres with holes. For three and more holes there is one hyperbolic metric
-//! in each conformal class with geodesic boundaries, and into such a metric the harmonic map is a diffeomorphism whatever the
-//! boundary values (theorem 3.4). [`register_hyperbolic`] computes it:
+//! Both surfaces are sliced along the curves, which leaves spheres with holes. For three and more holes there
+//! is one hyperbolic metric in each conformal class with geodesic boundaries, and into such a metric the
+//! harmonic map is a diffeomorphism whatever the boundary values (theorem 3.4). [`register_hyperbolic`]
+//! computes it:
 //!
 //! 1. `curves`, `placement`, `pieces`: what the surfaces are cut along, roughly laid over each other;
-//! 2. `arcs`, `slice`: a chain of arcs through all features, carried along by an isotopy (`isotopy`), says which homotopy class is meant;
+//! 2. `arcs`, `slice`: a chain of arcs through all features, carried along by an isotopy (`isotopy`), says
+//!    which homotopy class is meant;
 //! 3. `metric`: the hyperbolic metrics, by Newton or by the paper's Ricci flow (`ricci_flow`);
 //! 4. `atlas`, `layout`, `initial`: local charts and a first homeomorphism;
 //! 5. `delaunay`, `harmonic`: the harmonic map by Newton, or by the paper's heat diffusion (`heat`);
 //! 6. `certificates`: the proof that it is one-to-one.
 //!
-//! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: the Fuchsian group
-//! (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
+//! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: the
+//! Fuchsian group (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
 //!
-//! Input: two [`TriangleMesh`]es and pairs of [`Curves`]. Cost: some twenty sparse factorisations.
+//! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and pairs of [`Curves`]. Cost: some twenty sparse
+//! factorisations.
 
 mod arcs;
 mod atlas;
@@ -85,8 +89,8 @@ pub struct HyperbolicOptions<'a> {
     pub heat_steps: usize,
     /// The heat diffusion ends where no component of the gradient is larger.
     pub heat_tolerance: f64,
-    /// The vertices of source and target on spheres around the origin, from which it is told how the surfaces lie over each other; conformal
-    /// maps where `None`. They need not be aligned.
+    /// The vertices of source and target on spheres around the origin, from which it is told how the surfaces
+    /// lie over each other; conformal maps where `None`. They need not be aligned.
     pub spheres: Option<[&'a [Vector]; 2]>,
 }
 

@@ -5,8 +5,8 @@
 //! z ↦ (a z + b) / (b̄ z + ā) with |a|² − |b|² = 1. Tangent vectors at p are given in the orthonormal frame
 //! (1 − |p|²)/2 · {1, i}.
 //!
-//! Near the circle absolute coordinates lose digits, so everything that can is formed relative to one of the points.
-//! Every function takes constant time.
+//! Near the circle absolute coordinates lose digits, so everything that can is formed relative to one of the
+//! points. Every function takes constant time.
 
 use std::ops::Mul;
 
@@ -38,7 +38,8 @@ impl Moebius {
         (self.a * z + self.b) / (self.b.conj() * z + self.a.conj())
     }
 
-    /// The complex derivative at a point; its argument is the angle by which the map turns orthonormal frames.
+    /// The complex derivative at a point; its argument is the angle by which the map turns orthonormal
+    /// frames.
     pub fn derivative(&self, z: Complex) -> Complex {
         let denominator = self.b.conj() * z + self.a.conj();
         (denominator * denominator).inv()
@@ -49,8 +50,8 @@ impl Moebius {
         Self { a: self.a.conj(), b: -self.b }
     }
 
-    /// The isometry that takes p to `to_p` and the direction from p to q to that from `to_p` to `to_q`, hence q to
-    /// `to_q` where the distances agree.
+    /// The isometry that takes p to `to_p` and the direction from p to q to that from `to_p` to `to_q`, hence
+    /// q to `to_q` where the distances agree.
     pub fn between([p, q]: [Complex; 2], [to_p, to_q]: [Complex; 2]) -> Self {
         let turn = unit(seen_from(to_p, to_q)) * unit(seen_from(p, q)).conj();
         let half_turn = turn.sqrt();
@@ -66,7 +67,8 @@ impl Moebius {
         2.0 * self.half_translation().asinh()
     }
 
-    /// The ends of the axis on the unit circle, the repelling one first; meaningless where the translation length is
+    /// The ends of the axis on the unit circle, the repelling one first; meaningless where the translation
+    /// length is
     /// 0.
     pub fn fixed_points(&self) -> [Complex; 2] {
         let root = self.half_translation().copysign(self.a.re);
@@ -123,8 +125,8 @@ pub fn to_hyperboloid(z: Complex) -> [f64; 3] {
     [2.0 * z.re, 2.0 * z.im, 1.0 + z.norm_sqr()].map(|coordinate| coordinate / beneath_circle(z))
 }
 
-/// The point of the disk on the ray of (x, y, t), t > 0; a ray that rounding has put onto the cone or outside of it
-/// gives a point next to the circle.
+/// The point of the disk on the ray of (x, y, t), t > 0; a ray that rounding has put onto the cone or outside
+/// of it gives a point next to the circle.
 pub fn from_hyperboloid([x, y, t]: [f64; 3]) -> Complex {
     let radius = x.hypot(y);
     let height = ((t - radius) * (t + radius)).max(0.0).sqrt();

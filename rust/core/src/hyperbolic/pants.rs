@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pairs of pants between closed geodesics, and the two right-angled hexagons of each.
 //!
-//! Two generators g and h of a Fuchsian group whose axes are disjoint span a pair of pants: its boundaries are the axes of g, of g⁻¹h (or of h g⁻¹, a
-//! copy of the same curve) and of h. The common perpendiculars of these lines divide it into two congruent hexagons, which are convex in Klein's model
-//! (Shi et al. 2013, section 3.1 and figure 3). Half the lengths of the boundaries determine it by the law of cosines of right-angled hexagons. Where it
-//! lies is linear algebra on the hyperboloid: a line is its unit normal in the Lorentz product, a common perpendicular the Lorentz cross product of
-//! two normals.
+//! Two generators g and h of a Fuchsian group whose axes are disjoint span a pair of pants: its boundaries
+//! are the axes of g, of g⁻¹h (or of h g⁻¹, a copy of the same curve) and of h. The common perpendiculars of
+//! these lines divide it into two congruent hexagons, which are convex in Klein's model (Shi et al. 2013,
+//! section 3.1 and figure 3). Half the lengths of the boundaries determine it by the law of cosines of
+//! right-angled hexagons. Where it lies is linear algebra on the hyperboloid: a line is its unit normal in
+//! the Lorentz product, a common perpendicular the Lorentz cross product of two normals.
 //!
 //! Cost: constant.
 
@@ -15,12 +16,13 @@ use crate::mesh::geometry::{Vector, cross, dot, scaled};
 /// A pair of pants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pants {
-    /// The lengths of the boundaries: the pants curve before, the feature, the pants curve after; at the ends of the chain the first and the
-    /// last feature stand for curves.
+    /// The lengths of the boundaries: the pants curve before, the feature, the pants curve after; at the ends
+    /// of the chain the first and the last feature stand for curves.
     pub boundary_lengths: [f64; 3],
-    /// The corners of both hexagons in Klein's model. Their sides 0–1, 2–3 and 4–5 lie on the boundaries in the order of the lengths and are half
-    /// as long, the others are the perpendiculars; 5–0 is common to both and lies on the imaginary axis with its middle in the origin. The first
-    /// lies on the right, at the left bank of the feature, counter-clockwise; the second is its mirror image.
+    /// The corners of both hexagons in Klein's model. Their sides 0–1, 2–3 and 4–5 lie on the boundaries in
+    /// the order of the lengths and are half as long, the others are the perpendiculars; 5–0 is common to
+    /// both and lies on the imaginary axis with its middle in the origin. The first lies on the right, at the
+    /// left bank of the feature, counter-clockwise; the second is its mirror image.
     pub hexagons: [[Complex; 6]; 2],
     /// The inner angles, π/2 but for rounding.
     pub angles: [[f64; 6]; 2],
@@ -36,7 +38,8 @@ pub(super) fn pants(g: Moebius, h: Moebius) -> Pants {
     // 2. A hexagon by half their lengths, and its mirror image
     let right = hexagon(lengths.map(|length| 0.5 * length));
     let hexagons = [right, right.map(|corner| -corner.conj())];
-    // 3. Where it belongs: axes of long curves nearly touch, so by the perpendicular between the first and the feature
+    // 3. Where it belongs: axes of long curves nearly touch, so by the perpendicular between the first and
+    //    the feature
     let [before, feature] = [motions[0], motions[1]].map(axis);
     let placement = Moebius::between([right[1], right[2]], feet(before, feature));
     Pants {
@@ -47,8 +50,8 @@ pub(super) fn pants(g: Moebius, h: Moebius) -> Pants {
     }
 }
 
-/// The corners of the right-angled hexagon whose alternate sides 0–1, 2–3 and 4–5 have these lengths, counter-clockwise, its side 5–0 in the middle of
-/// the imaginary axis.
+/// The corners of the right-angled hexagon whose alternate sides 0–1, 2–3 and 4–5 have these lengths,
+/// counter-clockwise, its side 5–0 in the middle of the imaginary axis.
 fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
     let half = Complex::new(0.0, (0.25 * between(a, c, b)).tanh());
     let (low, high) = (-half, half);
@@ -63,8 +66,8 @@ fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
     [low, low_end, from, to, high_end, high]
 }
 
-/// The length of the side between those of lengths a and b in a right-angled hexagon whose third alternate side has length c. By the law of cosines, with
-/// cosh − 1 formed without cancellation.
+/// The length of the side between those of lengths a and b in a right-angled hexagon whose third alternate
+/// side has length c. By the law of cosines, with cosh − 1 formed without cancellation.
 fn between(a: f64, b: f64, c: f64) -> f64 {
     let twice_square = (c.cosh() + (a - b).cosh()) / (a.sinh() * b.sinh());
     2.0 * (0.5 * twice_square).sqrt().asinh()

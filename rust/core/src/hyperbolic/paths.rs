@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Shortest paths along the edges of a surface, by Dijkstra's algorithm.
 //!
-//! Input: lengths or costs of edges that are not negative. Cost: O(n log n) at the most; a search for one path ends
-//! when it has found it. Of equally good vertices the one of the lower index comes first.
+//! Input: lengths or costs of edges that are not negative. Cost: O(n log n) at the most; a search for one
+//! path ends when it has found it. Of equally good vertices the one of the lower index comes first.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,8 +14,8 @@ type Queue = BinaryHeap<Reverse<(u64, u32)>>;
 
 /// Lowers `distances` to the lengths in space of the shortest paths from `sources`, whose distances become 0.
 ///
-/// Vertices that `distances` does not have yet are added. Where it is the distances from some vertices, it becomes
-/// those from these and the sources; the cost is that of the part that changes.
+/// Vertices that `distances` does not have yet are added. Where it is the distances from some vertices, it
+/// becomes those from these and the sources; the cost is that of the part that changes.
 pub(super) fn lower_distances(surface: &Cutting, distances: &mut Vec<f64>, sources: &[u32]) {
     distances.resize(surface.points.len(), f64::INFINITY);
     let mut queue = Queue::new();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One piece of two surfaces: from slices to places on the target.
 //!
-//! Three features or more have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013, algorithm 1), fewer are laid out flat.
+//! Three features or more have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013, algorithm
+//! 1), fewer are laid out flat.
 
 use super::atlas::Atlas;
 use super::certificates::{PieceCertificates, certify, folded_faces};
@@ -22,7 +23,8 @@ use crate::registration::Location;
 pub(super) struct PieceMap {
     /// For each vertex of the sliced source its place in the sliced target.
     pub locations: Vec<Location>,
-    /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost it.
+    /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost
+    /// it.
     pub inverse: Vec<Option<Location>>,
     /// What proves it.
     pub certificates: PieceCertificates,
@@ -48,7 +50,8 @@ pub(super) fn map_piece(
         let (locations, certificates) = (flat.locations, flat.certificates);
         return Ok(PieceMap { locations, inverse, certificates, hyperbolic: None });
     }
-    // 1. Hyperbolic metrics with geodesic boundaries: that of the target to map into, that of the source for the weights
+    // 1. Hyperbolic metrics with geodesic boundaries: that of the target to map into, that of the source for
+    //    the weights
     let metric = |sliced: &Sliced, observer: &mut dyn Observer| {
         let points = sliced_points(sliced);
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
@@ -85,8 +88,9 @@ const ROUNDS: usize = 6;
 
 /// Moves to a minimum in which no face of the source is folded.
 ///
-/// The harmonic map embeds the triangulation by which its energy is taken. That is another one than the source's where edges were flipped, and
-/// very flat faces of the source can then be folded by rounding or by a hair. Faces around these are kept in the triangulation.
+/// The harmonic map embeds the triangulation by which its energy is taken. That is another one than the
+/// source's where edges were flipped, and very flat faces of the source can then be folded by rounding or by
+/// a hair. Faces around these are kept in the triangulation.
 fn unfolded(
     map: &mut ChartMap<'_>,
     lengths: &[[f64; 3]],

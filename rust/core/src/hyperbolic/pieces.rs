@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Both surfaces cut along closed curves into pieces with their features: slits along open curves, and loops.
 //!
-//! A closed curve is a loop of the pieces on both of its sides, with the same parameters on both, so that maps of the pieces
-//! agree along it. A loop gets a start and an end: its places on source and target lie as near to each other as vertices
-//! can. Parameters are shares of the length in space between them.
+//! A closed curve is a loop of the pieces on both of its sides, with the same parameters on both, so that
+//! maps of the pieces agree along it. A loop gets a start and an end: its places on source and target lie as
+//! near to each other as vertices can. Parameters are shares of the length in space between them.
 //!
 //! Input: divided and placed surfaces. Cost: linear.
 
@@ -15,8 +15,8 @@ use super::regions::{Divided, Regions};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::Vector;
 
-/// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the same order:
-/// curves as given, then other boundary loops.
+/// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
+/// same order: curves as given, then other boundary loops.
 pub(super) fn pieces(
     source: &TriangleMesh,
     target: &TriangleMesh,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rough places of both surfaces on the unit sphere, the source laid over the target by the curves.
 //!
-//! Nearly conformal maps to the sphere, boundary loops filled, then the rotation that brings points of equal parameter on
-//! paired curves together. Closed curves have no common start: the best one and the rotation are found in turns. An open
-//! curve that clearly runs the other way on the target is told, and laid over its partner for all that. Where curves leave a rotation open, the one is taken that lays the surfaces over each other as they lie in space.
+//! Nearly conformal maps to the sphere, boundary loops filled, then the rotation that brings points of equal
+//! parameter on paired curves together. Closed curves have no common start: the best one and the rotation are
+//! found in turns. An open curve that clearly runs the other way on the target is told, and laid over its
+//! partner for all that. Where curves leave a rotation open, the one is taken that lays the surfaces over
+//! each other as they lie in space.
 //!
 //! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorisations.
 
@@ -27,7 +29,8 @@ const CLOSED_SAMPLES: usize = 256;
 const ROUNDS: usize = 4;
 /// What lying over each other in space weighs against curves.
 const LEAST_TURN: f64 = 1e-9;
-/// Something fits clearly better where what is left over is smaller by this factor and not next to nothing anyway.
+/// Something fits clearly better where what is left over is smaller by this factor and not next to nothing
+/// anyway.
 const CLEARLY: f64 = 0.5;
 const NEXT_TO_NOTHING: f64 = 0.1;
 /// Fewer open curves fit a mirrored surface as well; fewer curves fit backwards as well.
@@ -45,8 +48,8 @@ pub(super) struct Placement {
     pub target: Vec<Vector>,
     /// Paired boundary loops that are no curves.
     pub loops: Vec<CurvePair>,
-    /// Per curve, then per pair of `loops`: which share of the target's length lies between its first vertex and the place
-    /// of the source's first vertex; 0 of an open curve.
+    /// Per curve, then per pair of `loops`: which share of the target's length lies between its first vertex
+    /// and the place of the source's first vertex; 0 of an open curve.
     pub shifts: Vec<f64>,
     /// Whether the source fits clearly better mirrored.
     pub mirrored: bool,
@@ -69,7 +72,8 @@ struct Samples {
 ///
 /// # Errors
 /// [`Error::InvalidArray`] and [`Error::InitialSphere`] where `spheres` are no positions,
-/// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the watch.
+/// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
+/// watch.
 pub(super) fn placed(
     meshes: [&TriangleMesh; 2],
     divided: &Divided,

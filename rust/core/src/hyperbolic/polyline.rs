@@ -6,7 +6,8 @@ use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
 /// How much of a curve is divided evenly where some of its edges are too short for the others.
 const EVEN_SHARE: f64 = 1e-9;
 
-/// The length of a polyline up to each of its points as a share of the whole, strictly increasing from 0 to 1.
+/// The length of a polyline up to each of its points as a share of the whole, strictly increasing from 0 to
+/// 1.
 ///
 /// Takes at least two points.
 pub(super) fn shares(points: impl Iterator<Item = Vector>) -> Vec<f64> {

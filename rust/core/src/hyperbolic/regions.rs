@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The parts into which closed curves divide the surfaces, and which parts belong together.
 //!
-//! On a surface of genus 0 every closed curve has two sides. A map that keeps orientation takes left to left, so closed
-//! curves of the target are turned until what lies on their left is what lies on the left of their partners.
+//! On a surface of genus 0 every closed curve has two sides. A map that keeps orientation takes left to left,
+//! so closed curves of the target are turned until what lies on their left is what lies on the left of their
+//! partners.
 //!
 //! Input: checked pairs of curves. Cost: linear in the faces, k² for k curves.
 
@@ -24,7 +25,8 @@ pub(super) struct Regions {
     pub of_face: Vec<u32>,
     /// How many there are.
     pub count: usize,
-    /// Per curve the regions on its left and right, twice the same of an open one, [`OUTSIDE`] beyond the boundary.
+    /// Per curve the regions on its left and right, twice the same of an open one, [`OUTSIDE`] beyond the
+    /// boundary.
     pub sides: Vec<[u32; 2]>,
     /// The region of each boundary loop that is no curve, with the number of the loop.
     pub loops: Vec<(usize, u32)>,

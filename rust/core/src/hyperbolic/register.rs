@@ -30,9 +30,10 @@ const STRAINED: f64 = 2.0;
 /// A registration by curves.
 #[derive(Debug, Clone)]
 pub struct CurveRegistration {
-    /// Where the source lies on the target. Its landmarks are the curves: the error of each is the largest distance of its image from its
-    /// partner in parts of the target's size. Its figures are those of the map in space, with the folds of [`Self::certificates`]; its domain is
-    /// the target's rough map to the sphere, where straight faces may fold a little along the curves.
+    /// Where the source lies on the target. Its landmarks are the curves: the error of each is the largest
+    /// distance of its image from its partner in parts of the target's size. Its figures are those of the map
+    /// in space, with the folds of [`Self::certificates`]; its domain is the target's rough map to the
+    /// sphere, where straight faces may fold a little along the curves.
     pub registration: SphereRegistration,
     /// The way back, where the target lies on the source, of the same map.
     pub inverse: SphereRegistration,
@@ -57,13 +58,13 @@ impl CurveRegistration {
 
 /// Registers two surfaces of genus 0, closed or with boundary, by pairs of landmark curves.
 ///
-/// Curves run along edges from vertex to vertex; open ones are matched from start to end by shares of their length, closed ones have
-/// neither start nor direction. Boundary loops are features too.
+/// Curves run along edges from vertex to vertex; open ones are matched from start to end by shares of their
+/// length, closed ones have neither start nor direction. Boundary loops are features too.
 ///
 /// # Errors
-/// Surfaces of another topology, curves that are no simple edge paths or touch each other, and features that do not
-/// pair up are refused before any work. [`Error::NoEmbedding`] and [`Error::NoHyperbolicMetric`] where double precision does not suffice;
-/// [`Error::CancelledEarly`].
+/// Surfaces of another topology, curves that are no simple edge paths or touch each other, and features that
+/// do not pair up are refused before any work. [`Error::NoEmbedding`] and [`Error::NoHyperbolicMetric`] where
+/// double precision does not suffice; [`Error::CancelledEarly`].
 pub fn register_hyperbolic(
     source: &TriangleMesh,
     target: &TriangleMesh,
@@ -215,7 +216,8 @@ impl Found {
         Ok(CurveRegistration { registration: there, inverse, certificates, metrics, descents, warnings })
     }
 
-    /// The places of the target's vertices on the source; those that rounding has lost are looked up on the sphere.
+    /// The places of the target's vertices on the source; those that rounding has lost are looked up on the
+    /// sphere.
     fn inverse_locations(
         &self,
         [source, target]: [&TriangleMesh; 2],

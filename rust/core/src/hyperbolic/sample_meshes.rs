@@ -95,7 +95,8 @@ pub(super) fn path((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), from: Vector,
     path
 }
 
-/// The closed curve around the faces within an angle of a direction, those on its left; its first vertex not repeated.
+/// The closed curve around the faces within an angle of a direction, those on its left; its first vertex not
+/// repeated.
 pub(super) fn circle(
     (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
     centre: Vector,

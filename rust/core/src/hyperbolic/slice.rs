@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cutting a pair of pieces open: along their features, and along arcs between these into disks.
 //!
-//! The features of a surface of genus 0 become its boundary loops; a chain of arcs joins these into one. The disks of
-//! source and target have the same sides in the same order, each with parameters that say which points correspond.
+//! The features of a surface of genus 0 become its boundary loops; a chain of arcs joins these into one. The
+//! disks of source and target have the same sides in the same order, each with parameters that say which
+//! points correspond.
 //!
 //! 1. The chain: an order and directions of the features, the same on both ([`super::chain`]).
 //! 2. The features are marked for cutting and the chords between them split ([`super::cutting`]).
 //! 3. Arcs on the source, and along their images on the target ([`super::arcs`]).
-//! 4. Corners that meet across edges that are not cut become one vertex; the boundary of the disk falls into sides.
+//! 4. Corners that meet across edges that are not cut become one vertex; the boundary of the disk falls into
+//!    sides.
 //!
-//! Input: the features are disjoint, slits simple paths of two or more edges off the boundary, loops whole boundary
-//! loops. Paper: Shi, Zeng, Su et al., "Hyperbolic Harmonic Mapping for Constrained Brain Surface Registration", CVPR
-//! 2013, which slices along the landmarks, too; the chain of arcs takes the place of its pants and hexagons. Cost:
-//! O(B n log n) at the most for B features.
+//! Input: the features are disjoint, slits simple paths of two or more edges off the boundary, loops whole
+//! boundary loops. Paper: Shi, Zeng, Su et al., "Hyperbolic Harmonic Mapping for Constrained Brain Surface
+//! Registration", CVPR 2013, which slices along the landmarks, too; the chain of arcs takes the place of its
+//! pants and hexagons. Cost: O(B n log n) at the most for B features.
 
 mod openings;
 #[cfg(test)]
@@ -31,7 +33,8 @@ pub(super) use openings::Opened;
 /// A corner without another across its edge.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts are split.
+/// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts
+/// are split.
 #[derive(Debug, Clone)]
 pub(super) struct Sliced {
     /// (n, 3): the points of the piece and of the midpoints of split edges, before cutting.
@@ -44,10 +47,10 @@ pub(super) struct Sliced {
     pub surface: Opened,
     /// Cut along features and arcs: a disk.
     pub disk: Opened,
-    /// The boundary of the disk run through with the disk on the left: left bank of feature 1 of the chain, arc 1, left
-    /// bank of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B − 1 (backwards), …,
-    /// right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last vertex (of the disk) of the one
-    /// before.
+    /// The boundary of the disk run through with the disk on the left: left bank of feature 1 of the chain,
+    /// arc 1, left bank of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B −
+    /// 1 (backwards), …, right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last
+    /// vertex (of the disk) of the one before.
     pub sides: Vec<Side>,
 }
 
@@ -80,8 +83,8 @@ pub(super) struct Side {
     pub index: usize,
     /// Vertices of the disk in the order of travel, at least two.
     pub vertices: Vec<u32>,
-    /// Their parameters: increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0 on the others. On a
-    /// bank those of the feature, on an arc shares of its length in space.
+    /// Their parameters: increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0 on the
+    /// others. On a bank those of the feature, on an arc shares of its length in space.
     pub parameters: Vec<f64>,
 }
 
@@ -98,12 +101,13 @@ pub(super) struct SlicedPair {
 
 /// Cuts both pieces open along their features and along arcs of the same homotopy class.
 ///
-/// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on the sphere
-/// of the target, so that the features of the source go onto those of the target; `None` where it cannot.
+/// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on
+/// the sphere of the target, so that the features of the source go onto those of the target; `None` where it
+/// cannot.
 ///
 /// # Errors
-/// [`Error::Uncuttable`] for features that are no paths of edges or touch each other and [`Error::NoArc`] where two
-/// cannot be joined, both of either surface; [`Error::CancelledEarly`].
+/// [`Error::Uncuttable`] for features that are no paths of edges or touch each other and [`Error::NoArc`]
+/// where two cannot be joined, both of either surface; [`Error::CancelledEarly`].
 pub(super) fn slice_pair(
     source: &Piece,
     target: &Piece,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The hyperbolic structure of a surface with landmark curves: the objects of the paper's theory (Shi et al. 2013, section 3), by themselves.
+//! The hyperbolic structure of a surface with landmark curves: the objects of the paper's theory (Shi et al.
+//! 2013, section 3), by themselves.
 //!
-//! The surface sliced along its curves gets the hyperbolic metric with geodesic boundaries; a chain of arcs makes it a disk, the fundamental domain of
-//! a Fuchsian group, whose generators cut it into pairs of pants along closed geodesics and these into hexagons. The registration needs none of
-//! this.
+//! The surface sliced along its curves gets the hyperbolic metric with geodesic boundaries; a chain of arcs
+//! makes it a disk, the fundamental domain of a Fuchsian group, whose generators cut it into pairs of pants
+//! along closed geodesics and these into hexagons. The registration needs none of this.
 //!
-//! Input: a surface of genus 0 with at least three features, open curves and boundary loops. Cost: that of the metric, and B layouts of the disk for B
-//! features.
+//! Input: a surface of genus 0 with at least three features, open curves and boundary loops. Cost: that of
+//! the metric, and B layouts of the disk for B features.
 
 #[cfg(test)]
 mod tests;
@@ -36,8 +37,9 @@ use crate::registration::Location;
 
 /// A surface sliced along its features, with its hyperbolic metric, its Fuchsian group and its pants.
 ///
-/// The chain runs through all B features, curves as given and then the other boundary loops, each with the bank that has the surface on its left
-/// and the one that has it on its right; arc k leads from the k-th feature of the chain to the next.
+/// The chain runs through all B features, curves as given and then the other boundary loops, each with the
+/// bank that has the surface on its left and the one that has it on its right; arc k leads from the k-th
+/// feature of the chain to the next.
 #[derive(Debug, Clone)]
 pub struct HyperbolicStructure {
     /// (n,): the vertices of the sliced surface on the surface given.
@@ -58,14 +60,15 @@ pub struct HyperbolicStructure {
     pub banks: Vec<[Vec<u32>; 2]>,
     /// (B − 1,): left and right copy of each arc, as vertices of the disk along the chain.
     pub arcs: Vec<[Vec<u32>; 2]>,
-    /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right one. That of arc k goes around the first k
-    /// features of the chain.
+    /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right one. That of
+    /// arc k goes around the first k features of the chain.
     pub generators: Vec<Moebius>,
     /// (B,): the lengths of the features once around, in the order in which they were given.
     pub boundary_lengths: Vec<f64>,
     /// (B − 2,): the pairs of pants along the chain.
     pub pants: Vec<Pants>,
-    /// (B − 3,): the closed geodesics between them, as places on the surface given, the first once more at the end.
+    /// (B − 3,): the closed geodesics between them, as places on the surface given, the first once more at
+    /// the end.
     pub pants_curves: Vec<Vec<Location>>,
     /// (B − 3,): their lengths.
     pub lengths: Vec<f64>,
@@ -77,7 +80,8 @@ pub struct HyperbolicStructure {
 }
 
 impl HyperbolicStructure {
-    /// The fundamental domain and its copies in the universal cover, from the middle outward, at most `count` in all.
+    /// The fundamental domain and its copies in the universal cover, from the middle outward, at most `count`
+    /// in all.
     pub fn cover(&self, count: usize) -> Vec<CoverCopy> {
         cover(&self.generators, count)
     }
@@ -93,15 +97,16 @@ impl HyperbolicStructure {
     }
 }
 
-/// Computes the hyperbolic structure of a surface of genus 0, closed or with boundary, sliced along open curves.
+/// Computes the hyperbolic structure of a surface of genus 0, closed or with boundary, sliced along open
+/// curves.
 ///
-/// Curves are paths of vertices along edges, as for [`super::register_hyperbolic`]; closed ones must be loops of the boundary, all of which are
-/// features whether they are named or not.
+/// Curves are paths of vertices along edges, as for [`super::register_hyperbolic`]; closed ones must be loops
+/// of the boundary, all of which are features whether they are named or not.
 ///
 /// # Errors
-/// Surfaces of another topology, curves that are no simple edge paths or touch, [`Error::CurveDivides`] for closed ones inside and
-/// [`Error::TooFewFeatures`] for fewer than three features are refused before any work. [`Error::NoHyperbolicMetric`] where double precision does not suffice;
-/// [`Error::CancelledEarly`].
+/// Surfaces of another topology, curves that are no simple edge paths or touch, [`Error::CurveDivides`] for
+/// closed ones inside and [`Error::TooFewFeatures`] for fewer than three features are refused before any
+/// work. [`Error::NoHyperbolicMetric`] where double precision does not suffice; [`Error::CancelledEarly`].
 pub fn hyperbolic_structure(
     mesh: &TriangleMesh,
     curves: &[Vec<usize>],
@@ -171,7 +176,8 @@ fn piece(mesh: &TriangleMesh, pairs: Vec<CurvePair>, watch: &Watch<'_>) -> Resul
     Ok(pieces(mesh, mesh, &divided, &placement).swap_remove(0).0)
 }
 
-/// Every pair of pants, by a layout around the left bank of its feature so that it is as precise far out as in the middle.
+/// Every pair of pants, by a layout around the left bank of its feature so that it is as precise far out as
+/// in the middle.
 fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Vec<Pants> {
     let corners = boundary_corners(&sliced.disk);
     let last = domain.generators().len();
@@ -185,7 +191,8 @@ fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Ve
     (0..last - 1).map(of_feature).collect()
 }
 
-/// The geodesics between the pants, and their lengths, each by a layout around the edge of its arc that is nearest to it.
+/// The geodesics between the pants, and their lengths, each by a layout around the edge of its arc that is
+/// nearest to it.
 fn pants_curves(
     domain: &Development<'_>,
     sliced: &Sliced,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Closed geodesics on a hyperbolic surface, followed from face to face.
 //!
-//! A line of the plane is known by its ends on the unit circle, and these are carried along from chart to chart. Going forward errors of the end
-//! ahead grow and those of the end behind shrink, so that the line is followed twice: once to find the edges that it crosses, from
-//! which follows exactly where it closes up, and then with each end carried in the direction in which it keeps its digits.
+//! A line of the plane is known by its ends on the unit circle, and these are carried along from chart to
+//! chart. Going forward errors of the end ahead grow and those of the end behind shrink, so that the line is
+//! followed twice: once to find the edges that it crosses, from which follows exactly where it closes up, and
+//! then with each end carried in the direction in which it keeps its digits.
 //!
-//! Input: an atlas, and the ends of the axis of a deck transformation in one of its charts. Cost: linear in the edges crossed.
+//! Input: an atlas, and the ends of the axis of a deck transformation in one of its charts. Cost: linear in
+//! the edges crossed.
 
 use super::atlas::Atlas;
 use super::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
@@ -31,7 +33,8 @@ pub(super) struct ClosedGeodesic {
 /// A line in the chart of a face, by its ends: it comes from the first and goes to the second.
 type Line = [Complex; 2];
 
-/// Follows the closed geodesic of about the given length that goes along a line in the chart of `face`; `None` where rounding has lost it.
+/// Follows the closed geodesic of about the given length that goes along a line in the chart of `face`;
+/// `None` where rounding has lost it.
 pub(super) fn closed_geodesic(
     atlas: &Atlas<'_>,
     surface: &Opened,
@@ -84,7 +87,8 @@ fn exit(atlas: &Atlas<'_>, face: u32, line: Line) -> Option<u32> {
     (3 * face..3 * face + 3).find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
 }
 
-/// The edges that a line crosses from one on until it closes up, each by the corner opposite to it in the face that is left.
+/// The edges that a line crosses from one on until it closes up, each by the corner opposite to it in the
+/// face that is left.
 fn crossings(
     atlas: &Atlas<'_>,
     surface: &Opened,
@@ -116,7 +120,8 @@ fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
         true => (next_corner(entered), previous_corner(entered)),
         false => (previous_corner(entered), next_corner(entered)),
     };
-    // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them do so
+    // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them
+    // do so
     if surface.opposite[one as usize] == NONE { other } else { one }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Polylines on the unit sphere: resampling, and the distance of a point.
 //!
-//! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball enclose the
-//! halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
+//! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball
+//! enclose the halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
 
 use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
 

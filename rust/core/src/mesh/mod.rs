@@ -100,8 +100,8 @@ impl TriangleMesh {
         })
     }
 
-    /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay those of the
-    /// surface.
+    /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay
+    /// those of the surface.
     pub(crate) fn at_points(&self, points: Vec<Vector>) -> Self {
         Self { points, ..self.clone() }
     }

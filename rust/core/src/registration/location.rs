@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Point location: the triangle of a map in which a point lies, and where in it.
 //!
-//! Maps live in space as in [`motion`](crate::energy::motion): in the plane z = 1, or on the sphere around the origin.
-//! A point x lies in the triangle (a, b, c) where det(a, b, x), det(b, c, x) and det(c, a, x) are not negative, decided
-//! by exact predicates, so that no point falls between two triangles. The same three determinants are its barycentric
-//! coordinates up to a factor: on the sphere those of its central projection onto the flat triangle.
+//! Maps live in space as in [`motion`](crate::energy::motion): in the plane z = 1, or on the sphere around
+//! the origin. A point x lies in the triangle (a, b, c) where det(a, b, x), det(b, c, x) and det(c, a, x) are
+//! not negative, decided by exact predicates, so that no point falls between two triangles. The same three
+//! determinants are its barycentric coordinates up to a factor: on the sphere those of its central projection
+//! onto the flat triangle.
 //!
-//! Input: a map all of whose faces are positively oriented, of a disk into the plane or onto the whole sphere. Cost:
-//! O(m log² m) for the tree, O(log m) for a point.
+//! Input: a map all of whose faces are positively oriented, of a disk into the plane or onto the whole
+//! sphere. Cost: O(m log² m) for the tree, O(log m) for a point.
 
 mod bvh;
 
@@ -33,7 +34,8 @@ pub struct Location {
 }
 
 impl Location {
-    /// The place at part `t` of the way along the edge opposite to a corner, from the corner after it to the one after that.
+    /// The place at part `t` of the way along the edge opposite to a corner, from the corner after it to the
+    /// one after that.
     pub(crate) fn on_edge(corner: u32, t: f64) -> Self {
         let mut barycentric = [0.0; 3];
         let k = corner as usize % 3;
@@ -57,7 +59,8 @@ pub(crate) struct Locator<'a> {
 }
 
 impl<'a> Locator<'a> {
-    /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on the sphere.
+    /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on
+    /// the sphere.
     pub(crate) fn new(positions: &'a [Vector], faces: &'a [[u32; 3]]) -> Self {
         let in_plane = positions.iter().all(|position| position[2] == 1.0);
         let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
@@ -67,10 +70,11 @@ impl<'a> Locator<'a> {
         Self { positions, faces, in_plane, tree: Tree::new(&bounds) }
     }
 
-    /// The triangle of the lowest index that contains `x`; where there is none, the nearest point of the nearest one.
+    /// The triangle of the lowest index that contains `x`; where there is none, the nearest point of the
+    /// nearest one.
     ///
-    /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction counts.
-    /// In a vertex, its coordinates are exactly 1 and 0.
+    /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction
+    /// counts. In a vertex, its coordinates are exactly 1 and 0.
     pub(crate) fn locate(&self, x: Vector) -> Location {
         let at = if self.in_plane { x } else { scaled(x, 1.0 / norm(x)) };
         let mut found: Option<(u32, [f64; 3])> = None;
@@ -143,7 +147,8 @@ impl<'a> Locator<'a> {
 fn spherical_bounds(corners: [Vector; 3]) -> Bounds {
     let [a, b, c] = corners.map(|x| scaled(x, 1.0 / norm(x)));
     let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
-    // |q|² = 1 − Σ λ_i λ_j |x_i − x_j|² for q = Σ λ_i x_i, and Σ λ_i λ_j ≤ 1/3: as far as q moves out to the sphere
+    // |q|² = 1 − Σ λ_i λ_j |x_i − x_j|² for q = Σ λ_i x_i, and Σ λ_i λ_j ≤ 1/3: as far as q moves out to the
+    // sphere
     let height = 1.0 - (1.0 - longest * longest / 3.0).max(0.0).sqrt();
     [a, b, c].into_iter().fold(Bounds::default(), Bounds::with).padded(height + 1e-12)
 }

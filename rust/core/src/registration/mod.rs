@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Registration of surfaces by landmarks: a one-to-one map g of a source onto a target that takes landmark vertices to
-//! landmark vertices and keeps areas.
+//! Registration of surfaces by landmarks: a one-to-one map g of a source onto a target that takes landmark
+//! vertices to landmark vertices and keeps areas.
 //!
-//! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6) map both
-//! surfaces into one domain, carry the landmarks onto each other there without folding a face, and look up where each
-//! vertex of the source has come to lie on the target. [`homotopy`] morphs along g.
+//! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6)
+//! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
+//! look up where each vertex of the source has come to lie on the target. [`homotopy`] morphs along g.
 //!
-//! Input: two [`TriangleMesh`]es that are both disks or both spheres, and pairs of [`Landmarks`]. Cost: the two maps, and
-//! about as much again for carrying the landmarks.
+//! Input: two [`TriangleMesh`]es that are both disks or both spheres, and pairs of [`Landmarks`]. Cost: the
+//! two maps, and about as much again for carrying the landmarks.
 
 mod carry;
 mod disk;
@@ -71,11 +71,11 @@ pub type SphereRegistration = Registration<SphereMap, [f64; 3]>;
 pub struct Registration<Map, Point> {
     /// (n,): where on the target each vertex of the source comes to lie.
     pub locations: Vec<Location>,
-    /// The source's vertices in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀ on the
-    /// sphere.
+    /// The source's vertices in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀ on
+    /// the sphere.
     pub registered: Vec<Point>,
-    /// The target's vertices there: g on the disk, h₁∘f₁ on the sphere. Where landmarks could be met only the other way
-    /// round, they are the ones that were moved on the disk too.
+    /// The target's vertices there: g on the disk, h₁∘f₁ on the sphere. Where landmarks could be met only the
+    /// other way round, they are the ones that were moved on the disk too.
     pub target_registered: Vec<Point>,
     /// The faces of the target that [`Self::locations`] speak of, all positively oriented in
     /// [`Self::target_registered`].
@@ -86,14 +86,15 @@ pub struct Registration<Map, Point> {
     pub target_map: Map,
     /// (k,): how far each landmark ends from its partner, in the parameter domain of radius 1.
     pub landmark_error: Vec<f64>,
-    /// The pairs that did not meet: farther apart than [`MISSED`], or than .5 % of the target's size on the target.
+    /// The pairs that did not meet: farther apart than [`MISSED`], or than .5 % of the target's size on the
+    /// target.
     pub missed: Vec<usize>,
     /// Why the run ended; [`Status::LandmarksMissed`] where there are such pairs.
     pub status: Status,
     /// Iterations of carrying the landmarks.
     pub iterations: usize,
-    /// The figures of [`Self::registered`] against the source's areas; its E_A is that of h where the source's landmarks
-    /// were carried.
+    /// The figures of [`Self::registered`] against the source's areas; its E_A is that of h where the
+    /// source's landmarks were carried.
     pub distortion: Distortion,
     /// The figures of [`Self::target_registered`] against the target's areas.
     pub target_distortion: Distortion,
@@ -152,8 +153,8 @@ fn missed(
 /// An area ratio with a smaller deviation is even enough to end with, whatever the descent says.
 const EVEN_ENOUGH: f64 = 0.01;
 
-/// The status of a registration: what the descent says unless all landmarks met and areas are even, and no better than
-/// those of the two maps.
+/// The status of a registration: what the descent says unless all landmarks met and areas are even, and no
+/// better than those of the two maps.
 fn verdict(carried: Status, maps: [Status; 2], missed: &[usize], figures: [&Distortion; 2]) -> Status {
     let is_even = figures.iter().all(|figures| figures.area_ratio_std <= EVEN_ENOUGH);
     match carried {

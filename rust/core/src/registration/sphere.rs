@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Registration of two closed surfaces of genus 0 (Sutti & Yueh 2024, section 6.6): g = f₁⁻¹ ∘ h₁⁻¹ ∘ h₀ ∘ f₀.
+//! Registration of two closed surfaces of genus 0 (Sutti & Yueh 2024, section 6.6): g = f₁⁻¹ ∘ h₁⁻¹ ∘ h₀ ∘
+//! f₀.
 //!
-//! f₀ and f₁ are the area-preserving maps of source and target to the sphere. After the best rotation h₀ and h₁ move both
-//! landmarks of a pair to the middle between them, so that either surface is moved half the way only.
+//! f₀ and f₁ are the area-preserving maps of source and target to the sphere. After the best rotation h₀ and
+//! h₁ move both landmarks of a pair to the middle between them, so that either surface is moved half the way
+//! only.
 
 use super::carry::Carrying;
 use super::landmarks::Domain;
@@ -19,7 +21,8 @@ use crate::optimize::rotation::{best_rotation, rotate};
 use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
 
-/// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on either side.
+/// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on
+/// either side.
 const CROWDED: f64 = 0.3;
 
 /// What a turn by itself weighs against landmarks.
@@ -30,8 +33,8 @@ const LEAST_TURN: f64 = 1e-9;
 /// A target that is turned inside out beside the source is turned back first.
 ///
 /// # Errors
-/// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range are refused before
-/// any work. What [`sphere_map`] fails with, and [`Error::CancelledEarly`].
+/// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range are
+/// refused before any work. What [`sphere_map`] fails with, and [`Error::CancelledEarly`].
 ///
 /// ```
 /// use authalic::registration::{Landmarks, RegistrationOptions, register_spheres};
@@ -132,8 +135,8 @@ fn volume(mesh: &TriangleMesh) -> f64 {
     })
 }
 
-/// The source's map rotated so that its landmarks come nearest to the target's, unless the rounding of that folds a
-/// sliver.
+/// The source's map rotated so that its landmarks come nearest to the target's, unless the rounding of that
+/// folds a sliver.
 fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector> {
     let ours: Vec<Vector> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
     let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
@@ -152,8 +155,8 @@ fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: 
     }
 }
 
-/// Where the landmarks of each pair meet: in the middle, or at the target's where some pairs would meet in one place, as
-/// two that change places do.
+/// Where the landmarks of each pair meet: in the middle, or at the target's where some pairs would meet in
+/// one place, as two that change places do.
 fn meeting_places(ours: &[Vector], theirs: &[Vector]) -> Vec<Vector> {
     let middle: Vec<Vector> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
     let is_crowded = |i: usize, j: usize| {

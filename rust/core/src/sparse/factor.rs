@@ -45,9 +45,9 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     }
 }
 
-/// Solves `A x = b` in place for a dense symmetric positive definite matrix, of which only the lower triangle is read;
-/// it is overwritten by its Cholesky factor. `rhs` holds one or more columns, one after another. False, and `rhs`
-/// undefined, where a pivot is not positive and finite.
+/// Solves `A x = b` in place for a dense symmetric positive definite matrix, of which only the lower triangle
+/// is read; it is overwritten by its Cholesky factor. `rhs` holds one or more columns, one after another.
+/// False, and `rhs` undefined, where a pivot is not positive and finite.
 pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bool {
     let n = matrix.len().isqrt();
     let columns = rhs.len().checked_div(n).unwrap_or(0);
@@ -148,7 +148,8 @@ pub(super) fn lower_solve_rows<T: Scalar>(lower: BlockRef<'_, T>, rows: Block<'_
     triangular_solve::solve_lower_triangular_in_place(lower, rows.transpose_mut(), Par::Seq);
 }
 
-/// `out -= a · bᵀ` or, to replace it, `out := −a · bᵀ`; for a square `out` the lower triangle only, if asked for.
+/// `out -= a · bᵀ` or, to replace it, `out := −a · bᵀ`; for a square `out` the lower triangle only, if asked
+/// for.
 pub(super) fn subtract_product<T: Scalar>(
     out: Block<'_, T>,
     a: BlockRef<'_, T>,
@@ -162,8 +163,8 @@ pub(super) fn subtract_product<T: Scalar>(
     matmul::triangular::matmul(out, of_out, beta, a, full, b.transpose(), full, -T::ONE, Par::Seq);
 }
 
-/// An order of the nodes of a graph that keeps the factor sparse, by approximate minimum degree (Amestoy, Davis and
-/// Duff 1996); the neighbours of node v are those from `starts[v]` to `starts[v + 1]`.
+/// An order of the nodes of a graph that keeps the factor sparse, by approximate minimum degree (Amestoy,
+/// Davis and Duff 1996); the neighbours of node v are those from `starts[v]` to `starts[v + 1]`.
 ///
 /// # Errors
 /// [`Error::FactorizationFailed`] where there are too many edges for 32-bit indices.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Area-preserving maps of closed surfaces of genus 0 onto the unit sphere.
 //!
-//! [`sphere_map`] is the entry. The default is guarded Gauss–Newton, our own. The papers' methods (Sutti & Yueh 2024): a spherical conformal start, the
-//! fixed-point iteration of the stretch energy (Algorithm 2), Riemannian gradient descent (Algorithm 1), and
-//! the bijectivity correction by mean-value weights. They cannot promise an unfolded map, so where the correction
-//! does not suffice the run is repeated from a map without folds and never leaves it. Every result is checked by
-//! exact predicates.
+//! [`sphere_map`] is the entry. The default is guarded Gauss–Newton, our own. The papers' methods (Sutti &
+//! Yueh 2024): a spherical conformal start, the fixed-point iteration of the stretch energy (Algorithm 2),
+//! Riemannian gradient descent (Algorithm 1), and the bijectivity correction by mean-value weights. They
+//! cannot promise an unfolded map, so where the correction does not suffice the run is repeated from a map
+//! without folds and never leaves it. Every result is checked by exact predicates.
 //!
 //! Input: a [`TriangleMesh`] that is closed, connected and without handles. Cost: one sparse Cholesky
 //! factorisation of all vertices, about ten of six tenths of them, and one gradient per iteration.
@@ -54,24 +54,28 @@ pub enum SphereMethod {
 pub struct SphereMapOptions<'a> {
     /// The method; guarded Gauss–Newton.
     pub method: SphereMethod,
-    /// The line search of the gradient descent; interpolation, which the paper found faster and no less exact.
+    /// The line search of the gradient descent; interpolation, which the paper found faster and no less
+    /// exact.
     pub line_search: LineSearch,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas alone.
+    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
+    /// alone.
     pub angle_weight: f64,
-    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the fixed point
-    /// itself fixed-point steps from it.
+    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the
+    /// fixed point itself fixed-point steps from it.
     pub initial: Option<&'a [Vector]>,
-    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it takes,
-    /// 10 (30 below 10,000 vertices) where those leave the area ratio a deviation of 1 %, up to 60 else; the papers' methods: 100, as in the paper's tables. The fixed-point steps before
-    /// the descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the
-    /// start map itself.
+    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
+    /// takes, 10 (30 below 10,000 vertices) where those leave the area ratio a deviation of 1 %, up to 60
+    /// else; the papers' methods: 100, as in the paper's tables. The fixed-point steps before the descent and
+    /// the descent that follows where folds were mended come on top. 0 with the fixed point returns the start
+    /// map itself.
     pub max_iterations: Option<usize>,
-    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴ where
-    /// `None`. Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For the fixed point it is ε
-    /// of Algorithm 2: the iteration ends when E_S falls by no more than this; 10⁻⁶ where `None`, as in the paper.
-    /// −∞ asks the fixed point for all iterations, through rises, and for the last map instead of the best.
+    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
+    /// where `None`. Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For
+    /// the fixed point it is ε of Algorithm 2: the iteration ends when E_S falls by no more than this; 10⁻⁶
+    /// where `None`, as in the paper. −∞ asks the fixed point for all iterations, through rises, and for the
+    /// last map instead of the best.
     pub tolerance: Option<f64>,
     /// Unfold what the papers' methods fold; on. The paper's tables count folds before that too.
     pub unfold: bool,
@@ -95,13 +99,13 @@ impl Default for SphereMapOptions<'_> {
 /// A one-to-one map of a closed surface to the unit sphere.
 #[derive(Debug, Clone)]
 pub struct SphereMap {
-    /// (n, 3): the image of each vertex, unit rows; positive faces are seen counter-clockwise from outside. Without
-    /// a start map it is the rotated copy that lies over the surface best.
+    /// (n, 3): the image of each vertex, unit rows; positive faces are seen counter-clockwise from outside.
+    /// Without a start map it is the rotated copy that lies over the surface best.
     pub positions: Vec<Vector>,
     /// Why the run ended.
     pub status: Status,
-    /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place of a
-    /// folded one, a record of step 0.
+    /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place
+    /// of a folded one, a record of step 0.
     pub history: History,
     /// The figures of the map, signed.
     pub distortion: Distortion,

@@ -7,8 +7,8 @@
 //! transformation, and the raw one puts nearly all of the surface next to one point: the one taken here has
 //! the centroid of the surface's measure at the sphere's centre.
 //!
-//! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts beyond
-//! double precision, which cannot; then the [progressive](progressive_sphere) map is taken.
+//! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts
+//! beyond double precision, which cannot; then the [progressive](progressive_sphere) map is taken.
 //!
 //! Cost: one sparse Cholesky factorisation of all vertices but three.
 
@@ -114,8 +114,8 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
     conformal_within(f64::INFINITY, mesh, weights, watch)
 }
 
-/// The same, nearly conformal only but without folds, but for rounding: cotangents that are negative or extreme are
-/// moved to positive ones.
+/// The same, nearly conformal only but without folds, but for rounding: cotangents that are negative or
+/// extreme are moved to positive ones.
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].

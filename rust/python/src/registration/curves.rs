@@ -16,10 +16,12 @@ use crate::run::run;
 
 /// What proves that a registration by curves is one-to-one, with the curves in place.
 ///
-/// A map is a homeomorphism whose faces are all positively oriented, whose area is the whole, and whose banks agree.
+/// A map is a homeomorphism whose faces are all positively oriented, whose area is the whole, and whose banks
+/// agree.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Certificates {
-    /// (j,) int64: source faces with an image that is not positively oriented in the target's metric; none in a homeomorphism.
+    /// (j,) int64: source faces with an image that is not positively oriented in the target's metric; none in
+    /// a homeomorphism.
     folded: Py<PyArray1<i64>>,
     /// The signed areas of all images in the target's hyperbolic metric.
     area: f64,
@@ -35,8 +37,8 @@ pub struct Certificates {
     cocycle_error: f64,
     /// Vertices that rounding has put beyond the boundary.
     outside: usize,
-    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map; NaN without a
-    /// hyperbolic metric.
+    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map;
+    /// NaN without a hyperbolic metric.
     energy_ratio: f64,
     /// (float, float): the largest curvature that the hyperbolic metrics of source and target have left.
     curvature: (f64, f64),
@@ -75,11 +77,12 @@ impl Certificates {
     }
 }
 
-/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that takes curve to curve.
+/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that
+/// takes curve to curve.
 ///
-/// Both surfaces are sliced along the curves, given the hyperbolic metric in which all slits and boundary loops are
-/// geodesics, and mapped by the hyperbolic harmonic map between them (Shi et al. 2013, by Newton's method), which is a homeomorphism
-/// whatever the curves are. `certificates` prove it.
+/// Both surfaces are sliced along the curves, given the hyperbolic metric in which all slits and boundary
+/// loops are geodesics, and mapped by the hyperbolic harmonic map between them (Shi et al. 2013, by Newton's
+/// method), which is a homeomorphism whatever the curves are. `certificates` prove it.
 ///
 /// Parameters
 /// ----------
@@ -88,22 +91,25 @@ impl Certificates {
 /// target : (vertices, faces)
 ///     Another, with (n_t, 3) and (m_t, 3) and as many boundary loops.
 /// source_curves : list of (k,) integer arrays
-///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common. Open ones
-///     are matched from start to end by shares of their length. Closed ones, whose first vertex stands again at the end or whose last vertex (of at least 8)
-///     has an edge to the first, have neither start nor direction. Loops of the boundary need not be named.
+///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common.
+///     Open ones are matched from start to end by shares of their length. Closed ones, whose first vertex
+///     stands again at the end or whose last vertex (of at least 8) has an edge to the first, have neither
+///     start nor direction. Loops of the boundary need not be named.
 /// target_curves : list of (k,) integer arrays
 ///     Their partners on the target, in the same order.
 /// metric : "newton" or "ricci_flow"
-///     How the hyperbolic metrics are found: by Newton's method, or by the paper's Ricci flow (slow, then finished by Newton).
+///     How the hyperbolic metrics are found: by Newton's method, or by the paper's Ricci flow (slow, then
+///     finished by Newton).
 /// solver : "newton" or "heat"
-///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow; on all but small meshes it ends
-///     with "max_iterations").
+///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow; on
+///     all but small meshes it ends with "max_iterations").
 /// max_iterations : int, optional
 ///     Steps of the heat diffusion, 2000 by default.
 /// tolerance : float, optional
 ///     The heat diffusion ends where no component of the gradient is larger; 1e-6 by default.
 /// source_sphere : (n, 3) real array, optional
-///     The source on a sphere around the origin, to tell how the surfaces lie over each other; a conformal map by default.
+///     The source on a sphere around the origin, to tell how the surfaces lie over each other; a conformal
+///     map by default.
 /// target_sphere : (n_t, 3) real array, optional
 ///     The target likewise; both or neither. They need not be aligned.
 /// progress : callable(fraction, message) -> bool, optional
@@ -112,18 +118,20 @@ impl Certificates {
 /// Returns
 /// -------
 /// Registration
-///     With `certificates`, `warnings` and `energies`. Its domain, for `registered` and `target_registered`, is a rough map of the target to
-///     the unit sphere.
+///     With `certificates`, `warnings` and `energies`. Its domain, for `registered` and `target_registered`,
+///     is a rough map of the target to the unit sphere.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, too short, touch
-///     each other or the boundary, or do not pair up: the message names the curve; nothing was computed.
+///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, too
+///     short, touch each other or the boundary, or do not pair up: the message names the curve; nothing was
+///     computed.
 /// ValueError
 ///     An option out of its range.
 /// SolverError
-///     Double precision did not suffice, or the call was cancelled: no map before the last step is free of folds.
+///     Double precision did not suffice, or the call was cancelled: no map before the last step is free of
+///     folds.
 ///
 /// Examples
 /// --------
@@ -131,12 +139,12 @@ impl Certificates {
 /// >>> t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 /// >>> z = np.linspace(-0.9, 0.9, 13)
 /// >>> rings = [[(1 - h * h) ** 0.5 * np.cos(a), (1 - h * h) ** 0.5 * np.sin(a), h] for h in z for a in t]
-/// >>> faces = [f for i in range(12) for j in range(24) for a, b in [(24 * i + j, 24 * i + (j + 1) % 24)]
-/// ...          for f in ([a, b, b + 24], [a, b + 24, a + 24])]
-/// >>> band = np.array(rings), np.array(faces)
+/// >>> faces = [f for i in range(12) for j in range(24) for a, b in ((24 * i + j, 24 * i + (j + 1) % 24),)
+/// ...          for f in ((a, b, b + 24), (a, b + 24, a + 24))]
+/// >>> band = rings, faces
 /// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
 /// >>> found = authalic.register_hyperbolic(band, band, source_curves=curves, target_curves=curves)
-/// >>> len(found.certificates.folded), bool(abs(found.positions - band[0]).max() < 1e-2)
+/// >>> len(found.certificates.folded), bool(abs(found.positions - rings).max() < 1e-2)
 /// (0, True)
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_curves, target_curves, metric="newton", solver="newton",

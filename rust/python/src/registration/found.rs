@@ -92,8 +92,8 @@ impl Found {
         Ok(Self::new(self.target.clone(), self.source.clone(), outcome))
     }
 
-    /// The rows of per-vertex data that the vertices of the source take, or of per-corner data that its corners take,
-    /// both in the order of the corners given.
+    /// The rows of per-vertex data that the vertices of the source take, or of per-corner data that its
+    /// corners take, both in the order of the corners given.
     pub fn nearest_rows(&self, per: Per) -> Vec<u32> {
         if per == Per::Vertex {
             return registration::nearest_vertices(&self.target.faces, self.locations());

@@ -19,10 +19,12 @@ pub(crate) use curves::{choice, metrics, vertex_paths};
 use found::{Found, Outcome, Surface};
 pub use result::Registration;
 
-/// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to landmarks.
+/// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to
+/// landmarks.
 ///
-/// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without folding a face
-/// (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is looked up on the target.
+/// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without
+/// folding a face (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is looked up on the
+/// target.
 ///
 /// Parameters
 /// ----------
@@ -39,18 +41,20 @@ pub use result::Registration;
 /// angle_weight : float
 ///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `disk_map`.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so far.
+///     Called between iterations and in long steps from within; False cancels and returns the best map so
+///     far.
 ///
 /// Returns
 /// -------
 /// Registration
-///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed` says which.
+///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
+///     says which.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface is no disk, an array does not fit, or landmarks are no pairs: unequal counts, repeated, out of
-///     range, too few, on the boundary; nothing was computed.
+///     A surface is no disk, an array does not fit, or landmarks are no pairs: unequal counts, repeated, out
+///     of range, too few, on the boundary; nothing was computed.
 /// ValueError
 ///     An option out of its range.
 /// SolverError
@@ -62,7 +66,8 @@ pub use result::Registration;
 /// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
 /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
 /// >>> flat = [[0, 0, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
-/// >>> result = authalic.register_disks((pyramid, faces), (flat, faces), source_landmarks=(0,), target_landmarks=(0,))
+/// >>> result = authalic.register_disks((pyramid, faces), (flat, faces), source_landmarks=(0,),
+/// target_landmarks=(0,))
 /// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
@@ -90,10 +95,12 @@ pub fn register_disks(
     Registration::new(py, found)
 }
 
-/// Registers two closed surfaces: a map of the source onto the target that keeps areas and takes landmarks to landmarks.
+/// Registers two closed surfaces: a map of the source onto the target that keeps areas and takes landmarks to
+/// landmarks.
 ///
-/// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair without folding
-/// a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is looked up on the target.
+/// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair
+/// without folding a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is
+/// looked up on the target.
 ///
 /// Parameters
 /// ----------
@@ -110,18 +117,20 @@ pub fn register_disks(
 /// angle_weight : float
 ///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `sphere_map`.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so far.
+///     Called between iterations and in long steps from within; False cancels and returns the best map so
+///     far.
 ///
 /// Returns
 /// -------
 /// Registration
-///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed` says which.
+///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
+///     says which.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface is no sphere, an array does not fit, or landmarks are no pairs: unequal counts, repeated, out of
-///     range, too few; nothing was computed.
+///     A surface is no sphere, an array does not fit, or landmarks are no pairs: unequal counts, repeated,
+///     out of range, too few; nothing was computed.
 /// ValueError
 ///     An option out of its range.
 /// SolverError
@@ -171,8 +180,8 @@ pub fn register_spheres(
 /// t : float
 ///     Any finite number; beyond 0 and 1 the morph goes on along the same lines.
 /// align : bool
-///     Move, turn and scale the image onto the source first (the best similarity by area), so that the shape changes
-///     but does not travel.
+///     Move, turn and scale the image onto the source first (the best similarity by area), so that the shape
+///     changes but does not travel.
 ///
 /// Returns
 /// -------

@@ -20,7 +20,8 @@ use crate::{disk, sphere};
 /// A one-to-one map of a source surface onto a target, with landmarks on landmarks.
 #[pyclass(frozen, module = "authalic")]
 pub struct Registration {
-    /// (n, 3) float64: g(v), where each source vertex comes to lie on the target, in the target's coordinates.
+    /// (n, 3) float64: g(v), where each source vertex comes to lie on the target, in the target's
+    /// coordinates.
     #[pyo3(get)]
     positions: Py<PyArray2<f64>>,
     /// (n,) int64: the target face in which it lies there.
@@ -29,8 +30,8 @@ pub struct Registration {
     /// (n, 3) float64: the weights of that face's corners, not negative, each row 1 in sum.
     #[pyo3(get)]
     barycentric: Py<PyArray2<f64>>,
-    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with their
-    /// landmarks in place.
+    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with
+    /// their landmarks in place.
     #[pyo3(get)]
     registered: Py<PyAny>,
     /// (n_t, 2) or (n_t, 3) float64: the target vertices there.
@@ -48,28 +49,29 @@ pub struct Registration {
     /// DiskMap or SphereMap: the map of the target alone.
     #[pyo3(get)]
     target_map: Py<PyAny>,
-    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1. By curves the largest
-    /// distance of each curve's vertices from its partner, in parts of the target's size.
+    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1. By
+    /// curves the largest distance of each curve's vertices from its partner, in parts of the target's size.
     #[pyo3(get)]
     landmark_error: Py<PyArray1<f64>>,
-    /// (j,) int64: the pairs that did not meet: more than 1e-3 apart there, or more than .5 % of the target's size on
-    /// the target; by curves those more than 1e-9 of the target's size off.
+    /// (j,) int64: the pairs that did not meet: more than 1e-3 apart there, or more than .5 % of the target's
+    /// size on the target; by curves those more than 1e-9 of the target's size off.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
-    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded whatever it
-    /// says.
+    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded
+    /// whatever it says.
     #[pyo3(get)]
     status: &'static str,
-    /// The figures of `registered` against the source's areas; its authalic_energy is that of h. By curves the figures of the
-    /// map in space, `positions` against the source.
+    /// The figures of `registered` against the source's areas; its authalic_energy is that of h. By curves
+    /// the figures of the map in space, `positions` against the source.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere, by curves of the way back in space. On the disk those of
-    /// the target's own map, but where landmarks could be met only by carrying the target's.
+    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere, by curves of
+    /// the way back in space. On the disk those of the target's own map, but where landmarks could be met
+    /// only by carrying the target's.
     #[pyo3(get)]
     target_distortion: Py<Distortion>,
-    /// (m,) float64: the area of each source face's image on the target over its own, with the source scaled to
-    /// the area of its image; 1 where g keeps shares of area.
+    /// (m,) float64: the area of each source face's image on the target over its own, with the source scaled
+    /// to the area of its image; 1 where g keeps shares of area.
     #[pyo3(get)]
     area_ratio: Py<PyArray1<f64>>,
     /// (m,) float64: max(J, 1/J) of that ratio J, at least 1; infinite where the image has no area.
@@ -81,11 +83,12 @@ pub struct Registration {
     /// list of str: what should be looked at in a map by curves; empty of one by points.
     #[pyo3(get)]
     warnings: Vec<String>,
-    /// list of (k,) float64: the harmonic energy before and after each step, for each piece with a hyperbolic metric; empty of a map
-    /// by points.
+    /// list of (k,) float64: the harmonic energy before and after each step, for each piece with a hyperbolic
+    /// metric; empty of a map by points.
     #[pyo3(get)]
     energies: Vec<Py<PyArray1<f64>>>,
-    /// Iterations of carrying the landmarks, those of the maps alone are theirs; by curves the steps of the harmonic map.
+    /// Iterations of carrying the landmarks, those of the maps alone are theirs; by curves the steps of the
+    /// harmonic map.
     #[pyo3(get)]
     iterations: usize,
     /// Wall time of the call.
@@ -174,12 +177,13 @@ impl Registration {
     /// Parameters
     /// ----------
     /// values : (n_t, ...) or (m_t, 3, ...) array
-    ///     One row per target vertex, or one per corner of the target faces as they were given. Each corner of a source face takes the value on that side of a seam of the data on which its face
-    ///     lies.
+    ///     One row per target vertex, or one per corner of the target faces as they were given. Each corner
+    ///     of a source face takes the value on that side of a seam of the data on which its face lies.
     /// per : "vertex" or "corner", optional
     ///     What `values` has a row for. Default: what its shape says, a vertex where both would fit.
     /// nearest : bool
-    ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating. For labels.
+    ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating. For
+    ///     labels.
     ///
     /// Returns
     /// -------
@@ -227,7 +231,8 @@ impl Registration {
         from_values(py, pulled, out)
     }
 
-    /// The registration of the target onto the source, by the same maps; its `pull` carries source data to the target.
+    /// The registration of the target onto the source, by the same maps; its `pull` carries source data to
+    /// the target.
     ///
     /// Returns
     /// -------

@@ -3,15 +3,15 @@
 //!
 //! Two kinds of discrete conformal change, both with one number u per vertex and lengths that grow with it:
 //!
-//! - vertex scaling (A. Bobenko, U. Pinkall, B. Springborn, Discrete conformal maps and ideal polyhedra, Geometry &
-//!   Topology 19, 2015): 2 sinh(l/2) = L e^((u_i + u_j)/2) for lengths L in space;
-//! - inversive distance circle packings (P. Bowers, K. Stephenson, Uniformizing dessins and Belyĭ maps via circle
-//!   packing, Memoirs AMS 805, 2004): circles of radius r, u = ln tanh(r/2) < 0, around the vertices, and
-//!   cosh l = cosh r_i cosh r_j + I sinh r_i sinh r_j for the inversive distance I of two circles.
+//! - vertex scaling (A. Bobenko, U. Pinkall, B. Springborn, Discrete conformal maps and ideal polyhedra,
+//!   Geometry & Topology 19, 2015): 2 sinh(l/2) = L e^((u_i + u_j)/2) for lengths L in space;
+//! - inversive distance circle packings (P. Bowers, K. Stephenson, Uniformizing dessins and Belyĭ maps via
+//!   circle packing, Memoirs AMS 805, 2004): circles of radius r, u = ln tanh(r/2) < 0, around the vertices,
+//!   and cosh l = cosh r_i cosh r_j + I sinh r_i sinh r_j for the inversive distance I of two circles.
 //!
-//! With I = cos φ the latter is Thurston's packing of circles that meet under the angle φ. The circles of a mesh in
-//! space that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be 0, the tangential
-//! packing, which knows nothing of the surface's shape; so I is kept as it is.
+//! With I = cos φ the latter is Thurston's packing of circles that meet under the angle φ. The circles of a
+//! mesh in space that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be
+//! 0, the tangential packing, which knows nothing of the surface's shape; so I is kept as it is.
 
 use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::{EdgeTable, corner_of_entry};

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Newton's method for the factors that give every vertex its angle sum.
 //!
-//! The curvatures K (the angle sum wanted less that of the corners) are the gradient of a convex function of the
-//! factors, for vertex scaling (Bobenko, Pinkall, Springborn 2015) and for inversive distances (F. Luo 2011) alike.
-//! So the slope K · d along a Newton direction says all that a line search needs; the function is never evaluated.
+//! The curvatures K (the angle sum wanted less that of the corners) are the gradient of a convex function of
+//! the factors, for vertex scaling (Bobenko, Pinkall, Springborn 2015) and for inversive distances (F. Luo
+//! 2011) alike. So the slope K · d along a Newton direction says all that a line search needs; the function
+//! is never evaluated.
 //!
 //! In each iteration:
 //!
 //! 1. lengths of the edges, angles of the faces, curvatures of the vertices;
-//! 2. the Hessian, a matrix like that of a Laplacian, is factored; where faces are degenerate, with a small shift;
-//! 3. the Newton step, held inside the range of the factors, is halved until its end is not beyond the minimum, or the
-//!    slope has fallen to half.
+//! 2. the Hessian, a matrix like that of a Laplacian, is factored; where faces are degenerate, with a small
+//!    shift;
+//! 3. the Newton step, held inside the range of the factors, is halved until its end is not beyond the
+//!    minimum, or the slope has fallen to half.
 //!
-//! Cost of one iteration: one sparse factorisation with one unknown per vertex, two or three passes over the faces.
+//! Cost of one iteration: one sparse factorisation with one unknown per vertex, two or three passes over the
+//! faces.
 
 use std::f64::consts::{PI, TAU};
 
@@ -106,8 +109,9 @@ impl State {
     }
 }
 
-/// Lowers the curvatures from `factors`, which are moved along, until they vanish, or rounding allows no better, or
-/// nothing but degenerate faces is left to be seen to. Returns the last metric and the number of iterations.
+/// Lowers the curvatures from `factors`, which are moved along, until they vanish, or rounding allows no
+/// better, or nothing but degenerate faces is left to be seen to. Returns the last metric and the number of
+/// iterations.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`] by the watch.
@@ -199,7 +203,8 @@ pub(super) fn hessian(
     hessian
 }
 
-/// The matrix with a shifted diagonal, as [`Factor::refactor`] wants it: one unknown in the first of two rows.
+/// The matrix with a shifted diagonal, as [`Factor::refactor`] wants it: one unknown in the first of two
+/// rows.
 fn padded(matrix: [[f64; 3]; 3], shift: f64) -> [[f64; 6]; 6] {
     let mut padded = [[0.0; 6]; 6];
     for row in 0..3 {
@@ -209,8 +214,8 @@ fn padded(matrix: [[f64; 3]; 3], shift: f64) -> [[f64; 6]; 6] {
     padded
 }
 
-/// Factors and metric at the end of the first of ever shorter steps that is not past the minimum along the direction,
-/// or has at most half of the slope there; `None` where rounding leaves no such step.
+/// Factors and metric at the end of the first of ever shorter steps that is not past the minimum along the
+/// direction, or has at most half of the slope there; `None` where rounding leaves no such step.
 fn step(
     surface: &Surface<'_>,
     conformal: &Conformal,

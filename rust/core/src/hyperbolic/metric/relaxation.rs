@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A hyperbolic metric where slivers keep the given edge lengths from having one.
 //!
-//! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close to π
-//! may end up breaking the triangle inequality. Packings of tangential circles always have one (W. Thurston), and
-//! never break it. So the inversive distances of edges at such faces are moved towards 1, the tangential value, until
-//! all is well: a third of the way at a time, at the faces themselves first, then around them, in the end everywhere.
-//! Conformality is given up only there.
+//! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close
+//! to π may end up breaking the triangle inequality. Packings of tangential circles always have one (W.
+//! Thurston), and never break it. So the inversive distances of edges at such faces are moved towards 1, the
+//! tangential value, until all is well: a third of the way at a time, at the faces themselves first, then
+//! around them, in the end everywhere. Conformality is given up only there.
 //!
 //! Cost: a Newton solve from the last factors for each round, usually one or two.
 
@@ -18,7 +18,8 @@ use crate::error::Error;
 /// How far edges are moved towards the tangential packing in one round.
 const SHARE: f64 = 0.34;
 
-/// While there are degenerate faces, those with a smaller angle than this (in radians) are relaxed along with them.
+/// While there are degenerate faces, those with a smaller angle than this (in radians) are relaxed along with
+/// them.
 const THIN: f64 = 2e-3;
 
 /// From this round on the edges around the faces are relaxed too.
@@ -39,7 +40,8 @@ pub(super) struct Relaxed {
     pub edges: usize,
 }
 
-/// Solves from `factors`, relaxing the edges of faces that come out degenerate, and before that those of `bad` faces.
+/// Solves from `factors`, relaxing the edges of faces that come out degenerate, and before that those of
+/// `bad` faces.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`] by the watch. The metric of the last round is returned where none was found.

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The discrete hyperbolic Ricci flow: R. Shi, W. Zeng, Z. Su et al., Hyperbolic harmonic mapping for constrained
-//! brain surface registration (CVPR 2013), algorithm 2.
+//! The discrete hyperbolic Ricci flow: R. Shi, W. Zeng, Z. Su et al., Hyperbolic harmonic mapping for
+//! constrained brain surface registration (CVPR 2013), algorithm 2.
 //!
 //! In each step:
 //!
-//! 1. edge lengths from the radii by the hyperbolic cosine law, angles from the lengths, curvatures K from the angles;
+//! 1. edge lengths from the radii by the hyperbolic cosine law, angles from the lengths, curvatures K from
+//!    the angles;
 //! 2. every circle shrinks or grows: r ← r − ε K sinh r.
 //!
-//! That is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper fixes ε;
-//! here it grows slowly from step to step, and is halved where a step goes past the minimum along its direction, for
-//! a fixed one either wastes steps or diverges, depending on the worst vertex of the mesh.
+//! That is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper
+//! fixes ε; here it grows slowly from step to step, and is halved where a step goes past the minimum along
+//! its direction, for a fixed one either wastes steps or diverges, depending on the worst vertex of the mesh.
 //!
-//! The edge weights of the paper are angles φ at which circles meet. They are replaced by inversive distances, for
-//! which see [`edges`](super::edges): with angles, the metric would not depend on the surface's shape.
+//! The edge weights of the paper are angles φ at which circles meet. They are replaced by inversive
+//! distances, for which see [`edges`](super::edges): with angles, the metric would not depend on the
+//! surface's shape.
 //!
-//! The flow converges linearly and ends far from the precision that maps through the metric need for charts of the
-//! hyperbolic plane to close up around vertices. So its result is only where Newton's method starts; [`FlowRecord`]
-//! says how far it came by itself. Cost of a step: a pass over the faces.
+//! The flow converges linearly and ends far from the precision that maps through the metric need for charts
+//! of the hyperbolic plane to close up around vertices. So its result is only where Newton's method starts;
+//! [`FlowRecord`] says how far it came by itself. Cost of a step: a pass over the faces.
 
 use super::edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
 use super::newton::{State, Surface};
@@ -84,7 +86,8 @@ pub(super) fn flow(
     Ok((factors(&radii), record))
 }
 
-/// Radii and metric after a step, with ε halved until it does not go past the minimum; `None` where it always does.
+/// Radii and metric after a step, with ε halved until it does not go past the minimum; `None` where it always
+/// does.
 fn shorten(
     surface: &Surface<'_>,
     conformal: &Conformal,

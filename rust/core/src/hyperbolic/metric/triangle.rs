@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The angles of a hyperbolic triangle with given sides, and their derivatives.
 //!
-//! Half-angle formulas throughout: the cosine laws lose half of the digits where a triangle is small or thin. Sides
-//! that break the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended, angles are
-//! continuous functions of all sides, and the curvatures they add up to remain the gradient of a convex function (F.
-//! Luo, Rigidity of polyhedral surfaces III, Geometry & Topology 15, 2011).
+//! Half-angle formulas throughout: the cosine laws lose half of the digits where a triangle is small or thin.
+//! Sides that break the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended,
+//! angles are continuous functions of all sides, and the curvatures they add up to remain the gradient of a
+//! convex function (F. Luo, Rigidity of polyhedral surfaces III, Geometry & Topology 15, 2011).
 
 use std::f64::consts::PI;
 

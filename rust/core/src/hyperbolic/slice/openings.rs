@@ -9,7 +9,8 @@ use crate::mesh::{next_corner, previous_corner, vertex_at};
 pub(in crate::hyperbolic) struct Opened {
     /// (m, 3), in the order of [`Sliced::faces`](super::Sliced::faces).
     pub faces: Vec<[u32; 3]>,
-    /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NONE`] on the boundary.
+    /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NONE`] on the
+    /// boundary.
     pub opposite: Vec<u32>,
     /// The vertex before cutting.
     pub vertex_of: Vec<u32>,
@@ -49,7 +50,8 @@ impl Opened {
         }
     }
 
-    /// The vertices of the boundary loop that begins with the edge opposite to a corner, the surface on the left.
+    /// The vertices of the boundary loop that begins with the edge opposite to a corner, the surface on the
+    /// left.
     pub(super) fn boundary_from(&self, corner: u32) -> Vec<u32> {
         let step = |&edge: &u32| Some(self.next_boundary_edge(edge)).filter(|&next| next != corner);
         let edges = std::iter::successors(Some(corner), step);

@@ -170,7 +170,8 @@ fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Ve
     paths
 }
 
-/// A vertex that has six neighbours, as have those near it, at the middle of the first face of the icosahedron.
+/// A vertex that has six neighbours, as have those near it, at the middle of the first face of the
+/// icosahedron.
 fn middle_vertex(piece: &Piece) -> u32 {
     let [a, b, c] = triangle(&piece.points, [0, 11, 5]);
     nearest(piece, unit(add(a, add(b, c))))

@@ -36,8 +36,8 @@ def surface():
         return "a bumpy ball", *bumpy_ball(), ([1, 0.3, 0.3], [-1, -0.3, 0.3])
     curves = json.loads((path.parent / "fsaverage5_curves.json").read_text(encoding="utf-8"))["left"]
     with np.load(path) as file:
-        vertices, faces = file["V_pial"].astype(float), file["F"].astype(np.int64)
-    return "a left hemisphere", vertices, faces, curves[:CURVES], ([-1, 0, 0.2], [1, 0, -0.1])
+        vertices, faces = file["V_infl"].astype(float), file["F"].astype(np.int64)
+    return "an inflated left hemisphere", vertices, faces, curves[:CURVES], ([-1, 0, 0.2], [1, 0, -0.1])
 
 
 def bumpy_ball(stacks=60, slices=90):
@@ -122,7 +122,7 @@ def _axis(a, b):
     """Points on the axis of a translation of the Poincaré disk."""
     root = np.sqrt(a.real**2 - 1)
     ends = [(sign * root + 1j * a.imag) / np.conj(b) for sign in (-1, 1)]
-    t = np.linspace(0, 1, 400)[1:-1]
+    t = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, 400)[1:-1])
     chord = (1 - t) * ends[0] + t * ends[1]
     return chord / (1 + np.sqrt(np.maximum(1 - np.abs(chord) ** 2, 0)))
 

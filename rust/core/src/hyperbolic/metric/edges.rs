@@ -82,7 +82,7 @@ pub(super) enum Conformal {
 impl Conformal {
     /// The length of an edge whose ends have these factors.
     pub(super) fn length(&self, edge: usize, factors: [f64; 2]) -> f64 {
-        2.0 * self.half_chord(edge, factors).asinh()
+        2.0 * asinh(self.half_chord(edge, factors))
     }
 
     /// sinh(l/2).
@@ -136,6 +136,11 @@ const LONGEST_MOVE: f64 = 6.0;
 
 /// That of a circle uses up at most this part of what is left to 0, where the radius is infinite.
 const SHARE_OF_ROOM: f64 = 0.9;
+
+/// asinh x for x ≥ 0, in half the time of the standard library's, which guards against squares that overflow.
+fn asinh(x: f64) -> f64 {
+    (x + x * x / (1.0 + (1.0 + x * x).sqrt())).ln_1p()
+}
 
 /// 1 − e^(2u).
 fn one_less_square(u: f64) -> f64 {

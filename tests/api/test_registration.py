@@ -19,6 +19,7 @@ ATTRIBUTES = {
     *("positions", "triangles", "barycentric", "registered", "target_registered", "faces", "target_faces"),
     *("source_map", "target_map", "landmark_error", "missed", "status", "distortion", "area_ratio"),
     *("area_distortion", "target_distortion", "iterations", "seconds", "pull", "inverse", "compare"),
+    *("certificates", "warnings", "energies"),
 }
 STATUSES = {"converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"}
 

@@ -320,6 +320,15 @@ pub enum Error {
         reason: &'static str,
     },
 
+    /// Positions on a sphere are not finite, or at its centre.
+    #[error("{name} points nowhere at {}: give finite positions around the origin, none in it", .vertices.named("vertex"))]
+    NoDirection {
+        /// The argument.
+        name: &'static str,
+        /// The vertices with such a position.
+        vertices: Elements,
+    },
+
     /// One of two surfaces was refused or could not be mapped.
     #[error("the {surface}: {error}")]
     Surface {
@@ -672,6 +681,7 @@ impl Error {
             | Self::OpenSurface { vertices, .. }
             | Self::InitialSphere { vertices, .. }
             | Self::MapNonFinite { vertices, .. }
+            | Self::NoDirection { vertices, .. }
             | Self::InitialBoundary { vertices, .. } => Some(vertices),
             Self::IndexOutOfRange { faces, .. }
             | Self::RepeatedVertex { faces }

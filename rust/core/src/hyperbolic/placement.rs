@@ -71,7 +71,7 @@ struct Samples {
 /// Places two surfaces on the sphere, by `spheres` (source, target) where given.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] and [`Error::InitialSphere`] where `spheres` are no positions,
+/// [`Error::InvalidArray`] and [`Error::NoDirection`] where `spheres` are no positions,
 /// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
 /// watch.
 pub(super) fn placed(
@@ -83,7 +83,7 @@ pub(super) fn placed(
     // 1. Either surface by itself
     let [source, target] = match spheres {
         Some([source, target]) => {
-            [normalised(meshes[0], "source", source)?, normalised(meshes[1], "target", target)?]
+            [normalised(meshes[0], "source_sphere", source)?, normalised(meshes[1], "target_sphere", target)?]
         }
         None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
     };
@@ -111,19 +111,15 @@ pub(super) fn placed(
 }
 
 /// Given positions on the unit sphere.
-fn normalised(mesh: &TriangleMesh, surface: &'static str, given: &[Vector]) -> Result<Vec<Vector>, Error> {
-    let expected = || format!("({}, 3), one place for each vertex", mesh.n_vertices());
+fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector]) -> Result<Vec<Vector>, Error> {
     if given.len() != mesh.n_vertices() {
-        let found = format!("({}, 3)", given.len());
-        return Err(Error::InvalidArray { name: "sphere", found, expected: expected() }.of_surface(surface));
+        let expected = format!("of shape ({}, 3), one place for each vertex", mesh.n_vertices());
+        return Err(Error::InvalidArray { name, found: format!("of shape ({}, 3)", given.len()), expected });
     }
     let is_bad = |vertex: &usize| !(norm(given[*vertex]) > 0.0 && norm(given[*vertex]).is_finite());
     match Elements::collect((0..given.len()).filter(is_bad)) {
         None => Ok(given.iter().map(|&x| unit(x)).collect()),
-        Some(vertices) => {
-            let reason = "places on the sphere are finite and not zero";
-            Err(Error::InitialSphere { vertices, reason }.of_surface(surface))
-        }
+        Some(vertices) => Err(Error::NoDirection { name, vertices }),
     }
 }
 

@@ -66,8 +66,9 @@ pub use result::Registration;
 /// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
 /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
 /// >>> flat = [[0, 0, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
-/// >>> result = authalic.register_disks((pyramid, faces), (flat, faces), source_landmarks=(0,),
-/// target_landmarks=(0,))
+/// >>> result = authalic.register_disks(
+/// ...     (pyramid, faces), (flat, faces), source_landmarks=(0,), target_landmarks=(0,)
+/// ... )
 /// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]

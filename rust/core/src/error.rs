@@ -615,8 +615,9 @@ pub enum Error {
 
     /// The curves of one surface look like a mirror image of the other's.
     #[error(
-        "the curves fit far better when one surface is mirrored, like a left and a right hemisphere: mirror one of \
-         them (negate x and flip its faces), or check the order of the curves"
+        "the curves fit far better when one surface is mirrored: if they are mirror images like a left and a right hemisphere, \
+         mirror one of them (negate x and flip its faces); if only the faces of an open one look to the other side, flip these; \
+         or check the order of the curves"
     )]
     Mirrored,
 
@@ -719,7 +720,8 @@ impl Error {
     pub fn is_solver_error(&self) -> bool {
         match self {
             Self::Surface { error, .. } => error.is_solver_error(),
-            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } | Self::CancelledEarly => true,
+            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } => true,
+            Self::NoHyperbolicMetric { .. } | Self::CancelledEarly => true,
             _ => false,
         }
     }

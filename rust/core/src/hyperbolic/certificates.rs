@@ -28,8 +28,8 @@ pub struct Certificates {
     pub cocycle_error: f64,
     /// Vertices that rounding has put beyond the boundary.
     pub outside: usize,
-    /// E ≥ about 1 over 2π(B − 2): the harmonic energy in parts of the area; 1 for an isometry. NaN where no
-    /// piece has a hyperbolic metric.
+    /// The harmonic energy over that of the identity of the source: 1 for an isometry, above 2 for a strained map; NaN where
+    /// no piece has a hyperbolic metric.
     pub energy_ratio: f64,
     /// The largest curvature that the metrics of source and target have left.
     pub curvature: [f64; 2],
@@ -45,6 +45,8 @@ pub(super) struct PieceCertificates {
     pub cocycle_error: f64,
     pub outside: usize,
     pub energy: f64,
+    /// E of the identity.
+    pub rest_energy: f64,
 }
 
 /// Certifies a map between hyperbolic surfaces of Euler characteristic `chi`.
@@ -60,6 +62,7 @@ pub(super) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
         cocycle_error: (0..images.len()).fold(0.0, |most: f64, face| most.max(cocycle(net, face))),
         outside: (0..map.places.faces.len()).filter(is_outside).count(),
         energy: map.energy(),
+        rest_energy: map.rest_energy,
     }
 }
 

@@ -34,6 +34,13 @@ pub(super) struct Net {
     pub transitions: Vec<Moebius>,
 }
 
+/// A triangulation with one weight and one length for each corner's edge, the same from both sides.
+pub(super) struct Weighted {
+    pub net: Net,
+    pub weights: Vec<f64>,
+    pub lengths: Vec<f64>,
+}
+
 impl Net {
     /// The triangulation of `surface` itself.
     pub(super) fn new(surface: &Opened, transitions: Vec<Moebius>) -> Self {
@@ -51,7 +58,7 @@ impl Net {
 /// returns it with one weight for each corner's edge, the same from both sides.
 ///
 /// Faces that are `kept` stay as they are: the weights of their edges are raised where they are not positive.
-pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Net, Vec<f64>) {
+pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Weighted {
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
     // 1. Flip until no edge is left that should be
@@ -87,7 +94,7 @@ pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> (Ne
     };
     let least = |corner: usize| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
     let weights = (0..halves.len()).map(|corner| weight(corner).max(least(corner))).collect();
-    (net, weights)
+    Weighted { net, weights, lengths }
 }
 
 fn boundary_vertices(net: &Net) -> Vec<bool> {

@@ -5,6 +5,8 @@
 //! its straight or round boundary, and put on top of each other. One feature is laid on a circle; two on the
 //! ends of a cylinder of circumference 1, on which the arc between them says how often the map winds around.
 //!
+//! Without folds and with boundaries in order such layouts are one-to-one; their area says no more than that.
+//!
 //! Cost: one sparse Cholesky factorisation for either surface and a point location for each vertex.
 
 use std::f64::consts::PI;
@@ -182,7 +184,8 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
         Some(_) => {
             system.solve(&faces, &vec![1.0; 3 * faces.len()], jump, &mut map, watch)?;
             let laid = layout(&map);
-            match Elements::collect(folded_in_plane(&disk.faces, &laid)) {
+            let folded = folded_in_plane(&disk.faces, &laid).into_iter();
+            match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
                 None => Ok(laid),
                 Some(folded) => Err(Error::NoEmbedding { folded }),
             }

@@ -14,7 +14,7 @@
 //! hyperbolic metric. Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
 
 use super::atlas::{Atlas, Walk};
-use super::delaunay::{Net, delaunay};
+use super::delaunay::{Net, Weighted, delaunay};
 use super::initial::Places;
 use super::moebius::{Complex, Moebius, exponential, seen_from};
 use super::slice::NONE;
@@ -53,6 +53,8 @@ pub(super) struct ChartMap<'a> {
     pub weights: Vec<f64>,
     /// Its edges between different places that are not both held, each by one corner.
     edges: Vec<u32>,
+    /// E of the identity of the source by the same edges.
+    pub rest_energy: f64,
 }
 
 /// What a descent did.
@@ -145,20 +147,20 @@ impl<'a> ChartMap<'a> {
         lengths: &[[f64; 3]],
         kept: &[bool],
     ) -> Self {
-        let (intrinsic, weights) = delaunay(input.clone(), lengths, kept);
-        Self::new(atlas, places, input, intrinsic, weights)
+        let Weighted { net: intrinsic, weights, lengths } = delaunay(input.clone(), lengths, kept);
+        let mut map = Self { atlas, places, input, intrinsic, weights, edges: Vec::new(), rest_energy: 0.0 };
+        map.edges = (0..map.weights.len() as u32).filter(|&corner| map.counts(corner)).collect();
+        let rest = |&corner: &u32| 0.5 * map.weights[corner as usize] * lengths[corner as usize].powi(2);
+        map.rest_energy = map.edges.iter().map(rest).sum();
+        map
     }
 
-    /// Takes the energy of `places` by the edges of `intrinsic` with `weights` per corner.
-    fn new(atlas: &'a Atlas<'a>, places: Places, input: Net, intrinsic: Net, weights: Vec<f64>) -> Self {
-        let is_held = |vertex: u32| places.held[vertex as usize].is_some();
-        let counts = |&corner: &u32| {
-            let across = intrinsic.opposite[corner as usize];
-            let [tail, head] = intrinsic.ends(corner as usize);
-            (across == NONE || corner < across) && !(is_held(tail) && is_held(head))
-        };
-        let edges = (0..weights.len() as u32).filter(counts).collect();
-        Self { atlas, places, input, intrinsic, weights, edges }
+    /// Whether the edge of a corner is counted, from this side: not where it lies between two vertices that are held.
+    fn counts(&self, corner: u32) -> bool {
+        let across = self.intrinsic.opposite[corner as usize];
+        let is_held = |vertex: u32| self.places.held[vertex as usize].is_some();
+        let [tail, head] = self.intrinsic.ends(corner as usize);
+        (across == NONE || corner < across) && !(is_held(tail) && is_held(head))
     }
 
     /// E at the present places.

@@ -35,7 +35,8 @@ pub(super) fn planar_layout(
         return Ok(cotangent);
     }
     let uniform = harmonic(disk, &vec![1.0; 3 * disk.faces.len()], held, watch)?;
-    match Elements::collect(folded_in_plane(&disk.faces, &uniform)) {
+    let folded = folded_in_plane(&disk.faces, &uniform).into_iter();
+    match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
         None => Ok(uniform),
         Some(folded) => Err(Error::NoEmbedding { folded }),
     }

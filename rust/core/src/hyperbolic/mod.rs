@@ -13,7 +13,7 @@
 //! 3. `metric`: the hyperbolic metrics, by Newton or by the paper's Ricci flow (`ricci_flow`);
 //! 4. `atlas`, `layout`, `initial`: local charts and a first homeomorphism;
 //! 5. `delaunay`, `harmonic`: the harmonic map by Newton, or by the paper's heat diffusion (`heat`);
-//! 6. `certificates`: the proof that it is one-to-one.
+//! 6. `certificates`: the proof that it is one-to-one; `advice`: signs that it is not what was meant.
 //!
 //! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: the
 //! Fuchsian group (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
@@ -21,6 +21,7 @@
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and pairs of [`Curves`]. Cost: some twenty sparse
 //! factorisations.
 
+mod advice;
 mod arcs;
 mod atlas;
 mod certificates;

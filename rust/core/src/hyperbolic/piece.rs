@@ -6,13 +6,14 @@
 
 use super::atlas::Atlas;
 use super::certificates::{PieceCertificates, certify, folded_faces};
+use super::features::Piece;
 use super::flat::flat_map;
 use super::harmonic::{ChartMap, Descent, newton};
 use super::heat::diffuse;
 use super::initial::initial_map;
 use super::inverse::inverse;
 use super::metric::{Metric, hyperbolic_metric};
-use super::slice::Sliced;
+use super::slice::{Sliced, SlicedPair};
 use super::{HyperbolicOptions, Solver};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
@@ -37,11 +38,12 @@ pub(super) struct PieceMap {
 /// # Errors
 /// What metric, layout and harmonic map fail with, and [`Error::CancelledEarly`].
 pub(super) fn map_piece(
-    source: &Sliced,
-    target: &Sliced,
+    pieces: [&Piece; 2],
+    sliced: &SlicedPair,
     options: &HyperbolicOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<PieceMap, Error> {
+    let [source, target] = [&sliced.source, &sliced.target];
     let n_features = source.sides.len().div_ceil(4);
     let chi = 2 - n_features as i64;
     if chi >= 0 {
@@ -52,13 +54,15 @@ pub(super) fn map_piece(
     }
     // 1. Hyperbolic metrics with geodesic boundaries: that of the target to map into, that of the source for
     //    the weights
-    let metric = |sliced: &Sliced, observer: &mut dyn Observer| {
+    let metric = |surface: usize, observer: &mut dyn Observer| {
+        let sliced = [source, target][surface];
         let points = sliced_points(sliced);
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
         hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch)
+            .map_err(|error| on_surface(error, pieces[surface], sliced, ["source", "target"][surface]))
     };
-    let ours = metric(source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
-    let theirs = metric(target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    let ours = metric(0, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let theirs = metric(1, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 2. A first homeomorphism
     let atlas = Atlas::new(&target.surface, &theirs);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
@@ -81,6 +85,20 @@ pub(super) fn map_piece(
     let certificates = certify(&map, chi);
     let (locations, inverse) = (locations(&map), inverse(&map, source, target));
     Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
+}
+
+/// An error about faces of a slice as one about faces of the surface.
+fn on_surface(error: Error, piece: &Piece, sliced: &Sliced, surface: &'static str) -> Error {
+    match error {
+        Error::NoHyperbolicMetric { mut faces } => {
+            let face_of =
+                |face: &mut usize| *face = piece.face_of[sliced.places[*face].face as usize] as usize;
+            faces.first.iter_mut().for_each(face_of);
+            Error::NoHyperbolicMetric { faces }.of_surface(surface)
+        }
+        Error::CancelledEarly => Error::CancelledEarly,
+        error => error.of_surface(surface),
+    }
 }
 
 /// Rounds of unfolding, each keeping faces within one more ring; the last keeps all.

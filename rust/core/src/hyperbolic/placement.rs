@@ -21,6 +21,8 @@ use crate::optimize::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
 use crate::sphere::{rough_conformal, vertex_weights};
 
+/// The middle of a closed curve says where it is if it is farther than this from that of the sphere.
+const LEAST_MIDDLE: f64 = 0.1;
 /// Points compared on an open curve.
 const OPEN_SAMPLES: usize = 64;
 /// Points compared on a closed curve; so many starts are tried.
@@ -223,7 +225,9 @@ fn rotation_over(pairs: impl Iterator<Item = (Vector, Vector, f64)>) -> Rotation
 fn first_rotation(curves: &[Samples]) -> Rotation {
     let middles = curves.iter().filter(|samples| samples.closed).map(|samples| {
         let [ours, theirs] = samples.middles();
-        (ours, theirs, 1.0)
+        // that of a great circle is no direction
+        let weight = if norm(ours).min(norm(theirs)) > LEAST_MIDDLE { 1.0 } else { 0.0 };
+        (ours, theirs, weight)
     });
     let open = curves.iter().filter(|samples| !samples.closed).flat_map(Samples::pairs);
     rotation_over(open.chain(middles))

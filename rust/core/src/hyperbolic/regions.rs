@@ -10,6 +10,7 @@
 use super::curves::{CurvePair, Gap, face_on_left, loop_along};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, dot, scaled, sub, triangle};
 use crate::mesh::topology::{NO_CORNER, next_corner, previous_corner, vertex_at};
 
 /// No region: beyond the boundary.
@@ -17,6 +18,9 @@ pub(super) const OUTSIDE: u32 = u32::MAX;
 
 /// The areas left and right of a curve say which is which where they differ by more than this share of all.
 const CLEAR_SHARE: f64 = 0.02;
+
+/// They outvote a single other curve where they differ by more than this.
+const OUTVOTES: f64 = 0.2;
 
 /// The regions of one surface.
 #[derive(Debug, Clone)]
@@ -32,6 +36,8 @@ pub(super) struct Regions {
     pub loops: Vec<(usize, u32)>,
     /// The share of each region in the area of the surface.
     shares: Vec<f64>,
+    /// Per region its centroid times its share.
+    moments: Vec<Vector>,
 }
 
 /// Both surfaces divided, with closed curves of the target turned like their partners.
@@ -97,7 +103,11 @@ fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
     let others = (0..ours.sides.len()).filter(|&other| other != curve);
     let agree = |other: &usize| left[ours.region(*other)] == their_left[theirs.region(*other)];
     let (agreeing, turned): (Vec<usize>, Vec<usize>) = others.partition(agree);
-    if agreeing.len() != turned.len() {
+    let (share, theirs_on_left) = (ours.share_of(&left), theirs.share_of(&their_left));
+    let by_area = (share - theirs_on_left).abs() - (1.0 - share - theirs_on_left).abs();
+    // against clear areas one curve alone is more likely on the wrong side itself
+    let is_outvoted = agreeing.len().max(turned.len()) == 1 && by_area.abs() > OUTVOTES;
+    if agreeing.len() != turned.len() && !is_outvoted {
         return agreeing.len() < turned.len();
     }
     // 2. Or boundary loops, or areas
@@ -106,8 +116,11 @@ fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
     if on_left != on_right {
         return on_right.abs_diff(their_loops) < on_left.abs_diff(their_loops);
     }
-    let (share, theirs) = (ours.share_of(&left), theirs.share_of(&their_left));
-    (1.0 - share - theirs).abs() + CLEAR_SHARE < (share - theirs).abs()
+    if by_area.abs() > CLEAR_SHARE {
+        return by_area > 0.0;
+    }
+    // 3. Or how the surfaces lie in space
+    dot(ours.direction_to(&left), theirs.direction_to(&their_left)) < 0.0
 }
 
 /// Refuses other curves and loops on different sides of a closed curve.
@@ -149,10 +162,15 @@ impl Regions {
             (number, region(face_on_left(mesh, vertices[0], vertices[1])))
         });
         let loops = loops.collect();
-        let mut shares = vec![0.0; count];
+        let (mut shares, mut moments) = (vec![0.0; count], vec![[0.0; 3]; count]);
         let total: f64 = mesh.face_areas().iter().sum();
-        of_face.iter().zip(mesh.face_areas()).for_each(|(&at, area)| shares[at as usize] += area / total);
-        Self { of_face, count, sides, loops, shares }
+        for (face, &at) in of_face.iter().enumerate() {
+            let (share, [a, b, c]) =
+                (mesh.face_areas()[face] / total, triangle(mesh.points(), mesh.faces()[face]));
+            shares[at as usize] += share;
+            moments[at as usize] = add(moments[at as usize], scaled(add(a, add(b, c)), share / 3.0));
+        }
+        Self { of_face, count, sides, loops, shares, moments }
     }
 
     /// A region at a curve.
@@ -181,6 +199,16 @@ impl Regions {
 
     fn loops_in(&self, inside: &[bool]) -> usize {
         self.loops.iter().filter(|(_, region)| inside[*region as usize]).count()
+    }
+
+    /// From the centroid of the rest to that of some regions.
+    fn direction_to(&self, inside: &[bool]) -> Vector {
+        let share = self.share_of(inside);
+        let sum = |wanted: bool| {
+            let moments = self.moments.iter().zip(inside).filter(|(_, inside)| **inside == wanted);
+            moments.fold([0.0; 3], |sum, (&moment, _)| add(sum, moment))
+        };
+        sub(scaled(sum(true), 1.0 / share), scaled(sum(false), 1.0 / (1.0 - share)))
     }
 
     fn share_of(&self, inside: &[bool]) -> f64 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registration by landmark curves, the whole pipeline (Shi et al. 2013, algorithm 1).
 
+use super::advice::warnings;
 use super::certificates::{Certificates, PieceCertificates};
 use super::features::Piece;
 use super::harmonic::Descent;
@@ -11,10 +12,10 @@ use super::pieces::pieces;
 use super::placement::{Placement, placed};
 use super::regions::divided;
 use super::slice::{Sliced, SlicedPair, slice_pair};
-use super::{Curves, HyperbolicOptions};
+use super::{Curves, HyperbolicOptions, Solver};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
-use crate::error::Error;
+use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub, triangle};
 use crate::parallel;
@@ -23,9 +24,6 @@ use crate::sphere::SphereMap;
 
 /// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.
 const MISSED: f64 = 1e-9;
-
-/// A harmonic energy of more than this over the target's area says that the curves hardly fit.
-const STRAINED: f64 = 2.0;
 
 /// A registration by curves.
 #[derive(Debug, Clone)]
@@ -103,10 +101,16 @@ pub fn register_hyperbolic(
             let carry = |polyline: &[Vector]| isotopy.as_ref().map(|isotopy| isotopy.carry(polyline));
             slice_pair(ours, theirs, &carry, &watch)?
         };
-        let map = map_piece(&sliced.source, &sliced.target, options, &mut phase)?;
+        let map = map_piece([ours, theirs], &sliced, options, &mut phase)?;
         found.take(ours, theirs, &sliced, map, target);
     }
-    // 4. Figures
+    // 4. A map without folds or none; the paper's diffusion may end before it has unfolded all
+    if options.solver == Solver::Newton
+        && let Some(folded) = Elements::collect(found.folded.iter().copied())
+    {
+        return Err(Error::NoEmbedding { folded }.of_surface("source"));
+    }
+    // 5. Figures
     let result = found.finish([source, target], curves, &placement, &history)?;
     observer.progress(1.0, "Done");
     Ok(result)
@@ -201,7 +205,6 @@ impl Found {
                 (0..paths[0].len()).map(error).collect()
             });
         let certificates = self.certificates(&there_error);
-        let warnings = self.warnings(placement, &certificates);
         // 3. Both directions as registrations
         let maps = [rough_map(meshes[0], &placement.source)?, rough_map(meshes[1], &placement.target)?];
         let parts = |from: usize, to: usize| (meshes[to], maps[from].clone(), maps[to].clone());
@@ -212,6 +215,7 @@ impl Found {
         inverse.distortion = in_space(&inverse, [meshes[1], meshes[0]], Vec::new())?;
         there.target_distortion = inverse.distortion.clone();
         inverse.target_distortion = there.distortion.clone();
+        let warnings = warnings(meshes, placement, self.is_sure, &certificates, &there.distortion);
         let Self { metrics, descents, .. } = self;
         Ok(CurveRegistration { registration: there, inverse, certificates, metrics, descents, warnings })
     }
@@ -272,9 +276,8 @@ impl Found {
 
     fn certificates(&self, landmark_error: &[f64]) -> Certificates {
         let all = &self.certificates;
+        let total = |value: fn(&PieceCertificates) -> f64| all.iter().map(value).sum::<f64>();
         let most = |value: fn(&PieceCertificates) -> f64| all.iter().map(value).fold(0.0, f64::max);
-        let hyperbolic_area: f64 =
-            all.iter().filter(|piece| piece.energy > 0.0).map(|piece| piece.expected_area).sum();
         let residual =
             |surface: usize| self.metrics.iter().map(|metrics| metrics[surface].residual).fold(0.0, f64::max);
         Certificates {
@@ -285,33 +288,9 @@ impl Found {
             bank_error: self.bank_error,
             cocycle_error: most(|piece| piece.cocycle_error),
             outside: all.iter().map(|piece| piece.outside).sum(),
-            energy_ratio: all.iter().map(|piece| piece.energy).sum::<f64>() / hyperbolic_area,
+            energy_ratio: total(|piece| piece.energy) / total(|piece| piece.rest_energy),
             curvature: [residual(0), residual(1)],
         }
-    }
-
-    fn warnings(&self, placement: &Placement, certificates: &Certificates) -> Vec<String> {
-        let backwards = |curve: &usize| {
-            format!(
-                "curve {curve} fits far better the other way round: reverse its path on one of the surfaces"
-            )
-        };
-        let mut warnings: Vec<String> = placement.backwards.iter().map(backwards).collect();
-        if !self.is_sure {
-            warnings.push(
-                "the curves move too much to tell how the surface between them goes along: it may wind around \
-                 them more than meant"
-                    .into(),
-            );
-        }
-        if certificates.energy_ratio > STRAINED {
-            warnings.push(format!(
-                "the map is strained, its energy is {:.1} times the area (1.0 to 1.2 is usual): check that curves \
-                 with the same number belong together and run the same way",
-                certificates.energy_ratio
-            ));
-        }
-        warnings
     }
 }
 

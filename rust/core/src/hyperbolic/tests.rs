@@ -3,7 +3,7 @@
 
 use super::atlas::{Atlas, Random};
 use super::certificates::{certify, signed_area};
-use super::delaunay::{Net, delaunay};
+use super::delaunay::{Net, Weighted, delaunay};
 use super::features::Piece;
 use super::harmonic::{ChartMap, newton};
 use super::heat::diffuse;
@@ -153,7 +153,8 @@ fn flips_end_in_a_delaunay_triangulation_with_the_same_area() {
     let sliced = slit_spheres(3).source;
     let ours = metric(&sliced);
     let net = Net::new(&sliced.surface, vec![Moebius::default(); 3 * sliced.faces.len()]);
-    let (flipped, weights) = delaunay(net.clone(), &ours.lengths, &vec![false; sliced.faces.len()]);
+    let Weighted { net: flipped, weights, .. } =
+        delaunay(net.clone(), &ours.lengths, &vec![false; sliced.faces.len()]);
     assert!(weights.iter().all(|&weight| weight > 0.0));
     assert_ne!(flipped.faces, net.faces, "something was flipped");
     for corner in (0..flipped.opposite.len()).filter(|&corner| flipped.opposite[corner] != NONE) {
@@ -164,7 +165,7 @@ fn flips_end_in_a_delaunay_triangulation_with_the_same_area() {
         assert_eq!(weights[corner], weights[across]);
     }
     let kept = delaunay(net.clone(), &ours.lengths, &vec![true; sliced.faces.len()]);
-    assert_eq!(kept.0.faces, net.faces, "nothing that is kept was flipped");
+    assert_eq!(kept.net.faces, net.faces, "nothing that is kept was flipped");
 }
 
 #[test]

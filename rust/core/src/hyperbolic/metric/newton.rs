@@ -126,6 +126,9 @@ pub(super) fn flatten(
     let mut state = State::new(surface, conformal, factors);
     let mut earlier = [f64::INFINITY; PATIENCE];
     for done in 0..MOST_ITERATIONS {
+        if !watch.goes_on() {
+            return Err(Error::CancelledEarly);
+        }
         let residual = state.residual();
         let is_stuck = residual < ALMOST && residual > 0.5 * earlier[done % PATIENCE];
         let has_degenerate = state.degenerate().next().is_some();

@@ -82,12 +82,34 @@ def reverse(mesh, key, mark):
 def clear(mesh, key, mark):
     """Takes a mark off a mesh; with the last one go the attributes."""
     _drop(mesh, key)
-    for kind in (_of_edges(key), _of_ends(key)):
+    for kind in _kinds(key):
         there = kind.all(mesh)
         own = [element for element, value in there.items() if abs(value) == mark]
         kind.write(mesh, own, 0)
         if len(own) == len(there):
             kind.drop(mesh)
+
+
+def copy(mesh, key, new_key, wanted):
+    """Gives what has wanted marks of a key the same under a new one."""
+    for kind, new_kind in zip(_kinds(key), _kinds(new_key), strict=True):
+        for value, elements in _by_value(kind, mesh).items():
+            if abs(value) in wanted:
+                new_kind.write(mesh, elements, value)
+    _drop(mesh, new_key)
+
+
+def keep(mesh, key, wanted):
+    """Takes all marks of a key off a mesh but the wanted ones; with the last one go the attributes."""
+    for kind in _kinds(key):
+        if kind.name in mesh.attributes:
+            by_value = _by_value(kind, mesh)
+            others = [one for value, own in by_value.items() if abs(value) not in wanted for one in own]
+            if others:
+                kind.write(mesh, others, 0)
+                _drop(mesh, key)
+            if all(abs(value) not in wanted for value in by_value):
+                kind.drop(mesh)
 
 
 def find(mesh, key, *, drawing=False):
@@ -119,8 +141,9 @@ def check(mesh, path):
 
 
 def owners(mesh, key, path):
-    """The marks that the edges of a path have. Raises `NoEdge`."""
-    return set(_of_edges(key).of(mesh, _edges_of(mesh, path))) - {0}
+    """The marks that the edges and the ends of a path have. Raises `NoEdge`."""
+    on_edges = _of_edges(key).of(mesh, _edges_of(mesh, path))
+    return {abs(mark) for mark in [*on_edges, *_of_ends(key).of(mesh, [path[0], path[-1]])]} - {0}
 
 
 def ends_of_edges(mesh, edges):
@@ -145,6 +168,18 @@ def _of_edges(key):
 
 def _of_ends(key):
     return marks.Marks(f"{_NAME}{key}_ends", "POINT")
+
+
+def _kinds(key):
+    return _of_edges(key), _of_ends(key)
+
+
+def _by_value(kind, mesh):
+    """{mark: elements} of a kind of marks."""
+    found = {}
+    for element, value in kind.all(mesh).items():
+        found.setdefault(value, []).append(element)
+    return found
 
 
 def _search(mesh, key):

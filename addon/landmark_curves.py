@@ -7,16 +7,15 @@ paths are found again after the meshes were edited. `pairs` is the one truth on 
 today, in which order, and where a path is missing or broken.
 """
 
-import uuid
 from typing import NamedTuple
 
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
-from . import curve_marks, landmark_undo, landmarks, messages, paths
+from . import curve_copies, curve_marks, landmark_undo, landmarks, messages, paths
+from .curve_copies import SIDES, side_object
 from .landmarks import NONE, CannotPair
 
-SIDES = ("source", "target")
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 
 
@@ -72,11 +71,6 @@ def pairs(source, *, drawing=False):
     return listed
 
 
-def side_object(source, side):
-    """The object of the "source" or the "target" side, or None."""
-    return source if side == "source" else source.authalic_target
-
-
 def add(source, source_path, target_path, *, name="", index=NONE):
     """Adds a pair, or sets the paths of the pair of an index, and makes it the active one; returns it.
 
@@ -89,16 +83,17 @@ def add(source, source_path, target_path, *, name="", index=NONE):
         raise CannotPair("A curve needs a path on the source or on the target")
     for side, path in given.items():
         _check(source, side, path, index)
+    curve_copies.part(source)
+    curve_copies.ensure_key(source)
+    curve_copies.tidy(source.authalic_curve_key)
     curves = source.authalic_landmark_curves
     if index == NONE:
         name, index = name or _free_name(source), len(curves)
-        curve = curves.add()
-        curve.name, curve.mark = name, curve_marks.new()
+        curves.add().mark = curve_marks.new()
     curve = curves[index]
-    source.authalic_curve_key = source.authalic_curve_key or uuid.uuid4().hex[:8]
     for side, path in given.items():
         curve_marks.put(side_object(source, side).data, curve_marks.key(source, side), curve.mark, path)
-    curve.error = -1.0
+    curve.name, curve.error = name or curve.name, -1.0
     source.authalic_landmark_curve_index = index
     return curve
 
@@ -106,30 +101,39 @@ def add(source, source_path, target_path, *, name="", index=NONE):
 def reverse(source, index, side):
     """Makes the end of a pair's path on one side its start. Raises `CannotPair` and then changes nothing."""
     curve, obj = source.authalic_landmark_curves[index], side_object(source, side)
+    if side == "target" and (problem := landmarks.target_problem(source)):
+        raise CannotPair(f"{source.name}: {problem}")
+    if not obj.data.is_editable:
+        raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
     path = getattr(pairs(source)[index], side)
     if path.problem:
         raise CannotPair(f"{curve.name}: {_worded(path, obj)}")
     if path.is_closed:
         raise CannotPair(f"{curve.name} is closed and has no direction")
-    sharing = _sharing(source, curve, side)
+    curve_copies.part(source)
+    sharing = curve_copies.sharing(source, curve, side)
     if sharing is not None:
-        raise CannotPair(f"{sharing.name} has this path on {obj.name} too; reverse the other side")
+        raise CannotPair(f"{sharing.name} has this path on {obj.name} too; reverse it in Object Mode")
     curve_marks.reverse(obj.data, curve_marks.key(source, side), curve.mark)
     curve.error = -1.0
 
 
 def remove(source, index):
     """Removes the pair of an index; the one that takes its place is the active one."""
+    curve_copies.part(source)
     landmark_undo.remember(source, index, landmark_undo.CURVES)
     curve = source.authalic_landmark_curves[index]
     for side in SIDES:
         obj = side_object(source, side)
         # In another mode the marks would stay away when the step is undone.
         is_writable = obj is not None and obj.type == "MESH" and obj.data.is_editable
-        is_own = is_writable and source.authalic_curve_key and _sharing(source, curve, side) is None
+        is_own = (
+            is_writable and source.authalic_curve_key and curve_copies.sharing(source, curve, side) is None
+        )
         if is_own and obj.data.is_editmode == source.data.is_editmode:
             curve_marks.clear(obj.data, curve_marks.key(source, side), curve.mark)
     source.authalic_landmark_curves.remove(index)
+    curve_copies.tidy(source.authalic_curve_key)
     last = len(source.authalic_landmark_curves) - 1
     source.authalic_landmark_curve_index = max(min(source.authalic_landmark_curve_index, last), 0)
 
@@ -146,6 +150,7 @@ def replace(source, wanted):
     Raises `CannotPair` and then changes nothing.
     """
     check_all(source, wanted)
+    curve_copies.part(source)
     clear(source)
     for name, source_path, target_path in wanted:
         add(source, source_path, target_path, name=name)
@@ -154,11 +159,13 @@ def replace(source, wanted):
 def check_all(source, wanted):
     """Raises `CannotPair` unless pairs (name, source path, target path) could be those of the source."""
     landmarks.check_target(source)
-    for side, obj in zip((1, 2), _objects(source), strict=True):
-        taken = {}
+    for number_of_side, side in enumerate(SIDES, 1):
+        obj, taken = side_object(source, side), {}
         for number, pair in enumerate(wanted):
-            _check_path(obj, pair[side])
-            for vertex in pair[side]:
+            path = pair[number_of_side]
+            _check_path(obj, path)
+            _check_copies(source, side, path)
+            for vertex in path:
                 other = taken.setdefault(vertex, number)
                 if other != number:
                     names = f'"{wanted[other][0]}" and "{pair[0]}"'
@@ -230,9 +237,20 @@ def _check(source, side, path, index):
             raise CannotPair(
                 f'the curve "{pair.name}" has {_vertices(shared)} of {obj.name} already; curves must not meet'
             )
-    for other, curve in _others(source, side):
-        if curve.mark in _owners(source, side, path) or (own is not None and curve.mark == own.mark):
-            raise CannotPair(f'edges of {obj.name} are in the curve "{curve.name}" of {other.name} already')
+    _check_copies(source, side, path, own)
+
+
+def _check_copies(source, side, path, own=None):
+    """Raises `CannotPair` if a path of a pair, or of a new one, would take what is a copy's, too."""
+    if curve_copies.can_part(source):
+        return
+    obj, owners = side_object(source, side), _owners(source, side, path)
+    for other, curve in curve_copies.others(source, side):
+        if curve.mark in owners or (own is not None and curve.mark == own.mark):
+            raise CannotPair(
+                f'edges or ends on {obj.name} are those of the curve "{curve.name}" of {other.name} '
+                f"too; remove or reverse one of the copy {source.name} in Object Mode first"
+            )
 
 
 def _vertices(numbers):
@@ -260,27 +278,10 @@ def _check_path(obj, path):
 
 
 def _owners(source, side, path):
-    """The marks that edges of a path have already."""
+    """The marks that edges or ends of a path have already."""
     if not source.authalic_curve_key:
         return set()
     return curve_marks.owners(side_object(source, side).data, curve_marks.key(source, side), path)
-
-
-def _others(source, side):
-    """(object, curve) of copies of the source with the same mesh on a side: these share paths with it."""
-    mesh, key = side_object(source, side).data, source.authalic_curve_key
-    for other in bpy.data.objects:
-        if key and other != source and other.authalic_curve_key == key:
-            obj = side_object(other, side)
-            if obj is not None and obj.data == mesh:
-                yield from ((other, curve) for curve in other.authalic_landmark_curves)
-
-
-def _sharing(source, curve, side):
-    """An object that has a path of the source's curve too, or None."""
-    if side_object(source, side) is None:
-        return None
-    return next((other for other, own in _others(source, side) if own.mark == curve.mark), None)
 
 
 def _free_name(source):

@@ -314,6 +314,30 @@ def test_export_and_import(heads, tmp_path):
     assert curving.listed() == expected
 
 
+@pytest.mark.parametrize("in_edit", [False, True])
+def test_import_on_a_copy_of_the_source(heads, tmp_path, in_edit):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    pairing.add(40, 50)
+    path = str(tmp_path / "landmarks.json")
+    call.landmark_export(filepath=path)
+    before = curving.listed()
+    meshes.select(source)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    if in_edit:
+        meshes.edit(copy, target)
+        with pytest.raises(RuntimeError, match=r'landmarks.json: .* of the curve "Curve 1" of Head A too'):
+            call.landmark_import(filepath=path)
+    else:
+        assert call.landmark_import(filepath=path) == {"FINISHED"}
+        call.landmark_curve_reverse()
+        assert curving.listed(copy) == [("Curve 1", ROW, ROW_B[::-1], None)]
+        call.landmark_curve_reverse()
+    assert curving.listed(copy) == before and curving.listed(source) == before
+    assert len(pairing.listed(copy)) == 1
+
+
 def test_a_file_without_curves_leaves_them_alone(heads, tmp_path):
     curving.add(ROW, ROW_B)
     path = tmp_path / "pairs.json"

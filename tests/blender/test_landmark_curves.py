@@ -223,6 +223,8 @@ def test_reverse(heads):
     curving.refused("Curve 2 is closed and has no direction", call.landmark_curve_reverse)
     curving.add((36, 37, 38))
     curving.refused("Curve 3: has no edges on Head B", call.landmark_curve_reverse)
+    heads[0].authalic_target = None
+    curving.refused("Head A: there is no target object", call.landmark_curve_reverse)
 
 
 def test_select(heads):
@@ -265,20 +267,104 @@ def test_source_and_target_share_a_mesh():
     assert curving.listed(second) == [("Curve 1", OTHER, ROW, None)]
 
 
-def test_a_copy_of_the_source_shares_the_paths_on_the_target(heads):
+def copy_of(source, linked=False):
+    meshes.select(source)
+    bpy.ops.object.duplicate(linked=linked)
+    return bpy.context.object
+
+
+def marked(obj):
+    """The attributes of curves that a mesh has."""
+    return [one.name for one in obj.data.attributes if "authalic_curve" in one.name]
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_a_copy_of_the_source_goes_its_own_way(heads, linked):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    curving.add(LOOP, LOOP_B)
+    copy = copy_of(source, linked)
+    assert curving.listed(copy) == curving.listed(source)
+    call.landmark_curve_reverse(index=0)
+    call.landmark_curve_reverse(index=0, side="SOURCE")
+    curving.add(target=(64, 65, 66), index=1)
+    curving.add((22, 29, 36), (20, 29, 38))
+    brow = ("Curve 1", ROW, ROW_B, None)
+    assert curving.listed(source) == [brow, ("Curve 2", LOOP, LOOP_B, None)]
+    assert curving.listed(copy)[0] == ("Curve 1", ROW[::-1], ROW_B[::-1], None)
+    assert curving.listed(copy)[1][1:3] == (LOOP, (64, 65, 66))
+    call.landmark_curve_clear()
+    assert curving.listed(source) == [brow, ("Curve 2", LOOP, LOOP_B, None)]
+    meshes.select(source)
+    call.landmark_curve_clear()
+    assert not [name for obj in (source, target, copy) for name in marked(obj)]
+
+
+def test_a_curve_of_a_copy_takes_no_end_away(heads):
     source, _ = heads
     curving.add(ROW, ROW_B)
-    meshes.select(source)
-    bpy.ops.object.duplicate()
-    copy = bpy.context.object
-    assert curving.listed(copy) == curving.listed(source)
-    curving.refused("Head A has this path on Head B too; reverse the other side", call.landmark_curve_reverse)
-    call.landmark_curve_reverse(side="SOURCE")
-    assert curving.listed(copy) == [("Curve 1", ROW[::-1], ROW_B, None)]
-    with pytest.raises(RuntimeError, match='Edges of Head B are in the curve "Curve 1" of Head A already'):
-        call.landmark_curve_add(index=0, target_vertices="38 39 40")
+    copy = copy_of(source)
     call.landmark_curve_remove()
+    curving.add((22, 23, 24), (28, 19, 10))
     assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+    assert curving.listed(copy) == [("Curve 1", (22, 23, 24), (28, 19, 10), None)]
+
+
+def test_in_edit_mode_a_copy_cannot_take_paths(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    copy = copy_of(source)
+    meshes.edit(copy, target)
+    words = 'Edges or ends on Head B are those of the curve "Curve 1" of Head A too'
+    with pytest.raises(RuntimeError, match=words):
+        call.landmark_curve_add(index=0, target_vertices="38 39 40")
+    with pytest.raises(RuntimeError, match="Head A has this path on Head B too; reverse it in Object Mode"):
+        call.landmark_curve_reverse()
+    call.landmark_curve_remove()
+    with pytest.raises(RuntimeError, match=words):
+        call.landmark_curve_add(target_vertices="28 19 10")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)] and curving.listed(copy) == []
+
+
+def test_nothing_is_left_on_meshes(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    meshes.edit(source)
+    call.landmark_curve_clear()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert marked(target)  # for the sake of undo
+    curving.add(ROW, ROW_B)
+    third = source.authalic_target = meshes.add_grid("Third", n=8)
+    meshes.select(source)
+    curving.add(target=ROW_B, index=0)
+    source.authalic_target = target
+    assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
+    call.landmark_curve_clear()
+    assert not [name for obj in (source, target, third) for name in marked(obj)]
+
+
+def test_a_linked_target_cannot_be_reversed(heads, tmp_path):
+    _, target = heads
+    curving.add(ROW, ROW_B)
+    path = str(tmp_path / "target.blend")
+    bpy.data.libraries.write(path, {target.data})
+    with bpy.data.libraries.load(path, link=True) as (there, chosen):
+        chosen.meshes = there.meshes
+    target.data = chosen.meshes[0]
+    curving.refused("The mesh of Head B is linked from another file", call.landmark_curve_reverse)
+
+
+def test_a_copy_with_its_own_curves_can_be_edited(heads):
+    source, target = heads
+    curving.add(ROW, ROW_B)
+    curving.add(OTHER, OTHER_B)
+    copy = copy_of(source)
+    call.landmark_curve_remove(index=0)
+    meshes.edit(copy, target)
+    curving.add((22, 15, 8), (28, 19, 10), index=0)
+    assert curving.listed(copy) == [("Curve 2", (22, 15, 8), (28, 19, 10), None)]
+    assert [one[3] for one in curving.listed(source)] == [None, None]
 
 
 def test_a_deleted_target_is_told(heads):

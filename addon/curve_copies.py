@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Copies of a source object, which list the same curves under the same key until one of them is changed.
+
+A copy that changes gets a key of its own, and its paths marks under that. In edit mode it stays as it is:
+undo would take back the marks there but not the key, which is a part of the object.
+"""
+
+import uuid
+
+import bpy
+
+from . import curve_marks
+
+SIDES = ("source", "target")
+
+
+def side_object(source, side):
+    """The object of the "source" or the "target" side, or None."""
+    return source if side == "source" else source.authalic_target
+
+
+def ensure_key(source):
+    """Gives a source a key if it has none."""
+    source.authalic_curve_key = source.authalic_curve_key or _new_key()
+
+
+def others(source, side):
+    """(object, curve) of copies of the source with the same mesh on a side: these share paths with it."""
+    obj, key = side_object(source, side), source.authalic_curve_key
+    for other in bpy.data.objects:
+        if key and obj is not None and other != source and other.authalic_curve_key == key:
+            theirs = side_object(other, side)
+            if theirs is not None and theirs.data == obj.data:
+                yield from ((other, curve) for curve in other.authalic_landmark_curves)
+
+
+def sharing(source, curve, side):
+    """An object that has a path of the source's curve too, or None."""
+    return next((other for other, own in others(source, side) if own.mark == curve.mark), None)
+
+
+def can_part(source):
+    """Whether a source can get a key of its own now."""
+    objects = [side_object(source, side) for side in SIDES]
+    return all(_is_free(obj.data) for obj in objects if obj is not None and obj.type == "MESH")
+
+
+def part(source):
+    """Gives a source that shares paths with copies a key of its own, where it can."""
+    if not can_part(source) or not any(True for side in SIDES for _ in others(source, side)):
+        return
+    before, source.authalic_curve_key = source.authalic_curve_key, _new_key()
+    own = {curve.mark for curve in source.authalic_landmark_curves}
+    for side in SIDES:
+        obj = side_object(source, side)
+        if obj is not None and obj.type == "MESH":
+            curve_marks.copy(obj.data, f"{side}_{before}", curve_marks.key(source, side), own)
+    tidy(before, but=source)
+
+
+def tidy(key, but=None):
+    """Takes marks of a key that no object lists off all meshes; not while meshes of that key are edited."""
+    users = [obj for obj in bpy.data.objects if obj.authalic_curve_key == key and obj != but]
+    if not key or not all(can_part(user) for user in users):
+        return
+    listed = {curve.mark for user in users for curve in user.authalic_landmark_curves}
+    # A copy that has gone its own way needs nothing of this key on its mesh.
+    parted = but.data if but is not None and all(user.data != but.data for user in users) else None
+    for mesh in bpy.data.meshes:
+        if _is_free(mesh):
+            for side in SIDES:
+                is_left = mesh == parted and side == "source"
+                curve_marks.keep(mesh, f"{side}_{key}", set() if is_left else listed)
+
+
+def _is_free(mesh):
+    return mesh.is_editable and not mesh.is_editmode
+
+
+def _new_key():
+    return uuid.uuid4().hex[:8]

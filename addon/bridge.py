@@ -186,9 +186,13 @@ def register(source, target, pairs, settings, progress=_keep_going):
     return found
 
 
-def kept(source, target, pairs, curves=()):
-    """The latest registration of these meshes by these pairs or by these curves in this session, or None."""
-    methods = (("POINTS", pairs), ("CURVES", curves))
+def kept(source, target, pairs, curves=(), method=None):
+    """The latest registration of these meshes by these pairs or by these curves in this session, or None.
+
+    With a method, one of that alone.
+    """
+    methods = [("POINTS", pairs), ("CURVES", curves)]
+    methods = [one for one in methods if method in (None, one[0])]
     return _registrations.latest([(registering.key(source, target, own), method) for method, own in methods])
 
 

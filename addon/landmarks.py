@@ -268,6 +268,7 @@ def _target_changed(source, _context):
             _bind(landmark, "target", landmark.waiting)
     for curve in source.authalic_landmark_curves:
         curve.error = -1.0
+    source.authalic_registered_by = ""
 
 
 def register():
@@ -286,9 +287,12 @@ def register():
         poll=_may_be_target,
         update=_target_changed,
     )
+    # The method of the last registration with this target, for transfers after it.
+    bpy.types.Object.authalic_registered_by = StringProperty(options={"HIDDEN"})
 
 
 def unregister():
+    del bpy.types.Object.authalic_registered_by
     del bpy.types.Object.authalic_target
     del bpy.types.Object.authalic_landmark_index
     del bpy.types.Object.authalic_landmarks

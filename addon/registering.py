@@ -99,6 +99,10 @@ class Registered:
         return self.domain == "CURVES"
 
     @property
+    def method(self):
+        return "CURVES" if self.by_curves else "POINTS"
+
+    @property
     def ended_early(self):
         return self.status == "cancelled"
 
@@ -295,6 +299,12 @@ def registered(native, sides, shape, landmarks, names):
 def _in_space(points):
     """Points (n, 2) of the disk at height 1; points (n, 3) as they are."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.ones(len(points))])
+
+
+def is_open(one):
+    """Whether a side has an edge with one face."""
+    ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    return bool((np.unique(ends, axis=0, return_counts=True)[1] == 1).any())
 
 
 def in_mesh_terms(message, source, target):

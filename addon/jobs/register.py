@@ -103,6 +103,7 @@ def job(context, settings):
         listed = _listed(couple.source)[1 if registered.by_curves else 0]
         for landmark, error in zip(listed, registered.errors.tolist(), strict=True):
             landmark.error = 100 * error
+        couple.source.authalic_registered_by = registered.method
         if settings.frames is not None:
             animation.rise(couple.source, key, *settings.frames)
         notes = [*warnings(registered), *notes, *_remarks(couple, key)]

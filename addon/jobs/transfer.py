@@ -29,10 +29,11 @@ class Settings:
 
 @dataclass
 class Report:
-    """What was written: (kind, name) of each layer, and what could not be."""
+    """What was written: (kind, name) of each layer, and what could not be; `by` which registration."""
 
     source: str
     target: str
+    by: str
     written: list
     refusals: list
     notes: list
@@ -41,7 +42,7 @@ class Report:
     def __str__(self):
         kinds = dict.fromkeys(kind for kind, _ in self.written)
         parts = [_listed(kind, [name for own, name in self.written if own == kind]) for kind in kinds]
-        line = f"{', '.join(parts)} from {self.target} to {self.source}, {self.seconds:.2f} s"
+        line = f"{', '.join(parts)} from {self.target} to {self.source} {self.by}, {self.seconds:.2f} s"
         left = [f"left out: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
 
@@ -56,15 +57,17 @@ def job(context, settings):
     items, refusals = cargo.writable(couple.source, _read(couple, settings))
     if not items:
         raise _nothing(couple, refusals)
+    method = _method(couple)
     to_world, from_world = np.array(couple.target.matrix_world)[:3, :3], couple.to_source[:3, :3]
 
     def work(progress):
-        registered = _registration(couple, settings.registration, progress)
+        registered, is_new = _registration(couple, settings.registration, method, progress)
         turn = _turn(registered, couple) if settings.align else np.identity(3)
-        return registered, [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
+        pulled = [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
+        return registered, is_new, pulled
 
     def finish(found):
-        registered, pulled = found
+        registered, is_new, pulled = found
         register.check_unchanged(couple)
         problems = [
             cargo.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
@@ -75,6 +78,7 @@ def job(context, settings):
         return Report(
             source=couple.source.name,
             target=couple.target.name,
+            by=_by(registered, is_new),
             written=[(item.kind, item.name) for item, bad in zip(items, problems, strict=True) if not bad],
             refusals=left,
             notes=register.warnings(registered),
@@ -105,15 +109,29 @@ def _nothing(couple, refusals):
     return targets.NothingToDo(f"{couple.target.name} has nothing of what is to be transferred")
 
 
-def _registration(couple, settings, progress):
-    """The one with the settings, or without any the latest of these meshes and landmarks."""
-    if settings is None:
-        found = bridge.kept(*couple.sides, couple.pairs, couple.curves)
-        if found is not None:
-            return found
-        method = "CURVES" if couple.curves and not couple.pairs else "POINTS"
-        settings = registering.Settings(method=method)
-    return register.registration(couple, settings, progress)
+def _registration(couple, settings, method, progress):
+    """The one with the settings, or without any the latest of a method; and whether that had to be made."""
+    if settings is not None:
+        return register.registration(couple, settings, progress), False
+    found = bridge.kept(*couple.sides, couple.pairs, couple.curves, method)
+    if found is not None:
+        return found, False
+    return register.registration(couple, registering.Settings(method=method), progress), True
+
+
+def _method(couple):
+    """The method of the last registration with the target, or one that there is something to go by."""
+    boundaries = any(registering.is_open(one) for one in couple.sides)
+    can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
+    last = couple.source.authalic_registered_by
+    return next((method for method in (last, "POINTS", "CURVES") if can.get(method)), "POINTS")
+
+
+def _by(registered, is_new):
+    """Which registration a transfer goes by, for the report."""
+    curves = "landmark curves" if registered.names else "boundaries"
+    by = f"by {curves if registered.by_curves else 'landmark points'}"
+    return f"{by} (registered anew)" if is_new else by
 
 
 def _turn(registered, couple):

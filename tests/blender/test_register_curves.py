@@ -174,6 +174,37 @@ def test_transfer_by_curves_alone():
     assert "All" in source.vertex_groups
 
 
+def layer(target):
+    """Gives a target something that can be transferred."""
+    target.vertex_groups.new(name="All").add(range(len(target.data.vertices)), 1.0, "REPLACE")
+
+
+def test_transfers_go_by_the_method_of_the_last_registration(capfd, tmp_path):
+    source, target = balls()
+    for vertex in (5, 50):
+        part("landmarks").add(source, vertex, vertex)
+    register()
+    layer(target)
+    path = str(tmp_path / "saved.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    part("bridge")._registrations._found.clear()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    for said in ("by landmark curves (registered anew)", "by landmark curves, "):
+        assert bpy.ops.authalic.transfer() == {"FINISHED"}
+        assert said in capfd.readouterr().out
+    bpy.ops.authalic.register()
+    bpy.ops.authalic.transfer()
+    assert "by landmark points, " in capfd.readouterr().out
+
+
+def test_transfer_by_boundaries_alone(capfd):
+    source = meshes.add_grid("Sheet", n=10)
+    _, target = couple(source, pairs.twin(source), [])
+    layer(target)
+    assert bpy.ops.authalic.transfer() == {"FINISHED"}
+    assert "from Twin to Sheet by boundaries (registered anew)" in capfd.readouterr().out
+
+
 def refusal(pattern, obj=None, **options):
     obj = obj or bpy.context.object
     with pytest.raises(RuntimeError, match=pattern):

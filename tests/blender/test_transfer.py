@@ -391,7 +391,7 @@ def test_problems_are_those_of_registration():
     random_uv(target, "Map")
     part("landmarks").clear(source)
     with pytest.raises(RuntimeError, match="Sheet needs a landmark pair"):
-        transfer()
+        transfer(method="POINTS")
     source.authalic_target = None
     with pytest.raises(RuntimeError, match="there is no target object"):
         transfer()

@@ -7,10 +7,15 @@ import numpy as np
 
 from . import messages, paths
 from .domains import Unsuitable
-from .registering import Registered
+from .registering import Registered, is_open
 
 # "curve 3", "curves 0 and 2", "2 curves (0, 3)".
+_FEATURE = re.compile(r"\bfeature (\d+)\b")
 _NUMBERS = re.compile(r"\bcurves? (\d+)(?: and (\d+))?\b|\b\d+ curves \(([\d, …]+)\)")
+_MIRRORED = "fit far better when one surface is mirrored"
+_BACKWARDS = "fits far better the other way round"
+_OPPOSITE = "look to opposite sides"
+_FLIP = "flip the normals of one (Mesh > Normals > Flip)"
 
 
 def check_curves(sides, curves, boundaries):
@@ -55,8 +60,19 @@ def registered(native, sides, curves):
         folds=len(native.certificates.folded),
         status=native.status,
         seconds=float(native.seconds),
-        remarks=[in_words(remark, sides, curves) for remark in native.warnings],
+        remarks=_remarks(native.warnings, sides, curves),
     )
+
+
+def _remarks(warnings, sides, curves):
+    """The library's warnings in words, the cause of most of them first."""
+    found = [in_words(warning, sides, curves) for warning in warnings]
+    backwards = sum(_BACKWARDS in warning for warning in warnings)
+    opened = sum(not paths.is_closed(source) for _, source, _ in curves)
+    are_most = backwards > 1 and 2 * backwards > opened
+    if are_most and _any_open(sides) and not any(_OPPOSITE in warning for warning in warnings):
+        found.insert(0, f"most curves run backwards; if the normals of the two face opposite ways, {_FLIP}")
+    return found
 
 
 def in_words(message, sides, curves):
@@ -65,6 +81,10 @@ def in_words(message, sides, curves):
         if message.startswith(argument):
             rest = messages.in_mesh_terms(message.removeprefix(argument), one.polygons, one.vertices)
             message = f"{one.name}: {rest}"
+    if _MIRRORED in message:
+        message = _mirrored(sides)
+    message = message.replace("flip the faces of one of them", _FLIP)
+    message = _FEATURE.sub(lambda match: _feature(int(match[1]), curves), message)
     names = [name for name, _, _ in curves]
 
     def named(match):
@@ -76,6 +96,23 @@ def in_words(message, sides, curves):
         return f"{noun} {' and '.join(quoted) if len(quoted) < 3 else ', '.join(quoted)}"
 
     return _NUMBERS.sub(named, message)
+
+
+def _any_open(sides):
+    return any(is_open(one) for one in sides)
+
+
+def _mirrored(sides):
+    """What to do where the curves of one surface are a mirror image of the other's."""
+    flip = f"{_FLIP}, or " if _any_open(sides) else ""
+    return f"the curves {_MIRRORED}: {flip}mirror one (Object > Mirror), or check the order of the curves"
+
+
+def _feature(number, curves):
+    """What the library means; closed curves part surfaces into pieces, which have numbers of their own."""
+    if any(paths.is_closed(source) for _, source, _ in curves):
+        return "a curve or boundary"
+    return f'curve "{curves[number][0]}"' if number < len(curves) else "a boundary"
 
 
 def _points(one, name, vertices):

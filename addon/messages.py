@@ -6,6 +6,7 @@ import re
 # "face 3", "12 vertices (0, 1, 2, …)", "edge (3, 4)", "2 edges ((0, 4), (4, 7))".
 _ELEMENTS = re.compile(r"\b(\d+ )?(faces?|vertex|vertices|edges?)( \((?:[\d, …]|\(\d+, \d+\))+\)| \d+\b)")
 ENDED_EARLY = "ended early, more time makes areas more even"
+ENDED_EARLY_BY_CURVES = "ended early, more time keeps the shapes of faces better"
 _NAMED = 3
 _PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
 _ONE = {"faces": "face", "vertices": "vertex", "edges": "edge"}

@@ -222,7 +222,8 @@ def _write_uv_map(obj, side, plane):
 
 def warnings(registered):
     """What is not as it was asked for."""
-    notes = [messages.ENDED_EARLY] if registered.ended_early else []
+    early = messages.ENDED_EARLY_BY_CURVES if registered.by_curves else messages.ENDED_EARLY
+    notes = [early] if registered.ended_early else []
     if registered.missed and registered.by_curves and not registered.ended_early:
         notes.append(f"curves that do not meet: {messages.listed(registered.missed)}")
     elif registered.missed and not registered.ended_early:

@@ -65,8 +65,8 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
     By points, faces keep their shares of the area as well as these allow; by curves, their shapes. The map
-    folds none of them over. Normals of both must face the same way, or the map is mirrored: recalculate or
-    flip those of one"""
+    folds none of them over. Normals of both must face the same way, by curves those of open surfaces alone,
+    or the map is mirrored: recalculate or flip those of one"""
 
     bl_idname = "authalic.register"
     bl_label = "Register and Morph"

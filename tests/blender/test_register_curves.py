@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.register by landmark curves: the morph, what it says and refuses, and transfers after it."""
 
+import contextlib
 import re
 
 import bpy
@@ -289,6 +290,23 @@ def test_messages_of_the_library_name_curves_and_vertices():
     )
     assert said("give a partner to 2 curves (0, 1)") == 'give a partner to curves "Brow" and "Jaw"'
     assert said("curve 9 is unknown") == "curve 9 is unknown"
+    assert said("no path joins feature 2 to the next") == 'no path joins curve "Ear" to the next'
+    assert said("no path joins feature 3 to the next") == "no path joins a boundary to the next"
+    curves[0] = ("Brow", (3, 4, 5, 3), (3, 4, 5, 3))
+    assert said("no path joins feature 2 to the next") == "no path joins a curve or boundary to the next"
+    mirrored = said("the curves fit far better when one surface is mirrored: negate x")
+    assert "Object > Mirror" in mirrored and "negate" not in mirrored and "Flip" not in mirrored
+
+
+def test_opposite_normals_of_open_surfaces_are_told(capfd):
+    source, target = sheets()
+    target.data.flip_normals()
+    with contextlib.suppress(RuntimeError):
+        register()
+    said = capfd.readouterr().out
+    assert "(Mesh > Normals > Flip)" in said.split("the other way round")[0]
+    assert pairs.part("curve_registering").is_open(part("jobs.register").chosen(bpy.context).sides[0])
+    assert source.authalic_target == target
 
 
 def test_a_curve_that_runs_the_other_way_is_told(capfd):

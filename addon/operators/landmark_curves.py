@@ -73,7 +73,9 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
     bl_idname = "authalic.landmark_curve_add"
     bl_label = "Add Landmark Curve"
 
-    name: StringProperty(name="Name", description="Empty for a number", default="", options=_GIVEN)
+    name: StringProperty(
+        name="Name", description="Empty for the one there is, or a number", default="", options=_GIVEN
+    )
     index: _index("-1 for a new pair, or for one that lacks the path")
     source_vertices: _path("Source Vertices", "on this object")
     target_vertices: _path("Target Vertices", "on the target")
@@ -88,6 +90,8 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
         given = {side: path for side, path in given.items() if path}
         if not given:
             given, index = _selected(source, index)
+        elif index == landmarks.NONE:
+            index, given = curve_pairing.place_for(source, given)
         landmark_curves.add(source, given.get("source"), given.get("target"), name=self.name, index=index)
         pair = landmark_curves.pairs(source)[source.authalic_landmark_curve_index]
         said = [_described(path, landmark_curves.side_object(source, side)) for side, path in given.items()]
@@ -139,6 +143,8 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
         if not path.edges:
             raise landmarks.CannotPair(f"{pair.name}: {pair.problem}")
         source.authalic_landmark_curve_index = index
+        # With vertices, edges between any two of the path would be selected too.
+        context.tool_settings.mesh_select_mode = False, True, False
         curve_selection.select(obj, path.edges)
         views.show(context, obj, _middle(path))
         self.report({"INFO"}, f"{pair.name}: {_described(path.vertices, obj, len(path.edges))}")

@@ -54,6 +54,23 @@ def test_one_side_after_the_other(heads):
     assert curving.listed() == [("Curve 1", OTHER, ROW_B, None)]
 
 
+def test_one_side_after_the_other_without_an_index(heads):
+    curving.add(ROW)
+    curving.add(target=ROW_B, name="Brow")
+    curving.add(target=OTHER_B)
+    curving.add(OTHER, OTHER_B)
+    assert curving.listed() == [("Brow", ROW, ROW_B, None), ("Curve 2", OTHER, OTHER_B, None)]
+
+
+def test_a_name_is_set_when_selected_edges_complete_a_pair(heads):
+    curving.add(ROW)
+    meshes.edit(*heads)
+    curving.select_path(heads[0])
+    curving.select_path(heads[1], ROW_B)
+    call.landmark_curve_add(name="Brow")
+    assert curving.listed()[0][0] == "Brow" and len(curving.listed()) == 1
+
+
 def test_add_selected_edges_of_both(heads):
     source, target = heads
     meshes.edit(*heads)
@@ -239,6 +256,18 @@ def test_select(heads):
     pairs = pairwise(LOOP)
     assert curving.selected_edges(source) == sorted(tuple(sorted(pair)) for pair in pairs)
     assert not any(face.select for face in bmesh.from_edit_mesh(source.data).faces)
+
+
+def test_select_leaves_chords_alone(heads):
+    source, _ = heads
+    bpy.context.tool_settings.mesh_select_mode = True, False, False
+    path = (8, 9, 16, 15, 22)  # 8 and 15 have an edge too
+    curving.add(path, ROW_B)
+    call.landmark_curve_select(index=0, side="SOURCE")
+    meshes.edit(source)
+    assert curving.selected_edges(source) == [(8, 9), (9, 16), (15, 16), (15, 22)]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert curving.selected_edges(source) == [(8, 9), (9, 16), (15, 16), (15, 22)]
 
 
 def test_two_sources_share_paths_of_one_target(heads):

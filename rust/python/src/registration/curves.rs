@@ -144,7 +144,7 @@ impl Certificates {
 /// >>> band = rings, faces
 /// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
 /// >>> found = authalic.register_hyperbolic(band, band, source_curves=curves, target_curves=curves)
-/// >>> len(found.certificates.folded), bool(abs(found.positions - rings).max() < 1e-2)
+/// >>> len(found.certificates.folded), bool(abs(found.positions - rings).max() < 0.05)
 /// (0, True)
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_curves, target_curves, metric="newton", solver="newton",

@@ -58,7 +58,7 @@ pub struct Registration {
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
     /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded
-    /// whatever it says.
+    /// whatever it says, but for curves by the heat diffusion, where `certificates` tell.
     #[pyo3(get)]
     status: &'static str,
     /// The figures of `registered` against the source's areas; its authalic_energy is that of h. By curves

@@ -356,6 +356,21 @@ def test_in_edit_mode_a_copy_cannot_take_paths(heads):
     assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)] and curving.listed(copy) == []
 
 
+def test_undo_of_a_change_of_a_copy(heads):
+    curving.add(ROW, ROW_B)
+    copy_of(heads[0])
+    pairing.step("Copied")
+    call.landmark_curve_reverse("EXEC_DEFAULT", True)
+    call.landmark_curve_clear("EXEC_DEFAULT", True)
+    own = ("Curve 1", ROW, ROW_B[::-1], None)
+    for expected in ([own], [("Curve 1", ROW, ROW_B, None)]):
+        bpy.ops.ed.undo()
+        assert curving.listed(bpy.data.objects["Head A.001"]) == expected
+        assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
+    bpy.ops.ed.redo()
+    assert curving.listed(bpy.data.objects["Head A.001"]) == [own]
+
+
 def test_nothing_is_left_on_meshes(heads):
     source, target = heads
     curving.add(ROW, ROW_B)

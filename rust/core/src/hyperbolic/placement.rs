@@ -27,6 +27,8 @@ const LEAST_MIDDLE: f64 = 0.1;
 const OPEN_SAMPLES: usize = 64;
 /// Points compared on a closed curve; so many starts are tried.
 const CLOSED_SAMPLES: usize = 256;
+/// Vertices tried as starts at the most.
+const MOST_STARTS: usize = 1024;
 /// How often rotation and starts are found in turns.
 const ROUNDS: usize = 4;
 /// What lying over each other in space weighs against curves.
@@ -64,8 +66,10 @@ struct Samples {
     source: Vec<Vector>,
     target: Vec<Vector>,
     closed: bool,
-    /// How many points the target's start lies ahead.
-    shift: usize,
+    /// The target by its vertices.
+    line: Line,
+    /// How far the target's start lies ahead, as a share of its length.
+    shift: f64,
     /// Whether an open curve fits clearly better the other way round.
     backwards: bool,
 }
@@ -107,7 +111,7 @@ pub(super) fn placed(
     // 3. What would fit better
     let backwards = (0..samples.len()).filter(|&curve| samples[curve].backwards).collect();
     let source = parallel::map(source.len(), |vertex| unit(rotate(rotation, source[vertex])));
-    let shifts = samples.iter().map(|samples| samples.shift as f64 / CLOSED_SAMPLES as f64).collect();
+    let shifts = samples.iter().map(|samples| samples.shift).collect();
     let mirrored = fits_mirrored(&mut samples);
     Ok(Placement { source, target, loops, shifts, mirrored, backwards })
 }
@@ -140,15 +144,17 @@ fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector>, Error>
 
 impl Samples {
     fn new(pair: &CurvePair, meshes: [&TriangleMesh; 2], spheres: [&[Vector]; 2]) -> Self {
-        let of = |vertices: &[u32], side: usize| match pair.closed {
-            true => closed_samples(vertices, meshes[side].points(), spheres[side]),
-            false => open_samples(vertices, meshes[side].points(), spheres[side]),
+        let line = |side: usize| {
+            let vertices = [&pair.source, &pair.target][side];
+            Line::new(vertices, pair.closed, meshes[side].points(), spheres[side])
         };
+        let (source, target) = (line(0), line(1));
         Self {
-            source: of(&pair.source, 0),
-            target: of(&pair.target, 1),
+            source: source.samples(pair.closed, 0.0),
+            target: target.samples(pair.closed, 0.0),
+            line: target,
             closed: pair.closed,
-            shift: 0,
+            shift: 0.0,
             backwards: false,
         }
     }
@@ -156,7 +162,7 @@ impl Samples {
     /// Points that belong together, with what they weigh: every curve the same.
     fn pairs(&self) -> impl Iterator<Item = (Vector, Vector, f64)> {
         let n = self.source.len();
-        let partner = move |k: usize| if self.backwards { n - 1 - k } else { (k + self.shift) % n };
+        let partner = move |k: usize| if self.backwards { n - 1 - k } else { k };
         (0..n).map(move |k| (self.source[k], self.target[partner(k)], 1.0 / n as f64))
     }
 
@@ -178,11 +184,19 @@ impl Samples {
     fn find_shift(&mut self, rotation: Rotation) {
         let n = self.source.len();
         let turned: Vec<Vector> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
-        let fit =
-            |shift: usize| -> f64 { (0..n).map(|k| dot(turned[k], self.target[(k + shift) % n])).sum() };
-        let fits = parallel::map(n, fit);
+        // the vertices, so that curves that are the same fit exactly, and places between
+        let vertices = &self.line.parameters[..self.line.parameters.len() - 1];
+        let few = vertices.iter().step_by(vertices.len().div_ceil(MOST_STARTS)).copied();
+        let shifts: Vec<f64> = few.chain((0..n).map(|k| k as f64 / n as f64)).collect();
+        let fit = |shift: usize| -> f64 {
+            let target = self.line.samples(true, shifts[shift]);
+            turned.iter().zip(target).map(|(&x, y)| dot(x, y)).sum()
+        };
+        let fits = parallel::map(shifts.len(), fit);
         // max_by takes the last of equals, so from the back
-        self.shift = (0..n).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
+        let best = (0..shifts.len()).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
+        self.shift = shifts[best];
+        self.target = self.line.samples(true, self.shift);
     }
 
     /// The middles of both curves.
@@ -195,18 +209,30 @@ fn middle(points: &[Vector]) -> Vector {
     scaled(points.iter().fold([0.0; 3], |sum, &x| add(sum, x)), 1.0 / points.len() as f64)
 }
 
-fn open_samples(vertices: &[u32], points: &[Vector], sphere: &[Vector]) -> Vec<Vector> {
-    let parameters = shares(vertices.iter().map(|&v| points[v as usize]));
-    let places: Vec<Vector> = vertices.iter().map(|&v| sphere[v as usize]).collect();
-    let at = |k: usize| on_sphere(&places, &parameters, k as f64 / (OPEN_SAMPLES - 1) as f64);
-    (0..OPEN_SAMPLES).map(at).collect()
+/// A curve on the sphere by shares of its length in space.
+struct Line {
+    /// The vertices, of a closed curve the first again at the end.
+    places: Vec<Vector>,
+    parameters: Vec<f64>,
 }
 
-fn closed_samples(vertices: &[u32], points: &[Vector], sphere: &[Vector]) -> Vec<Vector> {
-    let around = || vertices.iter().chain(&vertices[..1]);
-    let parameters = shares(around().map(|&v| points[v as usize]));
-    let places: Vec<Vector> = around().map(|&v| sphere[v as usize]).collect();
-    (0..CLOSED_SAMPLES).map(|k| on_sphere(&places, &parameters, k as f64 / CLOSED_SAMPLES as f64)).collect()
+impl Line {
+    fn new(vertices: &[u32], closed: bool, points: &[Vector], sphere: &[Vector]) -> Self {
+        let all = || vertices.iter().chain(if closed { &vertices[..1] } else { &[] });
+        let parameters = shares(all().map(|&v| points[v as usize]));
+        Self { places: all().map(|&v| sphere[v as usize]).collect(), parameters }
+    }
+
+    /// Points at equal distances, of a closed curve from parameter `shift` on.
+    fn samples(&self, closed: bool, shift: f64) -> Vec<Vector> {
+        let at = |s: f64| on_sphere(&self.places, &self.parameters, s);
+        match closed {
+            true => {
+                (0..CLOSED_SAMPLES).map(|k| at((k as f64 / CLOSED_SAMPLES as f64 + shift).fract())).collect()
+            }
+            false => (0..OPEN_SAMPLES).map(|k| at(k as f64 / (OPEN_SAMPLES - 1) as f64)).collect(),
+        }
+    }
 }
 
 /// The rotation that brings the first point of each pair nearest to the second; among equals the least.
@@ -242,7 +268,7 @@ fn paired_loops(
 ) -> Vec<CurvePair> {
     let centre = |side: usize, number: usize| {
         let vertices = &meshes[side].boundary_loops()[number];
-        unit(middle(&closed_samples(vertices, meshes[side].points(), spheres[side])))
+        unit(middle(&Line::new(vertices, true, meshes[side].points(), spheres[side]).samples(true, 0.0)))
     };
     let ours = divided.source.loops.iter().map(|&(number, region)| {
         (number, divided.partner[region as usize], rotate(rotation, centre(0, number)))

@@ -113,7 +113,9 @@ fn traces_are_the_lengths_of_boundaries_and_curves() {
         assert!((lengths[0] - of_feature(0)).abs() < 1e-9);
         assert!((lengths[last] - of_feature(last + 1)).abs() < 1e-9);
         for (k, pants) in found.pants.iter().enumerate() {
-            assert!((pants.boundary_lengths[1] - of_feature(k + 1)).abs() < 1e-9);
+            // of the product of two translations, some of them by 11, which loses e^11 roundings
+            let gap = (pants.boundary_lengths[1] - of_feature(k + 1)).abs();
+            assert!(gap < 1e-8, "{gap} of {}", of_feature(k + 1));
             assert!((pants.boundary_lengths[0] - lengths[k]).abs() < 1e-9);
             assert!((pants.boundary_lengths[2] - lengths[k + 1]).abs() < 1e-9);
         }

@@ -2,7 +2,7 @@
 //! Landmark curves, given as paths of vertices, and their check.
 //!
 //! A curve is open, or closed: then its first vertex stands again at its end, or an edge joins its last
-//! vertex to its first and it has at least eight. Open curves run the same way on both surfaces; of closed
+//! vertex to its first and it has at least sixteen. Open curves run the same way on both surfaces; of closed
 //! ones neither start nor direction means anything.
 //!
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
@@ -12,7 +12,7 @@ use crate::mesh::TriangleMesh;
 
 /// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may
 /// just bend around a face or two.
-const LEAST_RING: usize = 8;
+const LEAST_RING: usize = 16;
 
 /// Pairs of curves, one on the source and one on the target, that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

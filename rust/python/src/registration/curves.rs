@@ -93,7 +93,7 @@ impl Certificates {
 /// source_curves : list of (k,) integer arrays
 ///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common.
 ///     Open ones are matched from start to end by shares of their length. Closed ones, whose first vertex
-///     stands again at the end or whose last vertex (of at least 8) has an edge to the first, have neither
+///     stands again at the end or whose last vertex (of at least 16) has an edge to the first, have neither
 ///     start nor direction. Loops of the boundary need not be named.
 /// target_curves : list of (k,) integer arrays
 ///     Their partners on the target, in the same order.

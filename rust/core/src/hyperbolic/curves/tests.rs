@@ -45,7 +45,7 @@ fn open_curves_are_pairs_as_given() {
 
 #[test]
 fn curves_are_closed_where_both_partners_can_be() {
-    let (whole, ring, arc) = (whole(), circle(&sphere(3), Z, 0.5), path(&sphere(3), X, Y));
+    let (whole, ring, arc) = (whole(), circle(&sphere(3), Z, 1.0), path(&sphere(3), X, Y));
     let repeated = [&ring[..], &ring[..1]].concat();
     let pair = |source: &Vec<usize>, target: &Vec<usize>| {
         let pair = check([&whole, &whole], std::slice::from_ref(source), std::slice::from_ref(target));

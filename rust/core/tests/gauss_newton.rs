@@ -252,7 +252,9 @@ fn check_random(seed: u64) {
     if mesh.require_sphere().is_ok() {
         sphere(&mesh, SphereMapOptions::default(), &context);
     } else {
-        let boundary = BOUNDARIES[Random::new(!seed).below(3) as usize];
+        // long tubes have no map with an arc-length boundary in double precision, and are refused
+        let of_all = if context.starts_with("capsule") { &BOUNDARIES[1..] } else { &BOUNDARIES[..] };
+        let boundary = of_all[Random::new(!seed).below(of_all.len() as u32) as usize];
         disk(&mesh, DiskMapOptions { boundary, ..Default::default() }, &context);
     }
 }

@@ -197,7 +197,7 @@ mod tests {
     fn check(conformal: &Conformal, factors: [f64; 2]) {
         let exact = conformal.length_derivatives(0, factors);
         for end in 0..2 {
-            let step = 1e-6 * factors[end].abs().min(1.0);
+            let step = 1e-6 * factors[end].abs().clamp(0.05, 1.0);
             let moved = |by: f64| {
                 conformal.length(0, std::array::from_fn(|k| factors[k] + if k == end { by } else { 0.0 }))
             };

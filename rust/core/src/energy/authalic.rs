@@ -27,13 +27,10 @@ use crate::parallel;
 /// β, what a large m costs beyond its own size.
 const STEEPNESS: f64 = 0.1;
 
-/// From this λ on angles take their part in the minimum, not only on the way to it, and no face is regular.
-const ANGLES_COUNT: f64 = 3e-3;
-
 /// A symmetric matrix by the unknowns of a face's corners, two for each.
 pub(crate) type Element = [[f64; 6]; 6];
 
-/// Energy of maps of one mesh, or of a patch of one.
+/// Energy of maps of one mesh.
 #[derive(Debug)]
 pub(crate) struct AuthalicEnergy {
     faces: Vec<[u32; 3]>,
@@ -136,19 +133,6 @@ impl AuthalicEnergy {
         Self { faces, corners, cotangents, targets, boundary_edges, codomain }
     }
 
-    /// The energy of the faces `chosen`, whose vertices get the indices that `local` gives them, `n_vertices` in all.
-    pub(crate) fn patch(&self, chosen: &[u32], n_vertices: usize, local: impl Fn(u32) -> u32) -> Self {
-        let faces: Vec<[u32; 3]> = chosen.iter().map(|&face| self.faces[face as usize].map(&local)).collect();
-        Self {
-            corners: VertexCorners::new(n_vertices, &faces),
-            faces,
-            cotangents: chosen.iter().map(|&face| self.cotangents[face as usize]).collect(),
-            targets: chosen.iter().map(|&face| self.targets[face as usize]).collect(),
-            boundary_edges: chosen.iter().map(|&face| self.boundary_edges[face as usize]).collect(),
-            codomain: self.codomain,
-        }
-    }
-
     /// The faces, (m, 3).
     pub(crate) fn faces(&self) -> &[[u32; 3]] {
         &self.faces
@@ -172,16 +156,6 @@ impl AuthalicEnergy {
     /// The areas of the faces of `map`, signed in the plane.
     pub(crate) fn areas(&self, map: &[Vector]) -> Vec<f64> {
         parallel::map(self.targets.len(), |face| 0.5 * self.triangle(map, face).doubled_area)
-    }
-
-    /// ρ of a face.
-    pub(crate) fn ratio(&self, map: &[Vector], weights: &Weights, face: usize) -> f64 {
-        0.5 * self.triangle(map, face).doubled_area / (weights.scale * self.targets[face])
-    }
-
-    /// T ψ(ρ) of a face.
-    pub(crate) fn area_cost(&self, map: &[Vector], weights: &Weights, face: usize) -> f64 {
-        weights.scale * self.targets[face] * weights.profile.cost(self.ratio(map, weights, face))
     }
 
     /// The sums of `map`.
@@ -376,10 +350,7 @@ impl Triangle {
     /// Far from its target, nearly folded, or so thin that its angles count: where the composite Hessian misleads.
     fn is_difficult(&self, ratio: f64, angle_weight: f64) -> bool {
         let thin = |angle: f64| angle > 8.0 && angle_weight * angle * (1.0 + STEEPNESS * angle) > 0.02;
-        angle_weight > ANGLES_COUNT
-            || !(0.6..=3.0).contains(&ratio)
-            || self.determinant < 0.8 * self.doubled_area
-            || thin(self.angle())
+        !(0.6..=3.0).contains(&ratio) || self.determinant < 0.8 * self.doubled_area || thin(self.angle())
     }
 
     /// ∇a = ½ (x_{c+1} − x_{c+2}) × n by the unknowns of each corner c.
@@ -641,24 +612,6 @@ mod tests {
         let value = energy.value(&map, &WEIGHTS);
         assert!((value - expected).abs() < 1e-12 * expected, "{value} {expected}");
         assert!((energy.sums(&map).authalic_energy - figures.authalic_energy).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_faces_of_a_patch_cost_what_they_cost_in_the_whole() {
-        let (mesh, motions, map) = closed();
-        let energy = AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6], Codomain::Sphere, 0.0);
-        let one = |face: u32| {
-            let corners = mesh.faces()[face as usize];
-            let local = |vertex: u32| corners.iter().position(|&corner| corner == vertex).unwrap() as u32;
-            let part: Vec<Vector> = corners.iter().map(|&vertex| map[vertex as usize]).collect();
-            energy.patch(&[face], 3, local).value(&part, &WEIGHTS)
-        };
-        let value = energy.value(&map, &WEIGHTS);
-        assert!(((0..4).map(one).sum::<f64>() - value).abs() < 1e-12 * value);
-        // in the patch of all faces the gradient is that of the whole
-        let all = energy.patch(&[0, 1, 2, 3], 4, |vertex| vertex);
-        let frames = frames(&motions, &map);
-        assert_eq!(all.gradient(&map, &frames, &WEIGHTS), energy.gradient(&map, &frames, &WEIGHTS));
     }
 
     #[test]

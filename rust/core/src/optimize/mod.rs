@@ -8,7 +8,6 @@ pub(crate) mod gauss_newton;
 pub mod gradient_descent;
 mod interpolation;
 pub mod line_search;
-mod local;
 pub mod nonlinear_cg;
 pub(crate) mod rotation;
 

@@ -155,6 +155,10 @@ fn upright(map: Map, removed: [u32; 3]) -> Map {
     })
 }
 
+/// Faces as round as the roundest but for this part count as round as that: symmetric surfaces have several, among which
+/// rounding must not choose.
+const AS_ROUND: f64 = 1e-8;
+
 /// The face nearest to an equilateral triangle; the lowest of several.
 fn roundest_face(mesh: &TriangleMesh) -> usize {
     let roundness = |face: usize| {
@@ -163,8 +167,8 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
         mesh.face_areas()[face] / squares.iter().sum::<f64>()
     };
     let values = parallel::map(mesh.n_faces(), roundness);
-    // max_by takes the last of equals, so from the back
-    (0..values.len()).rev().max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("a mesh has faces")
+    let best = values.iter().fold(0.0, |best: f64, &value| best.max(value));
+    (0..values.len()).find(|&face| values[face] >= (1.0 - AS_ROUND) * best).expect("a mesh has faces")
 }
 
 /// Solves L_II h_I = −L_IB h_B with the corners of the removed face held.

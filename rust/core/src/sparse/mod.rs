@@ -12,4 +12,6 @@ pub(crate) use dirichlet::solve_dirichlet;
 pub use factor::solve_general;
 pub(crate) use factor::{solve_positive_definite, top_eigenvector};
 pub use laplacian::Laplacian;
+#[cfg(test)]
+pub(crate) use multifrontal::processor;
 pub(crate) use multifrontal::{Analysis, Factor, Failure, Order, elimination_order};

@@ -28,7 +28,11 @@ pub(super) fn eliminate<T: Scalar>(
     update: &mut [T],
     watch: &Watch<'_>,
 ) -> Result<(), Failure> {
-    if panel.len() < SMALL.0 || width <= SMALL.1 {
+    #[cfg(test)]
+    let is_small = kernels::processor::chosen().is_some();
+    #[cfg(not(test))]
+    let is_small = false;
+    if is_small || panel.len() < SMALL.0 || width <= SMALL.1 {
         return kernels::on_wide_vectors(|| {
             let positive = kernels::eliminate(panel, height, width);
             kernels::subtract_square(update, panel, height, width);

@@ -45,6 +45,8 @@ pub(super) struct Front {
     pub(super) n_rows: u32,
     /// How many of these rows are columns of the parent.
     pub(super) n_shared: u32,
+    /// Whether its depth in the tree is odd.
+    pub(super) is_odd: bool,
     runs: Range<u32>,
     elements: Range<u32>,
 }
@@ -268,7 +270,17 @@ impl<'a> Builder<'a> {
             self.place_elements(front, dofs, cliques);
             self.measure(front);
         }
+        self.number_depths();
         self.out
+    }
+
+    fn number_depths(&mut self) {
+        for front in (0..self.out.len()).rev() {
+            let children: Vec<usize> = self.out.children(front).collect();
+            children
+                .into_iter()
+                .for_each(|child| self.out.fronts[child].is_odd = !self.out.fronts[front].is_odd);
+        }
     }
 
     fn range(&self, front: usize) -> Range<usize> {
@@ -286,6 +298,7 @@ impl<'a> Builder<'a> {
             n_columns: self.columns.width(&range) as u32,
             n_rows: 0,
             n_shared: 0,
+            is_odd: false,
             runs: 0..0,
             elements: 0..0,
         });

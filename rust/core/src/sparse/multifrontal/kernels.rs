@@ -7,7 +7,43 @@ use super::super::factor::Scalar;
 
 /// Runs `work` compiled for the widest vectors that this processor has.
 pub(super) fn on_wide_vectors<R>(work: impl FnOnce() -> R) -> R {
-    pulp::Arch::new().dispatch(work)
+    arch().dispatch(work)
+}
+
+#[cfg(not(test))]
+fn arch() -> pulp::Arch {
+    pulp::Arch::new()
+}
+
+#[cfg(test)]
+fn arch() -> pulp::Arch {
+    processor::chosen().unwrap_or_else(pulp::Arch::new)
+}
+
+/// Computes as another processor would, in tests.
+#[cfg(test)]
+pub(crate) mod processor {
+    use std::cell::Cell;
+
+    thread_local! {
+        static CHOSEN: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
+    }
+
+    pub(in super::super) fn chosen() -> Option<pulp::Arch> {
+        CHOSEN.get()
+    }
+
+    /// What `work` gives by this crate's own loops alone, on one thread, with vectors of each width there is here.
+    pub(crate) fn with_each_width<R: Send>(work: impl Fn() -> R + Send + Sync) -> Vec<R> {
+        let on_its_own_thread = |arch: pulp::Arch| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+            pool.install(|| {
+                CHOSEN.set(Some(arch));
+                work()
+            })
+        };
+        [pulp::Arch::Scalar, pulp::Arch::new()].map(on_its_own_thread).into()
+    }
 }
 
 /// `out -= Σ_p columns[p] · factors[p]`, all as long as `out`.

@@ -29,6 +29,8 @@ pub(super) use fronts::Element;
 use fronts::Fronts;
 use graph::Graph;
 pub(super) use graph::NONE;
+#[cfg(test)]
+pub(crate) use kernels::processor;
 pub(super) use numeric::Place;
 
 /// Why there is no factor.
@@ -160,6 +162,8 @@ fn unknowns_in_order(order: &[u32], dofs: &[u8]) -> Vec<u32> {
 #[derive(Debug, Clone)]
 pub(crate) struct Factor<T> {
     values: Vec<T>,
+    /// Memory for the next factorisation.
+    scratch: Vec<numeric::Updates<T>>,
 }
 
 impl<T: Scalar> Factor<T> {
@@ -169,7 +173,7 @@ impl<T: Scalar> Factor<T> {
     }
 
     pub(super) fn of(symbolic: &Symbolic) -> Self {
-        Self { values: vec![T::ZERO; symbolic.fronts.factor_len()] }
+        Self { values: vec![T::ZERO; symbolic.fronts.factor_len()], scratch: Vec::new() }
     }
 
     /// Factors the sum of the faces' matrices: `element(face)` is symmetric, two rows for each corner of the face in its
@@ -197,7 +201,7 @@ impl<T: Scalar> Factor<T> {
         assemble: &(impl Fn(&Element, &mut Place<'_, T>) + Sync),
         watch: &Watch<'_>,
     ) -> Result<(), Failure> {
-        numeric::factorize(&symbolic.fronts, &mut self.values, assemble, watch)
+        numeric::factorize(&symbolic.fronts, &mut self.values, assemble, &mut self.scratch, watch)
     }
 
     /// Solves A x = b in place for the columns of `rhs`, each in the order of the unknowns and stored one after another.

@@ -2,6 +2,7 @@
 //! The numbers of the factor: fronts are assembled from elements and from their children's updates.
 
 use std::ops::Range;
+use std::sync::Mutex;
 
 use super::super::factor::Scalar;
 use super::fronts::{Element, Fronts, Run};
@@ -13,15 +14,21 @@ use crate::parallel;
 /// Multiplications between two looks at the watch.
 const LOOK: f64 = 1e6;
 
-/// Writes the factor of the sum of all elements; `assemble` adds one element to its front.
+/// Writes the factor of the sum of all elements; `assemble` adds one element to its front. `scratch` keeps the memory of
+/// the updates for the next time.
 pub(super) fn factorize<T: Scalar>(
     fronts: &Fronts,
     factor: &mut [T],
     assemble: &(impl Fn(&Element, &mut Place<'_, T>) + Sync),
+    scratch: &mut Vec<Updates<T>>,
     watch: &Watch<'_>,
 ) -> Result<(), Failure> {
-    let elimination = Numeric { fronts, assemble, watch };
-    parallel::install(|| elimination.range(0..fronts.len(), factor, &mut Updates::default()))
+    let elimination = Numeric { fronts, assemble, scratch: Mutex::new(std::mem::take(scratch)), watch };
+    let mut updates = elimination.no_updates();
+    let verdict = parallel::install(|| elimination.range(0..fronts.len(), factor, &mut updates));
+    elimination.keep(updates);
+    *scratch = elimination.scratch.into_inner().unwrap_or_default();
+    verdict
 }
 
 /// Where the elements of one front are added.
@@ -48,62 +55,75 @@ impl<T: Scalar> Place<'_, T> {
     }
 }
 
-/// A stack of updates, square and column-major, of which only the lower triangles mean something.
-struct Updates<T> {
-    values: Vec<T>,
-    top: usize,
+/// The updates that wait for their parents, on two stacks: a front takes those of its children off one and leaves its own
+/// on the other, by the parity of its depth in the tree.
+#[derive(Debug, Clone)]
+pub(super) struct Updates<T> {
+    stacks: [Stack<T>; 2],
     late: Vec<(usize, T)>,
 }
 
-impl<T> Default for Updates<T> {
+/// Updates one after the other, square and column-major, of which only the lower triangles mean something.
+#[derive(Debug, Clone)]
+struct Stack<T> {
+    values: Vec<T>,
+    top: usize,
+}
+
+impl<T: Scalar> Default for Updates<T> {
     fn default() -> Self {
-        Self { values: Vec::new(), top: 0, late: Vec::new() }
+        let empty = || Stack { values: Vec::new(), top: 0 };
+        Self { stacks: [empty(), empty()], late: Vec::new() }
     }
 }
 
 impl<T: Scalar> Updates<T> {
-    /// The stack and room for `length` more numbers.
-    fn split(&mut self, length: usize) -> (&mut [T], &mut [T]) {
-        if self.values.len() < self.top + length {
-            self.values.resize((self.top + length).max(self.values.len() * 3 / 2), T::ZERO);
-        }
-        let (used, free) = self.values.split_at_mut(self.top);
-        (used, &mut free[..length])
-    }
-
-    /// Puts the `length` numbers above the stack in the place of the last `taken` on it.
-    fn replace_last(&mut self, taken: usize, length: usize) {
-        let base = self.top - taken;
-        if taken > 0 {
-            self.values.copy_within(self.top..self.top + length, base);
-        }
-        self.top = base + length;
-    }
-
     fn append(&mut self, other: &Self) {
-        let (_, room) = self.split(other.top);
-        room.copy_from_slice(&other.values[..other.top]);
-        self.top += other.top;
+        for (stack, other) in self.stacks.iter_mut().zip(&other.stacks) {
+            stack.push(other.top).copy_from_slice(&other.values[..other.top]);
+        }
     }
 }
 
-struct Numeric<'a, 'w, A> {
+impl<T: Scalar> Stack<T> {
+    /// Room for `length` more numbers, of any value.
+    fn push(&mut self, length: usize) -> &mut [T] {
+        let top = self.top + length;
+        if self.values.len() < top {
+            self.values.resize(top.max(self.values.len() * 3 / 2), T::ZERO);
+        }
+        &mut self.values[std::mem::replace(&mut self.top, top)..top]
+    }
+}
+
+struct Numeric<'a, 'w, A, T> {
     fronts: &'a Fronts,
     assemble: &'a A,
+    /// Memory that no thread uses at the moment.
+    scratch: Mutex<Vec<Updates<T>>>,
     watch: &'a Watch<'w>,
 }
 
-impl<A> Numeric<'_, '_, A> {
+impl<A, T: Scalar> Numeric<'_, '_, A, T>
+where
+    A: Fn(&Element, &mut Place<'_, T>) + Sync,
+{
+    /// No updates, with memory used before where there is some.
+    fn no_updates(&self) -> Updates<T> {
+        let mut updates = self.scratch.lock().ok().and_then(|mut unused| unused.pop()).unwrap_or_default();
+        updates.stacks.iter_mut().for_each(|stack| stack.top = 0);
+        updates.late.clear();
+        updates
+    }
+
+    fn keep(&self, updates: Updates<T>) {
+        if let Ok(mut unused) = self.scratch.lock() {
+            unused.push(updates);
+        }
+    }
+
     /// Eliminates whole subtrees; the updates of their roots go onto the stack.
-    fn range<T: Scalar>(
-        &self,
-        range: Range<usize>,
-        factor: &mut [T],
-        updates: &mut Updates<T>,
-    ) -> Result<(), Failure>
-    where
-        A: Fn(&Element, &mut Place<'_, T>) + Sync,
-    {
+    fn range(&self, range: Range<usize>, factor: &mut [T], updates: &mut Updates<T>) -> Result<(), Failure> {
         let Schedule::Split { before, left, right, after } = Schedule::of(self.fronts, &range) else {
             return self.in_order(range, factor, updates);
         };
@@ -112,26 +132,23 @@ impl<A> Numeric<'_, '_, A> {
         let (of_left, rest) = rest.split_at_mut(length(&left));
         let (of_right, of_after) = rest.split_at_mut(length(&right));
         self.in_order(before, of_before, updates)?;
-        let mut others = Updates::default();
+        let mut others = self.no_updates();
         let (one, other) = parallel::join(
             || self.range(left, of_left, updates),
             || self.range(right, of_right, &mut others),
         );
         one.and(other)?;
         updates.append(&others);
-        drop(others);
+        self.keep(others);
         self.in_order(after, of_after, updates)
     }
 
-    fn in_order<T: Scalar>(
+    fn in_order(
         &self,
         range: Range<usize>,
         mut factor: &mut [T],
         updates: &mut Updates<T>,
-    ) -> Result<(), Failure>
-    where
-        A: Fn(&Element, &mut Place<'_, T>) + Sync,
-    {
+    ) -> Result<(), Failure> {
         let mut since_look = 0.0;
         for front in range {
             let (panel, rest) = factor.split_at_mut(self.fronts.panels(&(front..front + 1)).len());
@@ -148,36 +165,29 @@ impl<A> Numeric<'_, '_, A> {
         Ok(())
     }
 
-    fn eliminate<T: Scalar>(
-        &self,
-        front: usize,
-        panel: &mut [T],
-        updates: &mut Updates<T>,
-    ) -> Result<(), Failure>
-    where
-        A: Fn(&Element, &mut Place<'_, T>) + Sync,
-    {
+    fn eliminate(&self, front: usize, panel: &mut [T], updates: &mut Updates<T>) -> Result<(), Failure> {
         let (height, width) = (self.fronts.front(front).height(), self.fronts.front(front).columns());
         let rows = height - width;
-        let mut late = std::mem::take(&mut updates.late);
-        let (stack, update) = updates.split(rows * rows);
+        let Updates { stacks: [even, odd], late } = updates;
+        let is_odd = self.fronts.front(front).is_odd;
+        let (own, of_children) = if is_odd { (odd, even) } else { (even, odd) };
+        let (update, stack) = (own.push(rows * rows), &of_children.values[..of_children.top]);
         // 1. the panel: elements, then what the children leave
         panel.fill(T::ZERO);
-        let mut place = Place { panel, height, width, late: &mut late };
+        let mut place = Place { panel, height, width, late };
         self.fronts.elements(front).iter().for_each(|element| (self.assemble)(element, &mut place));
         self.for_each_child(front, stack, |child| child.add_to_panel(panel, height));
         // 2. the columns of the factor
         dense::eliminate(panel, (height, width), update, self.watch)?;
         // 3. what the parent must add
         late.drain(..).for_each(|(place, value)| update[place] += value);
-        let taken = self.for_each_child(front, stack, |child| child.add_to_update(update, rows, width));
-        updates.replace_last(taken, rows * rows);
-        updates.late = late;
+        of_children.top -=
+            self.for_each_child(front, stack, |child| child.add_to_update(update, rows, width));
         Ok(())
     }
 
     /// Visits the updates of all children, last first; returns their length on the stack.
-    fn for_each_child<T>(&self, front: usize, stack: &[T], mut visit: impl FnMut(Child<'_, T>)) -> usize {
+    fn for_each_child(&self, front: usize, stack: &[T], mut visit: impl FnMut(Child<'_, T>)) -> usize {
         let mut end = stack.len();
         for child in self.fronts.children(front) {
             let (runs, child) = (self.fronts.runs(child), self.fronts.front(child));

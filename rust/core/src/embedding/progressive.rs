@@ -100,6 +100,7 @@ pub fn relaxed(
 ) -> (Vec<Vector>, Status) {
     let mut embedding = Embedding::new(mesh, targets);
     embedding.places = map;
+    embedding.placed = (0..mesh.n_vertices() as u32).collect();
     let sweeps = 4 * RELAXED_SHAPES.len();
     for sweep in 0..sweeps {
         embedding.shape = RELAXED_SHAPES[sweep / 4];
@@ -124,6 +125,8 @@ struct Embedding<'a> {
     shape: f64,
     star: Star,
     room: [Vec<[f64; 2]>; 2],
+    /// The vertices in the order in which they came back, which no numbering decides.
+    placed: Vec<u32>,
 }
 
 impl<'a> Embedding<'a> {
@@ -139,6 +142,7 @@ impl<'a> Embedding<'a> {
             shape: SHAPE,
             star: Star::default(),
             room: Default::default(),
+            placed: Vec::with_capacity(mesh.n_vertices()),
         }
     }
 
@@ -172,7 +176,9 @@ impl<'a> Embedding<'a> {
     /// Lays the vertices that are left onto a regular tetrahedron or triangle; returns how many they are.
     fn lay_base(&mut self) -> Option<usize> {
         let n = self.mesh.n_vertices() as u32;
-        let base: Vec<u32> = (0..n).filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
+        let mut base: Vec<u32> = (0..n).filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
+        base.sort_by(|&a, &b| self.decimation.preference(a).total_cmp(&self.decimation.preference(b)));
+        self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
         let (c, s) = (-0.5, 0.75f64.sqrt());
         let corners: &[Vector] = match self.travelled.is_empty() {
@@ -212,8 +218,11 @@ impl<'a> Embedding<'a> {
             place = better;
         }
         self.places[vertex as usize] = place;
-        // 3. With its neighbours
-        let ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
+        self.placed.push(vertex);
+        // 3. With its neighbours, from the one it went onto
+        let mut ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
+        let first = ring.iter().position(|&neighbour| neighbour == onto).unwrap_or(0);
+        ring.rotate_left(first);
         for neighbour in ring {
             if neighbour != self.decimation.apex() && self.decimation.degree(neighbour) <= MANY_NEIGHBOURS {
                 self.relax(neighbour);
@@ -245,13 +254,11 @@ impl<'a> Embedding<'a> {
     /// One Newton step of every vertex in turn.
     fn sweep(&mut self, observer: &mut dyn Observer) -> Result<(), Stop> {
         let n = self.mesh.n_vertices();
-        for vertex in 0..n {
-            if vertex.is_multiple_of(BEAT) && !observer.progress(vertex as f64 / n as f64, "Relaxing") {
+        for k in 0..self.placed.len() {
+            if k.is_multiple_of(BEAT) && !observer.progress(k as f64 / n as f64, "Relaxing") {
                 return Err(Stop::Cancelled);
             }
-            if !self.decimation.is_gone(vertex as u32) {
-                self.relax(vertex as u32);
-            }
+            self.relax(self.placed[k]);
         }
         Ok(())
     }

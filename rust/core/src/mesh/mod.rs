@@ -11,6 +11,7 @@ pub mod orientation;
 pub(crate) mod polygon;
 pub(crate) mod renumbering;
 mod soup;
+pub(crate) mod ties;
 pub(crate) mod topology;
 mod validate;
 

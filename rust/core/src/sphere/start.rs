@@ -25,6 +25,7 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{
     Vector, add, corner_cotangents, cross, distance, dot, norm, scaled, sub, triangle,
 };
+use crate::mesh::ties::tie_breakers;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
@@ -155,10 +156,6 @@ fn upright(map: Map, removed: [u32; 3]) -> Map {
     })
 }
 
-/// Faces as round as the roundest but for this part count as round as that: symmetric surfaces have several, among which
-/// rounding must not choose.
-const AS_ROUND: f64 = 1e-8;
-
 /// The face nearest to an equilateral triangle; the lowest of several.
 fn roundest_face(mesh: &TriangleMesh) -> usize {
     let roundness = |face: usize| {
@@ -166,9 +163,14 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
         let squares = [sub(b, a), sub(c, b), sub(a, c)].map(|edge| dot(edge, edge));
         mesh.face_areas()[face] / squares.iter().sum::<f64>()
     };
-    let values = parallel::map(mesh.n_faces(), roundness);
-    let best = values.iter().fold(0.0, |best: f64, &value| best.max(value));
-    (0..values.len()).find(|&face| values[face] >= (1.0 - AS_ROUND) * best).expect("a mesh has faces")
+    // symmetric surfaces have several
+    let tie_breakers = tie_breakers(mesh.points());
+    let values = parallel::map(mesh.n_faces(), |face| {
+        let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex as usize]).sum();
+        preference * roundness(face)
+    });
+    // max_by takes the last of equals, so from the back
+    (0..values.len()).rev().max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("a mesh has faces")
 }
 
 /// Solves L_II h_I = −L_IB h_B with the corners of the removed face held.

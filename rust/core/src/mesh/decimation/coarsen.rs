@@ -28,16 +28,6 @@ const BOUNDARY: f64 = 12.0;
 /// queue; by then it has fewer.
 const MANY_NEIGHBOURS: usize = 32;
 
-/// Steps by which costs differ, per factor e.
-const STEPS: f64 = 1000.0;
-
-/// A cost rounded down to the next step, so that rounding errors do not choose between symmetric parts. The offset keeps
-/// steps away from the round numbers of regular meshes.
-fn in_steps(cost: f64) -> f64 {
-    const OFFSET: f64 = 0.381;
-    if cost > 0.0 && cost.is_finite() { ((STEPS * cost.ln() + OFFSET).floor() / STEPS).exp() } else { cost }
-}
-
 /// A vertex in the queue: cheap ones first, of equal ones the lowest.
 #[derive(PartialEq)]
 struct Candidate {
@@ -167,7 +157,7 @@ impl Decimation<'_> {
         let mut ring = Ring::default();
         if self.degree(vertex) > MANY_NEIGHBOURS {
             self.fill_ring(vertex, &mut ring);
-            return in_steps(ring.weight() / 1.05f64.sqrt());
+            return self.tie_breakers[vertex as usize] * ring.weight() / 1.05f64.sqrt();
         }
         let cost = self.best_collapse(vertex, &mut ring).0;
         // those that cannot collapse learn it first
@@ -182,14 +172,16 @@ impl Decimation<'_> {
         let mut rated: Vec<(f64, u32, u32)> = (0..ring.vertices.len())
             .filter(allowed)
             .map(|k| {
-                let shape = in_steps(ring.shape(k, self.degree(ring.vertices[k])));
-                (shape, ring.vertices[k], ring.corners[k])
+                let neighbour = ring.vertices[k];
+                let shape = self.tie_breakers[neighbour as usize] * ring.shape(k, self.degree(neighbour));
+                (shape, neighbour, ring.corners[k])
             })
             .collect();
         // the link condition costs most, so only of the best is it asked, then of the second best
         while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
             if self.keeps_the_sphere(ring, best.1) {
-                return (in_steps(ring.weight() * best.0.sqrt()), Some(best.2));
+                let cost = self.tie_breakers[vertex as usize] * ring.weight() * best.0.sqrt();
+                return (cost, Some(best.2));
             }
             rated.retain(|other| other.1 != best.1);
         }

@@ -17,6 +17,7 @@ mod coarsen;
 
 use super::TriangleMesh;
 use super::geometry::{area, triangle};
+use super::ties::tie_breakers;
 use super::topology::{next_corner, previous_corner};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
@@ -33,6 +34,8 @@ pub(crate) struct Decimation<'a> {
     collapses: Vec<Collapse>,
     /// The targets that each collapse changed, one after the other.
     old_targets: Vec<f64>,
+    /// What the costs at each vertex are multiplied by; symmetric parts differ.
+    tie_breakers: Vec<f64>,
 }
 
 /// A face with all that turning about a vertex asks for, half a line of the cache.
@@ -72,6 +75,7 @@ impl<'a> Decimation<'a> {
             gone: vec![false; n],
             collapses: Vec::with_capacity(n),
             old_targets: Vec::with_capacity(6 * n),
+            tie_breakers: tie_breakers(mesh.points()),
         };
         mesh.boundary_loops().first().into_iter().for_each(|boundary| whole.close(boundary));
         whole
@@ -100,6 +104,11 @@ impl<'a> Decimation<'a> {
         self.corners.push(first + 2);
         self.degrees.push(boundary.len() as u32);
         self.gone.push(false);
+    }
+
+    /// What tells a vertex from those in symmetric places; larger for the preferred one.
+    pub(crate) fn preference(&self, vertex: u32) -> f64 {
+        self.tie_breakers[vertex as usize]
     }
 
     /// The vertex that closes a disk.

@@ -44,6 +44,16 @@ REGISTRATION = {
     "progress": None,
 }
 KEYWORDS = {
+    "stretch_hessian",
+}
+REGISTRATION = {
+    "source_landmarks": inspect.Parameter.empty,
+    "target_landmarks": inspect.Parameter.empty,
+    "weight": 1.0,
+    "angle_weight": 0.0,
+    "progress": None,
+}
+KEYWORDS = {
     "disk_map": {
         "method": "gauss_newton",
         "boundary": "sliding",
@@ -320,6 +330,8 @@ def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
         ("angle_weight", -0.5, "angle_weight must be a finite number ≥ 0, but is -0.5"),
         ("angle_weight", float("inf"), "angle_weight must be a finite number ≥ 0, but is inf"),
         ("angle_weight", float("nan"), "angle_weight must be a finite number ≥ 0, but is NaN"),
+        ("area_tolerance", 0.0, "area_tolerance must be a finite number > 0, but is 0"),
+        ("area_tolerance", float("nan"), "area_tolerance must be a finite number > 0, but is NaN"),
     ],
 )
 def test_an_option_out_of_range_is_a_plain_value_error(option, value, words):
@@ -352,6 +364,8 @@ def test_an_option_of_the_wrong_type_is_a_type_error(option, value):
         ("angle_weight", -0.5, "angle_weight must be a finite number ≥ 0, but is -0.5"),
         ("angle_weight", float("inf"), "angle_weight must be a finite number ≥ 0, but is inf"),
         ("angle_weight", float("nan"), "angle_weight must be a finite number ≥ 0, but is NaN"),
+        ("area_tolerance", 0.0, "area_tolerance must be a finite number > 0, but is 0"),
+        ("area_tolerance", float("nan"), "area_tolerance must be a finite number > 0, but is NaN"),
     ],
 )
 def test_an_option_of_sphere_maps_out_of_range_is_a_plain_value_error(option, value, words):

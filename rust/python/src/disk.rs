@@ -86,16 +86,20 @@ impl DiskMap {
 /// angle_weight : float
 ///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (the default) keeps areas alone,
 ///     .03 is a balance, .3 keeps shapes and lets areas go. For "gauss_newton" only.
+/// area_tolerance : float, optional
+///     Instead of a weight: the map of least shear whose area deviation √(E_A/π) is within this tolerance, say
+///     .01. The status is "stalled" where no map that even was reached. Excludes an `angle_weight`; for "gauss_newton"
+///     only. Default: none, `angle_weight` decides.
 /// initial : (n, 2) real array, optional
 ///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop.
 ///     Default: harmonic, then five fixed-point steps.
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes, a few where those leave area ratios a deviation of less
-///     than 1 %, up to 60 else; for the papers' methods 50, as in the paper's tables. On top come up to five fixed-point
+///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
+///     deviation of less than .5 %; for the papers' methods 50, as in the paper's tables. On top come up to five fixed-point
 ///     steps, and where the start folds or the result is uneven steps that unfold it or a second descent.
 /// tolerance : float, optional
 ///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/π), falls below it, default
-///     2e-4, or when iterations have ceased to lower the energy; the papers' methods when √(gᵀM⁻¹g), the
+///     2e-4 (after the usual iterations .5 %), or at a stationary point of the energy; the papers' methods when √(gᵀM⁻¹g), the
 ///     gradient_norm of the history, falls below it, default 1e-8.
 /// fill_holes : bool
 ///     Fill all boundary loops but the longest virtually instead of refusing them. Default False.
@@ -124,7 +128,8 @@ impl DiskMap {
 /// ((5, 2), 0)
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
-                    initial=None, max_iterations=None, tolerance=None, fill_holes=false, progress=None))]
+                    area_tolerance=None, initial=None, max_iterations=None, tolerance=None, fill_holes=false,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_map(
     py: Python<'_>,
@@ -134,6 +139,7 @@ pub fn disk_map(
     boundary: &str,
     density: Option<&Bound<'_, PyAny>>,
     angle_weight: f64,
+    area_tolerance: Option<f64>,
     initial: Option<&Bound<'_, PyAny>>,
     max_iterations: Option<i64>,
     tolerance: Option<f64>,
@@ -156,6 +162,7 @@ pub fn disk_map(
             boundary,
             density,
             angle_weight,
+            area_tolerance,
             initial,
             max_iterations,
             tolerance,

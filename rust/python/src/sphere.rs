@@ -87,12 +87,16 @@ impl SphereMap {
 /// angle_weight : float
 ///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (the default) keeps areas alone,
 ///     .03 is a balance, .3 keeps shapes and lets areas go. For "gauss_newton" only.
+/// area_tolerance : float, optional
+///     Instead of a weight: the map of least shear whose area deviation √(E_A/4π) is within this tolerance, say
+///     .01. The status is "stalled" where no map that even was reached. Excludes an `angle_weight`; for "gauss_newton"
+///     only. Default: none, `angle_weight` decides.
 /// initial : (n, 3) real array, optional
 ///     A start map, outward oriented, no row zero; rows are normalised. Default: the spherical conformal map,
 ///     and but for "fixed_point" itself fixed-point steps from it, up to five for "gauss_newton" and ten else.
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes, a few where those leave area ratios a deviation of less
-///     than 1 %, up to 60 else; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps
+///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
+///     deviation of less than .5 %; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps
 ///     before a descent, and where folds were mended or the result is uneven a second descent. 0 with
 ///     "fixed_point" returns the start map.
 /// tolerance : float, optional
@@ -130,7 +134,8 @@ impl SphereMap {
 /// ((6, 3), 0)
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, method="gauss_newton", line_search="interpolation", density=None,
-                    angle_weight=0.0, initial=None, max_iterations=None, tolerance=None, unfold=true, progress=None))]
+                    angle_weight=0.0, area_tolerance=None, initial=None, max_iterations=None, tolerance=None,
+                    unfold=true, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn sphere_map(
     py: Python<'_>,
@@ -140,6 +145,7 @@ pub fn sphere_map(
     line_search: &str,
     density: Option<&Bound<'_, PyAny>>,
     angle_weight: f64,
+    area_tolerance: Option<f64>,
     initial: Option<&Bound<'_, PyAny>>,
     max_iterations: Option<i64>,
     tolerance: Option<f64>,
@@ -162,6 +168,7 @@ pub fn sphere_map(
             line_search,
             density,
             angle_weight,
+            area_tolerance,
             initial,
             max_iterations,
             tolerance,

@@ -21,6 +21,8 @@ use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::Vector;
 use crate::mesh::renumbering::Renumbered;
+use crate::optimize::angle_schedule::AnglePath;
+use crate::optimize::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even};
 use crate::optimize::{Stopping, floors};
 use crate::sparse::{Order, elimination_order};
@@ -35,7 +37,7 @@ const NEAR: f64 = 0.15;
 const OPEN_ITERATIONS: [usize; 2] = [8, 12];
 
 /// Guarded iterations where those leave the area ratio a deviation of 1 %, and at the most.
-const GUARDED_ITERATIONS: [usize; 2] = [9, 60];
+const GUARDED_ITERATIONS: [usize; 2] = [12, 1000];
 
 /// On surfaces with fewer vertices three times as many cost next to nothing.
 const SMALL: usize = 10_000;
@@ -48,7 +50,7 @@ const LARGE: usize = 500_000;
 const COLLAPSED: f64 = 1e-9;
 
 /// A result is uneven when E_A is more than this part of the area; then another start may do better.
-const UNEVEN: f64 = 0.02;
+const UNEVEN: f64 = 2e-4;
 
 /// Area deviation of the result below which nothing is left to gain.
 const TOLERANCE: f64 = 2e-4;
@@ -122,7 +124,8 @@ impl Run<'_> {
         };
         // 4. A guarded descent
         let mut phase = Phase { whole: observer, from: 0.5, to: 0.9 };
-        let (problem, map, status) = self.guarded_descent(problem, map, status, history, &mut phase);
+        let (problem, map, status) =
+            self.guarded_descent(problem, map, AnglePath::Balanced, status, history, &mut phase);
         // 5. Another one from the progressive embedding where the result is uneven
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let (map, status) = self.second_try(problem, map, status, history, &mut phase);
@@ -196,7 +199,9 @@ impl Run<'_> {
         }
         // 2. Unguarded steps until nothing is folded; angles would be lost on the way, so none more where these count
         let [least, most] = OPEN_ITERATIONS;
-        let is_done = self.options.angle_weight > 0.0 || self.options.boundary == Boundary::Free;
+        let is_done = self.options.angle_weight > 0.0
+            || self.options.area_tolerance.is_some()
+            || self.options.boundary == Boundary::Free;
         let least = match self.mesh.n_vertices() {
             _ if is_done => 0,
             LARGE.. => least,
@@ -298,6 +303,7 @@ impl Run<'_> {
         &self,
         problem: Problem,
         map: Map,
+        path: AnglePath,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -305,10 +311,15 @@ impl Run<'_> {
         if status == Status::Cancelled {
             return (problem, map, status);
         }
-        let options = self.gauss_newton_options();
+        let options = GaussNewtonOptions { path, ..self.gauss_newton_options() };
         let begun = map.clone();
         let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: self.codomain() };
-        let (problem, map, status) = floors::descend(&surface, problem, map, &options, history, observer);
+        let (problem, map, status) = match self.options.area_tolerance {
+            Some(tolerance) => {
+                within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
+            }
+            None => floors::descend(&surface, problem, map, &options, history, observer),
+        };
         let is_bijective = match self.options.boundary {
             // no fold and an outline that does not cross itself
             Boundary::Free => {
@@ -335,7 +346,10 @@ impl Run<'_> {
         let first = problem.unevenness(&map);
         // the progressive embedding has a boundary of its own
         let is_held = self.options.boundary == Boundary::ArcLength;
-        let is_given = is_held || self.options.initial.is_some() || self.options.angle_weight > 0.0;
+        let is_given = is_held
+            || self.options.initial.is_some()
+            || self.options.angle_weight > 0.0
+            || self.options.area_tolerance.is_some();
         if status == Status::Cancelled || is_given || first <= UNEVEN {
             return (map, status);
         }
@@ -350,7 +364,8 @@ impl Run<'_> {
             return (map, status);
         }
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
-        let (problem, other, ended) = self.guarded_descent(problem, other, status, history, &mut phase);
+        let (problem, other, ended) =
+            self.guarded_descent(problem, other, AnglePath::Staged, status, history, &mut phase);
         more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
@@ -365,7 +380,7 @@ impl Run<'_> {
         let [usual, ..] = GUARDED_ITERATIONS;
         match self.mesh.n_vertices() {
             _ if self.options.max_iterations.is_some() || self.options.tolerance.is_some() => usize::MAX,
-            0..SMALL => 3 * usual,
+            0..SMALL => 2 * usual,
             SMALL..LARGE => usual,
             _ => 0,
         }
@@ -375,6 +390,7 @@ impl Run<'_> {
         GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: self.options.angle_weight,
+            path: AnglePath::Balanced,
             usual_iterations: self.usual_iterations(),
             most_iterations: self.options.max_iterations.unwrap_or(GUARDED_ITERATIONS[1]),
             tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
@@ -397,4 +413,49 @@ fn lifted(map: super::Map) -> Map {
 
 fn flat(map: &Map) -> super::Map {
     map.iter().map(|&[u, v, _]| [u, v]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::TriangleMesh;
+    use crate::sparse::processor::with_each_width;
+    use crate::{Silent, disk_map};
+
+    /// A wavy cap of 41 rings.
+    fn cap() -> TriangleMesh {
+        let (rings, around) = (40u32, 60u32);
+        let point = |ring: u32, k: u32| {
+            let (r, angle) =
+                (f64::from(ring) / 20.0, f64::from(k) * std::f64::consts::TAU / f64::from(around));
+            let wave = 0.2 * (3.0 * r + 1.0).sin() * (2.0 * angle).cos();
+            [r.sin() * angle.cos(), r.sin() * angle.sin(), r.cos() + wave * r]
+        };
+        let mut points = vec![point(0, 0)];
+        points.extend((1..=rings).flat_map(|ring| (0..around).map(move |k| point(ring, k))));
+        let at = |ring: u32, k: u32| 1 + (ring - 1) * around + k % around;
+        let mut faces: Vec<[u32; 3]> = (0..around).map(|k| [0, at(1, k), at(1, k + 1)]).collect();
+        for (ring, k) in (1..rings).flat_map(|ring| (0..around).map(move |k| (ring, k))) {
+            let [a, b, c, d] = [at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)];
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+        TriangleMesh::new(&points, &faces).unwrap()
+    }
+
+    #[test]
+    fn every_processor_finds_the_same_map() {
+        let mesh = cap();
+        for (boundary, angle_weight) in
+            [(Boundary::Sliding, 0.0), (Boundary::Sliding, 1e-3), (Boundary::ArcLength, 0.0)]
+        {
+            let options = DiskMapOptions { boundary, angle_weight, ..Default::default() };
+            let mut maps = with_each_width(|| disk_map(&mesh, &options, &mut Silent).unwrap().uv);
+            maps.push(disk_map(&mesh, &options, &mut Silent).unwrap().uv);
+            for map in &maps[1..] {
+                let moved = map.iter().zip(&maps[0]).map(|(x, y)| (x[0] - y[0]).hypot(x[1] - y[1]));
+                let most = moved.fold(0.0, f64::max);
+                assert!(most < 1e-6, "{boundary:?} {angle_weight}: {most}");
+            }
+        }
+    }
 }

@@ -26,7 +26,7 @@ use crate::control::{History, Observer, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::optimize::check_angle_weight;
+use crate::optimize::{check_angle_weight, check_area_tolerance};
 
 pub(crate) use holes::closed;
 use run::Run;
@@ -74,6 +74,9 @@ pub struct DiskMapOptions<'a> {
     /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
     /// alone.
     pub angle_weight: f64,
+    /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
+    /// where `None`, `angle_weight` decides.
+    pub area_tolerance: Option<f64>,
     /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic
     /// map where `None`.
     pub initial: Option<&'a [[f64; 2]]>,
@@ -169,6 +172,7 @@ impl DiskMapOptions<'_> {
             return Err(Error::InvalidOption { name: "boundary", found: "free".into(), expected });
         }
         check_angle_weight(self.angle_weight, self.method == Method::GaussNewton)?;
+        check_area_tolerance(self.area_tolerance, self.angle_weight, self.method == Method::GaussNewton)?;
         match self.tolerance {
             Some(tolerance) if !(tolerance >= 0.0 && tolerance.is_finite()) => Err(Error::InvalidOption {
                 name: "tolerance",

@@ -13,12 +13,12 @@
 //! both domains, while areas are the flat ones that E_A is made of. A face is feasible where D is positive by more than
 //! its rounding error, so a finite energy certifies a map without folds.
 //!
-//! Faces are sums of two kinds in the Hessian. A regular face gives a composite form that is positive semidefinite as it
-//! stands (Gauss–Newton in the area, the Hessian of quadratic over linear in m); a difficult one, far from its area or
-//! nearly folded, the exact Hessian with its negative eigenvalues set to zero.
+//! The Hessian of a face is composite and positive semidefinite as it stands: Gauss–Newton in the area; for m − 1 =
+//! (Q − D)/D the Hessian of a quadratic over a linear function, with C = Q − 2a, which is D short of Q on fine meshes and
+//! in the plane: half the squared distance of the face from the similarity transformations, convex. So it leaves out only
+//! what vanishes with ψ′ and with m − 1, and turning a face costs nothing.
 
 use super::motion::Frame;
-use super::psd::clamp_negative_eigenvalues;
 use super::stretch::Profile;
 use crate::mesh::geometry::{Vector, add, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
 use crate::mesh::{TriangleMesh, VertexCorners};
@@ -158,14 +158,19 @@ impl AuthalicEnergy {
         parallel::map(self.targets.len(), |face| 0.5 * self.triangle(map, face).doubled_area)
     }
 
-    /// The sums of `map`.
-    pub(crate) fn sums(&self, map: &[Vector]) -> Sums {
-        let n = self.targets.len();
-        let costs = parallel::map(n, |face| {
+    /// The area of each face of `map`, signed in the plane, and (m − 1) + ½ β (m − 1)², infinite where the face is not
+    /// open.
+    pub(crate) fn costs(&self, map: &[Vector]) -> Vec<[f64; 2]> {
+        parallel::map(self.targets.len(), |face| {
             let corners = self.triangle(map, face);
             let angle = if self.is_open(&corners, face) { corners.angle() } else { f64::INFINITY };
             [0.5 * corners.doubled_area, angle_cost(angle)]
-        });
+        })
+    }
+
+    /// The sums of a map with these costs.
+    pub(crate) fn sums(&self, costs: &[[f64; 2]]) -> Sums {
+        let n = self.targets.len();
         let [area, total] = parallel::sums(n, |face| [costs[face][0], self.targets[face]]);
         let scale = area / total;
         let [authalic_energy, angle_energy] = parallel::sums(n, |face| {
@@ -175,15 +180,15 @@ impl AuthalicEnergy {
         Sums { area, authalic_energy, angle_energy, penalty: 0.0 }
     }
 
-    /// The energy of `map`; infinite where the barrier's profile meets a face that is not open.
-    pub(crate) fn value(&self, map: &[Vector], weights: &Weights) -> f64 {
+    /// The energy of a map with these costs; infinite where the barrier's profile meets a face that is not open.
+    pub(crate) fn value(&self, costs: &[[f64; 2]], weights: &Weights) -> f64 {
         parallel::sum(self.targets.len(), |face| {
-            let (corners, target) = (self.triangle(map, face), weights.scale * self.targets[face]);
-            let of_area = target * weights.profile.cost(0.5 * corners.doubled_area / target);
+            let ([area, angle_cost], target) = (costs[face], weights.scale * self.targets[face]);
+            let of_area = target * weights.profile.cost(area / target);
             match weights.profile {
                 Profile::Stretch => of_area,
-                Profile::Barrier if !self.is_open(&corners, face) => f64::INFINITY,
-                Profile::Barrier => of_area + weights.angle * target * angle_cost(corners.angle()),
+                Profile::Barrier if angle_cost == f64::INFINITY => f64::INFINITY,
+                Profile::Barrier => of_area + weights.angle * target * angle_cost,
             }
         })
     }
@@ -245,19 +250,8 @@ impl AuthalicEnergy {
         let slopes = corners.slopes(frames, cotangents);
         add_product(&mut element, stiffness, &slopes.area);
         let by_quadratic = corners.add_angle(&mut element, weights.angle * target, &slopes);
-        if corners.is_difficult(ratio, weights.angle) {
-            add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent));
-            let outer = self.outer(&corners, face, weights);
-            corners.add_curvature(&mut element, &outer, frames, cotangents);
-            clamp_negative_eigenvalues(&mut element);
-            add_quadratic(&mut element, frames, [damping; 3]);
-        } else {
-            add_quadratic(
-                &mut element,
-                frames,
-                cotangents.map(|cotangent| by_quadratic * cotangent + damping),
-            );
-        }
+        add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent + damping));
+        corners.subtract_area(&mut element, by_quadratic, frames);
         element
     }
 
@@ -347,12 +341,6 @@ impl Triangle {
         self.quadratic / self.determinant
     }
 
-    /// Far from its target, nearly folded, or so thin that its angles count: where the composite Hessian misleads.
-    fn is_difficult(&self, ratio: f64, angle_weight: f64) -> bool {
-        let thin = |angle: f64| angle > 8.0 && angle_weight * angle * (1.0 + STEEPNESS * angle) > 0.02;
-        !(0.6..=3.0).contains(&ratio) || self.determinant < 0.8 * self.doubled_area || thin(self.angle())
-    }
-
     /// ∇a = ½ (x_{c+1} − x_{c+2}) × n by the unknowns of each corner c.
     fn area_slopes(&self, frames: [&Frame; 3]) -> [f64; 6] {
         self.reduced(frames, |[next, after, _]| scaled(cross(sub(next, after), self.normal), 0.5))
@@ -384,18 +372,23 @@ impl Triangle {
         out
     }
 
-    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² but for the curvature of D and of Q; returns what the
-    /// Hessian of Q is to be multiplied by.
+    /// Adds `weight` times the composite Hessian of (m − 1) + ½ β (m − 1)² but for that of C = Q − 2a; returns what that
+    /// is to be multiplied by.
     fn add_angle(&self, element: &mut Element, weight: f64, slopes: &Slopes) -> f64 {
         let (d, angle) = (self.determinant, self.angle());
         let by_quadratic = weight * (1.0 + STEEPNESS * (angle - 1.0)) / d;
+        let conformal = (self.quadratic - self.doubled_area) / d;
         let by_angle: [f64; 6] =
             std::array::from_fn(|k| (slopes.quadratic[k] - angle * slopes.determinant[k]) / d);
+        // ∇(C/D)
+        let by_conformal: [f64; 6] = std::array::from_fn(|k| {
+            (slopes.quadratic[k] - 2.0 * slopes.area[k] - conformal * slopes.determinant[k]) / d
+        });
         for row in 0..6 {
             for column in 0..6 {
-                // −(∇Q ∇Dᵀ + ∇D ∇Qᵀ)/D² + 2Q ∇D ∇Dᵀ/D³ = −(∇m ∇Dᵀ + ∇D ∇mᵀ)/D
-                let mixed =
-                    by_angle[row] * slopes.determinant[column] + slopes.determinant[row] * by_angle[column];
+                // −(∇C ∇Dᵀ + ∇D ∇Cᵀ)/D² + 2C ∇D ∇Dᵀ/D³
+                let mixed = by_conformal[row] * slopes.determinant[column]
+                    + slopes.determinant[row] * by_conformal[column];
                 element[row][column] +=
                     weight * STEEPNESS * by_angle[row] * by_angle[column] - by_quadratic * mixed;
             }
@@ -403,46 +396,18 @@ impl Triangle {
         by_quadratic
     }
 
-    /// Adds what the composite Hessian leaves out: the curvature of a, of D, and of the domain.
-    fn add_curvature(&self, element: &mut Element, outer: &Outer, frames: [&Frame; 3], cotangents: [f64; 3]) {
-        let axis = |k: usize| frames[k / 2].axes[k % 2];
-        let in_plane: [Vector; 6] = std::array::from_fn(|k| {
-            let c = k / 2;
-            let turned = cross(axis(k), sub(self.x[(c + 1) % 3], self.x[(c + 2) % 3]));
-            sub(turned, scaled(self.normal, dot(turned, self.normal)))
-        });
-        for row in 0..6 {
-            for column in 0..6 {
-                let (c, e) = (row / 2, column / 2);
-                // det(axis, axis, z), zero at one corner and odd under exchange of the two
-                let triple = |z: Vector| match (3 + e - c) % 3 {
-                    0 => 0.0,
-                    1 => dot(axis(row), cross(axis(column), z)),
-                    _ => dot(axis(column), cross(axis(row), z)),
-                };
-                let third = self.x[(6 - c - e) % 3];
-                let of_area =
-                    0.5 * (dot(in_plane[row], in_plane[column]) / self.doubled_area + triple(self.normal));
-                element[row][column] += outer.by_area * of_area + outer.by_determinant * triple(third);
+    /// Subtracts `factor` times the Hessian of 2a in the plane of the face.
+    fn subtract_area(&self, element: &mut Element, factor: f64, frames: [&Frame; 3]) {
+        for c in 0..3 {
+            let next = (c + 1) % 3;
+            for i in 0..2 {
+                for j in 0..2 {
+                    let turn = factor * dot(cross(frames[c].axes[i], frames[next].axes[j]), self.normal);
+                    element[2 * c + i][2 * next + j] -= turn;
+                    element[2 * next + j][2 * c + i] -= turn;
+                }
             }
         }
-        for c in 0..3 {
-            let pull = dot(self.slope_in_space(outer, cotangents, c), frames[c].outward);
-            (0..2).for_each(|axis| element[2 * c + axis][2 * c + axis] -= pull);
-        }
-    }
-
-    /// The gradient of the face's energy by the place of a corner in space.
-    fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector {
-        let (n, a) = ((c + 1) % 3, (c + 2) % 3);
-        let (next, after) = (self.x[n], self.x[a]);
-        let by_area = scaled(cross(sub(next, after), self.normal), 0.5 * outer.by_area);
-        let by_determinant = scaled(cross(next, sub(after, next)), outer.by_determinant);
-        let by_quadratic = add(
-            scaled(sub(self.x[c], after), outer.by_quadratic * cotangents[n]),
-            scaled(sub(self.x[c], next), outer.by_quadratic * cotangents[a]),
-        );
-        add(by_area, add(by_determinant, by_quadratic))
     }
 }
 
@@ -523,74 +488,72 @@ mod tests {
         (0..n).map(|v| [(1.0 + 3.0 * v as f64).sin(), (2.0 + 5.0 * v as f64).cos()]).collect()
     }
 
-    /// The Hessian of a face before negative eigenvalues go.
-    fn exact_element(energy: &AuthalicEnergy, map: &[Vector], frames: &[Frame], face: usize) -> Element {
-        let (corners, target) = (energy.triangle(map, face), WEIGHTS.scale * energy.targets[face]);
-        let (frames, cotangents) = (energy.frames(frames, face), energy.cotangents[face]);
-        let slopes = corners.slopes(frames, cotangents);
-        let ratio = 0.5 * corners.doubled_area / target;
-        let mut element = [[0.0; 6]; 6];
-        add_product(&mut element, (1.0 + ratio.powi(-3)) / target, &slopes.area);
-        let by_quadratic = corners.add_angle(&mut element, WEIGHTS.angle * target, &slopes);
-        add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent));
-        let outer = energy.outer(&corners, face, &WEIGHTS);
-        corners.add_curvature(&mut element, &outer, frames, cotangents);
-        element
-    }
-
     #[test]
-    fn gradient_and_exact_hessian_are_the_differences_of_the_value() {
+    fn the_gradient_is_the_difference_of_the_value() {
         for ((mesh, motions, map), codomain) in [(closed(), Codomain::Sphere), (open(), Codomain::Disk)] {
             let energy =
                 AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), codomain, 0.0);
             let frames = frames(&motions, &map);
             let direction = directions(map.len());
-            let value = |step: f64| energy.value(&moved(&motions, &map, &direction, step), &WEIGHTS);
+            let value =
+                |step: f64| energy.value(&energy.costs(&moved(&motions, &map, &direction, step)), &WEIGHTS);
             let gradient = energy.gradient(&map, &frames, &WEIGHTS);
             let along = |v: usize| gradient[v][0] * direction[v][0] + gradient[v][1] * direction[v][1];
             let slope: f64 = (0..map.len()).map(along).sum();
             let (h, there, back) = (1e-4, value(1e-4), value(-1e-4));
             assert!(value(0.0).is_finite());
             assert!((slope - (there - back) / (2.0 * h)).abs() < 1e-6 * (1.0 + slope.abs()));
-            let mut curvature = 0.0;
-            for face in 0..mesh.n_faces() {
-                let element = exact_element(&energy, &map, &frames, face);
-                // a vertex that cannot leave a direction has no frame there
-                let d: Vec<f64> = mesh.faces()[face].iter().flat_map(|&v| direction[v as usize]).collect();
-                for row in 0..6 {
-                    curvature += (0..6).map(|column| d[row] * element[row][column] * d[column]).sum::<f64>();
-                }
-            }
-            // the second unknown of a vertex on the circle does not exist, nor do those of a held one
-            let difference = (there + back - 2.0 * value(0.0)) / (h * h);
-            let missing: f64 =
-                (0..map.len()).map(|v| missing_pull(&energy, &map, &frames, &motions, &direction, v)).sum();
-            assert!(
-                (curvature + missing - difference).abs() < 1e-5 * (1.0 + difference.abs()),
-                "{curvature} {difference}"
-            );
         }
     }
 
-    /// The diagonal entry of an unknown that does not exist, which its element carries all the same.
-    fn missing_pull(
+    /// dᵀ H d of a map of the plane, without damping.
+    fn curvature_along(
         energy: &AuthalicEnergy,
         map: &[Vector],
-        frames: &[Frame],
-        motions: &[Motion],
         direction: &[[f64; 2]],
-        vertex: usize,
+        weights: &Weights,
     ) -> f64 {
-        if motions[vertex] != Motion::Circle {
-            return 0.0;
-        }
-        let of_corner = |&corner: &u32| {
-            let (face, c) = (corner as usize / 3, corner as usize % 3);
-            let corners = energy.triangle(map, face);
-            let outer = energy.outer(&corners, face, &WEIGHTS);
-            dot(corners.slope_in_space(&outer, energy.cotangents[face], c), frames[vertex].outward)
+        let frames = frames(&vec![Motion::Plane; map.len()], map);
+        let of_face = |face: usize| {
+            let element = energy.element(map, &frames, weights, |_| 0.0, face);
+            let d: Vec<f64> = energy.faces[face].iter().flat_map(|&v| direction[v as usize]).collect();
+            (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum::<f64>()
         };
-        direction[vertex][1].powi(2) * energy.corners.of(vertex).iter().map(of_corner).sum::<f64>()
+        (0..energy.faces.len()).map(of_face).sum()
+    }
+
+    #[test]
+    fn the_hessian_of_an_isometry_is_exact_and_turning_it_costs_nothing() {
+        let (mesh, _, map) = open();
+        let flat = TriangleMesh::new(&map, mesh.faces()).unwrap();
+        let energy = AuthalicEnergy::new(&flat, flat.face_areas().to_vec(), Codomain::Plane, 0.0);
+        let weights = Weights { scale: 1.0, ..WEIGHTS };
+        let motions = vec![Motion::Plane; map.len()];
+        let direction = directions(map.len());
+        let value =
+            |step: f64| energy.value(&energy.costs(&moved(&motions, &map, &direction, step)), &weights);
+        let h = 1e-4;
+        let difference = (value(h) + value(-h) - 2.0 * value(0.0)) / (h * h);
+        let curvature = curvature_along(&energy, &map, &direction, &weights);
+        assert!((curvature - difference).abs() < 1e-5 * difference, "{curvature} {difference}");
+        let turning: Vec<[f64; 2]> = map.iter().map(|x| [-x[1], x[0]]).collect();
+        assert!(curvature_along(&energy, &map, &turning, &weights).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_hessian_of_a_face_is_never_negative() {
+        for ((mesh, motions, map), codomain) in [(closed(), Codomain::Sphere), (open(), Codomain::Disk)] {
+            let energy =
+                AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), codomain, 0.0);
+            let frames = frames(&motions, &map);
+            for (face, seed) in (0..mesh.n_faces()).flat_map(|face| (0..200).map(move |seed| (face, seed))) {
+                let element = energy.element(&map, &frames, &WEIGHTS, |_| 0.0, face);
+                let d: [f64; 6] = std::array::from_fn(|k| (1.7 * f64::from(seed) + (k * k) as f64).sin());
+                let along: f64 = (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum();
+                let size: f64 = (0..36).map(|k| (d[k / 6] * element[k / 6][k % 6] * d[k % 6]).abs()).sum();
+                assert!(along > -1e-14 * size, "{face} {along}");
+            }
+        }
     }
 
     #[test]
@@ -609,9 +572,9 @@ mod tests {
             expected += target * 0.5 * (ratio - 1.0).powi(2) * (1.0 + 1.0 / ratio);
             expected += WEIGHTS.angle * target * (excess + 0.05 * excess * excess);
         }
-        let value = energy.value(&map, &WEIGHTS);
+        let value = energy.value(&energy.costs(&map), &WEIGHTS);
         assert!((value - expected).abs() < 1e-12 * expected, "{value} {expected}");
-        assert!((energy.sums(&map).authalic_energy - figures.authalic_energy).abs() < 1e-12);
+        assert!((energy.sums(&energy.costs(&map)).authalic_energy - figures.authalic_energy).abs() < 1e-12);
     }
 
     #[test]
@@ -654,8 +617,8 @@ mod tests {
         let (mesh, _, mut map) = open();
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], Codomain::Disk, 0.0);
         map[0] = [0.9, -0.9, 1.0];
-        assert_eq!(energy.value(&map, &WEIGHTS), f64::INFINITY);
-        assert_eq!(energy.sums(&map).angle_energy, f64::INFINITY);
+        assert_eq!(energy.value(&energy.costs(&map), &WEIGHTS), f64::INFINITY);
+        assert_eq!(energy.sums(&energy.costs(&map)).angle_energy, f64::INFINITY);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //!
 //! While a floor holds, the energies in the history are those for the raised targets.
 
+use super::angle_schedule::AnglePath;
 use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::control::{History, Observer, Phase, Status};
 use crate::energy::authalic::{AuthalicEnergy, Codomain};
@@ -80,6 +81,8 @@ pub(crate) fn descend(
             let is_last = k + 1 == floors.len();
             options.usual_iterations = if is_last { (options.usual_iterations / 2).min(most) } else { usual };
             options.most_iterations = options.most_iterations.min(most);
+            // the stages were for the first floor
+            options.path = AnglePath::Balanced;
         }
         let to = if floors.len() == 1 { 1.0 } else { part(k + 1) };
         let mut phase = Phase { whole: observer, from: part(k), to };

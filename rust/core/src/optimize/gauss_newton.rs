@@ -21,6 +21,7 @@
 //!
 //! Cost of one iteration: one factorisation of two unknowns per vertex, two solves, some seven passes over the faces.
 
+use super::angle_schedule::{AnglePath, AngleSchedule, Progress, SHORT};
 use crate::control::{History, Observer, Status, Watch};
 use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights};
 use crate::energy::landmark_penalty::LandmarkPenalty;
@@ -35,21 +36,12 @@ use crate::sparse::{Analysis, Factor, Failure, Order};
 /// A map of the vertices, in space.
 pub(crate) type Map = Vec<Vector>;
 
-/// κ, the angle energy times λ over E_A that λ aims at: 0.3 reaches the same areas an iteration earlier, with angles up to
-/// 8 % worse.
-const BALANCE: f64 = 1.0;
-
-/// λ stays between these.
-const ANGLE_WEIGHTS: [f64; 2] = [1e-7, 1.0];
-
-/// λ falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
-const FASTEST_FALL: f64 = 0.1;
-
-/// A step below this is short.
-const SHORT: f64 = 0.3;
-
 /// μ, the damping of a face that is wholly off its target.
 const DAMPING: f64 = 0.05;
+
+/// What it is multiplied by after a short step, and divided by after a long one: it had better not forget too soon.
+const STRAIN: f64 = 3.0;
+const RELIEF: f64 = 1.3;
 
 /// What every face is damped by at the most, in units of the deviation of its area ratio.
 const LEAST_DEVIATION: f64 = 1e-3;
@@ -72,8 +64,13 @@ const MOST_TRIALS: usize = 30;
 /// The slope's share that a step must gain.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this.
-const EVEN_ENOUGH: f64 = 0.005;
+/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this, on
+/// the balanced path and after stages, which few surfaces need.
+const EVEN_ENOUGH: [f64; 2] = [0.005, 0.003];
+
+/// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
+const EVEN: f64 = 0.0012;
+const MANY: usize = 10_000;
 
 /// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
 const PATIENCE: usize = 5;
@@ -103,6 +100,8 @@ pub(crate) struct GaussNewtonOptions {
     pub profile: Profile,
     /// λ never falls below this.
     pub angle_weight: f64,
+    /// Which way it falls.
+    pub path: AnglePath,
     /// Iterations after which an area ratio with a deviation of 1 % is good enough.
     pub usual_iterations: usize,
     /// Iterations at the most.
@@ -137,17 +136,13 @@ impl Problem {
     }
 
     /// The energy of a map, that of landmarks included; infinite where its outline crosses itself.
-    fn value(&self, map: &[Vector], weights: &Weights) -> f64 {
-        let value = self.energy.value(map, weights) + self.penalty.value(map);
-        match value.is_finite() && !self.is_simple(map) {
-            true => f64::INFINITY,
-            false => value,
-        }
+    fn value(&self, state: &State, weights: &Weights) -> f64 {
+        self.energy.value(&state.costs, weights) + state.penalty
     }
 
     /// The sums of a map, that of landmarks included.
-    fn sums(&self, map: &[Vector]) -> Sums {
-        Sums { penalty: self.penalty.value(map), ..self.energy.sums(map) }
+    fn sums(&self, state: &State) -> Sums {
+        Sums { penalty: state.penalty, ..self.energy.sums(&state.costs) }
     }
 
     /// The gradient by the unknowns of every vertex, (n, 2).
@@ -166,7 +161,7 @@ impl Problem {
 
     /// E_A of a map over the area of its image.
     pub(crate) fn unevenness(&self, map: &[Vector]) -> f64 {
-        let sums = self.energy.sums(map);
+        let sums = self.energy.sums(&self.energy.costs(map));
         sums.authalic_energy / sums.area
     }
 
@@ -215,43 +210,47 @@ pub(crate) fn minimize(
     observer: &mut dyn Observer,
 ) -> (Map, Status) {
     let mut descent = Descent::new(problem, *options);
-    let mut map = start;
-    let mut sums = problem.sums(&map);
+    let mut state = State::new(problem, start);
+    let mut sums = problem.sums(&state);
     let mut trend = Trend::default();
     let mut best = (f64::INFINITY, Map::new());
     for done in 0.. {
-        // 1. Targets on the scale of the image, λ in balance
+        // 1. Targets on the scale of the image, λ on its way
+        let was_staged = descent.schedule.is_staged();
         let weights = descent.balance(&sums);
+        if was_staged && !descent.schedule.is_staged() {
+            trend = Trend::default();
+        }
         trend.energies.push(sums.total());
         if sums.total() < best.0 && descent.keeps_the_best() {
-            best = (sums.total(), map.clone());
+            best = (sums.total(), state.map.clone());
         }
         if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
             history.push_start(sums.authalic_energy, 0.0);
-            return (descent.best_of(best, &sums, map, history), status);
+            return (descent.best_of(best, &sums, state.map, history), status);
         }
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
         let damping = descent.damping_of(&sums);
-        let newton = match descent.linearised.direction(problem, &map, &weights, damping, &watch) {
+        let newton = match descent.linearised.direction(problem, &state.map, &weights, damping, &watch) {
             Ok(newton) => newton,
             Err(failure) => {
                 history.push_start(sums.authalic_energy, 0.0);
                 let is_cancelled = failure == Failure::Cancelled;
                 let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
-                return (descent.best_of(best, &sums, map, history), status);
+                return (descent.best_of(best, &sums, state.map, history), status);
             }
         };
         let norm = (-newton.slope).max(0.0).sqrt();
         history.push_start(sums.authalic_energy, norm);
         trend.norms.push(norm);
         // 3. A step along it that lowers the energy and folds nothing
-        let Some((next, step)) = descent.step(&map, &newton, &weights) else {
+        let Some((next, step)) = descent.step(&state, &newton, &weights) else {
             let status = if descent.flat { Status::Converged } else { Status::Stalled };
-            return (descent.best_of(best, &sums, map, history), status);
+            return (descent.best_of(best, &sums, state.map, history), status);
         };
-        map = next;
-        sums = problem.sums(&map);
+        state = next;
+        sums = problem.sums(&state);
         descent.adapt(step);
         history.push(sums.authalic_energy, step, norm);
     }
@@ -282,8 +281,13 @@ struct Descent<'a> {
     problem: &'a Problem,
     options: GaussNewtonOptions,
     linearised: Linearised,
-    /// λ; NaN before the first iteration.
-    angle_weight: f64,
+    schedule: AngleSchedule,
+    /// The deviation to end with after the usual iterations.
+    even_enough: f64,
+    /// Whether iterations cost.
+    is_large: bool,
+    /// Whether the last second-order correction was of no use.
+    is_straight: bool,
     /// What targets are multiplied by; NaN before the first iteration.
     scale: f64,
     /// μ.
@@ -310,7 +314,10 @@ impl<'a> Descent<'a> {
             problem,
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
-            angle_weight: f64::NAN,
+            schedule: AngleSchedule::new(options.path, options.angle_weight),
+            even_enough: EVEN_ENOUGH[usize::from(options.path == AnglePath::Staged)],
+            is_large: problem.motions.len() >= MANY && options.profile == Profile::Barrier,
+            is_straight: false,
             scale: f64::NAN,
             damping: DAMPING,
             last_step: 1.0,
@@ -330,25 +337,24 @@ impl<'a> Descent<'a> {
             return last;
         }
         // the history ends with the map that is returned
-        history.push(self.problem.energy.sums(&best.1).authalic_energy, 0.0, 0.0);
+        history.push(self.problem.energy.sums(&self.problem.energy.costs(&best.1)).authalic_energy, 0.0, 0.0);
         best.1
     }
 
     /// The weights of the next iteration.
     fn balance(&mut self, sums: &Sums) -> Weights {
-        let [least, most] = ANGLE_WEIGHTS;
-        let balanced = BALANCE * sums.total() / sums.angle_energy.max(1e-3);
-        let goal = balanced.clamp(least, most).max(self.options.angle_weight);
-        if self.angle_weight.is_nan() {
-            self.angle_weight = goal;
-        } else if goal < self.angle_weight && self.last_step >= SHORT {
-            self.angle_weight = goal.max(FASTEST_FALL * self.angle_weight);
-        }
+        let balance = sums.total() / sums.angle_energy.max(1e-3);
+        let deviation = (sums.total() / sums.area).sqrt();
+        let progress = Progress { balance, deviation, step: self.last_step, is_flat: self.flat };
+        let before = self.schedule.weight();
+        let angle = self.schedule.advance(&progress);
+        // what was flat need not be with another λ
+        self.flat &= angle == before;
         // a free image would grow or shrink for ever if its targets followed it
         if self.scale.is_nan() || self.problem.outline.is_empty() {
             self.scale = sums.area / self.total_target;
         }
-        Weights { scale: self.scale, angle: self.angle_weight, profile: self.options.profile }
+        Weights { scale: self.scale, angle, profile: self.options.profile }
     }
 
     /// The status with which to end, if any.
@@ -360,18 +366,19 @@ impl<'a> Descent<'a> {
         observer: &mut dyn Observer,
     ) -> Option<Status> {
         let options = &self.options;
-        let is_held = options.angle_weight > 0.0 && self.angle_weight <= options.angle_weight;
-        let is_slow = !is_held && trend.is_slow();
+        let (is_held, is_staged) = (self.schedule.is_held(), self.schedule.is_staged());
+        let is_slow = !is_held && !is_staged && trend.is_slow();
         let deviation = (sums.total() / sums.area).sqrt();
-        let is_even =
-            deviation <= options.tolerance || (deviation <= EVEN_ENOUGH && done >= options.usual_iterations);
+        let is_asked = options.usual_iterations == usize::MAX;
+        let is_even = deviation <= options.tolerance
+            || (!is_staged && deviation <= self.even_enough && trend.norms.len() >= options.usual_iterations)
+            || (!is_staged && !is_asked && self.is_large && deviation <= EVEN);
         let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
         if (is_even && !is_held) || is_open || (is_held && self.flat) {
             Some(Status::Converged)
         } else if is_slow {
-            // who asked for a tolerance is not told that it was reached
-            let is_good = deviation <= EVEN_ENOUGH && options.usual_iterations < usize::MAX;
-            Some(if is_good { Status::Converged } else { Status::Stalled })
+            // a minimum that is not 0, as coarse surfaces have, is stationary
+            Some(if self.flat { Status::Converged } else { Status::Stalled })
         } else if done >= options.most_iterations {
             Some(Status::MaxIterations)
         } else if observer.progress(self.fraction(done), MESSAGE) {
@@ -389,30 +396,34 @@ impl<'a> Descent<'a> {
     }
 
     /// The next map, with the step's length; `None` where no step lowers the energy.
-    fn step(&mut self, map: &Map, newton: &Newton, weights: &Weights) -> Option<(Map, f64)> {
+    fn step(&mut self, state: &State, newton: &Newton, weights: &Weights) -> Option<(State, f64)> {
         let problem = self.problem;
-        let value = problem.value(map, weights);
+        let value = problem.value(state, weights);
         self.flat = -newton.slope <= LEAST_SLOPE * value || value <= NOTHING * self.scale * self.total_target;
         // 1. The longest step allowed, straight and corrected to second order
         let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
         let longest = squares.fold(0.0, f64::max).sqrt();
         let mut step = (LONGEST_MOVE / longest).min(1.0);
         let mut bend = None;
-        let mut trial = Trial::new(problem, self.path(map, newton, None, step), weights);
-        if step == 1.0 {
-            let correction = self.linearised.correction(problem, map, &trial.map, newton, weights);
-            let corrected = Trial::new(problem, self.path(map, newton, Some(&correction), step), weights);
-            if corrected.value < trial.value {
+        let mut trial = Trial::new(problem, self.path(&state.map, newton, None, step), weights);
+        // a correction that was of no use seldom is in the next iteration
+        if step == 1.0 && !std::mem::take(&mut self.is_straight) {
+            let correction =
+                self.linearised.correction(problem, &state.map, &trial.state.map, newton, weights);
+            let corrected =
+                Trial::new(problem, self.path(&state.map, newton, Some(&correction), step), weights);
+            self.is_straight = corrected.value >= trial.value;
+            if !self.is_straight {
                 (trial, bend) = (corrected, Some(correction));
             }
         }
         // 2. Shorter steps until the energy falls
         for _ in 0..MOST_TRIALS {
             if trial.value.is_finite() && trial.value <= value + SUFFICIENT * step * newton.slope {
-                return Some((trial.map, step));
+                return Some((trial.state, step));
             }
             step *= shrinkage(trial.value - value, step * newton.slope);
-            trial = Trial::new(problem, self.path(map, newton, bend.as_deref(), step), weights);
+            trial = Trial::new(problem, self.path(&state.map, newton, bend.as_deref(), step), weights);
         }
         None
     }
@@ -439,18 +450,36 @@ impl<'a> Descent<'a> {
     /// A short step asks for more damping, a long one for less.
     fn adapt(&mut self, step: f64) {
         self.last_step = step;
-        self.damping = if step < SHORT { 3.0 * self.damping } else { (self.damping / 3.0).max(DAMPING) };
+        self.damping =
+            if step < SHORT { STRAIN * self.damping } else { (self.damping / RELIEF).max(DAMPING) };
+    }
+}
+
+/// A map with what its energy is made of for any weights.
+struct State {
+    map: Map,
+    costs: Vec<[f64; 2]>,
+    /// The penalty on landmarks; infinite where the outline crosses itself.
+    penalty: f64,
+}
+
+impl State {
+    fn new(problem: &Problem, map: Map) -> Self {
+        let costs = problem.energy.costs(&map);
+        let penalty = if problem.is_simple(&map) { problem.penalty.value(&map) } else { f64::INFINITY };
+        Self { map, costs, penalty }
     }
 }
 
 struct Trial {
-    map: Map,
+    state: State,
     value: f64,
 }
 
 impl Trial {
     fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
-        Self { value: problem.value(&map, weights), map }
+        let state = State::new(problem, map);
+        Self { value: problem.value(&state, weights), state }
     }
 }
 

@@ -2,6 +2,8 @@
 //! Optimisers over maps. They know a map only through its [`Domain`], so the disk and every later domain
 //! share them.
 
+pub(crate) mod angle_schedule;
+pub(crate) mod area_tolerance;
 mod bounded;
 pub(crate) mod floors;
 pub(crate) mod gauss_newton;
@@ -60,6 +62,26 @@ pub(crate) fn check_angle_weight(weight: f64, is_weighed: bool) -> Result<(), Er
         false => "0 for the papers' methods; only gauss_newton trades areas for angles",
     };
     Err(Error::InvalidOption { name: "angle_weight", found: weight.to_string(), expected: expected.into() })
+}
+
+/// Refuses a tolerance of areas out of range, one beside a weight of angles, and one for a method that has none.
+pub(crate) fn check_area_tolerance(
+    tolerance: Option<f64>,
+    weight: f64,
+    is_weighed: bool,
+) -> Result<(), Error> {
+    let Some(tolerance) = tolerance else { return Ok(()) };
+    let expected = match is_weighed {
+        true if !(tolerance > 0.0 && tolerance.is_finite()) => "a finite number > 0",
+        true if weight > 0.0 => "not given together with angle_weight, which it takes the place of",
+        true => return Ok(()),
+        false => "not given for the papers' methods; only gauss_newton trades areas for angles",
+    };
+    Err(Error::InvalidOption {
+        name: "area_tolerance",
+        found: tolerance.to_string(),
+        expected: expected.into(),
+    })
 }
 
 /// The energies of a map.

@@ -22,6 +22,7 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::renumbering::Renumbered;
+use crate::optimize::angle_schedule::AnglePath;
 use crate::optimize::floors;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::sparse::{Order, elimination_order};
@@ -206,7 +207,7 @@ impl Carrying<'_> {
 
     /// Whether no part of a map is sheared so much that going on would only make it worse.
     fn is_sound(&self, problem: &Problem, map: &Map) -> bool {
-        let sums = problem.energy.sums(map);
+        let sums = problem.energy.sums(&problem.energy.costs(map));
         sums.angle_energy <= SHEARED * sums.area
     }
 
@@ -273,6 +274,7 @@ fn descent(goals: Goals, [usual_iterations, most_iterations]: [usize; 2]) -> Gau
     GaussNewtonOptions {
         profile: Profile::Barrier,
         angle_weight: goals.angle_weight,
+        path: AnglePath::Balanced,
         usual_iterations,
         most_iterations,
         tolerance: TOLERANCE,

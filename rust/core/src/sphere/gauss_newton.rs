@@ -23,6 +23,8 @@ use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::{cross, dot, triangle};
 use crate::mesh::renumbering::Renumbered;
+use crate::optimize::angle_schedule::AnglePath;
+use crate::optimize::area_tolerance::within_tolerance;
 use crate::optimize::floors;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even};
 use crate::parallel;
@@ -35,7 +37,7 @@ const FIXED_POINT_STEPS: usize = 5;
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
 /// Iterations where those leave the area ratio a deviation of 1 %, and at the most.
-const ITERATIONS: [usize; 2] = [10, 60];
+const ITERATIONS: [usize; 2] = [10, 1000];
 
 /// On surfaces with fewer vertices three times as many cost next to nothing.
 const SMALL: usize = 10_000;
@@ -44,10 +46,13 @@ const SMALL: usize = 10_000;
 const QUICK: usize = 50_000;
 
 /// A start is bad when E_A is more than this part of the area; the progressive one is better then.
-const BAD_START: f64 = 0.5;
+const BAD_START: f64 = 0.1;
+
+/// From a start with a larger E_A λ falls by stages.
+const FAR: f64 = 0.12;
 
 /// A result is uneven when E_A is more than this part of the area; then another start may do better.
-const UNEVEN: f64 = 0.02;
+const UNEVEN: f64 = 2e-4;
 
 /// Area deviation of the result below which nothing is left to gain.
 const TOLERANCE: f64 = 2e-4;
@@ -95,7 +100,6 @@ impl Run<'_> {
         // 2. A start without folds
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let (quick, status) = self.quick_start(&problem, history, &mut phase)?;
-        let is_quick = quick.is_some();
         let mut phase = Phase { whole: observer, from: 0.3, to: 0.4 };
         let map = match quick {
             Some(map) => map,
@@ -103,9 +107,13 @@ impl Run<'_> {
         };
         // 3. A guarded descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
-        let (problem, map, status) = self.descend(problem, map, status, history, &mut phase);
+        let path = if problem.unevenness(&map) > FAR { AnglePath::Staged } else { AnglePath::Balanced };
+        let (problem, map, status) = self.descend(problem, map, path, status, history, &mut phase);
         // 4. Another one from the progressive embedding where the result is uneven
-        let is_final = !is_quick || self.options.initial.is_some() || self.options.angle_weight > 0.0;
+        let is_final = path == AnglePath::Staged
+            || self.options.initial.is_some()
+            || self.options.angle_weight > 0.0
+            || self.options.area_tolerance.is_some();
         if is_final || status == Status::Cancelled || problem.unevenness(&map) <= UNEVEN {
             return Ok((map, status));
         }
@@ -168,6 +176,7 @@ impl Run<'_> {
         &self,
         problem: Problem,
         map: Map,
+        path: AnglePath,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -182,6 +191,7 @@ impl Run<'_> {
         let options = GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: self.options.angle_weight,
+            path,
             usual_iterations: if is_asked { usize::MAX } else { usual },
             most_iterations: self.options.max_iterations.unwrap_or(most),
             tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
@@ -189,7 +199,12 @@ impl Run<'_> {
         };
         let begun = map.clone();
         let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Sphere };
-        let (problem, map, status) = floors::descend(&surface, problem, map, &options, history, observer);
+        let (problem, map, status) = match self.options.area_tolerance {
+            Some(tolerance) => {
+                within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
+            }
+            None => floors::descend(&surface, problem, map, &options, history, observer),
+        };
         match self.is_bijective(&map) {
             true => (problem, map, status),
             // no step folds a face, so only a one-ring that turned twice around its vertex leads here
@@ -214,7 +229,8 @@ impl Run<'_> {
             Err(_) => return (map, status),
         };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
-        let (problem, other, ended) = self.descend(problem, other, status, history, &mut phase);
+        let (problem, other, ended) =
+            self.descend(problem, other, AnglePath::Staged, status, history, &mut phase);
         more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
@@ -225,5 +241,57 @@ impl Run<'_> {
             2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
         });
         (covered - 4.0 * PI).abs() < 1.0 && folded_on_sphere(self.mesh.faces(), map).is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::TriangleMesh;
+    use crate::mesh::geometry::{distance, norm, scaled};
+    use crate::sparse::processor::with_each_width;
+    use crate::{Silent, sphere_map};
+
+    /// An octahedron split five times, with bumps and without symmetry.
+    fn bumpy_ball() -> TriangleMesh {
+        let mut points =
+            vec![[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
+        let mut faces: Vec<[u32; 3]> =
+            vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+        for _ in 0..5 {
+            let mut middle_of = std::collections::HashMap::new();
+            let mut middle = |points: &mut Vec<[f64; 3]>, a: u32, b: u32| {
+                *middle_of.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    let sum: [f64; 3] =
+                        std::array::from_fn(|k| points[a as usize][k] + points[b as usize][k]);
+                    points.push(scaled(sum, 1.0 / norm(sum)));
+                    points.len() as u32 - 1
+                })
+            };
+            let mut split = Vec::new();
+            for &[a, b, c] in &faces {
+                let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(a, b)| middle(&mut points, a, b));
+                split.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+            }
+            faces = split;
+        }
+        let bump =
+            |[x, y, z]: [f64; 3]| 1.0 + 0.3 * (5.0 * x + 1.0).sin() * (4.0 * y + 0.4 * z).cos() + 0.2 * z;
+        points.iter_mut().for_each(|x| *x = scaled(*x, bump(*x)));
+        TriangleMesh::new(&points, &faces).unwrap()
+    }
+
+    #[test]
+    fn every_processor_finds_the_same_map() {
+        let mesh = bumpy_ball();
+        for angle_weight in [0.0, 1e-3] {
+            let options = SphereMapOptions { angle_weight, ..Default::default() };
+            let mut maps = with_each_width(|| sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
+            maps.push(sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
+            for map in &maps[1..] {
+                let most = map.iter().zip(&maps[0]).map(|(&x, &y)| distance(x, y)).fold(0.0, f64::max);
+                assert!(most < 1e-6, "{angle_weight}: {most}");
+            }
+        }
     }
 }

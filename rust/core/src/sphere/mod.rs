@@ -26,8 +26,8 @@ use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, area_vector, dot, norm, scaled, triangle};
-use crate::optimize::check_angle_weight;
 use crate::optimize::gradient_descent::LineSearch;
+use crate::optimize::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
 
 use run::Run;
@@ -62,6 +62,9 @@ pub struct SphereMapOptions<'a> {
     /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
     /// alone.
     pub angle_weight: f64,
+    /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
+    /// where `None`, `angle_weight` decides.
+    pub area_tolerance: Option<f64>,
     /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the
     /// fixed point itself fixed-point steps from it.
     pub initial: Option<&'a [Vector]>,
@@ -88,6 +91,7 @@ impl Default for SphereMapOptions<'_> {
             line_search: LineSearch::default(),
             density: None,
             angle_weight: 0.0,
+            area_tolerance: None,
             initial: None,
             max_iterations: None,
             tolerance: None,
@@ -176,6 +180,11 @@ impl SphereMapOptions<'_> {
             check_initial(mesh, initial)?;
         }
         check_angle_weight(self.angle_weight, self.method == SphereMethod::GaussNewton)?;
+        check_area_tolerance(
+            self.area_tolerance,
+            self.angle_weight,
+            self.method == SphereMethod::GaussNewton,
+        )?;
         let fixed_point = self.method == SphereMethod::FixedPoint;
         let in_range = |tolerance: f64| match fixed_point {
             true => tolerance < f64::INFINITY,

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The map of least shear whose areas are within a tolerance.
+//!
+//! The minimum of E_A + λ E_angle has the less shear the larger λ is, and the more even areas the smaller. So λ falls step
+//! by step until the minimum is within the tolerance, and is then raised as far as that allows, by the secant rule for
+//! the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ.
+
+use super::angle_schedule::AnglePath;
+use super::floors::{Surface, descend};
+use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
+use crate::control::{History, Observer, Phase, Status};
+
+/// λ at first, and what it is multiplied by until areas are within the tolerance.
+const FIRST: f64 = 1.0;
+const FALL: f64 = 0.1;
+
+/// λ below this changes nothing any more; then areas alone count.
+const LEAST: f64 = 1e-6;
+
+/// The deviation aimed at, and the least that is good enough, in units of the tolerance.
+const AIM: f64 = 0.98;
+const GOOD: f64 = 0.95;
+
+/// Secant steps at the most.
+const STEPS: usize = 6;
+
+/// A stationary map for one λ.
+struct Found {
+    /// ln λ.
+    weight: f64,
+    /// ln √(E_A/A).
+    deviation: f64,
+    map: Map,
+    status: Status,
+}
+
+/// The map of least shear with √(E_A/A) of `tolerance` or less that is reached from `start`; `problem` has the energy of
+/// the first floor, and comes back with that of the last. [`Status::Stalled`] where areas cannot be made that even.
+pub(crate) fn within_tolerance(
+    surface: &Surface<'_>,
+    problem: Problem,
+    start: Map,
+    tolerance: f64,
+    options: &GaussNewtonOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Problem, Map, Status) {
+    // 1. λ falls until areas are within the tolerance
+    let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+    let first = GaussNewtonOptions { angle_weight: FIRST, ..*options };
+    let (problem, map, status) = descend(surface, problem, start, &first, history, &mut phase);
+    let search = Search { problem: &problem, options: *options, goal: tolerance.ln() };
+    let mut found = search.found(FIRST, map, status);
+    let (mut coarser, mut round) = (None, 0);
+    while found.deviation > search.goal && found.status != Status::Cancelled {
+        let weight = FALL * found.weight.exp();
+        if weight < LEAST {
+            let even = search.even(found.map, history, &mut part(round, observer));
+            return (problem, even.0, even.1);
+        }
+        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
+        round += 1;
+        coarser = Some(std::mem::replace(&mut found, next));
+    }
+    // 2. And is raised as far as they stay within it
+    if let Some(coarser) = coarser {
+        found = search.raised(coarser, found, round, history, observer);
+    }
+    (problem, found.map, found.status)
+}
+
+/// The part of the whole that a round takes after the first descent; nobody knows how many will follow.
+fn part(round: usize, whole: &mut dyn Observer) -> Phase<'_> {
+    let left = |rounds: usize| 0.7f64.powi(rounds as i32 + 1);
+    Phase { whole, from: 1.0 - left(round), to: 1.0 - left(round + 1) }
+}
+
+/// A search over λ.
+struct Search<'a> {
+    problem: &'a Problem,
+    options: GaussNewtonOptions,
+    /// ln of the tolerance.
+    goal: f64,
+}
+
+impl Search<'_> {
+    fn found(&self, weight: f64, map: Map, status: Status) -> Found {
+        let deviation = 0.5 * self.problem.unevenness(&map).max(f64::MIN_POSITIVE).ln();
+        Found { weight: weight.ln(), deviation, map, status }
+    }
+
+    /// The minimum for one λ.
+    fn minimum(&self, weight: f64, map: Map, history: &mut History, observer: &mut dyn Observer) -> Found {
+        let options = GaussNewtonOptions { angle_weight: weight, path: AnglePath::Balanced, ..self.options };
+        let (map, status) = minimize(self.problem, map, &options, history, observer);
+        self.found(weight, map, status)
+    }
+
+    /// The most even map, where no λ leads to areas within the tolerance.
+    fn even(&self, map: Map, history: &mut History, observer: &mut dyn Observer) -> (Map, Status) {
+        let tolerance = self.goal.exp();
+        let options =
+            GaussNewtonOptions { angle_weight: 0.0, tolerance, path: AnglePath::Balanced, ..self.options };
+        let (map, status) = minimize(self.problem, map, &options, history, observer);
+        let is_within = self.problem.unevenness(&map).sqrt() <= tolerance;
+        (map, if is_within || status == Status::Cancelled { status } else { Status::Stalled })
+    }
+
+    /// The largest λ within the tolerance, between `coarser` beyond it and `finer` within.
+    fn raised(
+        &self,
+        mut coarser: Found,
+        mut finer: Found,
+        round: usize,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Found {
+        let (aim, good) = (self.goal + AIM.ln(), self.goal + GOOD.ln());
+        for step in 0..STEPS {
+            if finer.deviation >= good || finer.status == Status::Cancelled {
+                break;
+            }
+            let share = (aim - finer.deviation) / (coarser.deviation - finer.deviation);
+            let weight = finer.weight + share.clamp(0.1, 0.9) * (coarser.weight - finer.weight);
+            let next =
+                self.minimum(weight.exp(), finer.map.clone(), history, &mut part(round + step, observer));
+            if next.status == Status::Cancelled {
+                return Found { status: Status::Cancelled, ..finer };
+            }
+            match next.deviation <= self.goal {
+                true => finer = next,
+                false => coarser = next,
+            }
+        }
+        finer
+    }
+}

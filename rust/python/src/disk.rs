@@ -95,12 +95,12 @@ impl DiskMap {
 ///     Default: harmonic, then five fixed-point steps.
 /// max_iterations : int, optional
 ///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
-///     deviation of less than .5 %; for the papers' methods 50, as in the paper's tables. On top come up to five fixed-point
-///     steps, and where the start folds or the result is uneven steps that unfold it or a second descent.
+///     deviation of less than .5 %; for the papers' methods 50, as in the paper's tables. On top come up to five
+///     fixed-point steps, and where the start folds or the result is uneven steps that unfold it or a second descent.
 /// tolerance : float, optional
 ///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/π), falls below it, default
-///     2e-4 (after the usual iterations .5 %), or at a stationary point of the energy; the papers' methods when √(gᵀM⁻¹g), the
-///     gradient_norm of the history, falls below it, default 1e-8.
+///     2e-4 (after the usual iterations .5 %), or at a stationary point of the energy; the papers' methods when
+///     √(gᵀM⁻¹g), the gradient_norm of the history, falls below it, default 1e-8.
 /// fill_holes : bool
 ///     Fill all boundary loops but the longest virtually instead of refusing them. Default False.
 /// progress : callable(fraction, message) -> bool, optional

@@ -96,14 +96,14 @@ impl SphereMap {
 ///     and but for "fixed_point" itself fixed-point steps from it, up to five for "gauss_newton" and ten else.
 /// max_iterations : int, optional
 ///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
-///     deviation of less than .5 %; for the papers' methods 100, as in the paper's tables. On top come the fixed-point steps
-///     before a descent, and where folds were mended or the result is uneven a second descent. 0 with
+///     deviation of less than .5 %; for the papers' methods 100, as in the paper's tables. On top come the
+///     fixed-point steps before a descent, and where folds were mended or the result is uneven a second descent. 0 with
 ///     "fixed_point" returns the start map.
 /// tolerance : float, optional
 ///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/4π), falls below it, default
-///     2e-4, or when iterations have ceased to lower the energy; gradient descent when the norm of the
-///     Riemannian gradient, gradient_norm of the history, falls below it, default 1e-8. For "fixed_point" it is the ε of Algorithm 2, which ends when the
-///     stretch energy falls by no more; default 1e-6. -inf lets it run through rises to max_iterations and
+///     2e-4 (after the usual iterations .5 %), or at a stationary point of the energy; gradient descent when the
+///     norm of the Riemannian gradient, gradient_norm of the history, falls below it, default 1e-8. For
+///     "fixed_point" it is the ε of Algorithm 2, which ends when the stretch energy falls by no more; default 1e-6. -inf lets it run through rises to max_iterations and
 ///     returns the last map instead of the best.
 /// unfold : bool
 ///     Unfold what the papers' methods fold. Default True; False shows what they do by themselves.

@@ -2,10 +2,10 @@
 //! Guarded Gauss–Newton: our own descent to an area-preserving map, on the disk and on the sphere.
 //!
 //! E_A is a zero-residual least-squares problem, so its Gauss–Newton Hessian is all it takes near the minimum; far from
-//! it the energy of [`authalic`](crate::energy::authalic) adds a share of angle distortion, whose weight λ falls with
-//! E_A, and a barrier that no step can cross. In each iteration:
+//! it the energy of [`authalic`](crate::energy::authalic) adds a share of angle distortion, whose weight λ
+//! [falls](super::angle_schedule), and a barrier that no step can cross. In each iteration:
 //!
-//! 1. targets are rescaled to the area of the image, λ is balanced against E_A;
+//! 1. targets are rescaled to the area of the image, λ is chosen;
 //! 2. the Hessian is factored with a damping of each face in proportion to how far it is from its target, once;
 //! 3. the same factor gives the direction d and a second-order correction for what the areas miss of their linear
 //!    prediction;

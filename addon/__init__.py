@@ -2,8 +2,8 @@
 """Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
 
 from . import curve_markers, landmark_curves, landmarks, markers, scene_changes, ui, ui_landmarks
+from .operators import fix_flips, landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
 from .operators import landmark_curves as curve_operators
-from .operators import landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
 from .operators import landmarks as landmark_operators
 from .operators import register as register_operator
 
@@ -15,6 +15,7 @@ _MODULES = (
     markers,
     curve_markers,
     unwrap,
+    fix_flips,
     sphere_shape_key,
     measure,
     landmark_operators,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only module that talks to the native library: plain data in, plain data out, no bpy.
 
-`unwrap`, `folds`, `measure`, `sphere_shape`, `register`, `kept`, `morphed` and `pull` are ordinary functions
-on numpy arrays.
+`unwrap`, `folds`, `measure`, `fix_flips`, `sphere_shape`, `register`, `kept`, `morphed` and `pull` are
+ordinary functions on numpy arrays.
 """
 
 from contextlib import suppress
@@ -15,6 +15,7 @@ import authalic
 from . import (
     curve_registering,
     domains,
+    flips,
     messages,
     polygons,
     projection,
@@ -23,7 +24,16 @@ from . import (
     triangulation,
 )
 from .domains import Unsuitable
-from .results import Island, Mapping, Measurement, Refusal, SphereShape, UnwrapSettings
+from .results import (
+    Island,
+    Mapping,
+    Measurement,
+    Refusal,
+    Shortfall,
+    SphereShape,
+    Unflipped,
+    UnwrapSettings,
+)
 from .solver import Solver, weight
 
 __all__ = (
@@ -31,10 +41,13 @@ __all__ = (
     "Mapping",
     "Measurement",
     "Refusal",
+    "Shortfall",
     "Solver",
     "SphereShape",
+    "Unflipped",
     "Unsuitable",
     "UnwrapSettings",
+    "fix_flips",
     "folds",
     "kept",
     "measure",
@@ -45,9 +58,14 @@ __all__ = (
     "unwrap",
 )
 
-# A standard deviation of area ratios that comes of long limbs or of large polygons on a sphere, and one that
-# a solver that could not go on should have left behind.
-_UNEVEN, _STALLED = 0.5, 0.05
+# Standard deviations of area ratios that are bad: on a disk where areas count, on a sphere, where large
+# polygons leave more, and with any weight of angles. A mean angle distortion that is bad.
+_UNEVEN_DISK, _UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
+_SHEARED = 10.0
+_CUT = "cut its long parts open by seams"
+_OF_A_CIRCLE = f"set Outline to Free, or {_CUT}"
+_OF_A_SPHERE = "mark seams that cut its long parts open, or poke large n-gons"
+_OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
 # Where the slider has to stand for shapes that a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
 _NOT_REACHED = "was not reached before the end"
@@ -66,22 +84,23 @@ def unwrap(surfaces, settings, progress=_keep_going):
     """
     result = Mapping()
     pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
-    total = sum(len(piece.patch.faces) for piece in pieces)
-    done = 0
-    listen = _noting_the_end(progress, result)
-    for number, piece in enumerate(pieces):
-        share = len(piece.patch.faces)
-        message = f"Island {number + 1} of {len(pieces)}"
-        if result.ended_early or not listen(done / total, message):
-            result.refusals.append(Refusal(piece.name, piece.polygon, _NOT_REACHED))
-            continue
-        step = _sub_progress(listen, done / total, share / total, message)
-        try:
-            result.islands.append(_map(piece, settings, step))
-        except (Unsuitable, authalic.MeshError, authalic.SolverError) as error:
-            reason = messages.in_mesh_terms(str(error), piece.polygons, piece.vertices)
-            result.refusals.append(Refusal(piece.name, piece.polygon, reason))
-        done += share
+
+    def mapped(piece, step):
+        result.islands.append(_map(piece, settings, step))
+
+    _one_by_one(pieces, mapped, result, progress)
+    return result
+
+
+def fix_flips(surfaces, progress=_keep_going):
+    """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as it can.
+
+    Outlines, pinned UVs and UVs that other faces share stay. Islands that this leaves no way out are refused,
+    not raised, as are all that come after `progress` has returned False.
+    """
+    result = Unflipped()
+    tangles = [tangle for index in range(len(surfaces)) for tangle in _tangles(surfaces, index, result)]
+    _one_by_one(tangles, lambda tangle, step: _unflip(tangle, result, step), result, progress)
     return result
 
 
@@ -158,7 +177,7 @@ def sphere_shape(surface, solver=None, progress=_keep_going):
         deviation=float(figures.area_ratio_std),
         flips=len(figures.folded),
         angle=float(figures.angle_distortion_mean),
-        uneven=_uneven(found, solver, figures.area_ratio_std),
+        shortfall=_shortfall(found, solver, _UNEVEN_SPHERE, _OF_A_KEY, figures.area_ratio_std),
         ended_early=found.status == "cancelled",
     )
 
@@ -276,6 +295,26 @@ class _Piece:
         return int(self.polygons[0])
 
 
+def _one_by_one(pieces, do, result, progress):
+    """Calls `do(piece, progress)` for every piece; one that it raises for is refused in the result."""
+    total = sum(len(piece.polygons) for piece in pieces)
+    done = 0
+    listen = _noting_the_end(progress, result)
+    for number, piece in enumerate(pieces):
+        share = len(piece.polygons)
+        message = f"Island {number + 1} of {len(pieces)}"
+        if result.ended_early or not listen(done / total, message):
+            result.refusals.append(Refusal(piece.name, piece.polygon, _NOT_REACHED))
+            continue
+        step = _sub_progress(listen, done / total, share / total, message)
+        try:
+            do(piece, step)
+        except (Unsuitable, authalic.MeshError, authalic.SolverError) as error:
+            reason = messages.in_mesh_terms(str(error), piece.polygons, piece.vertices)
+            result.refusals.append(Refusal(piece.name, piece.polygon, reason))
+        done += share
+
+
 def _pieces(surfaces, index, result):
     """The islands of a surface; one that cannot be cut at all is refused as a whole."""
     surface = surfaces[index]
@@ -307,6 +346,92 @@ def _pieces(surfaces, index, result):
         )
 
 
+@dataclass
+class _Tangle:
+    """An island of a UV map in which faces may be flipped; arrays as those of `flips.Layout`."""
+
+    name: str
+    index: int
+    patch: object
+    points: np.ndarray
+    uv: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+    vertices: np.ndarray
+    held: np.ndarray
+
+    @property
+    def polygon(self):
+        return int(self.polygons[0])
+
+
+def _tangles(surfaces, index, result):
+    """The islands of a surface's UV map whose faces wind both ways, or have no area."""
+    surface = surfaces[index]
+    layout = flips.layout(surface)
+    if not flips.may_be_flipped(layout.faces, layout.uv):
+        return
+    try:
+        # A bad coordinate is for the island's own turn.
+        patches = authalic.cut(np.nan_to_num(layout.points, posinf=0, neginf=0), layout.faces)
+    except authalic.MeshError as error:
+        reason = messages.in_mesh_terms(str(error), layout.polygons, layout.vertices)
+        result.refusals.append(Refusal(surface.name, None, reason))
+        return
+    for patch in patches:
+        points, uv = np.asarray(patch.vertex_of), layout.uv[patch.vertex_of]
+        if flips.may_be_flipped(np.asarray(patch.faces), uv):
+            yield _Tangle(
+                name=surface.name,
+                index=index,
+                patch=patch,
+                points=layout.points[points],
+                uv=uv,
+                corners=layout.corners[patch.face_of],
+                polygons=layout.polygons[patch.face_of],
+                vertices=layout.vertices[points],
+                held=layout.held[points],
+            )
+
+
+def _unflip(tangle, result, progress):
+    """Adds what an island needs to have no flipped faces to an `Unflipped`."""
+    faces = np.asarray(tangle.patch.faces)
+    domains.check_flat(tangle.patch)
+    authalic.distortion(tangle.points, faces, tangle.uv.astype(float))  # raises where the mesh is at fault
+    found = _untangled(tangle, faces, result, progress)
+    folded = np.asarray(found.folded_before)
+    if len(folded) == 0:  # only normals that are inconsistent
+        return
+    uv = np.asarray(found.image).astype(np.float32)
+    if not _is_unfolded(tangle.points, faces, uv):
+        raise Unsuitable("its faces would flip again in UV precision; scale the island up or unwrap it anew")
+    moved = (uv != tangle.uv).any(axis=1)
+    write = moved[faces] & (tangle.corners >= 0)
+    result.writes.append((tangle.index, tangle.corners[write], uv[faces[write]]))
+    result.faces += len(np.unique(tangle.polygons[folded]))
+    result.islands += 1
+    result.moved += int(np.count_nonzero(moved & (tangle.vertices >= 0)))
+
+
+def _untangled(tangle, faces, result, progress):
+    fixed = np.flatnonzero(tangle.held)
+    image = tangle.uv.astype(float)
+    try:
+        return authalic.untangle((tangle.points, faces), image, fixed=fixed, progress=progress)
+    except (authalic.MeshError, authalic.SolverError) as problem:
+        if result.ended_early:
+            raise Unsuitable(_NOT_REACHED) from problem
+        flipped = np.unique(tangle.polygons[list(problem.indices)]) if problem.indices is not None else ()
+        raise Unsuitable(flips.why_not(flipped, bool(len(fixed)))) from problem
+
+
+def _is_unfolded(points, faces, uv):
+    """Whether no face is folded over, exactly, in an image or in its mirror image."""
+    images = [uv.astype(float) * [side, 1] for side in (1, -1)]
+    return any(not len(authalic.distortion(points, faces, image).folded) for image in images)
+
+
 def _map(piece, settings, progress):
     """The UVs of one island, counter-clockwise as most of its faces are wound."""
     if piece.pinned:
@@ -320,8 +445,9 @@ def _by_disk(piece, settings, progress):
     found = _disk_map(piece.points, faces, settings, progress)
     turned = spherical.turned(faces, np.asarray(found.faces))
     island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
-    island.uneven = _uneven(found, settings.solver)
-    island.may_turn = settings.solver.weighs_angles
+    remedy = _CUT if settings.solver.is_free else _OF_A_CIRCLE
+    island.shortfall = _shortfall(found, settings.solver, _UNEVEN_DISK, remedy)
+    island.may_turn = settings.solver.is_free
     return island
 
 
@@ -337,7 +463,7 @@ def _by_sphere(piece, settings, progress):
     except projection.CannotProject as problem:
         if settings.solver.method == "GAUSS_NEWTON" and settings.solver.angle_weight < _FIT_TO_LAY_FLAT:
             with suppress(projection.CannotProject):
-                solver = replace(settings.solver, angle_weight=_FIT_TO_LAY_FLAT)
+                solver = replace(settings.solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
                 return _laid_flat(piece, settings, solver, progress)
         raise Unsuitable(
             f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; try "
@@ -363,14 +489,14 @@ def _laid_flat(piece, settings, solver, progress):
     island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
     image, area = np.abs(triangulation.signed_areas(uv)), triangulation.areas(piece.points[faces])
     deviation = (image / area).std() * area.sum() / image.sum()
-    island.uneven = _uneven(found, settings.solver, deviation)
+    island.shortfall = _shortfall(found, solver, _UNEVEN_SPHERE, _OF_A_SPHERE, deviation)
     return island
 
 
 def _sphere_map(points, faces, solver, progress):
     """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
     found = authalic.sphere_map(points, faces, progress=progress, **solver.sphere_options())
-    is_poor = found.status == "stalled" and not solver.weighs_angles
+    is_poor = found.status == "stalled" and solver.puts_areas_first
     if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
         start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
         found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
@@ -399,11 +525,19 @@ def _island(piece, uv, faces, turned, points):
     )
 
 
-def _uneven(found, solver, deviation=None):
-    """The deviation of area ratios, if not the map's own, where it is more than areas alone should leave."""
+def _shortfall(found, solver, uneven, remedy, deviation=None):
+    """The `Shortfall` of a map; None where it has converged to what its weight of angles leaves.
+
+    `deviation` is that of area ratios if it is not the map's own, `uneven` one that is bad where areas count.
+    """
     deviation = found.distortion.area_ratio_std if deviation is None else deviation
-    limit = _STALLED if found.status == "stalled" else _UNEVEN
-    return float(deviation) if deviation > limit and not solver.weighs_angles else None
+    angle = found.distortion.angle_distortion_mean
+    limit = max(uneven, min(_UNEVEN, _UNEVEN_DISK + solver.weight + solver.area_tolerance))
+    is_uneven, is_sheared = deviation > limit, angle > _SHEARED
+    if not is_uneven and not is_sheared and found.status in {"converged", "cancelled"}:
+        return None
+    figures = float(deviation), float(angle), bool(is_uneven), bool(is_sheared)
+    return Shortfall(found.status, *figures, remedy)
 
 
 def _noting_the_end(progress, result):

@@ -34,6 +34,15 @@ def choose(patch, settings):
     return "DISK"
 
 
+def check_flat(patch):
+    """Raises `Unsuitable` unless there can be UVs of an island without flipped faces."""
+    if patch.genus is None:
+        raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it and unwrap it")
+    if patch.is_closed or patch.genus > 0:
+        kind = "closed" if patch.is_closed else "not flat"
+        raise Unsuitable(f"is {kind} in its UV map, where faces must overlap; mark seams and unwrap it")
+
+
 def handles(patch):
     return "a handle" if patch.genus == 1 else f"{patch.genus} handles"
 

@@ -7,6 +7,7 @@ import re
 _ELEMENTS = re.compile(r"\b(\d+ )?(faces?|vertex|vertices|edges?)( \((?:[\d, …]|\(\d+, \d+\))+\)| \d+\b)")
 ENDED_EARLY = "ended early, more time makes areas more even"
 ENDED_EARLY_BY_CURVES = "ended early, more time keeps the shapes of faces better"
+ENDED_EARLY_FIXING = "ended early, more time may fix more"
 _NAMED = 3
 _PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
 _ONE = {"faces": "face", "vertices": "vertex", "edges": "edge"}

@@ -25,13 +25,41 @@ class UnwrapSettings:
 
 
 @dataclass
+class Shortfall:
+    """Figures of a map that has not converged, or that is bad for what it was asked for.
+
+    `status` is the solver's. `is_uneven` and `is_sheared` say which of the figures is bad, `remedy` what to
+    do about these.
+    """
+
+    status: str
+    deviation: float
+    angle: float
+    is_uneven: bool
+    is_sheared: bool
+    remedy: str
+
+    def __str__(self):
+        faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
+        named = [fault for fault, is_there in faults.items() if is_there]
+        ended = [_ENDS[self.status]] if self.status in _ENDS else []
+        figures = f"area ratio SD {self.deviation:.3g}, angle distortion {self.angle:.2f}"
+        remedy = self.remedy if named else _GOES_ON if self.status == "max_iterations" else ""
+        return "; ".join([f"{', '.join(named + ended)} ({figures})", *filter(None, [remedy])])
+
+
+_GOES_ON = "raise Iterations to go on"
+_ENDS = {"stalled": "stopped before it converged", "max_iterations": "stopped at the iteration limit"}
+
+
+@dataclass
 class Island:
     """A map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3) of surface `surface`.
 
     A point of the surface is there once for each of its UVs. Those of the mesh corners `corners` (k,) are the
     UVs of the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the
-    rest; they are mirrored in the map. `uneven` is the standard deviation of the area ratios where these
-    should have been even and are not, else None. `may_turn` says that the outline has no upper side.
+    rest; they are mirrored in the map. `shortfall` says where the map is not as good as it should be, else it
+    is None. `may_turn` says that the outline has no upper side.
     """
 
     name: str
@@ -43,7 +71,7 @@ class Island:
     corner_point: np.ndarray
     uv: np.ndarray
     turned: np.ndarray
-    uneven: float | None = None
+    shortfall: Shortfall | None = None
     may_turn: bool = False
 
 
@@ -88,7 +116,7 @@ class Measurement:
 class SphereShape:
     """A closed mesh's vertices (n, 3) on the sphere with its area, in single precision, and figures of that.
 
-    `angle` is the mean angle distortion, `uneven` as for islands, `ended_early` as for a mapping.
+    `angle` is the mean angle distortion, `shortfall` as for islands, `ended_early` as for a mapping.
     """
 
     positions: np.ndarray
@@ -96,5 +124,21 @@ class SphereShape:
     deviation: float
     flips: int
     angle: float
-    uneven: float | None
+    shortfall: Shortfall | None
     ended_early: bool
+
+
+@dataclass
+class Unflipped:
+    """What `fix_flips` found: `writes` are (surface, mesh corners (k,), UVs (k, 2) in single precision).
+
+    `faces` polygons were flipped, in `islands` islands; `moved` UV vertices are elsewhere now. Islands whose
+    flips stay are refused. `ended_early` as for a mapping.
+    """
+
+    writes: list = field(default_factory=list)
+    faces: int = 0
+    islands: int = 0
+    moved: int = 0
+    refusals: list[Refusal] = field(default_factory=list)
+    ended_early: bool = False

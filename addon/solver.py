@@ -9,40 +9,70 @@ _METHODS = {
     "GRADIENT_DESCENT": ("conjugate_gradient", "gradient_descent"),
     "FIXED_POINT": ("fixed_point", "fixed_point"),
 }
+_BOUNDARIES = {"FREE": "free", "CIRCLE": "sliding", "RECTANGLE": "rectangle"}
 # The weight at a slider of almost 0, and what the whole slider multiplies it by, as powers of ten.
 _LEAST, _DECADES = -5.0, 5.5
+# Up to this weight a map is about areas before all else.
+_AREAS_FIRST = 0.01
 
-PRESETS = {"AUTHALIC": 0.0, "BALANCED": 0.632, "SOFT": 0.814}
-"""Where the slider stands; at .03 and .3 for the weights of the last two."""
+PRESETS = {"EVEN": 2 / 5.5, "BALANCED": 0.632, "SOFT": 0.814, "CIRCLE": 0.0}
+"""Where the slider stands: for weights of .001, .03, .3 and 0."""
+FORMER_NAMES = {"AUTHALIC": "CIRCLE"}
+"""Presets under the names that scripts and key maps of earlier versions have for them."""
 
 
 @dataclass
 class Solver:
-    """The method, the most iterations (0: as many as it takes) and the slider from areas, 0, to angles, 1."""
+    """The method, the iteration limit (0: none of the user's), and what the map trades for what.
+
+    `angle_weight` is the slider from areas, 0, to angles, 1. `area_tolerance` above 0 replaces it: the least
+    shear with area errors within it. `outline` of open islands is "FREE", "CIRCLE" or "RECTANGLE"; a free one
+    may overlap itself with `overlap`. The papers' methods know areas and the circle only.
+    """
 
     method: str = "GAUSS_NEWTON"
     iterations: int = 0
-    angle_weight: float = 0.0
+    angle_weight: float = PRESETS["EVEN"]
+    outline: str = "FREE"
+    overlap: bool = False
+    area_tolerance: float = 0.0
 
     @property
-    def weighs_angles(self):
-        return self.method == "GAUSS_NEWTON" and self.angle_weight > 0
+    def is_free(self):
+        """Whether open islands get an outline of their own."""
+        return self._is_ours and self.outline == "FREE"
+
+    @property
+    def weight(self):
+        """The library's weight of angles, 0 where it does not apply."""
+        return weight(self.angle_weight) if self._is_ours and not self.area_tolerance else 0.0
+
+    @property
+    def puts_areas_first(self):
+        return self.weight <= _AREAS_FIRST
 
     def disk_options(self):
-        """Arguments of `authalic.disk_map`; with angles an outline that suits these."""
+        """Arguments of `authalic.disk_map`."""
         options = self._options(0)
-        return {**options, "boundary": "free"} if self.weighs_angles else options
+        if self._is_ours:
+            options["boundary"] = _BOUNDARIES[self.outline]
+        if self.is_free and self.overlap:
+            options["overlap"] = True
+        return options
 
     def sphere_options(self):
         """Arguments of `authalic.sphere_map`."""
         return self._options(1)
 
+    @property
+    def _is_ours(self):
+        return self.method == "GAUSS_NEWTON"
+
     def _options(self, shape):
-        return {
-            "method": _METHODS[self.method][shape],
-            "max_iterations": self.iterations or None,
-            "angle_weight": weight(self.angle_weight) if self.weighs_angles else 0.0,
-        }
+        options = {"method": _METHODS[self.method][shape], "max_iterations": self.iterations or None}
+        if self._is_ours and self.area_tolerance:
+            return {**options, "area_tolerance": self.area_tolerance}
+        return {**options, "angle_weight": self.weight}
 
 
 def weight(slider):
@@ -50,6 +80,32 @@ def weight(slider):
     return 10 ** (_LEAST + _DECADES * slider) if slider > 0 else 0.0
 
 
-def preset(slider):
-    """The name of the preset where the slider stands, or "CUSTOM"."""
-    return next((name for name, value in PRESETS.items() if abs(slider - value) < 5e-4), "CUSTOM")
+def outline(name):
+    """The outline of a preset."""
+    return "CIRCLE" if FORMER_NAMES.get(name, name) == "CIRCLE" else "FREE"
+
+
+def slider(name):
+    """Where the slider stands in a preset."""
+    return PRESETS[FORMER_NAMES.get(name, name)]
+
+
+def is_preset(name):
+    """Whether it names a preset, by its name of today or a former one."""
+    return FORMER_NAMES.get(name, name) in PRESETS
+
+
+def fits(name, angle_weight, its_outline=None, area_tolerance=0.0):
+    """Whether the preset of this name has these values; without an outline, for the sphere."""
+    return (
+        is_preset(name)
+        and abs(angle_weight - slider(name)) < 5e-4
+        and its_outline in (None, outline(name))
+        and area_tolerance == 0
+    )
+
+
+def preset(angle_weight, its_outline=None, area_tolerance=0.0):
+    """The name of the preset with these values, or "CUSTOM"."""
+    values = angle_weight, its_outline, area_tolerance
+    return next((name for name in PRESETS if fits(name, *values)), "CUSTOM")

@@ -30,7 +30,9 @@ class _MeasurePanel(_Panel):
 
     def draw(self, context):
         layout = self.layout
-        layout.operator("authalic.measure", text="Measure")
+        column = layout.column(align=True)
+        column.operator("authalic.measure", text="Measure")
+        column.operator("authalic.fix_flips")
         column = layout.column(align=True)
         # One figure a line: a sidebar is narrow.
         for figure in filter(None, context.window_manager.authalic_figures.split(", ")):
@@ -72,11 +74,18 @@ def _draw_uv_menu(self, _context):
     self.layout.operator("authalic.unwrap")
 
 
+def _draw_flips_menu(self, _context):
+    self.layout.separator()
+    self.layout.operator("authalic.fix_flips")
+
+
 def _draw_shape_key_menu(self, _context):
     self.layout.separator()
     self.layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
 
 
+# The UV menus of the UV editor and of the 3D view.
+_FLIPS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
     AUTHALIC_PT_sphere_shape_key_view3d,
@@ -91,11 +100,15 @@ def register():
         bpy.utils.register_class(cls)
     # Serves the UV editor's menu and the 3D view's.
     bpy.types.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
+    for menu in _FLIPS_MENUS:
+        getattr(bpy.types, menu).append(_draw_flips_menu)
     bpy.types.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
 def unregister():
     bpy.types.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
+    for menu in _FLIPS_MENUS:
+        getattr(bpy.types, menu).remove(_draw_flips_menu)
     bpy.types.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -15,6 +15,7 @@ import authalic
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
 import bench_angle
+import bench_angle_front
 import bench_fuzz
 import bench_fuzz_cases
 import bench_fuzz_rust
@@ -182,12 +183,17 @@ def test_the_start_of_other_tools_is_an_embedding():
 
 def test_the_curve_of_areas_against_angles_has_rows(tiny_meshes, monkeypatch, tmp_path):
     monkeypatch.setattr(bench_angle, "WEIGHTS", (0,))
+    monkeypatch.setattr(bench_angle_front, "WEIGHTS", (1, 0.1))
     target = tmp_path / "angle.md"
     bench_angle.main([str(target)])
     text = target.read_text(encoding="utf-8")
     assert re.search(r"(?m)^\| cap \| \d+ \| 0 \| 0\.\d+ \|", text) and "| ellipsoid |" in text, text
     assert "Not measured: there is no Blender" in text
-    assert (tmp_path / "angle-curve.png").stat().st_size > 0
+    number = r"0\.\d{4} \d\.\d\d\*?"
+    for row in ("cap | sliding", "cap | arc_length", "cap | free", "ellipsoid | sphere"):
+        assert re.search(rf"(?m)^\| {re.escape(row)} \| {number} \| {number} \|$", text), text
+    for name in ("curve", "front"):
+        assert (tmp_path / f"angle-{name}.png").stat().st_size > 0
 
 
 def test_the_curve_is_read_at_equal_angles():

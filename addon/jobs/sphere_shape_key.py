@@ -124,11 +124,7 @@ def _figures(shape):
 def _notes(done):
     """What was written but may not be what was wanted."""
     early = [messages.ENDED_EARLY] if any(shape.ended_early for _, shape in done) else []
-    notes = [
-        f"{obj.name}: uneven; its limbs may be too long or too thin, or its n-gons too large (poke them)"
-        for obj, shape in done
-        if shape.uneven is not None
-    ]
+    notes = [f"{obj.name}: {shape.shortfall}" for obj, shape in done if shape.shortfall is not None]
     scaled = [
         f"{obj.name}: non-uniform scale, the sphere is that of the non-scaled mesh"
         for obj, _ in done

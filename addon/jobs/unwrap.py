@@ -165,14 +165,11 @@ def _mapped(surface, corners, uv):
 
 def _notes(chosen, islands, figures):
     """What was written but may not be what was wanted."""
-    notes = [
-        f"{island.name} at face {island.polygon}: uneven, area ratio SD {island.uneven:.3g}; "
-        "cut its long parts open by seams, or poke large n-gons"
-        for island in islands
-        if island.uneven is not None
-    ]
+    short = [island for island in islands if island.shortfall is not None]
+    short.sort(key=lambda island: -island.shortfall.deviation)
+    notes = [f"{island.name} at face {island.polygon}: {island.shortfall}" for island in short]
     if len(notes) > _NAMED:
-        notes[_NAMED:] = [f"and {len(notes) - _NAMED} more uneven"]
+        notes[_NAMED:] = [f"and {messages.count(len(notes) - _NAMED, 'island')} more"]
     turned = sum(len(island.turned) for island in islands)
     if turned:
         notes.append(

@@ -23,6 +23,17 @@ def has_meshes_in_object_mode(operator, context):
     return has_meshes(operator, context)
 
 
+def has_uv_maps(operator, context):
+    """Object or edit mode with a mesh that has a UV map; else tells the user what is missing."""
+    if not has_meshes(operator, context):
+        return False
+    objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
+    if not any(obj.type == "MESH" and obj.data.uv_layers.active for obj in objects):
+        operator.poll_message_set("The selected meshes have no UV map")
+        return False
+    return True
+
+
 def has_source(operator, context):
     """Object or edit mode with an active mesh, whose landmarks are meant."""
     if context.mode not in {"OBJECT", "EDIT_MESH"}:

@@ -1,29 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The solver's options, which several operators have."""
 
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from .. import bridge, solver
 
+# Numbered, because key maps keep numbers: AUTHALIC is what CIRCLE was called before there were others.
 _PRESETS = (
-    ("AUTHALIC", "Authalic", "Areas alone, as even as can be"),
-    ("BALANCED", "Balanced", "Areas nearly as even, with less skew"),
-    ("SOFT", "Soft", "Shapes matter more, areas differ a little"),
-    ("CUSTOM", "Custom", "As the slider says"),
+    ("EVEN", "Even", "Areas even to about a percent, shapes as good as that allows", "NONE", 4),
+    ("BALANCED", "Balanced", "Better shapes, areas nearly as even", "NONE", 1),
+    ("SOFT", "Soft", "Shapes matter more than areas", "NONE", 2),
+    (
+        "CIRCLE",
+        "Circle",
+        "Areas as even as possible, whatever the shapes; open islands fill a circle",
+        "NONE",
+        5,
+    ),
+    ("CUSTOM", "Custom", "The values below", "NONE", 3),
+    ("AUTHALIC", "Authalic", "The former name of Circle", "NONE", 0),
 )
+_SHOWN = ("EVEN", "BALANCED", "SOFT", "CIRCLE")
 
 
-def _set_slider(properties, _context):
-    # Custom is where the slider stands already.
-    wanted = solver.PRESETS.get(properties.angle_preset, properties.angle_weight)
-    if properties.angle_weight != wanted:
-        properties.angle_weight = wanted
+def _values(properties):
+    """What a preset is made of; only islands have an outline."""
+    return properties.angle_weight, getattr(properties, "outline", None), properties.area_tolerance
+
+
+def _set_values(properties, _context):
+    name = properties.angle_preset
+    if not solver.is_preset(name) or solver.fits(name, *_values(properties)):
+        return
+    _assign(properties, "area_tolerance", 0.0)
+    _assign(properties, "angle_weight", solver.slider(name))
+    if hasattr(properties, "outline"):
+        _assign(properties, "outline", solver.outline(name))
+    properties.angle_preset = name
 
 
 def _set_preset(properties, _context):
-    fitting = solver.preset(properties.angle_weight)
-    if properties.angle_preset != fitting:
-        properties.angle_preset = fitting
+    values = _values(properties)
+    if not solver.fits(properties.angle_preset, *values):
+        _assign(properties, "angle_preset", solver.preset(*values))
+
+
+def _assign(properties, name, value):
+    # Assigning calls the update function again.
+    if getattr(properties, name) != value:
+        setattr(properties, name, value)
 
 
 class Solving:
@@ -45,45 +70,110 @@ class Solving:
     )
     angle_preset: EnumProperty(
         name="Preset",
-        description="Where to set Angle Weight",
+        description="How to trade areas for shapes",
         items=_PRESETS,
-        update=_set_slider,
-        default="AUTHALIC",
+        update=_set_values,
+        default="EVEN",
     )
     angle_weight: FloatProperty(
         name="Angle Weight",
-        description="How much angles count against areas. 0 shares areas out as evenly as can be, higher "
-        "values skew less and let areas differ. Above 0 the outline of an open island follows its shape, "
-        "else it is a circle",
+        description="Trade-off: 0 preserves areas, 1 preserves angles",
         min=0.0,
         max=1.0,
+        precision=3,
+        update=_set_preset,
+        default=solver.PRESETS["EVEN"],
+    )
+    area_tolerance: FloatProperty(
+        name="Area Tolerance",
+        description="Allowed deviation of the areas: shapes become as good as possible within it, and Angle "
+        "Weight is not used. 0 turns it off",
+        min=0.0,
+        max=1.0,
+        soft_max=0.2,
+        step=1,
         precision=3,
         update=_set_preset,
         default=0.0,
     )
     iterations: IntProperty(
         name="Iterations",
-        description="Most iterations of the solver, 0 for as many as it takes. Fewer are faster and less "
-        "even",
+        description="Iteration limit of the solver. 0 for as many as usually suffice",
         min=0,
         soft_max=200,
         default=0,
     )
 
     def solver(self):
-        """The settings; where a script has named a preset only, the slider is set to it."""
+        """The settings; of a preset that a script names, those values count that it does not give itself."""
         is_set = self.properties.is_property_set
-        if is_set("angle_preset") and not is_set("angle_weight"):
-            self.angle_weight = solver.PRESETS.get(self.angle_preset, 0.0)
-        self.angle_preset = solver.preset(self.angle_weight)
-        return bridge.Solver(self.method, self.iterations, self.angle_weight)
+        if is_set("angle_preset") and solver.is_preset(self.angle_preset):
+            name = self.angle_preset
+            wanted = {"angle_weight": solver.slider(name), "outline": solver.outline(name)}
+            for key, value in wanted.items():
+                if hasattr(self, key) and not is_set(key):
+                    setattr(self, key, value)
+        self.angle_preset = solver.preset(*_values(self))
+        return bridge.Solver(
+            self.method,
+            self.iterations,
+            self.angle_weight,
+            area_tolerance=self.area_tolerance,
+            **self.outline_options(),
+        )
+
+    def outline_options(self):
+        """Arguments of `bridge.Solver` for open islands."""
+        return {}
+
+
+class Outlining(Solving):
+    """The properties of operators that map open islands."""
+
+    outline: EnumProperty(
+        name="Outline",
+        description="The shape that open islands take in the UV map",
+        items=(
+            ("FREE", "Free", "Every island gets the outline that suits its shape"),
+            ("CIRCLE", "Circle", "Every island fills a circle"),
+            ("RECTANGLE", "Rectangle", "Every island fills a rectangle, whose corners are found"),
+        ),
+        update=_set_preset,
+        default="FREE",
+    )
+    allow_overlap: BoolProperty(
+        name="Allow Overlap",
+        description="Let the outline of an island overlap itself where that gives better shapes. No face is "
+        "flipped, but parts of an island may lie over each other",
+        default=False,
+    )
+
+    def outline_options(self):
+        return {"outline": self.outline, "overlap": self.allow_overlap}
 
 
 def draw_options(column, properties):
     """The options, in the redo panel and in the sidebar."""
-    angles = column.column(align=True)
-    angles.active = properties.method == "GAUSS_NEWTON"
-    angles.prop(properties, "angle_preset")
-    angles.prop(properties, "angle_weight", slider=True)
+    trade = column.column()
+    trade.active = properties.method == "GAUSS_NEWTON"
+    _draw_presets(trade, properties)
+    row = trade.row()
+    row.active = properties.area_tolerance == 0
+    row.prop(properties, "angle_weight", slider=True)
+    trade.prop(properties, "area_tolerance")
+    if hasattr(properties, "outline"):
+        trade.prop(properties, "outline")
+        row = trade.row()
+        row.active = properties.outline == "FREE"
+        row.prop(properties, "allow_overlap")
     column.prop(properties, "method")
     column.prop(properties, "iterations")
+
+
+def _draw_presets(column, properties):
+    """Two rows of buttons; none is pressed where the values are those of no preset."""
+    grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    grid.use_property_split = False
+    for name in _SHOWN:
+        is_sphere = name == "CIRCLE" and not hasattr(properties, "outline")
+        grid.prop_enum(properties, "angle_preset", name, text="Areas Only" if is_sphere else "")

@@ -10,7 +10,7 @@ from .. import bridge, packing
 from ..jobs import unwrap
 from . import poll, solving
 from .modal import Modal
-from .solving import Solving
+from .solving import Outlining
 
 
 def _layer_names(_operator, context, _text):
@@ -18,8 +18,8 @@ def _layer_names(_operator, context, _text):
     return [layer.name for layer in obj.data.uv_layers] if obj and obj.type == "MESH" else []
 
 
-class AUTHALIC_OT_unwrap(Modal, Solving, bpy.types.Operator):
-    """Unwrap so that every face gets the share of the texture that its area is of the surface"""
+class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
+    """Make each face's UV area proportional to its surface area"""
 
     bl_idname = "authalic.unwrap"
     bl_label = "Authalic Unwrap"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Areas against angles: the curve over `angle_weight`, and Blender's Minimum Stretch beside it.
+"""Areas against angles: the curve over `angle_weight`, the front for every boundary, and Minimum Stretch.
 
 Usage: python bench_angle.py TARGET_FILE [--meshes NAME ...] [--blender PYTHON] [--absent bpy=MESSAGE]
 
@@ -12,6 +12,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import bench_angle_front
 import bench_angle_plot
 import bench_meshes
 import bench_peers_run
@@ -59,13 +60,14 @@ class Point:
 
 
 def main(arguments=None):
-    """Writes the curves of the models, then the islands of Suzanne beside Blender."""
+    """Writes the curves and the fronts of the models, then the islands of Suzanne beside Blender."""
     options = parsed(arguments)
     report = Report(options.target)
     report.line(f"# Areas against angles\n\nauthalic {authalic.__version__}, {machine()}.")
-    models = chosen_models(options.meshes)
-    if models:
+    if models := chosen_models(options.meshes, MODELS):
         write_models(report, models)
+    if models := chosen_models(options.meshes, bench_angle_front.MODELS):
+        bench_angle_front.write(report, models)
     if not options.meshes or SUZANNE in options.meshes:
         beside_blender(report, options)
 
@@ -80,13 +82,13 @@ def parsed(arguments=None):
     return parser.parse_args(arguments)
 
 
-def chosen_models(names):
-    """{name: (mesh, function)}: those asked for; by default three, or all that were built on the spot."""
+def chosen_models(names, usual):
+    """{name: (mesh, function)}: those asked for; else the usual ones, or all that were built on the spot."""
     disks, spheres = bench_meshes.disks(), bench_meshes.spheres()
     found = {name: (mesh, authalic.sphere_map) for name, mesh in spheres.items()}
     found |= {name: (mesh, authalic.disk_map) for name, mesh in disks.items()}
     bench_meshes.check_names(names, [*found, SUZANNE])
-    wanted = names or [name for name in MODELS if name in found] or list(found)
+    wanted = names or [name for name in usual if name in found] or list(found)
     return {name: found[name] for name in wanted if name != SUZANNE}
 
 

@@ -4,6 +4,8 @@
 import bench_plots
 
 OURS, BLENDER = "#b3263e", "#4f8f4a"
+FRONTS = {"sliding": "#2b5f8f", "arc_length": "#d1883a", "free": OURS, "sphere": OURS}
+"""The colors of the boundaries."""
 
 
 def draw(path, title, curves, others):
@@ -36,3 +38,20 @@ def draw_point(axis, point):
     axis.plot(point.angle, point.deviation, "s", color=BLENDER, markersize=4)
     place = point.angle, point.deviation
     axis.annotate(point.label, place, (4, -8), textcoords="offset points", fontsize=7, color=BLENDER)
+
+
+def draw_fronts(path, title, fronts):
+    """The fronts {mesh: {boundary: (weight, SD, σ₁/σ₂) of each map}}, each a line with all its weights."""
+    figure, axes = bench_plots.panels(title, fronts)
+    for axis, by_boundary in zip(axes, fronts.values()):
+        for boundary, maps in by_boundary.items():
+            weights, deviations, angles = zip(*maps)
+            axis.plot(angles, deviations, "o-", color=FRONTS[boundary], markersize=3, label=boundary)
+        for weight, *place in zip(weights, angles, deviations):
+            axis.annotate(f"{weight:g}", place, (4, 2), textcoords="offset points", fontsize=6, color="0.4")
+        axis.set(yscale="log", xlabel="σ₁/σ₂, mean")
+        axis.grid(alpha=0.25, which="major")
+        axis.legend(frameon=False, fontsize=8)
+    for axis in bench_plots.leftmost(axes):
+        axis.set_ylabel("SD of the area ratio")
+    bench_plots.save(figure, path)

@@ -3,10 +3,13 @@
 
 import bpy
 import conftest
+import pytest
+
+MENUS = ("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu")
 
 
 def _menu_entries():
-    menus = bpy.types.IMAGE_MT_uvs_unwrap, bpy.types.MESH_MT_shape_key_context_menu
+    menus = (getattr(bpy.types, name) for name in MENUS)
     return [f for menu in menus for f in menu._dyn_ui_initialize() if "authalic" in f.__module__]
 
 
@@ -16,8 +19,8 @@ def _registered():
 
 
 def test_enabled():
-    assert len(_menu_entries()) == 2
-    operators = {f"AUTHALIC_OT_{name}" for name in ("unwrap", "sphere_shape_key", "measure")}
+    assert len(_menu_entries()) == len(MENUS)
+    operators = {f"AUTHALIC_OT_{name}" for name in ("unwrap", "sphere_shape_key", "measure", "fix_flips")}
     assert operators | {"figures"} <= _registered()
     spaces = {getattr(bpy.types, name).bl_space_type for name in _registered() if "_PT_" in name}
     assert spaces == {"VIEW_3D", "IMAGE_EDITOR"}
@@ -27,7 +30,7 @@ def test_disabling_leaves_nothing(extension):
     bpy.ops.preferences.addon_disable(module=extension)
     assert not _menu_entries() and not _registered()
     bpy.ops.preferences.addon_enable(module=extension)
-    assert len(_menu_entries()) == 2 and _registered()
+    assert len(_menu_entries()) == len(MENUS) and _registered()
 
 
 def test_uninstall_and_install_again(extension):
@@ -38,7 +41,7 @@ def test_uninstall_and_install_again(extension):
     assert extension not in bpy.context.preferences.addons
     assert not _menu_entries() and not _registered()
     conftest.install()
-    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == 2
+    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == len(MENUS)
 
 
 def test_defaults_are_declared():
@@ -52,15 +55,18 @@ def test_defaults_are_declared():
         "uv_layer": "",
         "margin_method": "SCALED",
         "method": "GAUSS_NEWTON",
-        "angle_weight": 0.0,
+        "angle_preset": "EVEN",
+        "angle_weight": pytest.approx(2 / 5.5),  # a weight of .001
+        "area_tolerance": 0.0,
+        "outline": "FREE",
+        "allow_overlap": False,
         "iterations": 0,
     }
     assert {key: properties[key].default for key in expected} == expected
     assert next(iter(properties["method"].enum_items)).name == "Gauss-Newton"
     of_the_key = bpy.ops.authalic.sphere_shape_key.get_rna_type().properties
-    assert all(
-        of_the_key[name].default == expected[name] for name in ("method", "angle_weight", "iterations")
-    )
+    shared = ("method", "angle_preset", "angle_weight", "area_tolerance", "iterations")
+    assert all(of_the_key[name].default == expected[name] for name in shared)
     for name in ("unwrap", "sphere_shape_key"):
         properties = getattr(bpy.ops.authalic, name).get_rna_type().properties
         named = [p for p in properties if p.identifier != "rna_type"]
@@ -70,4 +76,4 @@ def test_defaults_are_declared():
 def test_sidebar_has_options_before_the_first_use():
     options = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
     assert options.iterations == 0 and options.fill_holes
-    assert (options.method, options.angle_preset) == ("GAUSS_NEWTON", "AUTHALIC")
+    assert (options.method, options.angle_preset, options.outline) == ("GAUSS_NEWTON", "EVEN", "FREE")

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The UV map of a surface as triangles in the plane, and what of it may move. Plain numpy, no bpy."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import messages, triangulation
+
+
+@dataclass
+class Layout:
+    """The triangles of a surface (`mesh_io.Surface`), joined where they share UVs at a vertex.
+
+    `points` (n, 3) in space and `uv` (n, 2) are those of UV vertices, `vertices` (n,) the mesh's, -1 at the
+    centers of divided polygons. `faces` (m, 3) are UV vertices, `corners` (m, 3) mesh corners, -1 at such
+    centers, `polygons` (m,) polygons. The UV vertices `held` (n,) are pinned or belong to other faces too.
+    """
+
+    points: np.ndarray
+    uv: np.ndarray
+    vertices: np.ndarray
+    faces: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+    held: np.ndarray
+
+
+def layout(surface):
+    """The `Layout` of a surface with UVs."""
+    mesh = triangulation.sound(surface)
+    image = _corner_uvs(surface, mesh)
+    first, faces = triangulation.welded(mesh.triangles, image)
+    vertices = mesh.triangles.ravel()[first]
+    uv = image.reshape(-1, 2)[first]
+    held = _pinned(surface, mesh, faces, len(first)) | _shared(surface, vertices, uv)
+    return Layout(
+        points=mesh.positions[vertices],
+        uv=uv,
+        vertices=np.where(vertices < len(surface.positions), vertices, -1),
+        faces=faces,
+        corners=mesh.corners,
+        polygons=mesh.polygons,
+        held=held,
+    )
+
+
+def may_be_flipped(faces, uv):
+    """Whether triangles (m, 3) between UVs (n, 2) wind both ways, or have no area."""
+    # Differences and their products are exact for UVs in single precision, so the signs are as well.
+    areas = triangulation.signed_areas(uv[faces].astype(float))
+    return not ((areas > 0).all() or (areas < 0).all())
+
+
+def why_not(polygons, has_pins):
+    """Why polygons (k,) stay flipped, and what to do."""
+    named = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
+    pins, unpin = (" and pinned UVs", "unpin UVs, ") if has_pins else ("", "")
+    return (
+        f"{named if len(polygons) else 'its faces'} cannot be turned without moving its outline{pins}; "
+        f"{unpin}smooth the outline there or unwrap the island again"
+    )
+
+
+def _corner_uvs(surface, mesh):
+    """UVs (m, 3, 2) in single precision; the center of a divided polygon is amid its corners."""
+    image = np.asarray(surface.uv, np.float32)[mesh.corners]
+    center = mesh.corners < 0
+    if not center.any():
+        return image
+    polygons = mesh.polygons[center.any(axis=1)]
+    owner = np.repeat(np.arange(surface.polygon_count), surface.polygon_size)
+    corners = _corners_of(surface, np.arange(surface.polygon_count))
+    sums = [np.bincount(owner, surface.uv[corners, axis], surface.polygon_count) for axis in (0, 1)]
+    means = np.stack(sums, axis=1) / surface.polygon_size[:, None]
+    image[center] = means[polygons]
+    return image
+
+
+def _pinned(surface, mesh, faces, count):
+    """Which UV vertices (n,) have a pin at one of their corners."""
+    found = np.zeros(count, bool)
+    if surface.pinned is not None:
+        real = mesh.corners >= 0
+        found[faces[real][surface.pinned[mesh.corners[real]]]] = True
+    return found
+
+
+def _shared(surface, vertices, uv):
+    """Which UV vertices (n,) are also those of faces that are left out."""
+    others = np.ones(len(surface.corner_vertex), bool)
+    others[_corners_of(surface, np.unique(surface.polygons))] = False
+    if not others.any():
+        return np.zeros(len(vertices), bool)
+    theirs = _keys(surface.corner_vertex[others], surface.uv[others])
+    return np.isin(_keys(vertices, uv), theirs)
+
+
+def _corners_of(surface, polygons):
+    """All corners of some polygons."""
+    start, size = surface.polygon_start[polygons], surface.polygon_size[polygons]
+    first = np.repeat(start - np.cumsum(size) + size, size)
+    return first + np.arange(len(first))
+
+
+def _keys(vertices, uv):
+    """A number or record for each vertex with UVs; equal ones agree in both."""
+    places = (np.ascontiguousarray(uv, np.float32) + np.float32(0)).view(np.uint64).ravel()
+    keys = np.empty(len(vertices), [("vertex", np.int64), ("place", np.uint64)])
+    keys["vertex"], keys["place"] = vertices, places
+    return keys

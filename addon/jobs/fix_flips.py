@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Turns over the flipped faces of a context's active UV maps: the one path of the operator and of scripts."""
+
+from dataclasses import dataclass
+
+from .. import bridge, mesh_io, messages
+from ..job import Job
+from . import targets
+
+
+class CannotFix(Exception):
+    """No flipped face could be fixed; nothing was changed."""
+
+
+@dataclass
+class Report:
+    """What was done, a `bridge.Unflipped`, and what could not be."""
+
+    found: bridge.Unflipped
+    refusals: list
+    notes: list
+
+    def __str__(self):
+        left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
+        return "; ".join([self._done(), *left, *self.notes])
+
+    def _done(self):
+        if not self.found.faces:
+            return "No flipped faces"
+        faces = messages.count(self.found.faces, "flipped face")
+        islands = messages.count(self.found.islands, "island")
+        return f"Fixed {faces} in {islands}; {messages.count(self.found.moved, 'UV')} moved"
+
+
+def job(context):
+    """A `Job` that fixes flipped faces in the active UV maps; its `apply` writes UVs and returns a `Report`.
+
+    In edit mode of the selected faces only. Raises `targets.NothingToDo` before anything is computed.
+    """
+    selected_only = context.mode == "EDIT_MESH"
+    objects, refusals = targets.editable(context)
+    chosen = _chosen(objects, selected_only)
+    if not chosen:
+        raise targets.NothingToDo(_why_nothing(objects, selected_only, refusals))
+
+    def work(progress):
+        return bridge.fix_flips([surface for _, _, surface in chosen], progress)
+
+    def finish(found):
+        _check_unchanged(chosen)
+        if found.refusals and not found.faces:
+            raise CannotFix(f"No flipped face could be fixed: {messages.listed(found.refusals)}")
+        for index, corners, uv in found.writes:
+            obj, layer, _ = chosen[index]
+            mesh_io.write_uv(obj.data, layer, corners, uv)
+        notes = [messages.ENDED_EARLY_FIXING] if found.ended_early else []
+        return Report(found, [*refusals, *found.refusals], notes)
+
+    return Job(work, finish)
+
+
+def _chosen(objects, selected_only):
+    """(object, UV layer, surface) of those objects that have UVs and faces to look at."""
+    layers = [(obj, obj.data.uv_layers.active.name) for obj in objects if obj.data.uv_layers.active]
+    read = [
+        (obj, layer, mesh_io.read(obj, selected_only=selected_only, uv_layer=layer)) for obj, layer in layers
+    ]
+    return [part for part in read if len(part[2].triangles)]
+
+
+def _why_nothing(objects, selected_only, refusals):
+    if refusals:
+        return messages.listed(refusals)
+    if not any(obj.data.uv_layers.active for obj in objects):
+        return "The selected objects have no UV map"
+    return "No faces are selected" if selected_only else "The selected objects have no faces"
+
+
+def _check_unchanged(chosen):
+    """Meshes may have changed since they were read, where a window was alive meanwhile."""
+    for obj, layer, surface in chosen:
+        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
+        if not is_there or layer not in obj.data.uv_layers:
+            raise CannotFix(f"{surface.name} has changed meanwhile; nothing was written")

@@ -244,10 +244,10 @@ def test_the_slider_spans_the_useful_weights():
     assert weights == sorted(weights) and weights[1] < 1e-4 and weights[-1] > 3
 
 
-@pytest.mark.parametrize("weight", [0.0, 0.5])
-def test_what_it_says_has_the_angles(weight, capfd):
+@pytest.mark.parametrize("options", [{}, {"angle_preset": "CIRCLE"}, {"angle_weight": 0.5}])
+def test_what_it_says_has_the_angles(options, capfd):
     meshes.suzanne(1)
-    bpy.ops.authalic.unwrap(angle_weight=weight)
+    bpy.ops.authalic.unwrap(**options)
     said = capfd.readouterr().out
     assert "Info: Unwrapped 3 islands, area ratio SD 0." in said and "0 flips, angle distortion " in said
 

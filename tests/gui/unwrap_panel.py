@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The unwrap's panel, its presets, and Fix Flips behind a living window; see README.md beside this file."""
+
+import bpy
+import numpy as np
+from driver import call, check, picture, run, view
+
+NAME = "Suzanne"
+
+
+def scene():
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    call(bpy.ops.mesh.primitive_monkey_add)
+    call(bpy.ops.object.mode_set, mode="EDIT")
+    call(bpy.ops.mesh.select_all, action="SELECT")
+    call(bpy.ops.uv.select_all, action="SELECT")
+    call(bpy.ops.uv.seams_from_islands)
+    call(bpy.ops.object.mode_set, mode="OBJECT")
+    modifier = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
+    call(bpy.ops.object.modifier_apply, modifier=modifier.name)
+    view()["area"].spaces.active.show_region_ui = True
+
+
+def tab():
+    region = next(region for region in view()["area"].regions if region.type == "UI")
+    region.active_panel_category = "Authalic"
+    view()["area"].tag_redraw()
+
+
+def options():
+    return bpy.context.window_manager.operator_properties_last("authalic.unwrap")
+
+
+def choose(name):
+    """A step that chooses a preset in the panel."""
+
+    def act():
+        options().angle_preset = name
+        view()["area"].tag_redraw()
+
+    return act
+
+
+def start(name):
+    """A step that starts an operator as its button does."""
+
+    def act():
+        operator = getattr(bpy.ops.authalic, name)
+        assert call(operator, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+
+    return act
+
+
+def running():
+    return [one.bl_idname for one in view()["window"].modal_operators]
+
+
+def uv():
+    mesh = bpy.data.objects[NAME].data
+    values = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", values)
+    return values.reshape(-1, 2)
+
+
+def flips():
+    """How many triangles of the UV map are flipped."""
+    mesh = bpy.data.objects[NAME].data
+    mesh.calc_loop_triangles()
+    x, y = uv()[np.array([tuple(t.loops) for t in mesh.loop_triangles])].astype(float).transpose(2, 0, 1)
+    areas = (x * (np.roll(y, -1, axis=1) - np.roll(y, 1, axis=1))).sum(axis=1)
+    return int(np.count_nonzero(areas <= 0))
+
+
+def tangle():
+    """Moves the UVs of one inner vertex of the largest island across its neighbors."""
+    mesh = bpy.data.objects[NAME].data
+    vertices, values = np.array([loop.vertex_index for loop in mesh.loops]), uv()
+    ears = {v for edge in mesh.edges if edge.use_seam for v in edge.vertices}
+    chosen = next(v for v in range(len(mesh.vertices)) if v not in ears and np.sum(vertices == v) == 4)
+    values[vertices == chosen] += 0.06
+    mesh.attributes[mesh.uv_layers.active.name].data.foreach_set("vector", values.ravel())
+    mesh.update()
+
+
+STEPS = [
+    scene,
+    tab,
+    picture("panel"),
+    check("the preset at first", lambda: (options().angle_preset, options().outline), ("EVEN", "FREE")),
+    choose("CIRCLE"),
+    check("the outline of a circle", lambda: (options().outline, options().angle_weight), ("CIRCLE", 0.0)),
+    picture("circle"),
+    choose("EVEN"),
+    start("unwrap"),
+    *[lambda: None] * 20,
+    check("no operator runs on", running, []),
+    check("the unwrap flips nothing", flips, 0),
+    tangle,
+    check("now there are flips", lambda: flips() > 0, True),
+    start("fix_flips"),
+    *[lambda: None] * 5,
+    check("no operator runs on", running, []),
+    check("flips are fixed", flips, 0),
+    picture("fixed"),
+]
+
+run(STEPS)

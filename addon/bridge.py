@@ -61,7 +61,7 @@ __all__ = (
 # Standard deviations of area ratios that are bad: on a disk where areas count, on a sphere, where large
 # polygons leave more, and with any weight of angles. A mean angle distortion that is bad.
 _UNEVEN_DISK, _UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
-_SHEARED = 10.0
+_SHEARED = 20.0
 _CUT = "cut its long parts open by seams"
 _OF_A_CIRCLE = f"set Outline to Free, or {_CUT}"
 _OF_A_SPHERE = "mark seams that cut its long parts open, or poke large n-gons"

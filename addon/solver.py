@@ -76,8 +76,11 @@ class Solver:
 
 
 def weight(slider):
-    """The library's weight of angles against areas at a slider from 0 to 1."""
-    return 10 ** (_LEAST + _DECADES * slider) if slider > 0 else 0.0
+    """The library's weight of angles against areas at a slider from 0 to 1.
+
+    Rounded, so that Blender's single precision makes no difference.
+    """
+    return float(f"{10 ** (_LEAST + _DECADES * slider):.6g}") if slider > 0 else 0.0
 
 
 def outline(name):

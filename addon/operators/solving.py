@@ -20,7 +20,7 @@ _PRESETS = (
     ("CUSTOM", "Custom", "The values below", "NONE", 3),
     ("AUTHALIC", "Authalic", "The former name of Circle", "NONE", 0),
 )
-_SHOWN = ("EVEN", "BALANCED", "SOFT", "CIRCLE")
+_SHOWN = _PRESETS[:4]
 
 
 def _values(properties):
@@ -174,6 +174,6 @@ def _draw_presets(column, properties):
     """Two rows of buttons; none is pressed where the values are those of no preset."""
     grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     grid.use_property_split = False
-    for name in _SHOWN:
+    for name, text, *_ in _SHOWN:
         is_sphere = name == "CIRCLE" and not hasattr(properties, "outline")
-        grid.prop_enum(properties, "angle_preset", name, text="Areas Only" if is_sphere else "")
+        grid.prop_enum(properties, "angle_preset", name, text="Areas Only" if is_sphere else text)

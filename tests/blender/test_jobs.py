@@ -142,21 +142,33 @@ def test_island_that_folds_when_packed_is_left_out_and_the_rest_fills_the_square
     assert np.ptp(after[:144], axis=0).min() > 0.95
 
 
-def test_stalled_island_is_named(monkeypatch, capfd):
+_FIGURES = "(area ratio SD 6, angle distortion 1.50)"
+
+
+@pytest.mark.parametrize(
+    ("status", "is_uneven", "text"),
+    [
+        ("converged", True, f"uneven {_FIGURES}; cut it"),
+        ("stalled", True, f"uneven, stopped before it converged {_FIGURES}; cut it"),
+        ("stalled", False, f"stopped before it converged {_FIGURES}"),
+        ("max_iterations", False, f"stopped at the iteration limit {_FIGURES}; raise Iterations to go on"),
+    ],
+)
+def test_island_that_falls_short_is_named(status, is_uneven, text, monkeypatch, capfd):
     meshes.add_grid()
     bridge = part("bridge")
     map_ = bridge._map
 
     def stalled(*arguments):
         island = map_(*arguments)
-        island.uneven = 6.0
+        island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, "cut it")
         return island
 
     monkeypatch.setattr(bridge, "_map", stalled)
     assert bpy.ops.authalic.unwrap() == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Warning: Unwrapped 1 island" in said
-    assert "Grid at face 0: uneven, area ratio SD 6; cut its long parts open by seams" in said
+    assert f"Grid at face 0: {text}" in said
 
 
 @pytest.mark.parametrize("method", ["SCALED", "ADD", "FRACTION"])

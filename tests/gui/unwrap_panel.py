@@ -83,6 +83,29 @@ def tangle():
     mesh.update()
 
 
+def uv_editor():
+    """Turns the 3D view into a UV editor of the mesh in edit mode."""
+    call(bpy.ops.object.mode_set, mode="EDIT")
+    call(bpy.ops.mesh.select_all, action="SELECT")
+    view()["area"].ui_type = "UV"
+
+
+def editor():
+    areas = bpy.context.window_manager.windows[0].screen.areas
+    return next(area for area in areas if area.ui_type == "UV")
+
+
+def sidebar_of_the_uv_editor():
+    editor().spaces.active.show_region_ui = True
+    editor().tag_redraw()
+
+
+def tab_of_the_uv_editor():
+    region = next(region for region in editor().regions if region.type == "UI")
+    region.active_panel_category = "Authalic"
+    editor().tag_redraw()
+
+
 STEPS = [
     scene,
     tab,
@@ -103,6 +126,10 @@ STEPS = [
     check("no operator runs on", running, []),
     check("flips are fixed", flips, 0),
     picture("fixed"),
+    uv_editor,
+    sidebar_of_the_uv_editor,
+    tab_of_the_uv_editor,
+    picture("uv_editor"),
 ]
 
 run(STEPS)

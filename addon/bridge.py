@@ -64,7 +64,7 @@ _UNEVEN_DISK, _UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
 _SHEARED = 20.0
 _CUT = "cut its long parts open by seams"
 _OF_A_CIRCLE = f"set Outline to Free, or {_CUT}"
-_OF_A_SPHERE = "mark seams that cut its long parts open, or poke large n-gons"
+_OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
 _OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
 # Where the slider has to stand for shapes that a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
@@ -177,7 +177,7 @@ def sphere_shape(surface, solver=None, progress=_keep_going):
         deviation=float(figures.area_ratio_std),
         flips=len(figures.folded),
         angle=float(figures.angle_distortion_mean),
-        shortfall=_shortfall(found, solver, _UNEVEN_SPHERE, _OF_A_KEY, figures.area_ratio_std),
+        shortfall=_shortfall(found.status, figures, solver, _UNEVEN_SPHERE, _OF_A_KEY),
         ended_early=found.status == "cancelled",
     )
 
@@ -446,7 +446,7 @@ def _by_disk(piece, settings, progress):
     turned = spherical.turned(faces, np.asarray(found.faces))
     island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
     remedy = _CUT if settings.solver.is_free else _OF_A_CIRCLE
-    island.shortfall = _shortfall(found, settings.solver, _UNEVEN_DISK, remedy)
+    island.shortfall = _shortfall(found.status, found.distortion, settings.solver, _UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
 
@@ -487,9 +487,8 @@ def _laid_flat(piece, settings, solver, progress):
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
     island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
-    image, area = np.abs(triangulation.signed_areas(uv)), triangulation.areas(piece.points[faces])
-    deviation = (image / area).std() * area.sum() / image.sum()
-    island.shortfall = _shortfall(found, solver, _UNEVEN_SPHERE, _OF_A_SPHERE, deviation)
+    figures = authalic.distortion(island.points, island.faces, island.uv)
+    island.shortfall = _shortfall(found.status, figures, solver, _UNEVEN_SPHERE, _OF_A_SPHERE)
     return island
 
 
@@ -525,19 +524,17 @@ def _island(piece, uv, faces, turned, points):
     )
 
 
-def _shortfall(found, solver, uneven, remedy, deviation=None):
-    """The `Shortfall` of a map; None where it has converged to what its weight of angles leaves.
+def _shortfall(status, figures, solver, uneven, remedy):
+    """The `Shortfall` of a map by its figures; None where it has converged to what its weight of angles leaves.
 
-    `deviation` is that of area ratios if it is not the map's own, `uneven` one that is bad where areas count.
+    `uneven` is a deviation of area ratios that is bad where areas count.
     """
-    deviation = found.distortion.area_ratio_std if deviation is None else deviation
-    angle = found.distortion.angle_distortion_mean
-    limit = max(uneven, min(_UNEVEN, _UNEVEN_DISK + solver.weight + solver.area_tolerance))
-    is_uneven, is_sheared = deviation > limit, angle > _SHEARED
-    if not is_uneven and not is_sheared and found.status in {"converged", "cancelled"}:
+    deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
+    limit = max(uneven, min(_UNEVEN, _UNEVEN_DISK + solver.area_tolerance + np.sqrt(solver.weight) / 2))
+    is_uneven, is_sheared = bool(deviation > limit), bool(angle > _SHEARED)
+    if not is_uneven and not is_sheared and status in {"converged", "cancelled"}:
         return None
-    figures = float(deviation), float(angle), bool(is_uneven), bool(is_sheared)
-    return Shortfall(found.status, *figures, remedy)
+    return Shortfall(status, deviation, angle, is_uneven, is_sheared, remedy)
 
 
 def _noting_the_end(progress, result):

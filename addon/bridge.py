@@ -525,7 +525,7 @@ def _island(piece, uv, faces, turned, points):
 
 
 def _shortfall(status, figures, solver, uneven, remedy):
-    """The `Shortfall` of a map by its figures; None where it has converged to what its weight of angles leaves.
+    """The `Shortfall` of a map by its figures; None where it has converged to what its weight leaves.
 
     `uneven` is a deviation of area ratios that is bad where areas count.
     """

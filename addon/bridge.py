@@ -358,7 +358,8 @@ class _Tangle:
     corners: np.ndarray
     polygons: np.ndarray
     vertices: np.ndarray
-    held: np.ndarray
+    pinned: np.ndarray
+    shared: np.ndarray
 
     @property
     def polygon(self):
@@ -390,7 +391,8 @@ def _tangles(surfaces, index, result):
                 corners=layout.corners[patch.face_of],
                 polygons=layout.polygons[patch.face_of],
                 vertices=layout.vertices[points],
-                held=layout.held[points],
+                pinned=layout.pinned[points],
+                shared=layout.shared[points],
             )
 
 
@@ -415,7 +417,7 @@ def _unflip(tangle, result, progress):
 
 
 def _untangled(tangle, faces, result, progress):
-    fixed = np.flatnonzero(tangle.held)
+    fixed = np.flatnonzero(tangle.pinned | tangle.shared)
     image = tangle.uv.astype(float)
     try:
         return authalic.untangle((tangle.points, faces), image, fixed=fixed, progress=progress)
@@ -423,7 +425,7 @@ def _untangled(tangle, faces, result, progress):
         if result.ended_early:
             raise Unsuitable(_NOT_REACHED) from problem
         flipped = np.unique(tangle.polygons[list(problem.indices)]) if problem.indices is not None else ()
-        raise Unsuitable(flips.why_not(flipped, bool(len(fixed)))) from problem
+        raise Unsuitable(flips.why_not(flipped, tangle.pinned.any(), tangle.shared.any())) from problem
 
 
 def _is_unfolded(points, faces, uv):

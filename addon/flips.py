@@ -14,7 +14,8 @@ class Layout:
 
     `points` (n, 3) in space and `uv` (n, 2) are those of UV vertices, `vertices` (n,) the mesh's, -1 at the
     centers of divided polygons. `faces` (m, 3) are UV vertices, `corners` (m, 3) mesh corners, -1 at such
-    centers, `polygons` (m,) polygons. The UV vertices `held` (n,) are pinned or belong to other faces too.
+    centers, `polygons` (m,) polygons. UV vertices stay that are `pinned` (n,), or `shared` (n,) with faces
+    that are left out.
     """
 
     points: np.ndarray
@@ -23,7 +24,8 @@ class Layout:
     faces: np.ndarray
     corners: np.ndarray
     polygons: np.ndarray
-    held: np.ndarray
+    pinned: np.ndarray
+    shared: np.ndarray
 
 
 def layout(surface):
@@ -33,7 +35,6 @@ def layout(surface):
     first, faces = triangulation.welded(mesh.triangles, image)
     vertices = mesh.triangles.ravel()[first]
     uv = image.reshape(-1, 2)[first]
-    held = _pinned(surface, mesh, faces, len(first)) | _shared(surface, vertices, uv)
     return Layout(
         points=mesh.positions[vertices],
         uv=uv,
@@ -41,7 +42,8 @@ def layout(surface):
         faces=faces,
         corners=mesh.corners,
         polygons=mesh.polygons,
-        held=held,
+        pinned=_pinned(surface, mesh, faces, len(first)),
+        shared=_shared(surface, vertices, uv),
     )
 
 
@@ -52,13 +54,18 @@ def may_be_flipped(faces, uv):
     return not ((areas > 0).all() or (areas < 0).all())
 
 
-def why_not(polygons, has_pins):
-    """Why polygons (k,) stay flipped, and what to do."""
-    named = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
-    pins, unpin = (" and pinned UVs", "unpin UVs, ") if has_pins else ("", "")
+def why_not(polygons, has_pins, is_part):
+    """Why polygons (k,) stay flipped, and what to do; `is_part`: of the island only a part is selected."""
+    faces = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
+    pins = " and pinned UVs" if has_pins else ""
+    remedies = [
+        *(["select the faces around as well"] if is_part else []),
+        *(["unpin UVs"] if has_pins else []),
+        "smooth the outline there or unwrap the island again",
+    ]
     return (
-        f"{named if len(polygons) else 'its faces'} cannot be turned without moving its outline{pins}; "
-        f"{unpin}smooth the outline there or unwrap the island again"
+        f"{faces if len(polygons) else 'its faces'} cannot be turned without moving its outline{pins}; "
+        f"{', '.join(remedies)}"
     )
 
 

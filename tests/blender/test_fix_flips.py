@@ -123,7 +123,7 @@ def test_pins_that_leave_no_way_out_are_told():
     attribute = obj.data.attributes.new(".pn.UVMap", "BOOLEAN", "CORNER")
     attribute.data.foreach_set("value", np.ones(len(obj.data.loops), bool))
     before = meshes.uv(obj)
-    with pytest.raises(RuntimeError, match=r"Grid at face 0: .*pinned UVs; unpin UVs, smooth the outline"):
+    with pytest.raises(RuntimeError, match=r"Grid at face 0: .*pinned UVs; unpin UVs, smooth"):
         fix()
     assert (meshes.uv(obj) == before).all()
 
@@ -243,6 +243,17 @@ def test_edit_mode_fixes_selected_faces_only():
     vertices, uv = corner_vertices(obj), meshes.uv(obj)
     for vertex in range(len(obj.data.vertices)):
         assert len(np.unique(uv[vertices == vertex], axis=0)) == 1
+
+
+def test_edit_mode_asks_for_the_faces_around_where_it_needs_them():
+    obj = tangled_grid()
+    before, bad = meshes.uv(obj), set(flipped(obj))
+    meshes.edit(obj)
+    meshes.select_faces(obj, bad.__contains__)
+    with pytest.raises(RuntimeError, match="select the faces around as well"):
+        fix()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert (meshes.uv(obj) == before).all()
 
 
 def test_edit_mode_without_selected_faces(capfd):

@@ -63,7 +63,7 @@ __all__ = (
 _UNEVEN_DISK, _UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
 _SHEARED = 20.0
 _CUT = "cut its long parts open by seams"
-_OF_A_CIRCLE = f"set Outline to Free, or {_CUT}"
+_NOT_FREE = f"set Outline to Free, or {_CUT}"
 _OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
 _OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
 # Where the slider has to stand for shapes that a layout of the sphere does not fold.
@@ -447,7 +447,7 @@ def _by_disk(piece, settings, progress):
     found = _disk_map(piece.points, faces, settings, progress)
     turned = spherical.turned(faces, np.asarray(found.faces))
     island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
-    remedy = _CUT if settings.solver.is_free else _OF_A_CIRCLE
+    remedy = _CUT if settings.solver.is_free else _NOT_FREE
     island.shortfall = _shortfall(found.status, found.distortion, settings.solver, _UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island

@@ -19,7 +19,7 @@ CORE_ROOMS = (
     {"sparse", "geometry", "distortion"},
     {"energy"},
     {"optimize", "embedding"},
-    {"disk", "sphere"},
+    {"disk", "sphere", "untangle"},
     {"registration"},
     {"hyperbolic"},
 )

@@ -24,6 +24,7 @@ NAMES = {
     "Registration",
     "SolverError",
     "SphereMap",
+    "Untangled",
     "__version__",
     "cut",
     "disk_map",
@@ -35,6 +36,7 @@ NAMES = {
     "register_spheres",
     "sphere_map",
     "stretch_hessian",
+    "untangle",
 }
 REGISTRATION = {
     "source_landmarks": inspect.Parameter.empty,
@@ -63,6 +65,8 @@ KEYWORDS = {
         "max_iterations": None,
         "tolerance": None,
         "fill_holes": False,
+        "corners": None,
+        "aspect": None,
         "progress": None,
     },
     "sphere_map": {
@@ -77,6 +81,7 @@ KEYWORDS = {
         "progress": None,
     },
     "stretch_hessian": {"density": None},
+    "untangle": {"fixed": None, "tolerance": 0.01, "progress": None},
     "distortion": {"density": None},
     "cut": {"seams": None},
     "register_disks": REGISTRATION,
@@ -100,6 +105,7 @@ POSITIONAL = {
     "sphere_map": ["vertices", "faces"],
     "stretch_hessian": ["vertices", "faces", "image"],
     "distortion": ["vertices", "faces", "image"],
+    "untangle": ["surface", "image"],
     "cut": ["vertices", "faces"],
     "register_disks": ["source", "target"],
     "register_spheres": ["source", "target"],
@@ -176,6 +182,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         "Registration",
         "Certificates",
         "HyperbolicStructure",
+        "Untangled",
     ],
 )
 def test_everything_is_documented(name):
@@ -203,7 +210,7 @@ def test_the_examples_in_the_docstrings_run(name):
 
 def test_every_attribute_of_the_results_is_documented():
     maps = (authalic.DiskMap, authalic.SphereMap, authalic.Registration, authalic.HyperbolicStructure)
-    for kind in (*maps, authalic.Distortion, authalic.Patch, authalic.Certificates, authalic.Pants):
+    for kind in (*maps, authalic.Untangled, authalic.Distortion, authalic.Patch, authalic.Certificates, authalic.Pants):
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 
@@ -323,7 +330,7 @@ def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
     ("option", "value", "words"),
     [
         ("method", "newton", f'method must be {DISK_METHODS}, but is "newton"'),
-        ("boundary", "none", 'boundary must be "sliding", "arc_length" or "free", but is "none"'),
+        ("boundary", "none", 'boundary must be "sliding", "arc_length", "free" or "rectangle", but is "none"'),
         ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
         ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
         ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),

@@ -166,6 +166,11 @@ impl History {
         });
     }
 
+    /// Multiplies all energies, those of an image that is scaled in the end.
+    pub(crate) fn rescale(&mut self, factor: f64) {
+        self.records.iter_mut().for_each(|record| record.authalic_energy *= factor);
+    }
+
     /// The records, one per iteration.
     pub fn records(&self) -> &[Record] {
         &self.records

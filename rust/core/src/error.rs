@@ -289,6 +289,15 @@ pub enum Error {
         reason: String,
     },
 
+    /// A boundary cannot go onto a rectangle.
+    #[error("no rectangle at boundary {}: {reason}", .vertices.named("vertex"))]
+    NoRectangle {
+        /// The vertices at fault.
+        vertices: Elements,
+        /// What is wrong with them.
+        reason: String,
+    },
+
     /// An array has the wrong shape or content.
     #[error("{name} must be {expected}, but is {found}")]
     InvalidArray {
@@ -660,6 +669,49 @@ pub enum Error {
     #[error("cancelled before there was a map without folds: let it run longer")]
     CancelledEarly,
 
+    /// What an untangled map has to keep makes folds inevitable.
+    #[error(
+        "{} cannot be unfolded, because the corners stay where they are ({}): move these vertices of the image apart, \
+         or leave them out of fixed; those of the outline always stay",
+        .faces.named("face"), .vertices.named("vertex")
+    )]
+    HeldFolded {
+        /// The folded faces.
+        faces: Elements,
+        /// Their corners that stay.
+        vertices: Elements,
+    },
+
+    /// The outline of a map turns too little for what it bounds.
+    #[error(
+        "the outline makes folds inevitable, at present in {}: it turns {turns} times counter-clockwise, and a map without \
+         folds needs {needed}; draw the outline anew, or map the part by disk_map",
+        .faces.named("face")
+    )]
+    OutlineFolds {
+        /// The folded faces of the component.
+        faces: Elements,
+        /// How often the outline turns, holes included.
+        turns: i64,
+        /// How often it has to.
+        needed: i64,
+    },
+
+    /// A tangle could not be resolved.
+    #[error(
+        "no map without folds was found that keeps the outline{}, left over: {}; {}",
+        fixed.as_ref().map_or(String::new(), |pins| format!(" and the fixed vertices ({})", pins.named("vertex"))),
+        .folded.named("face"),
+        if fixed.is_some() { "leave these vertices out of fixed, or move them" }
+        else { "smooth the outline there, or refine the mesh between its bays" }
+    )]
+    StillFolded {
+        /// The faces that stayed folded.
+        folded: Elements,
+        /// Fixed vertices that may be in the way.
+        fixed: Option<Elements>,
+    },
+
     /// No map without folded faces was found.
     #[error(
         "no map without folds was found in double precision, left over: {}; cut the long thin parts there open by seams",
@@ -683,6 +735,7 @@ impl Error {
             | Self::InitialSphere { vertices, .. }
             | Self::MapNonFinite { vertices, .. }
             | Self::NoDirection { vertices, .. }
+            | Self::NoRectangle { vertices, .. }
             | Self::InitialBoundary { vertices, .. } => Some(vertices),
             Self::IndexOutOfRange { faces, .. }
             | Self::RepeatedVertex { faces }
@@ -690,10 +743,12 @@ impl Error {
             | Self::ZeroArea { faces }
             | Self::SeveralComponents { faces }
             | Self::NoHyperbolicMetric { faces }
+            | Self::HeldFolded { faces, .. }
+            | Self::OutlineFolds { faces, .. }
             | Self::Density { faces, .. } => Some(faces),
             Self::NonManifoldEdges { edges } | Self::NotOrientable { edges } => Some(edges),
             Self::SeamOutOfRange { seams, .. } | Self::SeamNotEdge { seams } => Some(seams),
-            Self::NoEmbedding { folded } => Some(folded),
+            Self::NoEmbedding { folded } | Self::StillFolded { folded, .. } => Some(folded),
             Self::LandmarkOutOfRange { pairs, .. }
             | Self::RepeatedLandmark { pairs, .. }
             | Self::LandmarkOnBoundary { pairs, .. } => Some(pairs),
@@ -720,7 +775,7 @@ impl Error {
     pub fn is_solver_error(&self) -> bool {
         match self {
             Self::Surface { error, .. } => error.is_solver_error(),
-            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } => true,
+            Self::FactorizationFailed { .. } | Self::NoEmbedding { .. } | Self::StillFolded { .. } => true,
             Self::NoHyperbolicMetric { .. } | Self::CancelledEarly => true,
             _ => false,
         }

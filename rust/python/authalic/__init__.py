@@ -19,6 +19,7 @@ from ._native import (
     Registration,
     SolverError,
     SphereMap,
+    Untangled,
     __version__,
     cut,
     disk_map,
@@ -30,6 +31,7 @@ from ._native import (
     register_spheres,
     sphere_map,
     stretch_hessian,
+    untangle,
 )
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "Registration",
     "SolverError",
     "SphereMap",
+    "Untangled",
     "__version__",
     "cut",
     "disk_map",
@@ -54,4 +57,5 @@ __all__ = [
     "register_spheres",
     "sphere_map",
     "stretch_hessian",
+    "untangle",
 ]

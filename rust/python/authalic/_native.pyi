@@ -18,6 +18,7 @@ __all__ = [
     "Registration",
     "SolverError",
     "SphereMap",
+    "Untangled",
     "__version__",
     "cut",
     "disk_map",
@@ -29,6 +30,7 @@ __all__ = [
     "register_spheres",
     "sphere_map",
     "stretch_hessian",
+    "untangle",
 ]
 
 _Reals: TypeAlias = NDArray[np.float64]
@@ -121,6 +123,21 @@ class SphereMap:
     def iterations(self) -> int: ...
     @property
     def history(self) -> NDArray[np.void]: ...
+    @property
+    def distortion(self) -> Distortion: ...
+    @property
+    def seconds(self) -> float: ...
+
+@final
+class Untangled:
+    @property
+    def image(self) -> _Reals: ...
+    @property
+    def moved(self) -> _Indices: ...
+    @property
+    def folded_before(self) -> _Indices: ...
+    @property
+    def status(self) -> Literal["converged", "stalled", "cancelled"]: ...
     @property
     def distortion(self) -> Distortion: ...
     @property
@@ -259,7 +276,7 @@ def disk_map(
     faces: ArrayLike,
     *,
     method: Literal["gauss_newton", "conjugate_gradient", "fixed_point"] = "gauss_newton",
-    boundary: Literal["sliding", "arc_length", "free"] = "sliding",
+    boundary: Literal["sliding", "arc_length", "free", "rectangle"] = "sliding",
     density: ArrayLike | None = None,
     angle_weight: float = 0.0,
     area_tolerance: float | None = None,
@@ -267,6 +284,8 @@ def disk_map(
     max_iterations: int | None = None,
     tolerance: float | None = None,
     fill_holes: bool = False,
+    corners: ArrayLike | None = None,
+    aspect: float | None = None,
     progress: _Progress | None = None,
 ) -> DiskMap: ...
 def sphere_map(
@@ -287,6 +306,14 @@ def sphere_map(
 def stretch_hessian(
     vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
 ) -> tuple[_Reals, _Indices, _Indices]: ...
+def untangle(
+    surface: _Surface,
+    image: ArrayLike,
+    *,
+    fixed: ArrayLike | None = None,
+    tolerance: float = 0.01,
+    progress: _Progress | None = None,
+) -> Untangled: ...
 def register_disks(
     source: _Surface,
     target: _Surface,

@@ -7,8 +7,9 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_indices, from_points, indices, points, values};
+use crate::arrays::{from_indices, from_points, index_list, indices, points, values};
 use crate::distortion::Distortion;
+use crate::errors::bad_array;
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 
@@ -77,10 +78,12 @@ impl DiskMap {
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
 ///     The optimiser.
-/// boundary : {"sliding", "arc_length", "free"}
+/// boundary : {"sliding", "arc_length", "free", "rectangle"}
 ///     Whether boundary vertices slide along the circle in their order, stay at arcs proportional to the edge
-///     lengths as in the papers, or take any outline that does not cross itself, the whole scaled into the unit
-///     disk. A free boundary is for "gauss_newton"; with an `angle_weight` it spares both angles and areas.
+///     lengths as in the papers, take any outline that does not cross itself, the whole scaled into the unit
+///     disk, or go onto a rectangle: four at its corners, the others sliding along its sides. A rectangle has its lower left
+///     corner in (0, 0) and a longer side of 1. A free boundary and a rectangle are for "gauss_newton"; with an `angle_weight`
+///     a free boundary spares both angles and areas.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
@@ -103,6 +106,14 @@ impl DiskMap {
 ///     √(gᵀM⁻¹g), the gradient_norm of the history, falls below it, default 1e-8.
 /// fill_holes : bool
 ///     Fill all boundary loops but the longest virtually instead of refusing them. Default False.
+/// corners : (4,) integer array, optional
+///     For a rectangle: the boundary vertices at its corners, in their order along the boundary, counter-clockwise, the
+///     first at the lower left. Default: where the boundary turns most, or where there are fewer than four such places, the
+///     middles of the longest sides between them; laid out with z, or on flat surfaces y, up. An edge inside the surface
+///     between two vertices of one side would make faces flat: such corners are refused.
+/// aspect : float, optional
+///     For a rectangle: width over height, from 1e-4 to 1e4. Default: the aspect that spares angles most, found along with
+///     the map.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and in long steps from within; False cancels and returns the best map so far.
 ///
@@ -129,6 +140,7 @@ impl DiskMap {
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
                     area_tolerance=None, initial=None, max_iterations=None, tolerance=None, fill_holes=false,
+                    corners=None, aspect=None,
                     progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_map(
@@ -144,6 +156,8 @@ pub fn disk_map(
     max_iterations: Option<i64>,
     tolerance: Option<f64>,
     fill_holes: bool,
+    corners: Option<&Bound<'_, PyAny>>,
+    aspect: Option<f64>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<DiskMap> {
     // 1. Arguments to plain data
@@ -153,6 +167,7 @@ pub fn disk_map(
     let faces = indices::<3>(faces, "faces", vertices.len())?;
     let density = density.map(|density| values(density, "density")).transpose()?;
     let initial = initial.map(|initial| points::<2>(initial, "initial")).transpose()?;
+    let corners = corners.map(|corners| parse_corners(corners, vertices.len())).transpose()?;
     // 2. The run
     let (map, faces) = run(py, progress, move |observer| {
         let mesh = TriangleMesh::new(&vertices, &faces)?;
@@ -167,6 +182,8 @@ pub fn disk_map(
             max_iterations,
             tolerance,
             fill_holes,
+            corners,
+            aspect,
         };
         Ok((authalic::disk_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
     })?;
@@ -190,8 +207,17 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
         "arc_length" => Ok(Boundary::ArcLength),
         "sliding" => Ok(Boundary::Sliding),
         "free" => Ok(Boundary::Free),
+        "rectangle" => Ok(Boundary::Rectangle),
         other => Err(PyValueError::new_err(format!(
-            "boundary must be \"sliding\", \"arc_length\" or \"free\", but is {other:?}"
+            "boundary must be \"sliding\", \"arc_length\", \"free\" or \"rectangle\", but is {other:?}"
         ))),
     }
+}
+
+/// The corners of a rectangle.
+fn parse_corners(corners: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<[usize; 4]> {
+    let list = index_list(corners, "corners", "corner", n_vertices)?;
+    let found = format!("of shape ({},)", list.len());
+    list.try_into()
+        .map_err(|_| bad_array(corners.py(), "corners", found, "of shape (4,), boundary vertices".into()))
 }

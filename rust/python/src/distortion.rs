@@ -63,13 +63,13 @@ impl Distortion {
 }
 
 /// A map of the vertices, owned.
-enum OwnedImage {
+pub(crate) enum OwnedImage {
     Plane(Vec<[f64; 2]>),
     Sphere(Vec<[f64; 3]>),
 }
 
 impl OwnedImage {
-    fn extract(image: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Self> {
+    pub(crate) fn extract(image: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Self> {
         let owned = match width(image, "image")? {
             2 => Self::Plane(points(image, "image")?),
             _ => Self::Sphere(points(image, "image")?),
@@ -80,6 +80,13 @@ impl OwnedImage {
                 let expected = format!("of shape ({n_vertices}, 2) or ({n_vertices}, 3), one row per vertex");
                 Err(bad_array(image.py(), "image", format!("of {rows} rows"), expected))
             }
+        }
+    }
+
+    pub(crate) fn view(&self) -> Image<'_> {
+        match self {
+            Self::Plane(map) => Image::Plane(map),
+            Self::Sphere(map) => Image::Sphere(map),
         }
     }
 
@@ -143,11 +150,7 @@ pub fn distortion(
             Some(density) => normalized_density(&density, faces.len())?,
             None => authalic::mesh::geometry::face_areas(&soup.points, &soup.faces),
         };
-        let image = match &image {
-            OwnedImage::Plane(map) => Image::Plane(map),
-            OwnedImage::Sphere(map) => Image::Sphere(map),
-        };
-        authalic::distortion(&soup.points, &soup.faces, image, &targets)
+        authalic::distortion(&soup.points, &soup.faces, image.view(), &targets)
     })?;
     Ok(Distortion::new(py, &figures))
 }

@@ -13,6 +13,7 @@ mod registration;
 mod run;
 mod sphere;
 mod structure;
+mod untangle;
 
 use pyo3::prelude::*;
 
@@ -29,11 +30,13 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<registration::Certificates>()?;
     module.add_class::<structure::HyperbolicStructure>()?;
     module.add_class::<structure::Pants>()?;
+    module.add_class::<untangle::Untangled>()?;
     module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
     module.add_function(wrap_pyfunction!(sphere::sphere_map, module)?)?;
     module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)?;
+    module.add_function(wrap_pyfunction!(untangle::untangle, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_disks, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_spheres, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_hyperbolic, module)?)?;

@@ -61,7 +61,7 @@ impl<'a> DiskDomain<'a> {
     pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
         let interior = Block::analyse(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
-            Boundary::ArcLength | Boundary::Free => None,
+            Boundary::ArcLength | Boundary::Free | Boundary::Rectangle => None,
             Boundary::Sliding => {
                 let block = Block::analyse(mesh, Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
                 Some(SlidingBoundary { block, barrier: ArcBarrier::new(mesh) })

@@ -135,7 +135,7 @@ impl Run<'_> {
     fn codomain(&self) -> Codomain {
         match self.options.boundary {
             Boundary::Free => Codomain::Plane,
-            Boundary::ArcLength | Boundary::Sliding => Codomain::Disk,
+            Boundary::ArcLength | Boundary::Sliding | Boundary::Rectangle => Codomain::Disk,
         }
     }
 
@@ -143,7 +143,7 @@ impl Run<'_> {
     fn outline(&self) -> Vec<u32> {
         match self.options.boundary {
             Boundary::Free => self.mesh.boundary_loops()[0].clone(),
-            Boundary::ArcLength | Boundary::Sliding => Vec::new(),
+            Boundary::ArcLength | Boundary::Sliding | Boundary::Rectangle => Vec::new(),
         }
     }
 
@@ -166,7 +166,7 @@ impl Run<'_> {
     /// How the vertices may move.
     fn motions(&self) -> Vec<Motion> {
         let on_boundary = match self.options.boundary {
-            Boundary::ArcLength => Motion::Held,
+            Boundary::ArcLength | Boundary::Rectangle => Motion::Held,
             Boundary::Sliding => Motion::Circle,
             Boundary::Free => Motion::Plane,
         };

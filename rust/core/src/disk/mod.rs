@@ -16,6 +16,7 @@ mod domain;
 mod fixed_point;
 mod gauss_newton;
 mod holes;
+mod rectangle;
 mod run;
 mod start;
 pub(crate) mod unfold;
@@ -60,6 +61,9 @@ pub enum Boundary {
     /// Free to take any shape that does not cross itself, for Gauss–Newton only: with a weight of angles it
     /// takes the shape that suits these. The map lies inside the unit circle.
     Free,
+    /// On the sides of a rectangle, for Gauss–Newton only: four vertices at its corners, the others sliding along its sides.
+    /// The map lies in `[0, w] × [0, h]` with a longer side of 1.
+    Rectangle,
 }
 
 /// Options of [`disk_map`].
@@ -92,6 +96,10 @@ pub struct DiskMapOptions<'a> {
     pub tolerance: Option<f64>,
     /// Fill all boundary loops but the longest virtually instead of refusing them; off.
     pub fill_holes: bool,
+    /// The vertices at the corners of a rectangle, counter-clockwise from the lower left one; sought where `None`.
+    pub corners: Option<[usize; 4]>,
+    /// Width over height of a rectangle; whatever suits angles best where `None`.
+    pub aspect: Option<f64>,
 }
 
 /// A one-to-one map of a disk to the unit disk.
@@ -146,6 +154,9 @@ pub fn disk_map(
     // 3. Minimise the energy, unfold what folded
     let run = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() };
     let (mut uv, status) = match options.method {
+        Method::GaussNewton if options.boundary == Boundary::Rectangle => {
+            rectangle::solve(&run, &mut history, observer)?
+        }
         Method::GaussNewton => run.renumbered(&mut history, observer)?,
         Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
     };
@@ -165,12 +176,18 @@ impl DiskMapOptions<'_> {
             verdict => verdict?,
         }
         if let Some(initial) = self.initial {
-            check_initial(mesh, initial)?;
+            check_initial(mesh, self, initial)?;
+        }
+        if self.boundary == Boundary::Rectangle && self.method != Method::GaussNewton {
+            let expected =
+                "arc_length or sliding for the papers' methods; only gauss_newton has rectangles".into();
+            return Err(Error::InvalidOption { name: "boundary", found: "rectangle".into(), expected });
         }
         if self.boundary == Boundary::Free && self.method != Method::GaussNewton {
             let expected = "arc_length or sliding for the papers' methods; only gauss_newton frees it".into();
             return Err(Error::InvalidOption { name: "boundary", found: "free".into(), expected });
         }
+        rectangle::check(mesh, self)?;
         check_angle_weight(self.angle_weight, self.method == Method::GaussNewton)?;
         check_area_tolerance(self.area_tolerance, self.angle_weight, self.method == Method::GaussNewton)?;
         match self.tolerance {
@@ -185,7 +202,11 @@ impl DiskMapOptions<'_> {
 }
 
 /// A start map must be finite and run once around the unit circle; its folds are mended like any others.
-fn check_initial(mesh: &TriangleMesh, initial: &[[f64; 2]]) -> Result<(), Error> {
+fn check_initial(
+    mesh: &TriangleMesh,
+    options: &DiskMapOptions<'_>,
+    initial: &[[f64; 2]],
+) -> Result<(), Error> {
     if initial.len() != mesh.n_vertices() || mesh.boundary_loops().len() != 1 {
         let expected = format!("of shape ({}, 2) on a surface with one boundary loop", mesh.n_vertices());
         let found = format!("of shape ({}, 2) with {} loops", initial.len(), mesh.boundary_loops().len());
@@ -194,6 +215,9 @@ fn check_initial(mesh: &TriangleMesh, initial: &[[f64; 2]]) -> Result<(), Error>
     let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
         return Err(Error::MapNonFinite { name: "initial", vertices });
+    }
+    if options.boundary == Boundary::Rectangle {
+        return rectangle::check_initial(mesh, options, initial);
     }
     let boundary = &mesh.boundary_loops()[0];
     let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;

@@ -177,7 +177,7 @@ impl Star {
     /// Adds what a step along the sphere or the circle bends towards its centre, and the arcs.
     fn bend(&self, x: Vector, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
         match motion {
-            Motion::Held | Motion::Plane => {}
+            Motion::Held | Motion::Side(_) | Motion::Plane => {}
             Motion::Sphere => {
                 sum.hessian[0] -= bend;
                 sum.hessian[2] -= bend;
@@ -241,7 +241,7 @@ mod tests {
                 let x = [0.3 * angle.cos(), 0.5 * angle.sin(), 1.0];
                 scaled(x, 1.0 / norm(x))
             }
-            Motion::Held | Motion::Plane => {
+            Motion::Held | Motion::Side(_) | Motion::Plane => {
                 [0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0]
             }
             Motion::Circle => [[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k],
@@ -252,7 +252,7 @@ mod tests {
         (0..n).for_each(|k| star.push(corner(k), corner(next(k)), 0.02 + 0.01 * k as f64));
         match motion {
             Motion::Sphere => (star, [0.0, 0.0, 1.0]),
-            Motion::Held | Motion::Plane => (star, [0.2, 0.05, 1.0]),
+            Motion::Held | Motion::Side(_) | Motion::Plane => (star, [0.2, 0.05, 1.0]),
             Motion::Circle => {
                 star.arcs = Some([(corner(3), 0.4), (corner(0), 0.9)]);
                 (star, rotated([0.0, -1.0, 1.0], -0.1))

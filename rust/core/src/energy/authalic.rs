@@ -193,6 +193,23 @@ impl AuthalicEnergy {
         })
     }
 
+    /// The first two derivatives by t of the angle energy of the planar map (eᵗ x, e⁻ᵗ y), which has the same areas.
+    pub(crate) fn angle_slopes_of_stretch(&self, map: &[Vector], t: f64) -> [f64; 2] {
+        parallel::sums(self.targets.len(), |face| {
+            let corners = self.triangle(map, face);
+            let along = |axis: usize| {
+                let square = |c: usize| (corners.x[(c + 1) % 3][axis] - corners.x[(c + 2) % 3][axis]).powi(2);
+                (0..3).map(|c| 0.5 * self.cotangents[face][c] * square(c)).sum::<f64>()
+            };
+            let (grown, shrunk) = ((2.0 * t).exp() * along(0), (-2.0 * t).exp() * along(1));
+            let angle = (grown + shrunk) / corners.determinant;
+            let slope = 2.0 * (grown - shrunk) / corners.determinant;
+            let outer = 1.0 + STEEPNESS * (angle - 1.0);
+            let target = self.targets[face];
+            [target * outer * slope, target * (STEEPNESS * slope * slope + 4.0 * outer * angle)]
+        })
+    }
+
     /// The gradient by the unknowns of every vertex, (n, 2).
     pub(crate) fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
         self.gather(|face| {
@@ -435,7 +452,7 @@ fn add_quadratic(element: &mut Element, frames: [&Frame; 3], weights: [f64; 3]) 
 }
 
 /// The cotangents of a triangle whose height on the longest edge counts as at least `flattest` times that edge.
-fn rest_cotangents(corners: [Vector; 3], flattest: f64) -> [f64; 3] {
+pub(crate) fn rest_cotangents(corners: [Vector; 3], flattest: f64) -> [f64; 3] {
     let lengths = crate::mesh::geometry::edge_lengths(corners);
     let apex = (0..3).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b])).expect("three edges");
     let [top, left, right] = [0, 1, 2].map(|k| corners[(apex + k) % 3]);

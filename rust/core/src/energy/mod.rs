@@ -8,5 +8,7 @@ pub(crate) mod motion;
 pub mod spatial;
 pub mod stretch;
 
+pub(crate) use authalic::rest_cotangents;
+pub(crate) use psd::clamp_negative_eigenvalues;
 pub use spatial::SpatialStretchEnergy;
 pub use stretch::StretchEnergy;

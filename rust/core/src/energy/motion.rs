@@ -15,11 +15,16 @@ pub(crate) enum Motion {
     Held,
     /// Slides along the unit circle of the plane z = 1, by an angle.
     Circle,
+    /// Slides in the plane z = 1 along an axis, 0 or 1, as on a side of a rectangle.
+    Side(usize),
     /// Moves in the plane z = 1.
     Plane,
     /// Moves on the unit sphere.
     Sphere,
 }
+
+/// The axes of the plane.
+const UNITS: [Vector; 2] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
 /// The directions in which a vertex may leave its place.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,7 +40,7 @@ impl Motion {
     pub(crate) fn n_unknowns(self) -> u8 {
         match self {
             Self::Held => 0,
-            Self::Circle => 1,
+            Self::Circle | Self::Side(_) => 1,
             Self::Plane | Self::Sphere => 2,
         }
     }
@@ -45,7 +50,8 @@ impl Motion {
         match self {
             Self::Held => Frame::default(),
             Self::Circle => Frame { axes: [[-x[1], x[0], 0.0], [0.0; 3]], outward: [x[0], x[1], 0.0] },
-            Self::Plane => Frame { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], outward: [0.0; 3] },
+            Self::Side(along) => Frame { axes: [UNITS[along], [0.0; 3]], outward: [0.0; 3] },
+            Self::Plane => Frame { axes: UNITS, outward: [0.0; 3] },
             Self::Sphere => Frame { axes: tangent_axes(x), outward: x },
         }
     }
@@ -57,6 +63,8 @@ impl Motion {
         match self {
             Self::Held => x,
             Self::Circle => rotated(x, a),
+            Self::Side(0) => [x[0] + a, x[1], 1.0],
+            Self::Side(_) => [x[0], x[1] + a, 1.0],
             Self::Plane => [x[0] + a, x[1] + b, 1.0],
             Self::Sphere => {
                 let moved = add(x, add(scaled(frame.axes[0], a), scaled(frame.axes[1], b)));
@@ -96,6 +104,8 @@ mod tests {
     fn paths_start_along_the_frame_and_bend_away_from_outward() {
         let places = [
             (Motion::Circle, [0.6, -0.8, 1.0], [1.0, 0.0]),
+            (Motion::Side(0), [0.3, 0.2, 1.0], [1.0, 0.0]),
+            (Motion::Side(1), [0.3, 0.2, 1.0], [-2.0, 0.0]),
             (Motion::Plane, [0.3, 0.2, 1.0], [0.6, 0.8]),
             (Motion::Sphere, [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0], [0.6, 0.8]),
         ];

@@ -287,7 +287,10 @@ fn found(source: Arrays, target: Arrays, mesh: &TriangleMesh, outcome: Outcome) 
 type Arrays = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// A surface given as (vertices, faces).
-fn surface(object: &Bound<'_, PyAny>, [name, vertices, faces]: [&'static str; 3]) -> PyResult<Arrays> {
+pub(crate) fn surface(
+    object: &Bound<'_, PyAny>,
+    [name, vertices, faces]: [&'static str; 3],
+) -> PyResult<Arrays> {
     let parts: Vec<Bound<'_, PyAny>> =
         object.try_iter().and_then(|parts| parts.take(3).collect()).unwrap_or_default();
     let [first, second] = &parts[..] else {

@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Maps onto a rectangle: four boundary vertices at its corners, the others sliding along its sides.
+//!
+//! The rectangle is convex, so a map without folded faces whose boundary vertices keep their order is one-to-one. As on the
+//! disk a guarded Gauss–Newton descent lowers the energy of the areas with a share of the angles; a vertex on a side has
+//! one unknown.
+//!
+//! A free aspect is found along with the map. Stretching the rectangle one way and pressing it the other by the same factor
+//! changes no area and folds no face, so only the angles tell one aspect from another: after each descent the aspect of
+//! least angle energy is taken ([`best_stretch`]), until it moves no more.
+//!
+//! Inside, rectangles are centered on (0, 0) and have the area of the unit disk; results have their lower left corner in
+//! (0, 0) and a longer side of 1.
+//!
+//! Cost: that of the disk, and some iterations more for each correction of the aspect.
+
+mod corners;
+
+use std::f64::consts::PI;
+
+use super::domain::DiskDomain;
+use super::fixed_point::fixed_point;
+use super::run::Run;
+use super::{Boundary, DiskMapOptions, certificate, unfold};
+use crate::control::{History, Observer, Phase, Silent, Status, Watch};
+use crate::energy::authalic::{AuthalicEnergy, Codomain};
+use crate::energy::motion::Motion;
+use crate::energy::stretch::Profile;
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, corner_cotangents};
+use crate::mesh::renumbering::Renumbered;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
+use crate::optimize::{Stopping, floors};
+use crate::sparse::{Order, elimination_order};
+use corners::Outline;
+
+/// Fixed-point steps at the most, and where √(gᵀM⁻¹g) ends them.
+const FIXED_POINT: Stopping = Stopping { max_iterations: 5, tolerance: 0.15 };
+
+/// Unguarded iterations that unfold, at the most.
+const OPEN_ITERATIONS: usize = 12;
+
+/// Guarded iterations where those leave the area ratio a deviation of 1 %, and at the most.
+const GUARDED_ITERATIONS: [usize; 2] = [27, 60];
+
+/// Area deviation of the result below which nothing is left to gain.
+const TOLERANCE: f64 = 2e-4;
+
+/// Corrections of a free aspect where angles count, at the most.
+const MOST_CORRECTIONS: usize = 12;
+
+/// A correction of the logarithm of the aspect below this is none.
+const SETTLED: f64 = 1e-7;
+
+/// Aspects, and one over them, up to this.
+const MOST_ASPECT: f64 = 1e4;
+
+/// Up to so many vertices a cancelled run computes a map where it has none yet.
+const QUICK: usize = 50_000;
+
+const MESSAGE: &str = "Start map";
+
+/// A map in the plane z = 1.
+type Map = Vec<Vector>;
+
+/// A surface with its corners.
+struct Rectangle<'a> {
+    run: Run<'a>,
+    /// The boundary vertices of the sides, bottom, right, top and left: each from its first corner, its last left out.
+    sides: [Vec<u32>; 4],
+    /// The aspect that is given.
+    aspect: Option<f64>,
+}
+
+/// Refuses options that do not fit a rectangle, or that only a rectangle has.
+pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<(), Error> {
+    if options.boundary != Boundary::Rectangle {
+        let given = [("corners", options.corners.is_some()), ("aspect", options.aspect.is_some())];
+        return match given.into_iter().find(|&(_, is_given)| is_given) {
+            None => Ok(()),
+            Some((name, _)) => Err(Error::InvalidOption {
+                name,
+                found: "given".into(),
+                expected: "left out unless the boundary is a rectangle".into(),
+            }),
+        };
+    }
+    if let Some(aspect) = options.aspect
+        && !(aspect >= 1.0 / MOST_ASPECT && aspect <= MOST_ASPECT)
+    {
+        let expected = "width over height, from 1e-4 to 1e4".into();
+        return Err(Error::InvalidOption { name: "aspect", found: aspect.to_string(), expected });
+    }
+    corners_of(mesh, options).map(|_| ())
+}
+
+/// The places of the corners along the boundary.
+fn corners_of(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<[usize; 4], Error> {
+    let outline = Outline::new(mesh);
+    match (options.corners, options.initial) {
+        (Some(corners), _) => outline.given(corners),
+        (None, None) => outline.found(options.aspect),
+        (None, Some(initial)) => outline.given(corners_of_map(outline.vertices, initial)),
+    }
+}
+
+/// The boundary vertices nearest to the corners of the bounding box of a map.
+fn corners_of_map(outline: &[u32], map: &[[f64; 2]]) -> [usize; 4] {
+    let place = |v: u32| map[v as usize];
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]: [f64; 2]| {
+        let [low, high] = bounds(outline, map);
+        let corner = [if x < 0.0 { low[0] } else { high[0] }, if y < 0.0 { low[1] } else { high[1] }];
+        let off = |v: u32| (place(v)[0] - corner[0]).hypot(place(v)[1] - corner[1]);
+        *outline.iter().min_by(|&&a, &&b| off(a).total_cmp(&off(b))).expect("a loop has vertices") as usize
+    })
+}
+
+/// The lowest and highest coordinates.
+fn bounds(outline: &[u32], map: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    outline.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], &v| {
+        let x = map[v as usize];
+        [[0, 1].map(|k| low[k].min(x[k])), [0, 1].map(|k| high[k].max(x[k]))]
+    })
+}
+
+/// Refuses a start map whose boundary does not run along the sides of an upright rectangle.
+pub(super) fn check_initial(
+    mesh: &TriangleMesh,
+    options: &DiskMapOptions<'_>,
+    initial: &[[f64; 2]],
+) -> Result<(), Error> {
+    let outline = Outline::new(mesh);
+    let [low, high] = bounds(outline.vertices, initial);
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    let refuse =
+        |vertices: &[u32], reason: &str| match Elements::collect(vertices.iter().map(|&v| v as usize)) {
+            None => Ok(()),
+            Some(vertices) => Err(Error::InitialBoundary { vertices, reason: reason.into() }),
+        };
+    if !(high[0] > low[0] && high[1] > low[1]) {
+        return refuse(outline.vertices, "it must run around a rectangle");
+    }
+    let corners = corners_of(mesh, options)?;
+    for (k, side) in sides(outline.vertices, &corners).iter().enumerate() {
+        let (across, line) = ((k + 1) % 2, if k == 0 || k == 3 { low } else { high });
+        let off = |&&v: &&u32| (initial[v as usize][across] - line[across]).abs() > 1e-6 * size;
+        let off: Vec<u32> = side.iter().filter(off).copied().collect();
+        refuse(&off, "it must lie on the sides of an upright rectangle, the corners in its corners")?;
+    }
+    Ok(())
+}
+
+/// The boundary vertices of each side, from its first corner up to its last.
+fn sides(outline: &[u32], corners: &[usize; 4]) -> [Vec<u32>; 4] {
+    let n = outline.len();
+    [0, 1, 2, 3].map(|k| {
+        let count = (corners[(k + 1) % 4] + n - corners[k]) % n;
+        (0..count).map(|step| outline[(corners[k] + step) % n]).collect()
+    })
+}
+
+/// Maps a surface onto a rectangle; the map as it is handed out.
+///
+/// # Errors
+/// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+/// there was a map without folds.
+pub(super) fn solve(
+    run: &Run<'_>,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> Result<(super::Map, Status), Error> {
+    // 1. The surface in elimination order
+    let is_cancelled = !observer.progress(0.0, "Ordering");
+    if is_cancelled && run.mesh.n_vertices() > QUICK {
+        return Err(Error::CancelledEarly);
+    }
+    let corners = corners_of(run.mesh, run.options)?;
+    let by_order = Renumbered::new(run.mesh, elimination_order(run.mesh.n_vertices(), run.mesh.faces())?);
+    let targets = by_order.of_faces(run.targets);
+    let initial = run.options.initial.map(|map| by_order.of_vertices(map));
+    let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*run.options };
+    let outline = Outline::new(&by_order.mesh);
+    let rectangle = Rectangle {
+        run: Run { mesh: &by_order.mesh, targets: &targets, options: &options, ..*run },
+        sides: sides(outline.vertices, &corners),
+        aspect: options.aspect,
+    };
+    let of_initial = options.initial.map(|map| {
+        let [low, high] = bounds(outline.vertices, map);
+        (high[0] - low[0]) / (high[1] - low[1])
+    });
+    let likely = of_initial.unwrap_or_else(|| outline.aspect(&corners));
+    let aspect = options.aspect.unwrap_or(likely.clamp(1.0 / MOST_ASPECT, MOST_ASPECT));
+    // 2. The map
+    let solved = rectangle.solve(aspect, &corners, &outline, is_cancelled, history, observer);
+    let (map, status) = solved.map_err(|error| match error {
+        Error::NoEmbedding { folded } => {
+            let folded = by_order.given_faces(folded);
+            let first = folded.first.iter().map(|&face| run.given_face(face)).collect();
+            Error::NoEmbedding { folded: Elements { first, ..folded } }
+        }
+        error => error,
+    })?;
+    // 3. Lower left corner in (0, 0), longer side 1
+    let (map, scale) = rectangle.laid_out(&map);
+    history.rescale(scale * scale);
+    Ok((by_order.given(&map), status))
+}
+
+impl Rectangle<'_> {
+    /// A map without folds onto the rectangle around (0, 0) with the area of the unit disk.
+    fn solve(
+        &self,
+        aspect: f64,
+        corners: &[usize; 4],
+        outline: &Outline<'_>,
+        is_cancelled: bool,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let floor = floors::floors(self.run.targets)[0];
+        let energy = floors::energy(self.run.mesh, self.run.targets, Codomain::Plane, floor);
+        let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
+        // 1. A map without folds
+        let boundary = self.boundary(aspect, corners, outline);
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
+        let (map, status) = self.start(&problem, boundary, is_cancelled, history, &mut phase)?;
+        let map = self.with_best_aspect(&problem, map).0;
+        if status == Status::Cancelled {
+            return Ok((map, status));
+        }
+        // 2. A guarded descent, the aspect, and so on
+        let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
+        let surface =
+            floors::Surface { mesh: self.run.mesh, targets: self.run.targets, codomain: Codomain::Plane };
+        let (problem, map, status) =
+            floors::descend(&surface, problem, map, &self.options(), history, &mut phase);
+        let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
+        Ok(self.settled(&problem, map, status, history, &mut phase))
+    }
+
+    /// Corrects a free aspect until it and the map are best for each other.
+    fn settled(
+        &self,
+        problem: &Problem,
+        mut map: Map,
+        mut status: Status,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        for round in 0..MOST_CORRECTIONS {
+            let (stretched, change) = self.with_best_aspect(problem, map);
+            map = stretched;
+            let counts_angles = self.run.options.angle_weight > 0.0;
+            if status == Status::Cancelled || change.abs() < SETTLED || !counts_angles {
+                break;
+            }
+            let from = 1.0 - 0.5f64.powi(round as i32);
+            let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
+            (map, status) = minimize(problem, map, &self.options(), history, &mut phase);
+        }
+        (map, status)
+    }
+
+    /// The map stretched to the aspect of least angle energy, and by which logarithm; as it is where the aspect is given.
+    fn with_best_aspect(&self, problem: &Problem, map: Map) -> (Map, f64) {
+        if self.aspect.is_some() {
+            return (map, 0.0);
+        }
+        let width = map[self.sides[1][0] as usize][0] - map[self.sides[0][0] as usize][0];
+        let height = map[self.sides[3][0] as usize][1] - map[self.sides[0][0] as usize][1];
+        let now = (width / height).ln();
+        let bound = MOST_ASPECT.ln();
+        let change = (now + 2.0 * best_stretch(&problem.energy, &map)).clamp(-bound, bound) - now;
+        let factor = (0.5 * change).exp();
+        let stretched: Map = map.iter().map(|&[x, y, z]| [x * factor, y / factor, z]).collect();
+        match problem.energy.is_embedding(&stretched) {
+            true => (stretched, change),
+            false => (map, 0.0),
+        }
+    }
+
+    /// A map without folds.
+    fn start(
+        &self,
+        problem: &Problem,
+        boundary: super::Map,
+        is_cancelled: bool,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        // 1. The map given, or some steps of the papers' fixed point from the harmonic map
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
+        let (near, mut status) = match (is_cancelled, self.run.options.initial) {
+            (_, Some(initial)) => (Some(self.given(initial, &boundary)), Status::MaxIterations),
+            (true, None) => (None, Status::Cancelled),
+            (false, None) => self.near(problem, boundary.clone(), history, &mut phase),
+        };
+        if is_cancelled {
+            status = Status::Cancelled;
+        }
+        // 2. What folds there is unfolded by an unguarded descent, or by mean values
+        if let Some(near) = near {
+            if problem.energy.is_embedding(&near) {
+                return Ok((near, status));
+            }
+            let mut open = near;
+            if status != Status::Cancelled {
+                let options = GaussNewtonOptions {
+                    profile: Profile::Stretch,
+                    until_open: Some(0),
+                    usual_iterations: OPEN_ITERATIONS,
+                    most_iterations: self
+                        .run
+                        .options
+                        .max_iterations
+                        .unwrap_or(OPEN_ITERATIONS)
+                        .min(OPEN_ITERATIONS),
+                    ..self.options()
+                };
+                let mut phase = Phase { whole: observer, from: 0.3, to: 0.8 };
+                (open, status) = minimize(problem, open, &options, history, &mut phase);
+            }
+            if problem.energy.is_embedding(&open) {
+                return Ok((open, status));
+            }
+            if status != Status::Cancelled
+                && let Some(unfolded) = unfold::unfold(self.run.mesh, &flat(&open)).map(lifted)
+                && problem.energy.is_embedding(&unfolded)
+            {
+                return Ok((unfolded, status));
+            }
+        }
+        // 3. Tutte's embedding
+        self.tutte(problem, boundary, status, observer)
+    }
+
+    /// The harmonic map and fixed-point steps from it, the boundary held.
+    fn near(
+        &self,
+        problem: &Problem,
+        boundary: super::Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Option<Map>, Status) {
+        let Ok(mut domain) = DiskDomain::new(self.run.mesh, problem.energy.targets(), Boundary::ArcLength)
+        else {
+            return (None, Status::Stalled);
+        };
+        let by_face = corner_cotangents(self.run.mesh.points(), self.run.mesh.faces());
+        let weights: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
+        let mut harmonic = boundary;
+        match domain.solve_dirichlet(&weights, &mut harmonic, &Watch::new(observer, 0.0, MESSAGE)) {
+            Ok(()) => {}
+            Err(Error::CancelledEarly) => return (None, Status::Cancelled),
+            Err(_) => return (None, Status::Stalled),
+        }
+        let (map, status) = fixed_point(&mut domain, harmonic, &FIXED_POINT, history, observer);
+        (Some(lifted(map)), status)
+    }
+
+    fn tutte(
+        &self,
+        problem: &Problem,
+        mut map: super::Map,
+        status: Status,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        if status == Status::Cancelled && self.run.mesh.n_vertices() > QUICK {
+            return Err(Error::CancelledEarly);
+        }
+        let mut silent = Silent;
+        let watch = match status {
+            // a run already cancelled has no one to ask
+            Status::Cancelled => Watch::new(&mut silent, 0.0, MESSAGE),
+            _ => Watch::new(observer, 0.8, MESSAGE),
+        };
+        let mut domain = DiskDomain::new(self.run.mesh, problem.energy.targets(), Boundary::ArcLength)?;
+        domain.solve_dirichlet(&vec![0.5; 3 * self.run.mesh.n_faces()], &mut map, &watch)?;
+        match Elements::collect(certificate::folded(self.run.mesh, &map)) {
+            None => Ok((lifted(map), status)),
+            Some(folded) => Err(Error::NoEmbedding { folded }),
+        }
+    }
+
+    /// How the vertices may move.
+    fn motions(&self) -> Vec<Motion> {
+        let mut motions = vec![Motion::Plane; self.run.mesh.n_vertices()];
+        for (k, side) in self.sides.iter().enumerate() {
+            side.iter().for_each(|&vertex| motions[vertex as usize] = Motion::Side(k % 2));
+            motions[side[0] as usize] = Motion::Held;
+        }
+        motions
+    }
+
+    /// The boundary on the sides of the rectangle, at distances in proportion to the lengths of the edges.
+    fn boundary(&self, aspect: f64, corners: &[usize; 4], outline: &Outline<'_>) -> super::Map {
+        let [x, y] = half_sides(aspect);
+        let places = [[-x, -y], [x, -y], [x, y], [-x, y]];
+        let mut map = vec![[0.0; 2]; self.run.mesh.n_vertices()];
+        for (k, side) in self.sides.iter().enumerate() {
+            let (from, to, whole) =
+                (places[k], places[(k + 1) % 4], outline.length(corners[k], corners[(k + 1) % 4]));
+            for (step, &vertex) in side.iter().enumerate() {
+                let t = match step {
+                    0 => 0.0,
+                    _ => outline.length(corners[k], (corners[k] + step) % outline.vertices.len()) / whole,
+                };
+                // the coordinate across the side is exactly that of both its ends
+                map[vertex as usize] =
+                    [0, 1].map(|c| if from[c] == to[c] { from[c] } else { from[c] + t * (to[c] - from[c]) });
+            }
+        }
+        map
+    }
+
+    /// The start map given, on the rectangle of `boundary`.
+    fn given(&self, initial: &[[f64; 2]], boundary: &super::Map) -> Map {
+        let outline = &self.run.mesh.boundary_loops()[0];
+        let ([low, high], [to_low, to_high]) = (bounds(outline, initial), bounds(outline, boundary));
+        let along = |x: [f64; 2], k: usize| {
+            to_low[k] + (x[k] - low[k]) / (high[k] - low[k]) * (to_high[k] - to_low[k])
+        };
+        let mut map: Map = initial.iter().map(|&x| [along(x, 0), along(x, 1), 1.0]).collect();
+        for (k, side) in self.sides.iter().enumerate() {
+            let across = (k + 1) % 2;
+            side.iter().for_each(|&v| map[v as usize][across] = boundary[side[0] as usize][across]);
+            let corner = boundary[side[0] as usize];
+            map[side[0] as usize] = [corner[0], corner[1], 1.0];
+        }
+        map
+    }
+
+    /// The map with its lower left corner in (0, 0) and a longer side of 1, and the factor.
+    fn laid_out(&self, map: &Map) -> (super::Map, f64) {
+        let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
+        let sides = [high[0] - low[0], high[1] - low[1]];
+        let scale = 1.0 / sides[0].max(sides[1]);
+        let place = |x: &Vector, k: usize| match x[k] {
+            x if x == high[k] => sides[k] * scale,
+            x => (x - low[k]) * scale,
+        };
+        let moved: super::Map = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
+        if certificate::folded(self.run.mesh, &moved).is_empty() {
+            return (moved, scale);
+        }
+        // the rounding of the shift folded a face that is next to nothing; a power of two rounds nothing
+        let scale = scale.log2().floor().exp2();
+        (map.iter().map(|&[x, y, _]| [x * scale, y * scale]).collect(), scale)
+    }
+
+    fn options(&self) -> GaussNewtonOptions {
+        let options = self.run.options;
+        let is_free = options.max_iterations.is_none() && options.tolerance.is_none();
+        GaussNewtonOptions {
+            profile: Profile::Barrier,
+            angle_weight: options.angle_weight,
+            usual_iterations: if is_free { GUARDED_ITERATIONS[0] } else { usize::MAX },
+            most_iterations: options.max_iterations.unwrap_or(GUARDED_ITERATIONS[1]),
+            tolerance: options.tolerance.unwrap_or(TOLERANCE),
+            until_open: None,
+        }
+    }
+}
+
+/// Half the width and half the height of a rectangle with the area of the unit disk.
+fn half_sides(aspect: f64) -> [f64; 2] {
+    [0.5 * (PI * aspect).sqrt(), 0.5 * (PI / aspect).sqrt()]
+}
+
+/// The t for which the map (eᵗ x, e⁻ᵗ y) has the least angle energy, by Newton's method on a convex function.
+fn best_stretch(energy: &AuthalicEnergy, map: &[Vector]) -> f64 {
+    let mut t = 0.0;
+    for _ in 0..50 {
+        let [slope, curvature] = energy.angle_slopes_of_stretch(map, t);
+        let step = (-slope / curvature).clamp(-1.0, 1.0);
+        if !step.is_finite() {
+            return 0.0;
+        }
+        t += step;
+        if step.abs() < 1e-14 {
+            break;
+        }
+    }
+    t
+}
+
+fn lifted(map: super::Map) -> Map {
+    map.into_iter().map(|[u, v]| [u, v, 1.0]).collect()
+}
+
+fn flat(map: &Map) -> super::Map {
+    map.iter().map(|&[u, v, _]| [u, v]).collect()
+}

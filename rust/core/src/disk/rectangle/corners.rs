@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The four boundary vertices that go to the corners of a rectangle.
+//!
+//! Corners are sought where the boundary turns most, measured by the angles of the faces at each vertex. Of all sets of
+//! four sharp turns the one whose sides are the most alike in pairs is taken; where there are fewer than four, the longest
+//! sides are halved. An edge inside the surface between two vertices of one side would be pressed flat, so each part of the
+//! boundary that such an edge cuts off must have a corner of its own.
+//!
+//! Scores that differ by less than [`MARGIN`] count as equal and positions decide, so that neither rounding nor the
+//! numbering of vertices does. Cost: sorting the edges of the boundary, and some ten thousand sets of four.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled, sub, triangle};
+
+/// Four places along the boundary loop, ascending but for where the loop ends; the first goes to the lower left.
+pub(super) type Corners = [usize; 4];
+
+/// A boundary that turns by this part of a right angle may be a corner.
+const SHARP: f64 = 0.35;
+
+/// Sharp turns that are compared.
+const MOST_CANDIDATES: usize = 24;
+
+/// Radii within which turns are summed up, in units of the boundary's length: the first that leaves few enough.
+const WINDOWS: [f64; 3] = [0.0, 0.01, 0.03];
+
+/// What a logarithm of the ratio of opposite sides costs, in right angles.
+const IMBALANCE: f64 = 0.2;
+
+/// What a logarithm of the ratio of a given aspect to that of the sides costs when the lower left corner is chosen.
+const MISFIT: f64 = 4.0;
+
+/// Scores this near to each other are equal.
+const MARGIN: f64 = 1e-7;
+
+/// The boundary loop of a surface.
+pub(super) struct Outline<'a> {
+    mesh: &'a TriangleMesh,
+    pub vertices: &'a [u32],
+    /// The length up to each vertex, and the whole one at last.
+    lengths: Vec<f64>,
+    /// Parts of the loop (first place and how many more) that each need a corner, disjoint.
+    cut_off: Vec<[usize; 2]>,
+    /// The edges that cut these off.
+    chords: Vec<[u32; 2]>,
+}
+
+impl<'a> Outline<'a> {
+    pub(super) fn new(mesh: &'a TriangleMesh) -> Self {
+        let vertices = &mesh.boundary_loops()[0][..];
+        let point = |k: usize| mesh.points()[vertices[k % vertices.len()] as usize];
+        let mut lengths = vec![0.0];
+        (0..vertices.len()).for_each(|k| lengths.push(lengths[k] + distance(point(k), point(k + 1))));
+        let (cut_off, chords) = smallest_parts_cut_off(mesh, vertices);
+        Self { mesh, vertices, lengths, cut_off, chords }
+    }
+
+    /// The places of corners that are given as vertices.
+    ///
+    /// # Errors
+    /// [`Error::NoRectangle`] where they are not on the boundary or not in its order, or press a face flat.
+    pub(super) fn given(&self, corners: [usize; 4]) -> Result<Corners, Error> {
+        let refuse = |reason: &str| {
+            let vertices = Elements::collect(corners).expect("there are four");
+            Err(Error::NoRectangle { vertices, reason: reason.into() })
+        };
+        let place = |vertex: usize| self.vertices.iter().position(|&v| v as usize == vertex);
+        let [Some(a), Some(b), Some(c), Some(d)] = corners.map(place) else {
+            return refuse("corners must be vertices of the longest boundary loop");
+        };
+        let n = self.vertices.len();
+        let [b, c, d] = [b, c, d].map(|k| (k + n - a) % n);
+        if b == c || c == d || d == b || [b, c, d].contains(&0) {
+            return refuse("corners must be four different vertices");
+        }
+        if b > c && c > d {
+            return refuse("corners run clockwise along the boundary: give them in the opposite order");
+        }
+        if !(b < c && c < d) {
+            return refuse("corners must be in the order in which they follow each other along the boundary");
+        }
+        let corners = [a, a + b, a + c, a + d].map(|k| k % n);
+        self.check(&corners)?;
+        Ok(corners)
+    }
+
+    /// The places of the most likely corners, the first to go to the lower left.
+    ///
+    /// # Errors
+    /// [`Error::NoRectangle`] where any four would press a face flat.
+    pub(super) fn found(&self, aspect: Option<f64>) -> Result<Corners, Error> {
+        let n = self.vertices.len();
+        if n < 4 || self.cut_off.len() > 4 {
+            let tips = self.cut_off.iter().map(|&[first, _]| self.vertices[first] as usize);
+            let all = self.vertices.iter().map(|&v| v as usize);
+            let (vertices, reason) = match n < 4 {
+                true => (Elements::collect(all), "a rectangle needs a boundary of at least four edges"),
+                false => (
+                    Elements::collect(tips),
+                    "each needs a corner of its own, because an edge inside the surface joins its neighbors along the \
+                     boundary, but a rectangle has four: split these edges, or choose another boundary",
+                ),
+            };
+            return Err(Error::NoRectangle {
+                vertices: vertices.expect("there are some"),
+                reason: reason.into(),
+            });
+        }
+        // 1. Sharp turns; for each part that needs a corner its sharpest one
+        let (candidates, turns) = self.candidates();
+        // 2. The best four of them, or as many as there are and the middles of the longest sides
+        let corners = self.best_four(&candidates, &turns).unwrap_or_else(|| self.halved(&candidates, &turns));
+        self.check(&corners)?;
+        // 3. Upright
+        Ok(self.turned_upright(corners, aspect))
+    }
+
+    /// The aspect that the lengths of the sides suggest.
+    pub(super) fn aspect(&self, corners: &Corners) -> f64 {
+        let [bottom, right, top, left] = self.sides(corners);
+        (bottom + top) / (right + left)
+    }
+
+    /// The length from one place to the next, along the loop.
+    pub(super) fn length(&self, from: usize, to: usize) -> f64 {
+        let length = self.lengths[to] - self.lengths[from];
+        if to > from { length } else { length + self.lengths[self.vertices.len()] }
+    }
+
+    /// The lengths of the four sides.
+    fn sides(&self, corners: &Corners) -> [f64; 4] {
+        [0, 1, 2, 3].map(|k| self.length(corners[k], corners[(k + 1) % 4]))
+    }
+
+    /// Refuses corners that press a face flat.
+    fn check(&self, corners: &Corners) -> Result<(), Error> {
+        let missed = (0..self.cut_off.len()).filter(|&k| !self.has_corner(self.cut_off[k], corners));
+        let chords: Vec<[u32; 2]> = missed.map(|k| self.chords[k]).collect();
+        match Elements::collect(chords.iter().flatten().map(|&v| v as usize)) {
+            None => Ok(()),
+            Some(vertices) => Err(Error::NoRectangle {
+                vertices,
+                reason: "an edge inside the surface joins them along one side, and the faces between would have no area: \
+                         put a corner between them, or split the edge"
+                    .into(),
+            }),
+        }
+    }
+
+    fn has_corner(&self, [first, more]: [usize; 2], corners: &Corners) -> bool {
+        let n = self.vertices.len();
+        corners.iter().any(|&corner| (corner + n - first) % n <= more)
+    }
+
+    /// Places of sharp turns, ascending, and the turn at every place in right angles.
+    fn candidates(&self) -> (Vec<usize>, Vec<f64>) {
+        let n = self.vertices.len();
+        let raw: Vec<f64> =
+            self.vertices.iter().map(|&v| (PI - angle_sum(self.mesh, v as usize)) / FRAC_PI_2).collect();
+        let (mut candidates, mut turns) = (Vec::new(), raw.clone());
+        for window in WINDOWS {
+            (candidates, turns) = self.sharp(&raw, window * self.lengths[n]);
+            if candidates.len() <= MOST_CANDIDATES {
+                break;
+            }
+        }
+        // the sharpest come first; among equals the numbering must not decide
+        candidates.sort_by(|&a, &b| match turns[b] - turns[a] {
+            difference if difference.abs() > MARGIN => difference.total_cmp(&0.0),
+            _ => self.height(a).total_cmp(&self.height(b)),
+        });
+        candidates.truncate(MOST_CANDIDATES);
+        for &[first, more] in &self.cut_off {
+            let places = (first..=first + more).map(|k| k % n);
+            let sharpest = places.max_by(|&a, &b| turns[a].total_cmp(&turns[b])).expect("not empty");
+            candidates.push(sharpest);
+        }
+        candidates.sort_unstable();
+        candidates.dedup();
+        (candidates, turns)
+    }
+
+    /// Places where the turns summed up within a radius are sharp and nowhere near sharper; and these sums.
+    fn sharp(&self, raw: &[f64], radius: f64) -> (Vec<usize>, Vec<f64>) {
+        let n = raw.len();
+        let near = |k: usize| {
+            let ahead = (1..n).map(move |step| (k + step) % n);
+            let behind = (1..n).map(move |step| (k + n - step) % n);
+            let ahead = ahead.map(move |j| (j, self.length(k, j))).take_while(move |(_, d)| *d < radius);
+            let behind = behind.map(move |j| (j, self.length(j, k))).take_while(move |(_, d)| *d < radius);
+            ahead.chain(behind)
+        };
+        let sum = |k: usize| raw[k] + near(k).map(|(j, d)| raw[j] * (1.0 - d / radius)).sum::<f64>();
+        let turns: Vec<f64> = (0..n).map(sum).collect();
+        let is_top = |k: usize| near(k).all(|(j, _)| turns[j] <= turns[k] + MARGIN);
+        let sharp = (0..n).filter(|&k| turns[k] > SHARP && is_top(k)).collect();
+        (sharp, turns)
+    }
+
+    /// The best four of the candidates; `None` where there are fewer, or none that leave no face flat.
+    fn best_four(&self, candidates: &[usize], turns: &[f64]) -> Option<Corners> {
+        let mut best: Option<(f64, f64, Corners)> = None;
+        let m = candidates.len();
+        for a in 0..m {
+            for b in a + 1..m {
+                for c in b + 1..m {
+                    for d in c + 1..m {
+                        let corners = [a, b, c, d].map(|k| candidates[k]);
+                        if !self.cut_off.iter().all(|&part| self.has_corner(part, &corners)) {
+                            continue;
+                        }
+                        let (score, height) = (self.score(&corners, turns), self.heights(&corners));
+                        let is_better = best.is_none_or(|(most, lowest, _)| {
+                            score > most + MARGIN || (score > most - MARGIN && height < lowest - MARGIN)
+                        });
+                        if is_better {
+                            best = Some((score, height, corners));
+                        }
+                    }
+                }
+            }
+        }
+        best.map(|(_, _, corners)| corners)
+    }
+
+    /// How much four places look like the corners of a rectangle.
+    fn score(&self, corners: &Corners, turns: &[f64]) -> f64 {
+        let sharpness: f64 = corners.iter().map(|&k| turns[k].min(1.0)).sum();
+        let [bottom, right, top, left] = self.sides(corners);
+        sharpness - IMBALANCE * ((bottom / top).ln().abs() + (right / left).ln().abs())
+    }
+
+    /// Candidates, sharpest first, as long as four fit, then the middles of the longest sides.
+    fn halved(&self, candidates: &[usize], turns: &[f64]) -> Corners {
+        let n = self.vertices.len();
+        // 1. One corner for each part that needs one, then the sharpest
+        let mut order = candidates.to_vec();
+        let is_needed = |k: usize| self.cut_off.iter().any(|&[first, more]| (k + n - first) % n <= more);
+        order.sort_by(|&a, &b| {
+            is_needed(b).cmp(&is_needed(a)).then(turns[b].total_cmp(&turns[a])).then(a.cmp(&b))
+        });
+        let mut corners: Vec<usize> = order.into_iter().take(4).collect();
+        if corners.is_empty() {
+            corners.push(self.lowest());
+        }
+        // 2. The middles of the longest sides
+        while corners.len() < 4 {
+            corners.sort_unstable();
+            let sides = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
+            let with_room = sides.filter(|&[from, to]| (to + n - from - 1) % n > 0 || corners.len() == 1);
+            let length = |&[from, to]: &[usize; 2]| self.length(from, to);
+            let [from, to] =
+                with_room.max_by(|a, b| length(a).total_cmp(&length(b))).expect("at least four vertices");
+            let half = 0.5 * length(&[from, to]);
+            let inside = (1..n).map(|step| (from + step) % n).take_while(|&k| k != to);
+            let off = |k: usize| (self.length(from, k) - half).abs();
+            corners.push(inside.min_by(|&a, &b| off(a).total_cmp(&off(b))).expect("there is room"));
+        }
+        corners.sort_unstable();
+        corners.try_into().expect("four")
+    }
+
+    /// The place that lies lowest in a direction that is that of no axis.
+    fn lowest(&self) -> usize {
+        let least = (0..self.vertices.len()).map(|k| self.height(k)).fold(f64::INFINITY, f64::min);
+        (0..self.vertices.len()).find(|&k| self.height(k) <= least + MARGIN).expect("there is a lowest")
+    }
+
+    fn height(&self, place: usize) -> f64 {
+        dot(self.point(place), [0.37, 0.61, 1.0])
+    }
+
+    fn heights(&self, corners: &Corners) -> f64 {
+        corners.iter().map(|&k| self.height(k)).sum()
+    }
+
+    fn point(&self, place: usize) -> Vector {
+        self.mesh.points()[self.vertices[place] as usize]
+    }
+
+    /// The corners from the lower left one, with z up, or where the surface lies flat y, and x to the right; a given
+    /// aspect comes first.
+    fn turned_upright(&self, corners: Corners, aspect: Option<f64>) -> Corners {
+        let turned = |by: usize| -> Corners { [0, 1, 2, 3].map(|k| corners[(k + by) % 4]) };
+        let score = |by: usize| {
+            let corners = turned(by);
+            let [a, b, c, d] = corners.map(|k| self.point(k));
+            let [right, up] = [sub(add(b, c), add(a, d)), sub(add(c, d), add(a, b))]
+                .map(|axis| scaled(axis, 1.0 / norm(axis).max(f64::MIN_POSITIVE)));
+            let misfit = aspect.map_or(0.0, |aspect| (aspect / self.aspect(&corners)).ln().abs());
+            up[2] + 0.5 * up[1] + 0.25 * right[0] + 0.125 * right[1] - MISFIT * misfit
+        };
+        let best = (1..4).fold(0, |best, by| if score(by) > score(best) + MARGIN { by } else { best });
+        turned(best)
+    }
+}
+
+/// The sum of the angles of the faces at a vertex.
+fn angle_sum(mesh: &TriangleMesh, vertex: usize) -> f64 {
+    let angle = |&corner: &u32| {
+        let (face, k) = (corner as usize / 3, corner as usize % 3);
+        let corners = triangle(mesh.points(), mesh.faces()[face]);
+        let [here, next, after] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
+        let (a, b) = (sub(next, here), sub(after, here));
+        norm(cross(a, b)).atan2(dot(a, b))
+    };
+    mesh.vertex_corners(vertex).iter().map(angle).sum()
+}
+
+/// The smallest parts of the boundary between the ends of an inner edge, these excluded, up to five of them; and the
+/// edges. They are disjoint, since such edges do not cross.
+fn smallest_parts_cut_off(mesh: &TriangleMesh, outline: &[u32]) -> (Vec<[usize; 2]>, Vec<[u32; 2]>) {
+    let n = outline.len();
+    let mut place = vec![usize::MAX; mesh.n_vertices()];
+    outline.iter().enumerate().for_each(|(k, &v)| place[v as usize] = k);
+    let mut parts = Vec::new();
+    for corner in 0..3 * mesh.n_faces() {
+        let face = mesh.faces()[corner / 3];
+        let ends = [face[(corner + 1) % 3], face[(corner + 2) % 3]];
+        let [from, to] = ends.map(|v| place[v as usize]);
+        // each inner edge is met twice, once in each direction
+        if from != usize::MAX && to != usize::MAX && mesh.opposite(corner as u32).is_some() {
+            parts.push(((to + n - from) % n - 1, (from + 1) % n, ends));
+        }
+    }
+    parts.sort_unstable();
+    let mut smallest: Vec<[usize; 2]> = Vec::new();
+    let mut chords = Vec::new();
+    for (count, first, ends) in parts {
+        let covers = |&[other, more]: &[usize; 2]| (other + n - first) % n + more < count;
+        if count > 0 && smallest.len() < 5 && !smallest.iter().any(covers) {
+            smallest.push([first, count - 1]);
+            chords.push(ends);
+        }
+    }
+    (smallest, chords)
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What is refused before any work: arrays that do not fit, and outlines and pins that make folds inevitable.
+
+use std::f64::consts::TAU;
+
+use super::UntangleOptions;
+use super::positions::Positions;
+use crate::distortion::Image;
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+
+/// Refuses arguments that do not fit the mesh.
+pub(super) fn arguments(
+    mesh: &TriangleMesh,
+    image: Image<'_>,
+    options: &UntangleOptions<'_>,
+) -> Result<(), Error> {
+    let n = mesh.n_vertices();
+    let (rows, width, flat) = match image {
+        Image::Plane(map) => (map.len(), 2, map.as_flattened()),
+        Image::Sphere(map) => (map.len(), 3, map.as_flattened()),
+    };
+    if rows != n {
+        let (found, expected) = (format!("of shape ({rows}, {width})"), format!("of shape ({n}, {width})"));
+        return Err(Error::InvalidArray { name: "image", found, expected });
+    }
+    let not_finite = |v: &usize| !flat[width * v..width * (v + 1)].iter().all(|x| x.is_finite());
+    if let Some(vertices) = Elements::collect((0..n).filter(not_finite)) {
+        return Err(Error::MapNonFinite { name: "image", vertices });
+    }
+    if let Image::Sphere(map) = image
+        && let Some(vertices) = Elements::collect((0..n).filter(|&v| map[v] == [0.0; 3]))
+    {
+        return Err(Error::NoDirection { name: "image", vertices });
+    }
+    if let Some(&vertex) = options.fixed.iter().find(|&&vertex| vertex >= n) {
+        let (found, expected) = (format!("{vertex}"), format!("indices of the {n} vertices"));
+        return Err(Error::InvalidArray { name: "fixed", found, expected });
+    }
+    match (0.0..1.0).contains(&options.tolerance) {
+        true => Ok(()),
+        false => Err(Error::InvalidOption {
+            name: "tolerance",
+            found: options.tolerance.to_string(),
+            expected: "a number ≥ 0 and < 1".into(),
+        }),
+    }
+}
+
+/// The component of each vertex.
+pub(super) fn components(mesh: &TriangleMesh) -> Vec<u32> {
+    let mut component = vec![u32::MAX; mesh.n_vertices()];
+    for (k, &face) in mesh.topology().first_faces.iter().enumerate() {
+        let mut front = vec![mesh.faces()[face as usize][0]];
+        while let Some(vertex) = front.pop() {
+            if component[vertex as usize] == u32::MAX {
+                component[vertex as usize] = k as u32;
+                let corners = mesh.vertex_corners(vertex as usize);
+                front.extend(corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]));
+            }
+        }
+    }
+    component
+}
+
+/// The vertices that stay: those of the boundary, and the fixed ones.
+pub(super) fn held(mesh: &TriangleMesh, fixed: &[usize]) -> Vec<bool> {
+    let mut held: Vec<bool> = (0..mesh.n_vertices()).map(|v| mesh.is_boundary(v)).collect();
+    fixed.iter().for_each(|&vertex| held[vertex] = true);
+    held
+}
+
+/// Refuses what can be seen to have no map without folds.
+pub(super) fn feasible(
+    mesh: &TriangleMesh,
+    given: &Positions,
+    components: &[u32],
+    held: &[bool],
+    folded: &[usize],
+) -> Result<(), Error> {
+    // 1. Faces of which all corners stay, or two that coincide
+    let is_lost = |face: &&usize| {
+        let kept: Vec<u32> = mesh.faces()[**face].into_iter().filter(|&v| held[v as usize]).collect();
+        let pairs = [(0, 1), (0, 2), (1, 2)];
+        let touch = |&(a, b): &(usize, usize)| b < kept.len() && given.coincide(kept[a], kept[b]);
+        kept.len() == 3 || pairs.iter().any(touch)
+    };
+    if let Some(faces) = Elements::collect(folded.iter().filter(is_lost).copied()) {
+        let vertices = faces.first.iter().flat_map(|&face| mesh.faces()[face]);
+        let mut vertices: Vec<usize> = vertices.map(|v| v as usize).filter(|&v| held[v]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let vertices = Elements::collect(vertices).expect("such a face has vertices that stay");
+        return Err(Error::HeldFolded { faces, vertices });
+    }
+    // 2. Outlines in the plane that turn too little
+    let Positions::Plane(map) = given else { return Ok(()) };
+    for component in 0..mesh.n_components() {
+        let of_component = |face: &&usize| components[mesh.faces()[**face][0] as usize] == component as u32;
+        let Some(faces) = Elements::collect(folded.iter().filter(of_component).copied()) else { continue };
+        let loops = mesh.boundary_loops().iter();
+        let loops: Vec<&Vec<u32>> =
+            loops.filter(|ring| components[ring[0] as usize] == component as u32).collect();
+        let most: i64 = loops.iter().map(|ring| most_turns(ring, map)).sum();
+        let needed = euler_characteristic(mesh, components, component as u32, &loops);
+        if most < needed || loops.is_empty() {
+            return Err(Error::OutlineFolds { faces, turns: most, needed });
+        }
+    }
+    Ok(())
+}
+
+/// How often a loop turns counter-clockwise; each corner at which it goes straight back counts as a half turn, left.
+fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
+    let edges: Vec<[f64; 2]> = (0..ring.len())
+        .map(|k| [ring[k], ring[(k + 1) % ring.len()]].map(|v| map[v as usize]))
+        .map(|[from, to]| [to[0] - from[0], to[1] - from[1]])
+        .filter(|edge| *edge != [0.0; 2])
+        .collect();
+    let turn = |k: usize| {
+        let (before, after) = (edges[k], edges[(k + 1) % edges.len()]);
+        let sine = before[0] * after[1] - before[1] * after[0];
+        let cosine = before[0] * after[0] + before[1] * after[1];
+        // + 0 makes of −0 a left turn
+        (sine + 0.0).atan2(cosine)
+    };
+    ((0..edges.len()).map(turn).sum::<f64>() / TAU).round() as i64
+}
+
+/// Vertices − edges + faces of one component.
+fn euler_characteristic(mesh: &TriangleMesh, components: &[u32], component: u32, loops: &[&Vec<u32>]) -> i64 {
+    let vertices = components.iter().filter(|&&other| other == component).count();
+    let faces = mesh.faces().iter().filter(|face| components[face[0] as usize] == component).count();
+    let boundary: usize = loops.iter().map(|ring| ring.len()).sum();
+    vertices as i64 - (3 * faces + boundary) as i64 / 2 + faces as i64
+}
+
+/// The fixed vertices within one edge of the faces, or all of them where there are none.
+pub(super) fn pins_near(mesh: &TriangleMesh, fixed: &[usize], folded: &[usize]) -> Option<Elements> {
+    let corners = folded.iter().flat_map(|&face| mesh.faces()[face]);
+    let around = corners.flat_map(|vertex| mesh.vertex_corners(vertex as usize));
+    let mut near: Vec<usize> =
+        around.flat_map(|&corner| mesh.faces()[corner as usize / 3]).map(|v| v as usize).collect();
+    near.sort_unstable();
+    near.dedup();
+    let mut pins: Vec<usize> = fixed.iter().copied().filter(|&vertex| !mesh.is_boundary(vertex)).collect();
+    pins.sort_unstable();
+    pins.dedup();
+    let close = Elements::collect(pins.iter().copied().filter(|pin| near.binary_search(pin).is_ok()));
+    close.or_else(|| Elements::collect(pins))
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Removes the folds of a given map: [`untangle`].
+//!
+//! The outline and the pins stay, bit for bit, and so does all that is not near a fold:
+//!
+//! 1. The vertices that move form small patches around the folded faces ([`patches`](self::patches)), as small as they
+//!    can be at first; only what resists grows.
+//! 2. Within a patch a map without folds is found by the regularized foldover-free energy of Garanzha et al. (2021)
+//!    ([`foldover`](self::foldover)).
+//! 3. From there the vertices return to their old places as far as open faces let them ([`closest`](self::closest)).
+//!
+//! Exact predicates decide what is folded. There is a map without folds or an error, never a map with folds.
+//!
+//! Input: a [`TriangleMesh`] with any number of components and boundary loops, and a map of it into the plane, or onto the
+//! sphere where each tangle lies within a hemisphere. Cost: some 30 sparse factorizations of each patch.
+
+mod checks;
+mod closest;
+mod foldover;
+mod newton;
+mod patch;
+mod patches;
+mod positions;
+
+use std::collections::BTreeSet;
+
+use crate::control::{Observer, Status, Watch};
+use crate::distortion::{Distortion, Image, distortion};
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use patch::{Outcome, Patch};
+use positions::Positions;
+
+const MESSAGE: &str = "Untangling";
+
+/// Options of [`untangle`].
+#[derive(Debug, Clone, Copy)]
+pub struct UntangleOptions<'a> {
+    /// Vertices that stay where they are, beside those of the boundary, which stay anyway.
+    pub fixed: &'a [usize],
+    /// Least area of a face that was folded, or lost area to one, in units of its fair share: the area of its patch
+    /// divided in proportion to the areas on the surface. In `[0, 1)`.
+    pub tolerance: f64,
+}
+
+impl Default for UntangleOptions<'_> {
+    fn default() -> Self {
+        Self { fixed: &[], tolerance: 0.01 }
+    }
+}
+
+/// A map without folds.
+#[derive(Debug, Clone)]
+pub struct Untangled {
+    /// The map: (n, 2) or (n, 3), as given.
+    pub image: UntangledImage,
+    /// The vertices that moved, ascending.
+    pub moved: Vec<usize>,
+    /// The faces that were folded, ascending.
+    pub folded_before: Vec<usize>,
+    /// [`Status::Converged`]; [`Status::Stalled`] where a face stays below the tolerance, though not folded;
+    /// [`Status::Cancelled`] where vertices did not return as far as they could.
+    pub status: Status,
+    /// The figures of the map, mirrored components turned back.
+    pub distortion: Distortion,
+}
+
+/// The positions of a map, owned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum UntangledImage {
+    /// (n, 2) positions in the plane.
+    Plane(Vec<[f64; 2]>),
+    /// (n, 3) positions on the sphere.
+    Sphere(Vec<[f64; 3]>),
+}
+
+/// Removes the folds of `image`, a map of `mesh`, and changes as little as can be.
+///
+/// The orientation that most of a component's area has is kept. A map without folds comes back as it is.
+///
+/// # Errors
+/// Arrays that do not fit. [`Error::HeldFolded`] where the outline or the fixed vertices make folds inevitable,
+/// [`Error::StillFolded`] where no map without folds was found, [`Error::CancelledEarly`] where the observer ended the
+/// run before there was one.
+///
+/// ```
+/// use authalic::{Image, Silent, UntangleOptions, UntangledImage, mesh::TriangleMesh, untangle};
+/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
+/// // the apex has left the square
+/// let image = [[2., 0.], [1., 0.], [0., 1.], [-1., 0.], [0., -1.]];
+/// let map = untangle(&mesh, Image::Plane(&image), &UntangleOptions::default(), &mut Silent)?;
+/// assert_eq!((map.folded_before, map.moved), (vec![0, 3], vec![0]));
+/// assert!(map.distortion.folded.is_empty());
+/// # Ok::<(), authalic::Error>(())
+/// ```
+pub fn untangle(
+    mesh: &TriangleMesh,
+    image: Image<'_>,
+    options: &UntangleOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Untangled, Error> {
+    // 1. Refuse what does not fit
+    checks::arguments(mesh, image, options)?;
+    // 2. Components that are mirrored as a whole are turned over for the time being
+    let given = Positions::new(image);
+    let components = checks::components(mesh);
+    let mirrored = given.mirrored(mesh, &components);
+    let given = given.turned_over(&mirrored);
+    let folded_before = given.folded(mesh.faces());
+    // 3. Patch by patch
+    let held = checks::held(mesh, options.fixed);
+    checks::feasible(mesh, &given, &components, &held, &folded_before)?;
+    let mut run =
+        Run { mesh, given: &given, now: given.clone(), held: &held, options, status: Status::Converged };
+    run.unfold(&folded_before, observer)?;
+    // 4. The result, and its figures
+    let Run { now, status, .. } = run;
+    let moved: Vec<usize> = (0..mesh.n_vertices()).filter(|&v| now.differs(&given, v)).collect();
+    let upright = now.clone().into_image();
+    let distortion = distortion(mesh.points(), mesh.faces(), upright.view(), mesh.face_areas())?;
+    let image = now.turned_over(&mirrored).written_over(image, &moved);
+    Ok(Untangled { image, moved, folded_before, status, distortion })
+}
+
+impl UntangledImage {
+    /// The positions as the other functions take them.
+    pub fn view(&self) -> Image<'_> {
+        match self {
+            Self::Plane(map) => Image::Plane(map),
+            Self::Sphere(map) => Image::Sphere(map),
+        }
+    }
+}
+
+/// One computation.
+struct Run<'a> {
+    mesh: &'a TriangleMesh,
+    /// The map given.
+    given: &'a Positions,
+    /// The map with the patches done so far.
+    now: Positions,
+    held: &'a [bool],
+    options: &'a UntangleOptions<'a>,
+    status: Status,
+}
+
+impl Run<'_> {
+    /// Unfolds everything, first with the tolerance asked for, then with whatever opens what is left.
+    fn unfold(&mut self, folded_before: &[usize], observer: &mut dyn Observer) -> Result<(), Error> {
+        let mut folded = folded_before.to_vec();
+        for is_thin_enough in [false, true] {
+            folded = self.rounds(folded, folded_before.len(), is_thin_enough, observer)?;
+        }
+        match Elements::collect(folded.iter().copied()) {
+            None => Ok(()),
+            Some(faces) => {
+                let pins = checks::pins_near(self.mesh, self.options.fixed, &folded);
+                Err(Error::StillFolded { folded: faces, fixed: pins })
+            }
+        }
+    }
+
+    /// Patches that grow from round to round; returns the faces that stay folded.
+    fn rounds(
+        &mut self,
+        mut folded: Vec<usize>,
+        n_before: usize,
+        is_thin_enough: bool,
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<usize>, Error> {
+        let mut failed = BTreeSet::new();
+        for round in 0.. {
+            if folded.is_empty() {
+                break;
+            }
+            // 1. The vertices that may move, in parts that do not touch
+            let around = patches::around(self.mesh, &self.now, self.held, &folded, round);
+            let parts = patches::parts(self.mesh, &around.free);
+            let done = 1.0 - folded.len() as f64 / n_before.max(1) as f64;
+            for (k, free) in parts.iter().enumerate() {
+                let here = k as f64 / parts.len() as f64;
+                let fraction = done.max(0.0) + (1.0 - done.max(0.0)) * 0.9 * here;
+                if failed.contains(free) {
+                    continue;
+                }
+                if !observer.progress(fraction, MESSAGE) {
+                    return Err(Error::CancelledEarly);
+                }
+                let watch = Watch::new(observer, fraction, MESSAGE);
+                if !self.unfold_patch(free, is_thin_enough, &watch)? {
+                    failed.insert(free.clone());
+                }
+            }
+            // 2. What is still folded
+            folded = self.now.folded(self.mesh.faces());
+            if around.is_all {
+                break;
+            }
+        }
+        Ok(folded)
+    }
+
+    /// Whether the patch of these free vertices could be unfolded, and is.
+    fn unfold_patch(&mut self, free: &[u32], is_thin_enough: bool, watch: &Watch<'_>) -> Result<bool, Error> {
+        let tolerance = self.options.tolerance;
+        let Some(patch) = Patch::new(self.mesh, self.given, &self.now, free, tolerance) else {
+            return Ok(false);
+        };
+        let Outcome::Open(places, status) = patch.solved(is_thin_enough, watch)? else {
+            return Ok(false);
+        };
+        let before = self.now.at(free);
+        patch.write(self.given, &places, &mut self.now);
+        if !self.now.folded(&patch.faces_of(self.mesh)).is_empty() {
+            self.now.put(free, &before);
+            return Ok(false);
+        }
+        if status != Status::Converged && self.status != Status::Cancelled {
+            self.status = status;
+        }
+        Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A patch: some vertices that move, the faces at them, and a chart in which these are flat.
+
+use super::closest::closest;
+use super::foldover::{Springs, unfold};
+use super::newton::{Corners, Newton, doubled_area};
+use super::positions::{Chart, Positions};
+use crate::control::{Status, Watch};
+use crate::energy::rest_cotangents;
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::triangle;
+
+/// Rest shapes are fattened to a height of at least this part of their longest edge.
+const FLATTEST: f64 = 0.05;
+
+/// Cotangent of the angles of an equilateral triangle.
+const EQUILATERAL: f64 = 0.577_350_269_189_625_8;
+
+/// A face with less than this part of its share counts as folded while a patch is solved.
+const CLOSED: f64 = 1e-9;
+
+/// A region of the map whose inner vertices move.
+#[derive(Debug)]
+pub(super) struct Patch {
+    /// The vertices of the mesh, ascending.
+    vertices: Vec<u32>,
+    /// The faces by the places in `vertices`.
+    pub faces: Vec<[u32; 3]>,
+    /// The same faces in the mesh.
+    face_indices: Vec<usize>,
+    /// Whether each vertex moves.
+    pub is_free: Vec<bool>,
+    /// The places of the map given, in the chart.
+    pub origin: Vec<[f64; 2]>,
+    /// The present places, in the chart.
+    present: Vec<[f64; 2]>,
+    /// The fair share of area of each face; 1 on the average.
+    pub shares: Vec<f64>,
+    /// What each face must reach, in units of its share.
+    floors: Vec<f64>,
+    /// Cotangents of the faces on the surface.
+    cotangents: Vec<[f64; 3]>,
+    chart: Chart,
+}
+
+/// What became of a patch.
+pub(super) enum Outcome {
+    /// Places in the chart without folds, and whether they are all that was asked for.
+    Open(Vec<[f64; 2]>, Status),
+    /// Faces stay folded.
+    Folded,
+}
+
+impl Patch {
+    /// The patch of the vertices `free` (ascending); `None` where its outline cannot bound a map without folds.
+    pub(super) fn new(
+        mesh: &TriangleMesh,
+        given: &Positions,
+        now: &Positions,
+        free: &[u32],
+        tolerance: f64,
+    ) -> Option<Self> {
+        // 1. The faces at the free vertices, numbered anew
+        let corners = free.iter().flat_map(|&vertex| mesh.vertex_corners(vertex as usize));
+        let mut face_indices: Vec<usize> = corners.map(|&corner| corner as usize / 3).collect();
+        face_indices.sort_unstable();
+        face_indices.dedup();
+        let mut vertices: Vec<u32> = face_indices.iter().flat_map(|&face| mesh.faces()[face]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let number = |vertex: u32| vertices.binary_search(&vertex).expect("it is in the patch") as u32;
+        let faces: Vec<[u32; 3]> = face_indices.iter().map(|&face| mesh.faces()[face].map(number)).collect();
+        let is_free: Vec<bool> = vertices.iter().map(|vertex| free.binary_search(vertex).is_ok()).collect();
+        // 2. A chart in which the mean share is 1
+        let rim: Vec<u32> =
+            vertices.iter().zip(&is_free).filter(|(_, is_free)| !**is_free).map(|(&v, _)| v).collect();
+        let chart = Chart::around(now, &rim)?;
+        let flat = |positions: &Positions, chart: &Chart| -> Vec<[f64; 2]> {
+            vertices.iter().map(|&vertex| chart.down(positions, vertex)).collect()
+        };
+        let wide = flat(now, &chart);
+        let of_face = |face: &[u32; 3]| 0.5 * doubled_area(face.map(|v| wide[v as usize])).0;
+        let (area, unsigned) =
+            faces.iter().map(of_face).fold((0.0, 0.0), |(sum, all), a: f64| (sum + a, all + a.abs()));
+        if !(area > 1e-12 * unsigned && area.is_finite()) {
+            return None;
+        }
+        let chart = chart.scaled((faces.len() as f64 / area).sqrt());
+        let (origin, present) = (flat(given, &chart), flat(now, &chart));
+        // 3. Shares, rest shapes and floors
+        let total: f64 = face_indices.iter().map(|&face| mesh.face_areas()[face]).sum();
+        let scale = faces.len() as f64 / total;
+        let shares: Vec<f64> = face_indices.iter().map(|&face| scale * mesh.face_areas()[face]).collect();
+        let cotangents = face_indices
+            .iter()
+            .map(|&face| rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), FLATTEST))
+            .collect();
+        let mut patch = Self {
+            vertices,
+            faces,
+            face_indices,
+            is_free,
+            origin,
+            present,
+            shares,
+            floors: Vec::new(),
+            cotangents,
+            chart,
+        };
+        let least = tolerance.max(10.0 * CLOSED);
+        patch.floors = (0..patch.faces.len())
+            .map(|face| match patch.ratio(&patch.origin, face) {
+                ratio if ratio > 2.0 * CLOSED => least.min(0.5 * ratio),
+                _ => least,
+            })
+            .collect();
+        Some(patch)
+    }
+
+    /// Unfolds the patch, and brings its vertices back as far as can be.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`] by the watch while there are folds.
+    pub(super) fn solved(&self, is_thin_enough: bool, watch: &Watch<'_>) -> Result<Outcome, Error> {
+        let mut newton = Newton::new(self)?;
+        // 1. Any places without folds
+        let Some((start, is_thin)) = self.unfolded(&mut newton, is_thin_enough, watch)? else {
+            return Ok(Outcome::Folded);
+        };
+        let kept = |face: usize| self.floors[face].min(0.5 * self.ratio(&start, face));
+        let floors: Vec<f64> = (0..self.faces.len()).map(kept).collect();
+        // 2. The nearest such places
+        let (places, is_done) = closest(&mut newton, self, &floors, start, watch);
+        let status = match (is_done, is_thin) {
+            (false, _) => Status::Cancelled,
+            (true, true) => Status::Stalled,
+            (true, false) => Status::Converged,
+        };
+        Ok(Outcome::Open(places, status))
+    }
+
+    /// Places without folds, and whether a face misses its goal.
+    fn unfolded(
+        &self,
+        newton: &mut Newton<'_>,
+        is_thin_enough: bool,
+        watch: &Watch<'_>,
+    ) -> Result<Option<(Vec<[f64; 2]>, bool)>, Error> {
+        let value = newton.value(&Springs, &self.present);
+        let tutte = newton.step(&Springs, &self.present, value, watch)?.map(|step| step.places);
+        let equilateral = vec![[EQUILATERAL; 3]; self.faces.len()];
+        let attempts = [
+            (tutte.as_ref(), &self.cotangents),
+            (Some(&self.present), &self.cotangents),
+            (tutte.as_ref(), &equilateral),
+        ];
+        for (start, rest) in attempts {
+            let Some(start) = start else { continue };
+            let places = unfold(newton, self, rest, start.clone(), watch)?;
+            if self.reaches_goals(&places) {
+                return Ok(Some((places, false)));
+            }
+            if is_thin_enough && self.least_ratio(&places) > CLOSED {
+                return Ok(Some((places, true)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether every face has twice the area that it must keep.
+    pub(super) fn reaches_goals(&self, places: &[[f64; 2]]) -> bool {
+        (0..self.faces.len()).all(|face| self.ratio(places, face) >= 2.0 * self.floors[face])
+    }
+
+    /// The least area of a face in units of its share.
+    pub(super) fn least_ratio(&self, places: &[[f64; 2]]) -> f64 {
+        (0..self.faces.len()).map(|face| self.ratio(places, face)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The area of a face in units of its share.
+    pub(super) fn ratio(&self, places: &[[f64; 2]], face: usize) -> f64 {
+        0.5 * doubled_area(self.corners(places, face)).0 / self.shares[face]
+    }
+
+    /// The corners of a face.
+    pub(super) fn corners(&self, places: &[[f64; 2]], face: usize) -> Corners {
+        self.faces[face].map(|vertex| places[vertex as usize])
+    }
+
+    /// How many faces each vertex has.
+    pub(super) fn faces_per_vertex(&self) -> Vec<f64> {
+        let mut counts = vec![0.0; self.vertices.len()];
+        self.faces.iter().flatten().for_each(|&vertex| counts[vertex as usize] += 1.0);
+        counts
+    }
+
+    /// The faces of the mesh.
+    pub(super) fn faces_of(&self, mesh: &TriangleMesh) -> Vec<[u32; 3]> {
+        self.face_indices.iter().map(|&face| mesh.faces()[face]).collect()
+    }
+
+    /// Writes the free vertices; those that are at their old place bit for bit as given.
+    pub(super) fn write(&self, given: &Positions, places: &[[f64; 2]], positions: &mut Positions) {
+        for (k, &vertex) in self.vertices.iter().enumerate().filter(|&(k, _)| self.is_free[k]) {
+            match places[k] == self.origin[k] {
+                true => positions.copy(given, vertex),
+                false => self.chart.up(places[k], positions, vertex),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A patch of one face that moves as a whole.
+    pub(in crate::untangle) fn one_face() -> Patch {
+        Patch {
+            vertices: vec![0, 1, 2],
+            faces: vec![[0, 1, 2]],
+            face_indices: vec![0],
+            is_free: vec![true; 3],
+            origin: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            present: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            shares: vec![0.7],
+            floors: vec![0.01],
+            cotangents: vec![[0.0, 1.0, 1.0]],
+            chart: Chart::identity(),
+        }
+    }
+}

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The positions of a map in the plane or on the sphere, and the flat charts of its patches.
+//!
+//! The sphere's charts are gnomonic: great circles become straight lines, so a face is folded in the chart exactly where it
+//! is folded on the sphere.
+
+use super::UntangledImage;
+use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled};
+
+/// The rim of a patch on the sphere lies within this cosine of the center of its chart.
+const RIM: f64 = 0.1;
+
+/// Points beyond this cosine are drawn to it.
+const HORIZON: f64 = 0.05;
+
+/// The positions of a map, of size 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Positions {
+    Plane(Vec<[f64; 2]>),
+    Sphere(Vec<Vector>),
+}
+
+impl Positions {
+    /// The positions given, those in the plane scaled by a power of two to size 1.
+    pub(super) fn new(image: Image<'_>) -> Self {
+        match image {
+            Image::Sphere(map) => Self::Sphere(map.to_vec()),
+            Image::Plane(map) => {
+                let factor = 1.0 / unit(map);
+                Self::Plane(map.iter().map(|x| x.map(|x| x * factor)).collect())
+            }
+        }
+    }
+
+    /// The folded ones of some faces, by their place in the list.
+    pub(super) fn folded(&self, faces: &[[u32; 3]]) -> Vec<usize> {
+        match self {
+            Self::Plane(map) => folded_in_plane(faces, map),
+            Self::Sphere(map) => folded_on_sphere(faces, map),
+        }
+    }
+
+    /// The vertices of components most of whose area is turned over.
+    pub(super) fn mirrored(&self, mesh: &TriangleMesh, components: &[u32]) -> Vec<bool> {
+        let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut areas = vec![0.0; n_components];
+        for face in mesh.faces() {
+            areas[components[face[0] as usize] as usize] += self.signed_area(*face);
+        }
+        components.iter().map(|&component| areas[component as usize] < 0.0).collect()
+    }
+
+    /// Twice the area of a face, with the sign of its orientation.
+    fn signed_area(&self, face: [u32; 3]) -> f64 {
+        match self {
+            Self::Plane(map) => super::newton::doubled_area(face.map(|v| map[v as usize])).0,
+            Self::Sphere(map) => {
+                let [a, b, c] = face.map(|v| map[v as usize]);
+                dot(a, cross(b, c))
+            }
+        }
+    }
+
+    /// The same with some vertices mirrored.
+    pub(super) fn turned_over(&self, mirrored: &[bool]) -> Self {
+        match self {
+            Self::Plane(map) => {
+                let turned = map.iter().zip(mirrored).map(|(&[x, y], &is)| [if is { -x } else { x }, y]);
+                Self::Plane(turned.collect())
+            }
+            Self::Sphere(map) => {
+                let turned = map.iter().zip(mirrored).map(|(&x, &is)| if is { scaled(x, -1.0) } else { x });
+                Self::Sphere(turned.collect())
+            }
+        }
+    }
+
+    /// Whether a vertex is elsewhere in another map.
+    pub(super) fn differs(&self, other: &Self, vertex: usize) -> bool {
+        match (self, other) {
+            (Self::Plane(here), Self::Plane(there)) => here[vertex] != there[vertex],
+            (Self::Sphere(here), Self::Sphere(there)) => here[vertex] != there[vertex],
+            _ => true,
+        }
+    }
+
+    /// Puts a vertex where it is in another map.
+    pub(super) fn copy(&mut self, other: &Self, vertex: u32) {
+        let vertex = vertex as usize;
+        match (self, other) {
+            (Self::Plane(here), Self::Plane(there)) => here[vertex] = there[vertex],
+            (Self::Sphere(here), Self::Sphere(there)) => here[vertex] = there[vertex],
+            _ => {}
+        }
+    }
+
+    /// The positions of some vertices.
+    pub(super) fn at(&self, vertices: &[u32]) -> Self {
+        match self {
+            Self::Plane(map) => Self::Plane(vertices.iter().map(|&v| map[v as usize]).collect()),
+            Self::Sphere(map) => Self::Sphere(vertices.iter().map(|&v| map[v as usize]).collect()),
+        }
+    }
+
+    /// Puts some vertices to positions that [`Self::at`] has read.
+    pub(super) fn put(&mut self, vertices: &[u32], positions: &Self) {
+        match (self, positions) {
+            (Self::Plane(map), Self::Plane(kept)) => {
+                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v as usize] = x);
+            }
+            (Self::Sphere(map), Self::Sphere(kept)) => {
+                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v as usize] = x);
+            }
+            _ => {}
+        }
+    }
+
+    /// How far a vertex is from the mean of its neighbors, one that two faces share counted twice.
+    pub(super) fn distance_from_neighbors(&self, mesh: &TriangleMesh, vertex: u32) -> f64 {
+        let corners = mesh.vertex_corners(vertex as usize);
+        let ring = corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]);
+        let ring = ring.filter(|&other| other != vertex);
+        let share = 0.5 / corners.len() as f64;
+        let place = |v: u32| match self {
+            Self::Plane(map) => [map[v as usize][0], map[v as usize][1], 0.0],
+            Self::Sphere(map) => map[v as usize],
+        };
+        let mean = scaled(ring.fold([0.0; 3], |sum, other| add(sum, place(other))), share);
+        distance(mean, place(vertex))
+    }
+
+    /// Whether two vertices are in the same place.
+    pub(super) fn coincide(&self, a: u32, b: u32) -> bool {
+        match self {
+            Self::Plane(map) => map[a as usize] == map[b as usize],
+            Self::Sphere(map) => map[a as usize] == map[b as usize],
+        }
+    }
+
+    /// The image given with the vertices that moved replaced.
+    pub(super) fn written_over(&self, image: Image<'_>, moved: &[usize]) -> UntangledImage {
+        match (self, image) {
+            (Self::Plane(map), Image::Plane(given)) => {
+                let (mut out, unit) = (given.to_vec(), unit(given));
+                moved.iter().for_each(|&v| out[v] = map[v].map(|x| x * unit));
+                UntangledImage::Plane(out)
+            }
+            (Self::Sphere(map), Image::Sphere(given)) => {
+                let mut out = given.to_vec();
+                moved.iter().for_each(|&v| out[v] = map[v]);
+                UntangledImage::Sphere(out)
+            }
+            _ => self.clone().into_image(),
+        }
+    }
+
+    /// The positions as they are.
+    pub(super) fn into_image(self) -> UntangledImage {
+        match self {
+            Self::Plane(map) => UntangledImage::Plane(map),
+            Self::Sphere(map) => UntangledImage::Sphere(map),
+        }
+    }
+}
+
+/// The power of two below the largest coordinate.
+fn unit(map: &[[f64; 2]]) -> f64 {
+    let largest = map.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
+}
+
+/// A flat chart.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Chart {
+    /// The plane around a center.
+    Plane { center: [f64; 2], scale: f64 },
+    /// The plane that touches the sphere of this radius at the third axis.
+    Gnomonic { axes: [Vector; 3], radius: f64, scale: f64 },
+}
+
+impl Chart {
+    /// The plane as it is.
+    #[cfg(test)]
+    pub(super) fn identity() -> Self {
+        Self::Plane { center: [0.0; 2], scale: 1.0 }
+    }
+
+    /// A chart around vertices that are held; `None` where there are none, or where they do not fit into a hemisphere.
+    pub(super) fn around(positions: &Positions, rim: &[u32]) -> Option<Self> {
+        if rim.is_empty() {
+            return None;
+        }
+        let share = 1.0 / rim.len() as f64;
+        match positions {
+            Positions::Plane(map) => {
+                let sum =
+                    rim.iter().map(|&v| map[v as usize]).fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]]);
+                Some(Self::Plane { center: sum.map(|x| x * share), scale: 1.0 })
+            }
+            Positions::Sphere(map) => {
+                let directions: Vec<Vector> = rim.iter().map(|&v| unit_vector(map[v as usize])).collect();
+                let mean = directions.iter().fold([0.0; 3], |sum, &x| add(sum, x));
+                let radius = share * rim.iter().map(|&v| norm(map[v as usize])).sum::<f64>();
+                let radius = if (radius - 1.0).abs() < 1e-6 { 1.0 } else { radius };
+                let axes = tangent_frame(unit_vector(mean));
+                let fits = directions.iter().all(|&x| dot(x, axes[2]) > RIM);
+                fits.then_some(Self::Gnomonic { axes, radius, scale: 1.0 })
+            }
+        }
+    }
+
+    /// The same, enlarged.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Plane { center, .. } => Self::Plane { center, scale: factor },
+            Self::Gnomonic { axes, radius, .. } => Self::Gnomonic { axes, radius, scale: factor },
+        }
+    }
+
+    /// The place of a vertex in the chart.
+    pub(super) fn down(&self, positions: &Positions, vertex: u32) -> [f64; 2] {
+        match (self, positions) {
+            (Self::Plane { center, scale }, Positions::Plane(map)) => {
+                let x = map[vertex as usize];
+                [0, 1].map(|axis| scale * (x[axis] - center[axis]))
+            }
+            (Self::Gnomonic { axes, scale, .. }, Positions::Sphere(map)) => {
+                let x = unit_vector(map[vertex as usize]);
+                let [u, v, height] = axes.map(|axis| dot(axis, x));
+                if height > HORIZON {
+                    return [scale * u / height, scale * v / height];
+                }
+                let length = u.hypot(v).max(f64::MIN_POSITIVE);
+                [u, v].map(|x| scale * x / length / HORIZON)
+            }
+            _ => unreachable!("a chart of the same map"),
+        }
+    }
+
+    /// Puts a vertex to a place of the chart.
+    pub(super) fn up(&self, place: [f64; 2], positions: &mut Positions, vertex: u32) {
+        match (self, positions) {
+            (Self::Plane { center, scale }, Positions::Plane(map)) => {
+                map[vertex as usize] = [0, 1].map(|axis| center[axis] + place[axis] / scale);
+            }
+            (Self::Gnomonic { axes, radius, scale }, Positions::Sphere(map)) => {
+                let [u, v] = place.map(|x| x / scale);
+                let x =
+                    add(axes[2], add(crate::mesh::geometry::scaled(axes[0], u), self::scaled(axes[1], v)));
+                map[vertex as usize] = self::scaled(unit_vector(x), *radius);
+            }
+            _ => unreachable!("a chart of the same map"),
+        }
+    }
+}
+
+fn unit_vector(x: Vector) -> Vector {
+    scaled(x, 1.0 / norm(x).max(f64::MIN_POSITIVE))
+}
+
+/// Two tangents and the normal, a right-handed frame; the normal `z` has length 1.
+fn tangent_frame(z: Vector) -> [Vector; 3] {
+    let least = (0..3).min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs())).expect("three axes");
+    let mut axis = [0.0; 3];
+    axis[least] = 1.0;
+    let x = unit_vector(cross(axis, z));
+    [x, cross(z, x), z]
+}

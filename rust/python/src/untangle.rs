@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::untangle`.
+
+use std::time::Instant;
+
+use authalic::mesh::TriangleMesh;
+use authalic::{UntangleOptions, UntangledImage};
+use numpy::PyArray1;
+use pyo3::intern;
+use pyo3::prelude::*;
+
+use crate::arrays::{from_index_list, from_points, index_list};
+use crate::distortion::{Distortion, OwnedImage};
+use crate::errors::bad_array;
+use crate::registration::surface;
+use crate::run::run;
+
+/// A map without folds, made from one with folds.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Untangled {
+    /// (n, 2) or (n, 3) float64: the map, of the shape given; rows of vertices that did not move are the same bits.
+    image: Py<PyAny>,
+    /// (k,) int64: the vertices that moved, ascending.
+    moved: Py<PyArray1<i64>>,
+    /// (k,) int64: the faces that were folded, ascending.
+    folded_before: Py<PyArray1<i64>>,
+    /// "converged"; "stalled" where a face stays below the tolerance, though not folded; "cancelled" where vertices did
+    /// not return as far as they could. The map has no folds whatever it says.
+    status: &'static str,
+    /// The figures of the map; parts that are mirrored as a whole count as turned back.
+    distortion: Py<Distortion>,
+    /// Wall time of the call.
+    seconds: f64,
+}
+
+#[pymethods]
+impl Untangled {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Untangled({} of {} vertices moved, {} faces were folded, {}, {:.2} s, {})",
+            self.moved.bind(py).len()?,
+            self.image.bind(py).len()?,
+            self.folded_before.bind(py).len()?,
+            self.status,
+            self.seconds,
+            self.distortion.bind(py).repr()?,
+        ))
+    }
+}
+
+/// Removes the folds of a given map, and changes as little as can be.
+///
+/// Only vertices near folded faces move: as few as suffice, and from a map without folds (Garanzha et al. 2021) back
+/// towards their old places as far as open faces let them. The outline and the fixed vertices stay. A map without
+/// folds comes back as it is. Which faces are folded is decided by exact predicates.
+///
+/// Each connected part keeps the orientation that most of its area has, so a part that is mirrored as a whole stays
+/// mirrored. Parts may overlap each other, and the outline may overlap itself, as it did before.
+///
+/// Parameters
+/// ----------
+/// surface : (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: an orientable manifold, of any number of parts and boundary loops.
+/// image : (n, 2) or (n, 3) real array
+///     The map of its vertices into the plane, or onto a sphere around the origin. A closed part needs the sphere; there
+///     each tangle must lie within a hemisphere.
+/// fixed : (k,) integer or (n,) bool array, optional
+///     Vertices that stay in their places, beside those of the boundary, which always do.
+/// tolerance : float
+///     The least area of a face that was folded, or gave way to one: in units of its fair share, the area of the region
+///     that moves divided in proportion to the areas on the surface. Below 1, default .01.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between and within steps; False cancels. A map is returned where nothing is folded any more.
+///
+/// Returns
+/// -------
+/// Untangled
+///
+/// Raises
+/// ------
+/// MeshError
+///     The mesh is broken, an array does not fit, or the outline or the fixed vertices make folds inevitable: `indices`
+///     has the folded faces.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     No map without folds was found: `indices` has the faces left over. Or the call was cancelled before there was one.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+/// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
+/// >>> uv = [[2, 0], [1, 0], [0, 1], [-1, 0], [0, -1]]
+/// >>> result = authalic.untangle((pyramid, faces), uv)
+/// >>> result.folded_before.tolist(), result.moved.tolist(), len(result.distortion.folded)
+/// ([0, 3], [0], 0)
+#[pyfunction]
+#[pyo3(signature = (surface, image, *, fixed=None, tolerance=0.01, progress=None))]
+pub fn untangle(
+    py: Python<'_>,
+    surface: &Bound<'_, PyAny>,
+    image: &Bound<'_, PyAny>,
+    fixed: Option<&Bound<'_, PyAny>>,
+    tolerance: f64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Untangled> {
+    // 1. Arguments to plain data
+    let began = Instant::now();
+    let (vertices, faces) = self::surface(surface, ["surface", "surface vertices", "surface faces"])?;
+    let image = OwnedImage::extract(image, vertices.len())?;
+    let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, vertices.len()))?;
+    // 2. The run
+    let map = run(py, progress, move |observer| {
+        let mesh = TriangleMesh::new(&vertices, &faces)?;
+        let options = UntangleOptions { fixed: &fixed, tolerance };
+        authalic::untangle(&mesh, image.view(), &options, observer)
+    })?;
+    // 3. The result
+    Ok(Untangled {
+        image: match &map.image {
+            UntangledImage::Plane(map) => from_points(py, map).into_any(),
+            UntangledImage::Sphere(map) => from_points(py, map).into_any(),
+        },
+        moved: from_index_list(py, map.moved.iter().copied()),
+        folded_before: from_index_list(py, map.folded_before.iter().copied()),
+        status: map.status.as_str(),
+        distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+        seconds: began.elapsed().as_secs_f64(),
+    })
+}
+
+/// Vertices as a list of indices, or as one truth value for each of them.
+fn vertex_set(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<usize>> {
+    let (py, name) = (object.py(), "fixed");
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let array = numpy
+        .call_method1(intern!(py, "asarray"), (object,))
+        .map_err(|error| bad_array(py, name, error.value(py).to_string(), "an array of vertices".into()))?;
+    let kind: String = array.getattr(intern!(py, "dtype"))?.getattr(intern!(py, "kind"))?.extract()?;
+    if kind != "b" {
+        return index_list(object, name, "entry", n_vertices);
+    }
+    let shape: Vec<usize> = array.getattr(intern!(py, "shape"))?.extract()?;
+    if shape != [n_vertices] {
+        let expected = format!("of shape ({n_vertices},) where it is of truth values, one for each vertex");
+        return Err(bad_array(py, name, format!("of shape {shape:?}"), expected));
+    }
+    let indices = numpy.call_method1(intern!(py, "flatnonzero"), (array,))?;
+    index_list(&indices, name, "entry", n_vertices)
+}

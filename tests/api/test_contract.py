@@ -210,7 +210,14 @@ def test_the_examples_in_the_docstrings_run(name):
 
 def test_every_attribute_of_the_results_is_documented():
     maps = (authalic.DiskMap, authalic.SphereMap, authalic.Registration, authalic.HyperbolicStructure)
-    for kind in (*maps, authalic.Untangled, authalic.Distortion, authalic.Patch, authalic.Certificates, authalic.Pants):
+    for kind in (
+        *maps,
+        authalic.Untangled,
+        authalic.Distortion,
+        authalic.Patch,
+        authalic.Certificates,
+        authalic.Pants,
+    ):
         for name in public_attributes(kind):
             assert getattr(kind, name).__doc__, f"{kind.__name__}.{name}"
 
@@ -330,7 +337,11 @@ def test_results_are_printed_in_one_line_with_figures(result, sphere_result):
     ("option", "value", "words"),
     [
         ("method", "newton", f'method must be {DISK_METHODS}, but is "newton"'),
-        ("boundary", "none", 'boundary must be "sliding", "arc_length", "free" or "rectangle", but is "none"'),
+        (
+            "boundary",
+            "none",
+            'boundary must be "sliding", "arc_length", "free" or "rectangle", but is "none"',
+        ),
         ("max_iterations", -1, "max_iterations must be ≥ 0, but is -1"),
         ("tolerance", -1.0, "tolerance must be a finite number ≥ 0, but is -1"),
         ("tolerance", float("nan"), "tolerance must be a finite number ≥ 0, but is NaN"),

@@ -16,7 +16,7 @@ use crate::run::run;
 /// A one-to-one map of a disk to the unit disk.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct DiskMap {
-    /// (n, 2) float64: the image of each vertex in the unit disk.
+    /// (n, 2) float64: the image of each vertex in the unit disk, or on the rectangle asked for.
     uv: Py<PyArray2<f64>>,
     /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
     faces: Py<PyArray2<i64>>,

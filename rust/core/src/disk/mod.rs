@@ -105,7 +105,8 @@ pub struct DiskMapOptions<'a> {
 /// A one-to-one map of a disk to the unit disk.
 #[derive(Debug, Clone)]
 pub struct DiskMap {
-    /// (n, 2): the image of each vertex in the unit disk; positive faces run counter-clockwise.
+    /// (n, 2): the image of each vertex in the unit disk, or on the rectangle asked for; positive faces run
+    /// counter-clockwise.
     pub uv: Vec<[f64; 2]>,
     /// Why the run ended.
     pub status: Status,

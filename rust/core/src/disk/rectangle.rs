@@ -48,10 +48,13 @@ const GUARDED_ITERATIONS: [usize; 2] = [27, 60];
 const TOLERANCE: f64 = 2e-4;
 
 /// Corrections of a free aspect where angles count, at the most.
-const MOST_CORRECTIONS: usize = 12;
+const MOST_CORRECTIONS: usize = 30;
+
+/// By what part of itself a correction but the first and the last is taken: over-relaxation, which saves every other one.
+const RELAXATION: f64 = 1.5;
 
 /// A correction of the logarithm of the aspect below this is none.
-const SETTLED: f64 = 1e-7;
+const SETTLED: f64 = 1e-4;
 
 /// Aspects, and one over them, up to this.
 const MOST_ASPECT: f64 = 1e4;
@@ -226,18 +229,19 @@ impl Rectangle<'_> {
         let boundary = self.boundary(aspect, corners, outline);
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (map, status) = self.start(&problem, boundary, is_cancelled, history, &mut phase)?;
-        let map = self.with_best_aspect(&problem, map).0;
+        let map = self.with_best_aspect(&problem, &map, 1.0).0;
         if status == Status::Cancelled {
             return Ok((map, status));
         }
         // 2. A guarded descent, the aspect, and so on
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
+        let begun = history.iterations();
         let surface =
             floors::Surface { mesh: self.run.mesh, targets: self.run.targets, codomain: Codomain::Plane };
         let (problem, map, status) =
             floors::descend(&surface, problem, map, &self.options(), history, &mut phase);
         let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
-        Ok(self.settled(&problem, map, status, history, &mut phase))
+        Ok(self.settled(&problem, map, status, begun, history, &mut phase))
     }
 
     /// Corrects a free aspect until it and the map are best for each other.
@@ -246,39 +250,48 @@ impl Rectangle<'_> {
         problem: &Problem,
         mut map: Map,
         mut status: Status,
+        begun: usize,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Map, Status) {
+        let mut options = self.options();
         for round in 0..MOST_CORRECTIONS {
-            let (stretched, change) = self.with_best_aspect(problem, map);
-            map = stretched;
+            // 1. The best aspect; on the way a little more, as far down again on the other side of the minimum
+            let (stretched, change) = self.with_best_aspect(problem, &map, 1.0);
             let counts_angles = self.run.options.angle_weight > 0.0;
-            if status == Status::Cancelled || change.abs() < SETTLED || !counts_angles {
-                break;
+            let left = self.run.options.max_iterations.unwrap_or(usize::MAX);
+            options.most_iterations =
+                options.most_iterations.min((left + begun).saturating_sub(history.iterations()));
+            if status == Status::Cancelled
+                || change.abs() < SETTLED
+                || !counts_angles
+                || options.most_iterations == 0
+            {
+                return (stretched, status);
             }
-            let from = 1.0 - 0.5f64.powi(round as i32);
-            let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
-            (map, status) = minimize(problem, map, &self.options(), history, &mut phase);
+            map = if round == 0 { stretched } else { self.with_best_aspect(problem, &map, RELAXATION).0 };
+            // 2. The map for this aspect
+            let from = 1.0 - 0.8f64.powi(round as i32);
+            let to = 1.0 - 0.8f64.powi(round as i32 + 1);
+            let mut phase = Phase { whole: observer, from, to };
+            (map, status) = minimize(problem, map, &options, history, &mut phase);
         }
-        (map, status)
+        (self.with_best_aspect(problem, &map, 1.0).0, status)
     }
 
-    /// The map stretched to the aspect of least angle energy, and by which logarithm; as it is where the aspect is given.
-    fn with_best_aspect(&self, problem: &Problem, map: Map) -> (Map, f64) {
+    /// The map stretched towards the aspect of least angle energy, and the logarithm by which it is off; as it is where the
+    /// aspect is given.
+    fn with_best_aspect(&self, problem: &Problem, map: &Map, part: f64) -> (Map, f64) {
         if self.aspect.is_some() {
-            return (map, 0.0);
+            return (map.clone(), 0.0);
         }
-        let width = map[self.sides[1][0] as usize][0] - map[self.sides[0][0] as usize][0];
-        let height = map[self.sides[3][0] as usize][1] - map[self.sides[0][0] as usize][1];
-        let now = (width / height).ln();
+        let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
+        let now = ((high[0] - low[0]) / (high[1] - low[1])).ln();
         let bound = MOST_ASPECT.ln();
-        let change = (now + 2.0 * best_stretch(&problem.energy, &map)).clamp(-bound, bound) - now;
+        let change = (now + 2.0 * part * best_stretch(&problem.energy, map)).clamp(-bound, bound) - now;
         let factor = (0.5 * change).exp();
         let stretched: Map = map.iter().map(|&[x, y, z]| [x * factor, y / factor, z]).collect();
-        match problem.energy.is_embedding(&stretched) {
-            true => (stretched, change),
-            false => (map, 0.0),
-        }
+        if problem.energy.is_embedding(&stretched) { (stretched, change) } else { (map.clone(), 0.0) }
     }
 
     /// A map without folds.
@@ -436,17 +449,15 @@ impl Rectangle<'_> {
     fn laid_out(&self, map: &Map) -> (super::Map, f64) {
         let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
         let sides = [high[0] - low[0], high[1] - low[1]];
-        let scale = 1.0 / sides[0].max(sides[1]);
-        let place = |x: &Vector, k: usize| match x[k] {
-            x if x == high[k] => sides[k] * scale,
-            x => (x - low[k]) * scale,
-        };
+        let longer = sides[0].max(sides[1]);
+        // the farther sides exactly on one line, the longer one exactly 1
+        let place = |x: &Vector, k: usize| if x[k] == high[k] { sides[k] } else { x[k] - low[k] } / longer;
         let moved: super::Map = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
         if certificate::folded(self.run.mesh, &moved).is_empty() {
-            return (moved, scale);
+            return (moved, 1.0 / longer);
         }
         // the rounding of the shift folded a face that is next to nothing; a power of two rounds nothing
-        let scale = scale.log2().floor().exp2();
+        let scale = (1.0 / longer).log2().floor().exp2();
         (map.iter().map(|&[x, y, _]| [x * scale, y * scale]).collect(), scale)
     }
 
@@ -492,4 +503,87 @@ fn lifted(map: super::Map) -> Map {
 
 fn flat(map: &Map) -> super::Map {
     map.iter().map(|&[u, v, _]| [u, v]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Silent, disk_map};
+
+    /// A flat grid of `rows` × `columns` vertices of these sides.
+    fn grid(rows: u32, columns: u32, [width, height]: [f64; 2]) -> TriangleMesh {
+        let place = |i: u32| {
+            let (row, column) = (i / columns, i % columns);
+            [
+                width * f64::from(column) / f64::from(columns - 1),
+                height * f64::from(row) / f64::from(rows - 1),
+                0.0,
+            ]
+        };
+        let vertices: Vec<[f64; 3]> = (0..rows * columns).map(place).collect();
+        let cells = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column));
+        let faces: Vec<[u32; 3]> =
+            cells.flat_map(|a| [[a, a + 1, a + columns + 1], [a, a + columns + 1, a + columns]]).collect();
+        TriangleMesh::new(&vertices, &faces).unwrap()
+    }
+
+    fn mapped(mesh: &TriangleMesh, corners: Option<[usize; 4]>, aspect: Option<f64>) -> crate::DiskMap {
+        let options =
+            DiskMapOptions { boundary: Boundary::Rectangle, corners, aspect, ..DiskMapOptions::default() };
+        disk_map(mesh, &options, &mut Silent).unwrap()
+    }
+
+    #[test]
+    fn a_flat_rectangle_is_mapped_by_a_similarity() {
+        let mesh = grid(7, 12, [3.0, 2.0]);
+        let map = mapped(&mesh, None, None);
+        assert!(map.distortion.area_ratio_std < 1e-9 && map.distortion.angle_distortion_max < 1.0 + 1e-9);
+        assert_eq!([map.uv[0], map.uv[11][..].try_into().unwrap()], [[0.0, 0.0], [1.0, 0.0]]);
+        assert!((map.uv[83][1] - 2.0 / 3.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn given_corners_and_aspect_are_kept_and_vertices_slide_on_their_sides() {
+        let mesh = grid(7, 7, [1.0, 1.0]);
+        // a quarter turn, and half as high as wide
+        let map = mapped(&mesh, Some([6, 48, 42, 0]), Some(2.0));
+        let expected = [(6, [0.0, 0.0]), (48, [1.0, 0.0]), (42, [1.0, 0.5]), (0, [0.0, 0.5])];
+        expected.iter().for_each(|&(v, x): &(usize, [f64; 2])| assert_eq!(map.uv[v], x));
+        (0..7).for_each(|k| assert_eq!(map.uv[6 + 7 * k][1], 0.0));
+        assert!(map.distortion.folded.is_empty());
+    }
+
+    #[test]
+    fn the_best_stretch_makes_the_angle_energy_stationary() {
+        let mesh = grid(4, 4, [1.0, 1.0]);
+        let energy = AuthalicEnergy::new(&mesh, mesh.face_areas().to_vec(), Codomain::Plane, 0.0);
+        let map: Map =
+            mesh.points().iter().map(|p| [2.0 * p[0] + 0.3 * p[1], p[1] - 0.1 * p[0] * p[1], 1.0]).collect();
+        let t = best_stretch(&energy, &map);
+        let angle = |t: f64| {
+            let stretched: Map = map.iter().map(|x| [x[0] * t.exp(), x[1] / t.exp(), 1.0]).collect();
+            energy.sums(&stretched).angle_energy
+        };
+        assert!(angle(t) < angle(t + 1e-3).min(angle(t - 1e-3)));
+        assert!((t + 0.5 * 2f64.ln()).abs() < 0.1);
+    }
+
+    #[test]
+    fn corners_that_press_a_face_flat_or_run_backwards_are_refused() {
+        let mesh = grid(4, 4, [1.0, 1.0]);
+        let refused = |corners: [usize; 4]| {
+            let options = DiskMapOptions {
+                boundary: Boundary::Rectangle,
+                corners: Some(corners),
+                ..DiskMapOptions::default()
+            };
+            disk_map(&mesh, &options, &mut Silent).unwrap_err().to_string()
+        };
+        // 3 and 12 are the only corners of a face each
+        assert!(refused([0, 2, 15, 12]).contains("2 vertices (2, 7): an edge inside the surface joins them"));
+        assert!(refused([0, 12, 15, 3]).contains("clockwise"));
+        assert!(refused([0, 15, 3, 12]).contains("order"));
+        assert!(refused([0, 3, 3, 12]).contains("different"));
+        assert!(refused([0, 3, 15, 5]).contains("longest boundary loop"));
+    }
 }

@@ -101,9 +101,15 @@ pub(super) fn feasible(
         let loops = mesh.boundary_loops().iter();
         let loops: Vec<&Vec<u32>> =
             loops.filter(|ring| components[ring[0] as usize] == component as u32).collect();
+        if loops.is_empty() {
+            let found =
+                "flat on a part without a boundary, which cannot lie in the plane without folds".into();
+            let expected = "of shape (n, 3) there, on a sphere; or cut the part open by seams".into();
+            return Err(Error::InvalidArray { name: "image", found, expected });
+        }
         let most: i64 = loops.iter().map(|ring| most_turns(ring, map)).sum();
         let needed = euler_characteristic(mesh, components, component as u32, &loops);
-        if most < needed || loops.is_empty() {
+        if most < needed {
             return Err(Error::OutlineFolds { faces, turns: most, needed });
         }
     }

@@ -13,20 +13,27 @@
 //!
 //! Cost: up to [`STEPS`] factorizations of the patch for each of about eight μ.
 
-use super::newton::{Corners, FaceEnergy, Hessian, Newton, add_area_curvature, add_symmetric, doubled_area};
+use super::newton::{
+    Corners, FaceEnergy, Hessian, Newton, add_less_area_curvature, add_symmetric, doubled_area,
+};
 use super::patch::Patch;
 use crate::control::Watch;
-use crate::energy::clamp_negative_eigenvalues;
 
-/// Newton steps for each μ at the most.
-const STEPS: usize = 12;
+/// Newton steps for each μ at the most, and for the last.
+const STEPS: usize = 6;
+const LAST_STEPS: usize = 40;
 
-/// What μ falls by, and where it ends.
+/// What μ falls by.
 const FALL: f64 = 0.1;
-const LAST: f64 = 1e-7;
+
+/// The last μ.
+const LAST: f64 = 1e-6;
 
 /// A μ is done when a step promises less than this times μ.
-const NEAR: f64 = 1e-6;
+const NEAR: f64 = 0.1;
+
+/// The last μ is done when a step promises less than this times μ.
+const LAST_NEAR: f64 = 1e-6;
 
 /// A vertex this near to its old place returns to it.
 const SNAP: f64 = 1e-3;
@@ -56,21 +63,25 @@ pub(super) fn closest(
     let mut energy = Barrier { patch, floors, per_face: &per_face, weight };
     let mut places = start;
     // 1. Along the central path
-    while energy.weight >= LAST {
-        for _ in 0..STEPS {
+    loop {
+        let is_last = energy.weight <= LAST;
+        for _ in 0..if is_last { LAST_STEPS } else { STEPS } {
             let value = newton.value(&energy, &places);
             match newton.step(&energy, &places, value, watch) {
                 Err(_) => return (snapped(patch, floors, places), false),
                 Ok(None) => break,
                 Ok(Some(step)) => {
                     places = step.places;
-                    if step.decrement < NEAR * energy.weight {
+                    if step.decrement < energy.weight * if is_last { LAST_NEAR } else { NEAR } {
                         break;
                     }
                 }
             }
         }
-        energy.weight *= FALL;
+        if is_last {
+            break;
+        }
+        energy.weight = (FALL * energy.weight).max(LAST);
     }
     // 2. Exactly back where nothing is in the way
     (snapped(patch, floors, places), true)
@@ -123,8 +134,7 @@ impl FaceEnergy for Barrier<'_> {
         let mut gradient = by_room.map(|slope| -self.weight / room * slope);
         let mut hessian = [[0.0; 6]; 6];
         add_symmetric(&mut hessian, self.weight / (room * room), &by_room, &by_room);
-        add_area_curvature(&mut hessian, -0.5 * self.weight / (room * share));
-        clamp_negative_eigenvalues(&mut hessian);
+        add_less_area_curvature(&mut hessian, 0.5 * self.weight / (room * share));
         // 2. The distance
         for k in 0..6 {
             let vertex = self.patch.faces[face][k / 2] as usize;

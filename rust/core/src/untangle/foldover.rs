@@ -22,6 +22,12 @@ use crate::error::Error;
 /// Steps at the most.
 const ITERATIONS: usize = 120;
 
+/// The search ends when in so many steps the faces that miss their goals have not become fewer.
+const PATIENCE: usize = 20;
+
+/// The same for a last attempt.
+const LAST_PATIENCE: usize = 60;
+
 /// The first ε.
 const FIRST_REGULARIZATION: f64 = 1.0;
 
@@ -61,12 +67,19 @@ pub(super) fn unfold(
     patch: &Patch,
     cotangents: &[[f64; 3]],
     start: Vec<[f64; 2]>,
+    is_last: bool,
     watch: &Watch<'_>,
 ) -> Result<Vec<[f64; 2]>, Error> {
     let mut energy = Regularized { patch, cotangents, regularization: FIRST_REGULARIZATION };
     let mut places = start;
-    for _ in 0..ITERATIONS {
-        if patch.reaches_goals(&places) {
+    let patience = if is_last { LAST_PATIENCE } else { PATIENCE };
+    let mut fewest = (usize::MAX, 0);
+    for iteration in 0..ITERATIONS {
+        let missing = patch.misses(&places);
+        if missing < fewest.0 {
+            fewest = (missing, iteration);
+        }
+        if missing == 0 || iteration >= fewest.1 + patience {
             break;
         }
         // 1. A step for this ε

@@ -28,7 +28,7 @@ use crate::control::{Observer, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use patch::{Outcome, Patch};
+use patch::{Effort, Outcome, Patch};
 use positions::Positions;
 
 const MESSAGE: &str = "Untangling";
@@ -146,11 +146,14 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Unfolds everything, first with the tolerance asked for, then with whatever opens what is left.
+    /// Unfolds everything: with the tolerance asked for, else with whatever opens what is left, at last all at once.
     fn unfold(&mut self, folded_before: &[usize], observer: &mut dyn Observer) -> Result<(), Error> {
         let mut folded = folded_before.to_vec();
-        for is_thin_enough in [false, true] {
-            folded = self.rounds(folded, folded_before.len(), is_thin_enough, observer)?;
+        for (is_thin_enough, first_round, tries_hard) in
+            [(false, 0, true), (true, 0, false), (true, patches::EVERYTHING, true)]
+        {
+            let effort = Effort { is_thin_enough, is_last: tries_hard };
+            folded = self.rounds(folded, folded_before.len(), first_round, effort, observer)?;
         }
         match Elements::collect(folded.iter().copied()) {
             None => Ok(()),
@@ -161,34 +164,36 @@ impl Run<'_> {
         }
     }
 
-    /// Patches that grow from round to round; returns the faces that stay folded.
+    /// Patches that grow from round to round, a last effort only on whole components; returns the faces that stay folded.
     fn rounds(
         &mut self,
         mut folded: Vec<usize>,
         n_before: usize,
-        is_thin_enough: bool,
+        first_round: u32,
+        effort: Effort,
         observer: &mut dyn Observer,
     ) -> Result<Vec<usize>, Error> {
         let mut failed = BTreeSet::new();
-        for round in 0.. {
+        for round in first_round.. {
             if folded.is_empty() {
                 break;
             }
             // 1. The vertices that may move, in parts that do not touch
             let around = patches::around(self.mesh, &self.now, self.held, &folded, round);
             let parts = patches::parts(self.mesh, &around.free);
+            let effort = Effort { is_last: effort.is_last && around.is_all, ..effort };
             let done = 1.0 - folded.len() as f64 / n_before.max(1) as f64;
             for (k, free) in parts.iter().enumerate() {
                 let here = k as f64 / parts.len() as f64;
                 let fraction = done.max(0.0) + (1.0 - done.max(0.0)) * 0.9 * here;
-                if failed.contains(free) {
+                if failed.contains(free) && !effort.is_last {
                     continue;
                 }
                 if !observer.progress(fraction, MESSAGE) {
                     return Err(Error::CancelledEarly);
                 }
                 let watch = Watch::new(observer, fraction, MESSAGE);
-                if !self.unfold_patch(free, is_thin_enough, &watch)? {
+                if !self.unfold_patch(free, effort, &watch)? {
                     failed.insert(free.clone());
                 }
             }
@@ -202,12 +207,12 @@ impl Run<'_> {
     }
 
     /// Whether the patch of these free vertices could be unfolded, and is.
-    fn unfold_patch(&mut self, free: &[u32], is_thin_enough: bool, watch: &Watch<'_>) -> Result<bool, Error> {
+    fn unfold_patch(&mut self, free: &[u32], effort: Effort, watch: &Watch<'_>) -> Result<bool, Error> {
         let tolerance = self.options.tolerance;
         let Some(patch) = Patch::new(self.mesh, self.given, &self.now, free, tolerance) else {
             return Ok(false);
         };
-        let Outcome::Open(places, status) = patch.solved(is_thin_enough, watch)? else {
+        let Outcome::Open(places, status) = patch.solved(effort, watch)? else {
             return Ok(false);
         };
         let before = self.now.at(free);

@@ -44,6 +44,21 @@ pub(super) struct Patch {
     chart: Chart,
 }
 
+/// A tangle is heavy where more than one face out of so many is folded.
+const HEAVY: usize = 3;
+
+/// Patches of so many faces are not solved from two starts while larger ones come after them.
+const LARGE: usize = 3000;
+
+/// How much is tried.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Effort {
+    /// Whether faces may stay below their goals as long as they are not folded.
+    pub is_thin_enough: bool,
+    /// Whether no larger patch comes after this one.
+    pub is_last: bool,
+}
+
 /// What became of a patch.
 pub(super) enum Outcome {
     /// Places in the chart without folds, and whether they are all that was asked for.
@@ -122,10 +137,10 @@ impl Patch {
     ///
     /// # Errors
     /// [`Error::CancelledEarly`] by the watch while there are folds.
-    pub(super) fn solved(&self, is_thin_enough: bool, watch: &Watch<'_>) -> Result<Outcome, Error> {
+    pub(super) fn solved(&self, effort: Effort, watch: &Watch<'_>) -> Result<Outcome, Error> {
         let mut newton = Newton::new(self)?;
         // 1. Any places without folds
-        let Some((start, is_thin)) = self.unfolded(&mut newton, is_thin_enough, watch)? else {
+        let Some((start, is_thin)) = self.unfolded(&mut newton, effort, watch)? else {
             return Ok(Outcome::Folded);
         };
         let kept = |face: usize| self.floors[face].min(0.5 * self.ratio(&start, face));
@@ -144,33 +159,42 @@ impl Patch {
     fn unfolded(
         &self,
         newton: &mut Newton<'_>,
-        is_thin_enough: bool,
+        effort: Effort,
         watch: &Watch<'_>,
     ) -> Result<Option<(Vec<[f64; 2]>, bool)>, Error> {
         let value = newton.value(&Springs, &self.present);
         let tutte = newton.step(&Springs, &self.present, value, watch)?.map(|step| step.places);
         let equilateral = vec![[EQUILATERAL; 3]; self.faces.len()];
-        let attempts = [
-            (tutte.as_ref(), &self.cotangents),
-            (Some(&self.present), &self.cotangents),
-            (tutte.as_ref(), &equilateral),
-        ];
-        for (start, rest) in attempts {
+        // the present places are nearer to the result where few faces are folded, Tutte's embedding where many are
+        let is_folded = |face: &usize| self.ratio(&self.present, *face) <= 0.0;
+        let n_folded = (0..self.faces.len()).filter(is_folded).count();
+        let mut starts = [Some(&self.present), tutte.as_ref()];
+        if HEAVY * n_folded > self.faces.len() {
+            starts.reverse();
+        }
+        let attempts =
+            [(starts[0], &self.cotangents), (starts[1], &self.cotangents), (tutte.as_ref(), &equilateral)];
+        let n_attempts = match self.faces.len() {
+            _ if effort.is_last => attempts.len(),
+            0..LARGE => 2,
+            _ => 1,
+        };
+        for (start, rest) in attempts.into_iter().take(n_attempts) {
             let Some(start) = start else { continue };
-            let places = unfold(newton, self, rest, start.clone(), watch)?;
-            if self.reaches_goals(&places) {
+            let places = unfold(newton, self, rest, start.clone(), effort.is_last, watch)?;
+            if self.misses(&places) == 0 {
                 return Ok(Some((places, false)));
             }
-            if is_thin_enough && self.least_ratio(&places) > CLOSED {
+            if effort.is_thin_enough && self.least_ratio(&places) > CLOSED {
                 return Ok(Some((places, true)));
             }
         }
         Ok(None)
     }
 
-    /// Whether every face has twice the area that it must keep.
-    pub(super) fn reaches_goals(&self, places: &[[f64; 2]]) -> bool {
-        (0..self.faces.len()).all(|face| self.ratio(places, face) >= 2.0 * self.floors[face])
+    /// How many faces have less than twice the area that they must keep.
+    pub(super) fn misses(&self, places: &[[f64; 2]]) -> usize {
+        (0..self.faces.len()).filter(|&face| self.ratio(places, face) < 2.0 * self.floors[face]).count()
     }
 
     /// The least area of a face in units of its share.

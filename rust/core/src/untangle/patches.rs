@@ -12,6 +12,9 @@ use crate::mesh::TriangleMesh;
 /// Vertices that stick out by the same but for this part of it are equals.
 const MARGIN: f64 = 1e-6;
 
+/// The round that frees whole components.
+pub(super) const EVERYTHING: u32 = 62;
+
 /// The vertices that may move in a round.
 pub(super) struct Around {
     /// Ascending.

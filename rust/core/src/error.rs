@@ -290,7 +290,7 @@ pub enum Error {
     },
 
     /// A boundary cannot go onto a rectangle.
-    #[error("no rectangle at boundary {}: {reason}", .vertices.named("vertex"))]
+    #[error("no rectangle fits the boundary at {}: {reason}", .vertices.named("vertex"))]
     NoRectangle {
         /// The vertices at fault.
         vertices: Elements,
@@ -703,7 +703,7 @@ pub enum Error {
         fixed.as_ref().map_or(String::new(), |pins| format!(" and the fixed vertices ({})", pins.named("vertex"))),
         .folded.named("face"),
         if fixed.is_some() { "leave these vertices out of fixed, or move them" }
-        else { "smooth the outline there, or refine the mesh between its bays" }
+        else { "smooth the outline there, or refine the mesh; on a sphere, tangles must lie within a hemisphere" }
     )]
     StillFolded {
         /// The faces that stayed folded.

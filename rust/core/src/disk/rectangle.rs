@@ -90,7 +90,7 @@ pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result
         };
     }
     if let Some(aspect) = options.aspect
-        && !(aspect >= 1.0 / MOST_ASPECT && aspect <= MOST_ASPECT)
+        && !(1.0 / MOST_ASPECT..=MOST_ASPECT).contains(&aspect)
     {
         let expected = "width over height, from 1e-4 to 1e4".into();
         return Err(Error::InvalidOption { name: "aspect", found: aspect.to_string(), expected });

@@ -59,6 +59,13 @@ pub(super) struct Effort {
     pub is_last: bool,
 }
 
+/// Places without folds.
+struct Unfolded {
+    places: Vec<[f64; 2]>,
+    /// Whether a face misses its goal.
+    is_thin: bool,
+}
+
 /// What became of a patch.
 pub(super) enum Outcome {
     /// Places in the chart without folds, and whether they are all that was asked for.
@@ -140,7 +147,7 @@ impl Patch {
     pub(super) fn solved(&self, effort: Effort, watch: &Watch<'_>) -> Result<Outcome, Error> {
         let mut newton = Newton::new(self)?;
         // 1. Any places without folds
-        let Some((start, is_thin)) = self.unfolded(&mut newton, effort, watch)? else {
+        let Some(Unfolded { places: start, is_thin }) = self.unfolded(&mut newton, effort, watch)? else {
             return Ok(Outcome::Folded);
         };
         let kept = |face: usize| self.floors[face].min(0.5 * self.ratio(&start, face));
@@ -155,21 +162,22 @@ impl Patch {
         Ok(Outcome::Open(places, status))
     }
 
-    /// Places without folds, and whether a face misses its goal.
+    /// Some places without folds; `None` where none were found.
     fn unfolded(
         &self,
         newton: &mut Newton<'_>,
         effort: Effort,
         watch: &Watch<'_>,
-    ) -> Result<Option<(Vec<[f64; 2]>, bool)>, Error> {
+    ) -> Result<Option<Unfolded>, Error> {
         let value = newton.value(&Springs, &self.present);
         let tutte = newton.step(&Springs, &self.present, value, watch)?.map(|step| step.places);
         let equilateral = vec![[EQUILATERAL; 3]; self.faces.len()];
-        // the present places are nearer to the result where few faces are folded, Tutte's embedding where many are
+        // the present places are nearer to the result where few faces are folded, Tutte's embedding where many are;
+        // on large patches it takes fewer steps
         let is_folded = |face: &usize| self.ratio(&self.present, *face) <= 0.0;
         let n_folded = (0..self.faces.len()).filter(is_folded).count();
         let mut starts = [Some(&self.present), tutte.as_ref()];
-        if HEAVY * n_folded > self.faces.len() {
+        if HEAVY * n_folded > self.faces.len() || self.faces.len() >= LARGE {
             starts.reverse();
         }
         let attempts =
@@ -183,10 +191,10 @@ impl Patch {
             let Some(start) = start else { continue };
             let places = unfold(newton, self, rest, start.clone(), effort.is_last, watch)?;
             if self.misses(&places) == 0 {
-                return Ok(Some((places, false)));
+                return Ok(Some(Unfolded { places, is_thin: false }));
             }
             if effort.is_thin_enough && self.least_ratio(&places) > CLOSED {
-                return Ok(Some((places, true)));
+                return Ok(Some(Unfolded { places, is_thin: true }));
             }
         }
         Ok(None)

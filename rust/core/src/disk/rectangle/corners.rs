@@ -250,7 +250,7 @@ impl<'a> Outline<'a> {
         while corners.len() < 4 {
             corners.sort_unstable();
             let sides = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
-            let with_room = sides.filter(|&[from, to]| (to + n - from - 1) % n > 0 || corners.len() == 1);
+            let with_room = sides.filter(|&[from, to]| (from + 1) % n != to);
             let length = |&[from, to]: &[usize; 2]| self.length(from, to);
             let [from, to] =
                 with_room.max_by(|a, b| length(a).total_cmp(&length(b))).expect("at least four vertices");

@@ -30,6 +30,8 @@ use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, corner_cotangents};
 use crate::mesh::renumbering::Renumbered;
+use crate::optimize::angle_schedule::AnglePath;
+use crate::optimize::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
 use crate::optimize::{Stopping, floors};
 use crate::sparse::{Order, elimination_order};
@@ -42,7 +44,7 @@ const FIXED_POINT: Stopping = Stopping { max_iterations: 5, tolerance: 0.15 };
 const OPEN_ITERATIONS: usize = 12;
 
 /// Guarded iterations where those leave the area ratio a deviation of 1 %, and at the most.
-const GUARDED_ITERATIONS: [usize; 2] = [27, 60];
+const GUARDED_ITERATIONS: [usize; 2] = [27, 1000];
 
 /// Area deviation of the result below which nothing is left to gain.
 const TOLERANCE: f64 = 2e-4;
@@ -238,6 +240,13 @@ impl Rectangle<'_> {
         let begun = history.iterations();
         let surface =
             floors::Surface { mesh: self.run.mesh, targets: self.run.targets, codomain: Codomain::Plane };
+        if let Some(tolerance) = self.run.options.area_tolerance {
+            let options = self.options();
+            let (problem, map, status) =
+                within_tolerance(&surface, problem, map, tolerance, &options, history, &mut phase);
+            // stretching the whole changes no area ratio
+            return Ok((self.with_best_aspect(&problem, &map, 1.0).0, status));
+        }
         let (problem, map, status) =
             floors::descend(&surface, problem, map, &self.options(), history, &mut phase);
         let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
@@ -467,6 +476,7 @@ impl Rectangle<'_> {
         GaussNewtonOptions {
             profile: Profile::Barrier,
             angle_weight: options.angle_weight,
+            path: AnglePath::Balanced,
             usual_iterations: if is_free { GUARDED_ITERATIONS[0] } else { usize::MAX },
             most_iterations: options.max_iterations.unwrap_or(GUARDED_ITERATIONS[1]),
             tolerance: options.tolerance.unwrap_or(TOLERANCE),
@@ -562,7 +572,7 @@ mod tests {
         let t = best_stretch(&energy, &map);
         let angle = |t: f64| {
             let stretched: Map = map.iter().map(|x| [x[0] * t.exp(), x[1] / t.exp(), 1.0]).collect();
-            energy.sums(&stretched).angle_energy
+            energy.sums(&energy.costs(&stretched)).angle_energy
         };
         assert!(angle(t) < angle(t + 1e-3).min(angle(t - 1e-3)));
         assert!((t + 0.5 * 2f64.ln()).abs() < 0.1);

@@ -65,6 +65,7 @@ KEYWORDS = {
         "max_iterations": None,
         "tolerance": None,
         "fill_holes": False,
+        "overlap": False,
         "corners": None,
         "aspect": None,
         "progress": None,

@@ -284,6 +284,7 @@ def disk_map(
     max_iterations: int | None = None,
     tolerance: float | None = None,
     fill_holes: bool = False,
+    overlap: bool = False,
     corners: ArrayLike | None = None,
     aspect: float | None = None,
     progress: _Progress | None = None,

@@ -83,7 +83,7 @@ impl DiskMap {
 ///     lengths as in the papers, take any outline that does not cross itself, the whole scaled into the unit
 ///     disk, or go onto a rectangle: four at its corners, the others sliding along its sides. A rectangle has its lower left
 ///     corner in (0, 0) and a longer side of 1. A free boundary and a rectangle are for "gauss_newton"; with an `angle_weight`
-///     a free boundary spares both angles and areas.
+///     a free boundary spares both angles and areas, and holes are as free as the longest loop.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
@@ -94,8 +94,9 @@ impl DiskMap {
 ///     .01. The status is "stalled" where no map that even was reached. Excludes an `angle_weight`; for "gauss_newton"
 ///     only. Default: none, `angle_weight` decides.
 /// initial : (n, 2) real array, optional
-///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop.
-///     Default: harmonic, then five fixed-point steps.
+///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop; with a
+///     free boundary any map without folds whose outline does not cross itself. Default: harmonic, then five
+///     fixed-point steps; with a free boundary the best of plan view, as-rigid-as-possible and conformal map.
 /// max_iterations : int, optional
 ///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
 ///     deviation of less than .5 %; for the papers' methods 50, as in the paper's tables. On top come up to five
@@ -105,7 +106,11 @@ impl DiskMap {
 ///     2e-4 (after the usual iterations .5 %), or at a stationary point of the energy; the papers' methods when
 ///     √(gᵀM⁻¹g), the gradient_norm of the history, falls below it, default 1e-8.
 /// fill_holes : bool
-///     Fill all boundary loops but the longest virtually instead of refusing them. Default False.
+///     Fill all boundary loops but the longest virtually instead of refusing them; with a free boundary they
+///     are accepted and stay open. Default False.
+/// overlap : bool
+///     Let a free boundary cross itself, which spares more angles where limbs would meet in the plane. Default
+///     False: maps are one-to-one. ValueError with another boundary than "free".
 /// corners : (4,) integer array, optional
 ///     For a rectangle: the boundary vertices at its corners, in their order along the boundary, counter-clockwise, the
 ///     first at the lower left. Default: where the boundary turns most, or where there are fewer than four such places, the
@@ -140,8 +145,7 @@ impl DiskMap {
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
                     area_tolerance=None, initial=None, max_iterations=None, tolerance=None, fill_holes=false,
-                    corners=None, aspect=None,
-                    progress=None))]
+                    overlap=false, corners=None, aspect=None, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_map(
     py: Python<'_>,
@@ -156,6 +160,7 @@ pub fn disk_map(
     max_iterations: Option<i64>,
     tolerance: Option<f64>,
     fill_holes: bool,
+    overlap: bool,
     corners: Option<&Bound<'_, PyAny>>,
     aspect: Option<f64>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -182,6 +187,7 @@ pub fn disk_map(
             max_iterations,
             tolerance,
             fill_holes,
+            overlap,
             corners,
             aspect,
         };

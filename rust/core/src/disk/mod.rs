@@ -14,6 +14,7 @@ mod boundary;
 mod certificate;
 mod domain;
 mod fixed_point;
+mod free;
 mod gauss_newton;
 mod holes;
 mod rectangle;
@@ -94,8 +95,11 @@ pub struct DiskMapOptions<'a> {
     /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
     /// where `None`. For the papers' methods √(gᵀM⁻¹g); 10⁻⁸ where `None`.
     pub tolerance: Option<f64>,
-    /// Fill all boundary loops but the longest virtually instead of refusing them; off.
+    /// Fill all boundary loops but the longest virtually instead of refusing them; off. With a free boundary they stay
+    /// open and are as free as the longest one.
     pub fill_holes: bool,
+    /// Let a free boundary cross itself; off.
+    pub overlap: bool,
     /// The vertices at the corners of a rectangle, counter-clockwise from the lower left one; sought where `None`.
     pub corners: Option<[usize; 4]>,
     /// Width over height of a rectangle; whatever suits angles best where `None`.
@@ -149,6 +153,7 @@ pub fn disk_map(
     };
     let filled = match mesh.boundary_loops().len() {
         1 => None,
+        _ if options.boundary == Boundary::Free => None,
         _ => Some(holes::fill_holes(mesh, &given)?),
     };
     let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
@@ -157,6 +162,10 @@ pub fn disk_map(
     let (mut uv, status) = match options.method {
         Method::GaussNewton if options.boundary == Boundary::Rectangle => {
             rectangle::solve(&run, &mut history, observer)?
+        }
+        Method::GaussNewton if options.boundary == Boundary::Free => {
+            let free = free::Free { mesh, targets: &given, options };
+            free.map(&mut history, observer)?
         }
         Method::GaussNewton => run.renumbered(&mut history, observer)?,
         Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
@@ -184,6 +193,10 @@ impl DiskMapOptions<'_> {
                 "arc_length or sliding for the papers' methods; only gauss_newton has rectangles".into();
             return Err(Error::InvalidOption { name: "boundary", found: "rectangle".into(), expected });
         }
+        if self.overlap && self.boundary != Boundary::Free {
+            let (found, expected) = ("true".into(), "false unless the boundary is free".into());
+            return Err(Error::InvalidOption { name: "overlap", found, expected });
+        }
         if self.boundary == Boundary::Free && self.method != Method::GaussNewton {
             let expected = "arc_length or sliding for the papers' methods; only gauss_newton frees it".into();
             return Err(Error::InvalidOption { name: "boundary", found: "free".into(), expected });
@@ -202,14 +215,17 @@ impl DiskMapOptions<'_> {
     }
 }
 
-/// A start map must be finite and run once around the unit circle; its folds are mended like any others.
+/// A start map must be finite and run once around the unit circle; its folds are mended like any others. With a free
+/// boundary it may have any outline.
 fn check_initial(
     mesh: &TriangleMesh,
     options: &DiskMapOptions<'_>,
     initial: &[[f64; 2]],
 ) -> Result<(), Error> {
-    if initial.len() != mesh.n_vertices() || mesh.boundary_loops().len() != 1 {
-        let expected = format!("of shape ({}, 2) on a surface with one boundary loop", mesh.n_vertices());
+    let is_free = options.boundary == Boundary::Free;
+    if initial.len() != mesh.n_vertices() || (mesh.boundary_loops().len() != 1 && !is_free) {
+        let where_from = if is_free { "" } else { " on a surface with one boundary loop" };
+        let expected = format!("of shape ({}, 2){where_from}", mesh.n_vertices());
         let found = format!("of shape ({}, 2) with {} loops", initial.len(), mesh.boundary_loops().len());
         return Err(Error::InvalidArray { name: "initial", found, expected });
     }
@@ -219,6 +235,9 @@ fn check_initial(
     }
     if options.boundary == Boundary::Rectangle {
         return rectangle::check_initial(mesh, options, initial);
+    }
+    if is_free {
+        return Ok(());
     }
     let boundary = &mesh.boundary_loops()[0];
     let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;

@@ -8,8 +8,15 @@ use robust::{Coord, orient2d};
 
 /// Whether no two edges of the closed polygon meet but at a common corner. An empty polygon is simple.
 pub(crate) fn is_simple_polygon(corners: &[[f64; 2]]) -> bool {
+    let next: Vec<usize> = (0..corners.len()).map(|k| (k + 1) % corners.len()).collect();
+    is_simple_outline(corners, &next)
+}
+
+/// Whether no two edges of one or several closed polygons meet but at a common corner; the corner after corner k is
+/// `next[k]`.
+pub(crate) fn is_simple_outline(corners: &[[f64; 2]], next: &[usize]) -> bool {
     let n = corners.len();
-    let edge = |k: usize| [corners[k], corners[(k + 1) % n]];
+    let edge = |k: usize| [corners[k], corners[next[k]]];
     let span = |k: usize, axis: usize| {
         let [from, to] = edge(k);
         [from[axis].min(to[axis]), from[axis].max(to[axis])]
@@ -20,18 +27,20 @@ pub(crate) fn is_simple_polygon(corners: &[[f64; 2]]) -> bool {
         let beside = order[place + 1..].iter().take_while(|&&other| span(other, 0)[0] <= span(one, 0)[1]);
         let overlap =
             |other: usize| span(one, 1)[0] <= span(other, 1)[1] && span(other, 1)[0] <= span(one, 1)[1];
-        beside.filter(|&&other| overlap(other)).all(|&other| match (other + n - one) % n {
-            1 => !turns_back(corners, other),
-            step if step + 1 == n => !turns_back(corners, one),
-            _ => !meet(edge(one), edge(other)),
+        beside.filter(|&&other| overlap(other)).all(|&other| {
+            if next[one] == other {
+                !turns_back([one, other, next[other]].map(|k| corners[k]))
+            } else if next[other] == one {
+                !turns_back([other, one, next[one]].map(|k| corners[k]))
+            } else {
+                !meet(edge(one), edge(other))
+            }
         })
     })
 }
 
-/// Whether the polygon goes straight back at a corner.
-fn turns_back(corners: &[[f64; 2]], k: usize) -> bool {
-    let n = corners.len();
-    let [before, here, next] = [corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]];
+/// Whether a polygon goes straight back at the middle one of three corners.
+fn turns_back([before, here, next]: [[f64; 2]; 3]) -> bool {
     let along = (here[0] - before[0]) * (next[0] - here[0]) + (here[1] - before[1]) * (next[1] - here[1]);
     side(before, here, next) == 0.0 && along <= 0.0
 }
@@ -66,6 +75,17 @@ mod tests {
         // an eight, a corner that turns straight back
         assert!(!is_simple_polygon(&[[0., 0.], [1., 1.], [1., 0.], [0., 1.]]));
         assert!(!is_simple_polygon(&[[0., 0.], [2., 0.], [1., 0.], [1., 1.]]));
+    }
+
+    #[test]
+    fn several_polygons_are_simple_where_they_stay_apart() {
+        let two = |shift: f64| {
+            let square = [[0., 0.], [4., 0.], [4., 4.], [0., 4.]];
+            let hole = [[1., 1.], [1., 2.], [2., 2.], [2., 1.]].map(|[x, y]: [f64; 2]| [x + shift, y]);
+            is_simple_outline(&[square, hole].concat(), &[1, 2, 3, 0, 5, 6, 7, 4])
+        };
+        assert!(two(0.0) && two(1.5) && two(5.0));
+        assert!(!two(2.0) && !two(2.5) && !two(-1.0));
     }
 
     #[test]

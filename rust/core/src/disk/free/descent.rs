@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Newton's method on the energy of a free outline and of its contacts.
+//!
+//! 1. The Hessians of the faces are factored, with the contacts' share at each vertex; conjugate gradients with this factor
+//!    solve the system of faces and contacts, which have no place in the pattern of the mesh.
+//! 2. A step ends before a face folds or an outline meets itself, and where the energy falls.
+//! 3. The descent has converged when the decrement −gᵀd of a full step is next to nothing: the map is stationary.
+//!
+//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it as much of the
+//! curvature counts as leaves the Hessian positive definite, at last all of it, and the descent converges quadratically. Cost of one iteration: one factorisation of two
+//! unknowns per vertex, and some ten solves where contacts act.
+
+use super::contact::{Contact, Outline, Stiffness, roots};
+use super::energy::{Element, Energy, Hessian, Map};
+use crate::control::{History, Observer, Status, Watch};
+use crate::parallel;
+use crate::sparse::{Analysis, Factor, Failure};
+
+const MESSAGE: &str = "Evening out areas";
+
+/// μ, the damping of a face that is wholly off its target.
+const DAMPING: f64 = 0.005;
+
+/// Every face counts as off its target by so much, between these.
+const LEAST_DEVIATIONS: [f64; 2] = [1e-6, 1e-3];
+
+/// Shifts of the Hessian in units of its diagonal, one after the other where the one before is not enough.
+const SHIFTS: [f64; 5] = [1e-12, 1e-10, 1e-8, 1e-6, 1e-4];
+
+/// A step takes at most this part of the way to a fold or to a meeting of outlines.
+const MARGIN: f64 = 0.9;
+
+/// Steps tried along one direction.
+const MOST_TRIALS: usize = 40;
+
+/// The decrement's share that a step must gain.
+const SUFFICIENT: f64 = 1e-4;
+
+/// A decrement below this is rounding.
+const NOTHING: f64 = 1e-16;
+
+/// The conjugate gradients end when they have reduced the residual to this part, the more exactly the nearer the minimum
+/// is, and after so many steps.
+const RESIDUALS: [f64; 2] = [1e-4, 0.1];
+const MOST_INNER: usize = 60;
+
+/// κ in units of λ.
+const CONTACT: f64 = 0.1;
+
+/// The whole Hessian is tried where the decrement is below this part of the energy.
+const NEAR: f64 = 1e-2;
+
+/// How often the part of the curvature that counts is reduced before none does, and by how much; and by how much more of it
+/// is tried the next time where the Hessian was positive definite.
+const MOST_ATTEMPTS: usize = 2;
+const SHRINK: f64 = 0.6;
+const GROW: f64 = 1.6;
+
+/// What to descend on.
+pub(super) struct Problem<'a> {
+    pub energy: &'a Energy<'a>,
+    /// The system of the faces, two unknowns at every vertex.
+    pub analysis: &'a Analysis,
+    /// What must not cross itself, if anything.
+    pub outline: Option<&'a Outline>,
+}
+
+/// When a descent ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    /// λ.
+    pub weight: f64,
+    /// How near outlines come to each other, in units of the heights beside them.
+    pub range: f64,
+    /// Iterations at the most, those of earlier runs included.
+    pub most_iterations: usize,
+    /// Converged where the decrement is below this part of the energy.
+    pub precision: f64,
+}
+
+/// What there is to know of a map.
+struct Place {
+    map: Map,
+    value: f64,
+    contacts: Vec<Contact>,
+}
+
+struct Direction {
+    along: Map,
+    /// −gᵀd.
+    decrement: f64,
+}
+
+/// The iterations' memory.
+pub(super) struct Descent<'a> {
+    problem: Problem<'a>,
+    factor: Factor<f64>,
+    elements: Vec<Element>,
+    /// How much of the curvature of areas is tried next.
+    curvature: f64,
+    /// The last decrement in units of the energy.
+    ratio: f64,
+    pub done: usize,
+}
+
+impl<'a> Descent<'a> {
+    pub(super) fn new(problem: Problem<'a>) -> Self {
+        let factor = Factor::new(problem.analysis);
+        let elements = vec![[[0.0; 6]; 6]; problem.energy.mesh.n_faces()];
+        Self { problem, factor, elements, curvature: 1.0, ratio: f64::INFINITY, done: 0 }
+    }
+
+    /// Lowers the energy from `map`, which must be allowed, to a stationary point.
+    pub(super) fn run(
+        &mut self,
+        map: Map,
+        goal: &Goal,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let weight = goal.weight;
+        let mut place = self.place(map, goal);
+        history.push_start(self.problem.energy.unevenness(&place.map), 0.0);
+        if !place.value.is_finite() {
+            return (place.map, Status::Stalled);
+        }
+        loop {
+            // 1. Whether to go on
+            if self.done >= goal.most_iterations {
+                return (place.map, Status::MaxIterations);
+            }
+            let fraction = 1.0 - 0.95f64.powi(self.done as i32);
+            if !observer.progress(fraction, MESSAGE) {
+                return (place.map, Status::Cancelled);
+            }
+            // 2. The direction
+            let watch = Watch::new(observer, fraction, MESSAGE);
+            let direction = match self.direction(&place, weight, &watch) {
+                Ok(direction) => direction,
+                Err(Failure::Cancelled) => return (place.map, Status::Cancelled),
+                Err(Failure::NotPositiveDefinite) => return (place.map, Status::Stalled),
+            };
+            self.ratio = direction.decrement / place.value;
+            // 3. The step
+            let least = (goal.precision * place.value).max(NOTHING);
+            let is_flat = direction.decrement <= least;
+            let Some((next, step)) = self.step(&place, &direction, goal) else {
+                return (place.map, if is_flat { Status::Converged } else { Status::Stalled });
+            };
+            self.done += 1;
+            place = next;
+            history.push(
+                self.problem.energy.unevenness(&place.map),
+                step,
+                direction.decrement.max(0.0).sqrt(),
+            );
+            if is_flat && step > 0.5 {
+                return (place.map, Status::Converged);
+            }
+        }
+    }
+
+    /// √(E_A/A) of a map.
+    pub(super) fn deviation(&self, map: &[[f64; 2]]) -> f64 {
+        self.problem.energy.unevenness(map).sqrt()
+    }
+
+    /// Whether what the contacts could still give away is less than `part` of the energy.
+    pub(super) fn is_worth_less(&self, map: &[[f64; 2]], goal: &Goal, part: f64) -> bool {
+        let Some(outline) = self.problem.outline else { return true };
+        let stiffness = self.stiffness(outline, goal.weight);
+        let contacts = outline.contacts(map, goal.range);
+        let gain: f64 = contacts.iter().map(|contact| contact.possible_gain(stiffness)).sum();
+        gain <= part * self.problem.energy.value(map, goal.weight)
+    }
+
+    fn stiffness(&self, outline: &Outline, weight: f64) -> Stiffness {
+        outline.stiffness(CONTACT * weight)
+    }
+
+    /// What there is to know of a map; its value is infinite where it is not allowed.
+    fn place(&self, map: Map, goal: &Goal) -> Place {
+        let mut value = self.problem.energy.value(&map, goal.weight);
+        let mut contacts = Vec::new();
+        if let Some(outline) = self.problem.outline
+            && value.is_finite()
+        {
+            contacts = outline.contacts(&map, goal.range);
+            let stiffness = self.stiffness(outline, goal.weight);
+            value += contacts.iter().map(|contact| contact.value(stiffness)).sum::<f64>();
+        }
+        Place { map, value: if value.is_finite() { value } else { f64::INFINITY }, contacts }
+    }
+
+    /// The Newton direction.
+    fn direction(&mut self, place: &Place, weight: f64, watch: &Watch<'_>) -> Result<Direction, Failure> {
+        let energy = self.problem.energy;
+        // 1. The gradient, that of contacts included
+        let mut gradient = energy.gradient(&place.map, weight);
+        let springs = self.springs(place, weight);
+        for (contact, [force, _]) in place.contacts.iter().zip(&springs) {
+            for (k, &v) in contact.vertices.iter().enumerate() {
+                (0..2).for_each(|axis| gradient[v as usize][axis] += force * contact.slopes[2 * k + axis]);
+            }
+        }
+        // 2. The Hessian, whole where that is positive definite
+        let deviation = energy.parts(&place.map).deviation.sqrt();
+        let least = deviation.clamp(LEAST_DEVIATIONS[0], LEAST_DEVIATIONS[1]);
+        if self.ratio < NEAR {
+            let mut tried = self.curvature;
+            for _ in 0..MOST_ATTEMPTS {
+                let damping = DAMPING * (1.0 - tried);
+                let part = Hessian { weight, damping, least, curvature: tried };
+                match self.solve(place, &part, &springs, &gradient, SHIFTS[1], watch) {
+                    Ok(direction) if direction.decrement > 0.0 => {
+                        self.curvature =
+                            if tried == self.curvature { (GROW * tried).min(1.0) } else { tried };
+                        return Ok(direction);
+                    }
+                    Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                    _ => tried *= SHRINK,
+                }
+            }
+            self.curvature = tried;
+        }
+        let composite = Hessian { weight, damping: DAMPING, least, curvature: 0.0 };
+        for shift in SHIFTS {
+            match self.solve(place, &composite, &springs, &gradient, shift, watch) {
+                Err(Failure::NotPositiveDefinite) => {}
+                verdict => return verdict,
+            }
+        }
+        Err(Failure::NotPositiveDefinite)
+    }
+
+    /// The first and second derivatives of all contacts by their distances.
+    fn springs(&self, place: &Place, weight: f64) -> Vec<[f64; 2]> {
+        let Some(outline) = self.problem.outline else { return Vec::new() };
+        let stiffness = self.stiffness(outline, weight);
+        place.contacts.iter().map(|contact| contact.derivatives(stiffness)).collect()
+    }
+
+    /// Solves for the direction with one kind of Hessian.
+    fn solve(
+        &mut self,
+        place: &Place,
+        how: &Hessian,
+        springs: &[[f64; 2]],
+        gradient: &[[f64; 2]],
+        shift: f64,
+        watch: &Watch<'_>,
+    ) -> Result<Direction, Failure> {
+        let (energy, analysis) = (self.problem.energy, self.problem.analysis);
+        // 1. The elements, shifted alike for both unknowns of a corner, so that turning the map turns the result
+        parallel::fill(&mut self.elements, |face| {
+            let mut element = energy.element(&place.map, face, how);
+            for c in 0..3 {
+                let diagonal = 0.5 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]);
+                let shift = shift * diagonal.abs() + 1e-14 * how.weight * energy.targets[face];
+                (2 * c..2 * c + 2).for_each(|k| element[k][k] += shift);
+            }
+            element
+        });
+        // 2. The contacts' share at each vertex, in the first of its corners
+        let shares = shares(energy, &place.contacts, springs);
+        let elements = &self.elements;
+        let with_contacts = |face: usize| {
+            let mut element = elements[face];
+            for c in 0..3 {
+                if let Ok(at) = shares.binary_search_by_key(&((3 * face + c) as u32), |share| share.0) {
+                    let block = shares[at].1;
+                    element[2 * c][2 * c] += block[0];
+                    element[2 * c + 1][2 * c] += block[1];
+                    element[2 * c][2 * c + 1] += block[1];
+                    element[2 * c + 1][2 * c + 1] += block[2];
+                }
+            }
+            element
+        };
+        self.factor.refactor(analysis, &with_contacts, watch)?;
+        // 3. One solve, or conjugate gradients
+        let rhs = parallel::map(gradient.len(), |v| gradient[v].map(|g| -g));
+        let along = if place.contacts.is_empty() {
+            self.preconditioned(&rhs)
+        } else {
+            self.conjugate_gradients(&place.contacts, springs, how.curvature, &rhs, watch)?
+        };
+        let decrement = dot(&rhs, &along);
+        if !decrement.is_finite() {
+            return Err(Failure::NotPositiveDefinite);
+        }
+        Ok(Direction { along, decrement })
+    }
+
+    /// Solves with the factor.
+    fn preconditioned(&self, rhs: &[[f64; 2]]) -> Map {
+        let mut unknowns: Vec<f64> = rhs.iter().flatten().copied().collect();
+        self.factor.solve(self.problem.analysis, &mut unknowns);
+        unknowns.chunks_exact(2).map(|x| [x[0], x[1]]).collect()
+    }
+
+    /// The product with the Hessian of faces and contacts.
+    fn product(&self, contacts: &[Contact], springs: &[[f64; 2]], curvature: f64, x: &[[f64; 2]]) -> Map {
+        let energy = self.problem.energy;
+        let by_face: Vec<[f64; 6]> = parallel::map(energy.mesh.n_faces(), |face| {
+            let at = energy.mesh.faces()[face].map(|v| x[v as usize]);
+            std::array::from_fn(|i| (0..6).map(|j| self.elements[face][i][j] * at[j / 2][j % 2]).sum())
+        });
+        let mut product = energy.gathered(|corner| {
+            let (of_face, c) = (&by_face[corner / 3], corner % 3);
+            [of_face[2 * c], of_face[2 * c + 1]]
+        });
+        for (contact, [force, stiffness]) in contacts.iter().zip(springs) {
+            let at: [f64; 6] = std::array::from_fn(|k| x[contact.vertices[k / 2] as usize][k % 2]);
+            let pull = stiffness * contact.slopes.iter().zip(&at).map(|(a, b)| a * b).sum::<f64>();
+            let bent = contact.curvature(&at);
+            for k in 0..6 {
+                let of_entry = pull * contact.slopes[k] + curvature * force * bent[k];
+                product[contact.vertices[k / 2] as usize][k % 2] += of_entry;
+            }
+        }
+        product
+    }
+
+    /// Conjugate gradients on the Hessian of faces and contacts, preconditioned by the factor.
+    fn conjugate_gradients(
+        &self,
+        contacts: &[Contact],
+        springs: &[[f64; 2]],
+        curvature: f64,
+        rhs: &[[f64; 2]],
+        watch: &Watch<'_>,
+    ) -> Result<Map, Failure> {
+        let mut x = vec![[0.0; 2]; rhs.len()];
+        let mut residual = rhs.to_vec();
+        let mut z = self.preconditioned(&residual);
+        let mut p = z.clone();
+        let mut rz = dot(&residual, &z);
+        let goal = self.ratio.sqrt().clamp(RESIDUALS[0], RESIDUALS[1]).powi(2) * rz;
+        for _ in 0..MOST_INNER {
+            if !watch.goes_on() {
+                return Err(Failure::Cancelled);
+            }
+            let kp = self.product(contacts, springs, curvature, &p);
+            let curvature = dot(&p, &kp);
+            if !(curvature > 0.0) {
+                return Err(Failure::NotPositiveDefinite);
+            }
+            let step = rz / curvature;
+            add(&mut x, step, &p);
+            add(&mut residual, -step, &kp);
+            z = self.preconditioned(&residual);
+            let next = dot(&residual, &z);
+            if next <= goal {
+                break;
+            }
+            let ratio = next / rz;
+            p = parallel::map(z.len(), |v| [0, 1].map(|k| z[v][k] + ratio * p[v][k]));
+            rz = next;
+        }
+        Ok(x)
+    }
+
+    /// The next map, with the step's length; `None` where no step lowers the energy.
+    fn step(&self, place: &Place, direction: &Direction, goal: &Goal) -> Option<(Place, f64)> {
+        let along = &direction.along;
+        let mut step = (MARGIN * self.first_fold(&place.map, along)).min(1.0);
+        if let Some(outline) = self.problem.outline {
+            let meeting = outline.longest_step(&place.map, along, step);
+            step = if meeting < step { MARGIN * meeting } else { step };
+        }
+        for _ in 0..MOST_TRIALS {
+            let map = parallel::map(along.len(), |v| [0, 1].map(|k| place.map[v][k] + step * along[v][k]));
+            let next = self.place(map, goal);
+            let allowed = place.value - SUFFICIENT * step * direction.decrement + 1e-16;
+            let is_simple = || self.problem.outline.is_none_or(|outline| outline.is_simple(&next.map));
+            if next.value <= allowed && is_simple() {
+                return Some((next, step));
+            }
+            step *= 0.5;
+        }
+        None
+    }
+
+    /// The first step at which a face loses its area.
+    fn first_fold(&self, map: &[[f64; 2]], along: &[[f64; 2]]) -> f64 {
+        let energy = self.problem.energy;
+        let cross = |x: [f64; 2], y: [f64; 2]| x[0] * y[1] - x[1] * y[0];
+        let first = parallel::map(energy.mesh.n_faces(), |face| {
+            let edges = |of: &[[f64; 2]]| {
+                let [o, p, q] = energy.mesh.faces()[face].map(|v| of[v as usize]);
+                [[p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]]
+            };
+            let ([p, q], [dp, dq]) = (edges(map), edges(along));
+            let of_face = roots(cross(p, q), cross(p, dq) + cross(dp, q), cross(dp, dq), 1.0);
+            of_face.into_iter().flatten().filter(|&t| t > 0.0).fold(f64::INFINITY, f64::min)
+        });
+        first.into_iter().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The contacts' diagonal blocks (xx, xy, yy), at the first corner of each vertex, in the order of the corners.
+fn shares(energy: &Energy<'_>, contacts: &[Contact], springs: &[[f64; 2]]) -> Vec<(u32, [f64; 3])> {
+    let mut all: Vec<(u32, [f64; 3])> = Vec::with_capacity(3 * contacts.len());
+    for (contact, [_, stiffness]) in contacts.iter().zip(springs) {
+        for (k, &v) in contact.vertices.iter().enumerate() {
+            let [x, y] = [contact.slopes[2 * k], contact.slopes[2 * k + 1]];
+            all.push((
+                energy.mesh.vertex_corners(v as usize)[0],
+                [x * x, x * y, y * y].map(|c| stiffness * c),
+            ));
+        }
+    }
+    // stable, so that sums have one order
+    all.sort_by_key(|(corner, _)| *corner);
+    let mut merged: Vec<(u32, [f64; 3])> = Vec::new();
+    for (corner, block) in all {
+        match merged.last_mut() {
+            Some((last, sum)) if *last == corner => (0..3).for_each(|k| sum[k] += block[k]),
+            _ => merged.push((corner, block)),
+        }
+    }
+    merged
+}
+
+fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    parallel::sum(a.len(), |v| a[v][0] * b[v][0] + a[v][1] * b[v][1])
+}
+
+fn add(x: &mut [[f64; 2]], factor: f64, y: &[[f64; 2]]) {
+    parallel::fill_with_old(x, |v, old| [0, 1].map(|k| old[k] + factor * y[v][k]));
+}

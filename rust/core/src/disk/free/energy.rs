@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The energy of areas and angles of maps into the plane whose outline is free.
+//!
+//! E = Σ T (ψ(ρ) + λ f(m − 1)), with the target T of a face, the Jacobian J = (a b; c d) of its map from its rest triangle,
+//! ρ = det J, ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ), f(x) = x + β/2 x² and m − 1 = ½ [(a − d)² + (b + c)²] / ρ, which is
+//! ½ (σ₁/σ₂ + σ₂/σ₁) − 1. Rest triangles have the area of their target, and targets add up to one, so there is no scale to
+//! be found. ψ is infinite where a face folds.
+//!
+//! For the Hessian m − 1 is taken as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing;
+//! every term is positive semidefinite but that of the curvature of ρ, which is left out or added on demand.
+
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{Vector, cross, dot, norm, scaled, sub, triangle};
+use crate::parallel;
+
+/// β of f.
+const STIFFENING: f64 = 0.1;
+
+/// Rest triangles are fattened to a height of at least this part of their longest edge.
+const FLATTEST: f64 = 1e-7;
+
+/// A face is positive by more than its rounding error where left − right > this · (|left| + |right|): the filter of
+/// Shewchuk's orient2d, (3 + 16ε)ε with ε = 2⁻⁵³.
+const ROUNDING: f64 = 3.330_669_073_875_471_6e-16;
+
+/// The matrix of a face over the two unknowns of each of its corners.
+pub(super) type Element = [[f64; 6]; 6];
+
+/// A map of the vertices into the plane.
+pub(super) type Map = Vec<[f64; 2]>;
+
+/// The rest triangles of a surface.
+pub(super) struct Energy<'a> {
+    pub mesh: &'a TriangleMesh,
+    /// Targets, (m,), of sum one.
+    pub targets: Vec<f64>,
+    /// The gradients of the hat functions of each face's corners on its rest triangle.
+    hats: Vec<[[f64; 2]; 3]>,
+}
+
+/// E_A and what angles cost, without their weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Parts {
+    /// Σ T (ρ − 1)².
+    pub deviation: f64,
+    /// Σ T f(m − 1).
+    pub angles: f64,
+}
+
+/// How the Hessian of a face is made.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hessian {
+    /// λ.
+    pub weight: f64,
+    /// What a face that is wholly off its target is damped by.
+    pub damping: f64,
+    /// What every face is damped by in units of the deviation of its area ratio.
+    pub least: f64,
+    /// How much of the curvature of the area counts, from none to all: 1 gives the exact Hessian.
+    pub curvature: f64,
+}
+
+/// The linear map of a face.
+#[derive(Clone, Copy)]
+struct Jacobian {
+    /// (a, b, c, d).
+    entries: [f64; 4],
+    ratio: f64,
+}
+
+impl<'a> Energy<'a> {
+    /// The energy of maps of `mesh` with `targets`, (m,), on any scale.
+    pub(super) fn new(mesh: &'a TriangleMesh, targets: &[f64]) -> Self {
+        let total = parallel::sum(targets.len(), |face| targets[face]);
+        let targets = parallel::map(targets.len(), |face| targets[face] / total);
+        let hats = parallel::map(mesh.n_faces(), |face| {
+            let corners = triangle(mesh.points(), mesh.faces()[face]);
+            rest_hats(corners, targets[face])
+        });
+        Self { mesh, targets, hats }
+    }
+
+    /// The gradients of the hat functions on the rest triangle of a face.
+    pub(super) fn hats(&self, face: usize) -> &[[f64; 2]; 3] {
+        &self.hats[face]
+    }
+
+    /// The entries (a, b, c, d) of a face's Jacobian in `map`.
+    pub(super) fn entries(&self, map: &[[f64; 2]], face: usize) -> [f64; 4] {
+        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v as usize]);
+        let [_, g, h] = self.hats[face];
+        let (e, f) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
+        [
+            e[0] * g[0] + f[0] * h[0],
+            e[0] * g[1] + f[0] * h[1],
+            e[1] * g[0] + f[1] * h[0],
+            e[1] * g[1] + f[1] * h[1],
+        ]
+    }
+
+    fn jacobian(&self, map: &[[f64; 2]], face: usize) -> Jacobian {
+        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v as usize]);
+        let (left, right) = ((p[0] - o[0]) * (q[1] - o[1]), (p[1] - o[1]) * (q[0] - o[0]));
+        let area = left - right;
+        let is_positive = area > ROUNDING * (left.abs() + right.abs());
+        let [_, g, h] = self.hats[face];
+        let ratio = if is_positive { area * (g[0] * h[1] - g[1] * h[0]) } else { 0.0 };
+        Jacobian { entries: self.entries(map, face), ratio }
+    }
+
+    /// Whether every face is positive by more than rounding.
+    pub(super) fn is_unfolded(&self, map: &[[f64; 2]]) -> bool {
+        parallel::all(self.mesh.n_faces(), |face| self.jacobian(map, face).ratio > 0.0)
+    }
+
+    /// E at a map; infinite where a face folds.
+    pub(super) fn value(&self, map: &[[f64; 2]], weight: f64) -> f64 {
+        parallel::sum(self.mesh.n_faces(), |face| {
+            let jacobian = self.jacobian(map, face);
+            let rho = jacobian.ratio;
+            if !(rho > 0.0) {
+                return f64::INFINITY;
+            }
+            let areas = 0.5 * (rho - 1.0).powi(2) * (1.0 + 1.0 / rho);
+            self.targets[face] * (areas + weight * stiffened(jacobian.shear()))
+        })
+    }
+
+    /// What areas and angles cost.
+    pub(super) fn parts(&self, map: &[[f64; 2]]) -> Parts {
+        let [deviation, angles] = parallel::sums(self.mesh.n_faces(), |face| {
+            let jacobian = self.jacobian(map, face);
+            [(jacobian.ratio - 1.0).powi(2), stiffened(jacobian.shear())].map(|x| self.targets[face] * x)
+        });
+        Parts { deviation, angles }
+    }
+
+    /// E_A of a map, its targets on the scale of the image, over the area of the image.
+    pub(super) fn unevenness(&self, map: &[[f64; 2]]) -> f64 {
+        let ratio = |face: usize| self.jacobian(map, face).ratio;
+        let area = parallel::sum(self.mesh.n_faces(), |face| self.targets[face] * ratio(face));
+        parallel::sum(self.mesh.n_faces(), |face| self.targets[face] * (ratio(face) / area - 1.0).powi(2))
+    }
+
+    /// The gradient of E by the vertices, (n, 2).
+    pub(super) fn gradient(&self, map: &[[f64; 2]], weight: f64) -> Map {
+        let by_face = parallel::map(self.mesh.n_faces(), |face| self.slopes(map, face, weight));
+        self.gathered(|corner| {
+            let [a, b, c, d] = by_face[corner / 3];
+            let g = self.hats[corner / 3][corner % 3];
+            [a * g[0] + b * g[1], c * g[0] + d * g[1]]
+        })
+    }
+
+    /// Sums over the corners of every vertex.
+    pub(super) fn gathered(&self, of_corner: impl Fn(usize) -> [f64; 2] + Sync + Send) -> Map {
+        parallel::map(self.mesh.n_vertices(), |v| {
+            let corners = self.mesh.vertex_corners(v).iter();
+            corners
+                .map(|&corner| of_corner(corner as usize))
+                .fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]])
+        })
+    }
+
+    /// The derivatives of a face's energy by (a, b, c, d).
+    fn slopes(&self, map: &[[f64; 2]], face: usize, weight: f64) -> [f64; 4] {
+        let jacobian = self.jacobian(map, face);
+        let (rho, by_entries) = (jacobian.ratio, jacobian.cofactors());
+        let of_area = 0.5 * (2.0 * rho - 1.0 - 1.0 / (rho * rho));
+        let (shear, by_shear) = (jacobian.shear(), jacobian.shear_slopes());
+        let of_shear = weight * (1.0 + STIFFENING * shear);
+        std::array::from_fn(|k| self.targets[face] * (of_area * by_entries[k] + of_shear * by_shear[k]))
+    }
+
+    /// The Hessian of a face.
+    pub(super) fn element(&self, map: &[[f64; 2]], face: usize, how: &Hessian) -> Element {
+        let jacobian = self.jacobian(map, face);
+        let (rho, target, hats) = (jacobian.ratio, self.targets[face], &self.hats[face]);
+        let shear = jacobian.shear();
+        let stiffness = 1.0 + STIFFENING * shear;
+        let mut element = [[0.0; 6]; 6];
+        // 1. ψ'' and f'' along the slopes of the area and of the shear
+        let cofactors = jacobian.cofactors();
+        add_square(&mut element, target * (1.0 + rho.powi(-3)), hats, &cofactors);
+        add_square(&mut element, target * how.weight * STIFFENING, hats, &jacobian.shear_slopes());
+        // 2. Quadratic over linear
+        for row in jacobian.quadratic_over_linear(&cofactors) {
+            add_square(&mut element, target * how.weight * stiffness, hats, &row);
+        }
+        // 3. The curvature of the area, as far as it counts
+        let of_area = 0.5 * (2.0 * rho - 1.0 - 1.0 / (rho * rho));
+        let stress = of_area - how.weight * stiffness * shear / rho;
+        add_area_curvature(&mut element, target * how.curvature * stress, hats);
+        // 4. Damping in proportion to how far the face is from its target
+        let damping = target * how.damping * ((rho - 1.0).abs().min(1e3) + how.least);
+        add_dirichlet(&mut element, damping, hats);
+        element
+    }
+}
+
+impl Jacobian {
+    /// The derivatives of the determinant.
+    fn cofactors(&self) -> [f64; 4] {
+        let [a, b, c, d] = self.entries;
+        [d, -c, -b, a]
+    }
+
+    /// m − 1.
+    fn shear(&self) -> f64 {
+        let [a, b, c, d] = self.entries;
+        0.5 * ((a - d).powi(2) + (b + c).powi(2)) / self.ratio
+    }
+
+    /// The derivatives of m − 1.
+    fn shear_slopes(&self) -> [f64; 4] {
+        let [a, b, c, d] = self.entries;
+        let (along, cofactors) = ([a - d, b + c, b + c, d - a], self.cofactors());
+        let shear = self.shear();
+        std::array::from_fn(|k| (along[k] - shear * cofactors[k]) / self.ratio)
+    }
+
+    /// The rows W of the Hessian Wᵀ W of m − 1 where ρ is taken for linear.
+    fn quadratic_over_linear(&self, cofactors: &[f64; 4]) -> [[f64; 4]; 2] {
+        let [a, b, c, d] = self.entries;
+        let root = self.ratio.sqrt();
+        let row = |along: [f64; 4], length: f64| {
+            std::array::from_fn(|k| along[k] / root - length / (self.ratio * root) * cofactors[k])
+        };
+        [row([1.0, 0.0, 0.0, -1.0], a - d), row([0.0, 1.0, 1.0, 0.0], b + c)]
+    }
+}
+
+/// f.
+fn stiffened(shear: f64) -> f64 {
+    shear + 0.5 * STIFFENING * shear * shear
+}
+
+/// The gradients of the hat functions on a triangle in the plane, similar to the one in space and of area `target`.
+fn rest_hats(corners: [Vector; 3], target: f64) -> [[f64; 2]; 3] {
+    // from the longest edge, so that the height is the least and no difference cancels
+    let length = |k: usize| norm(sub(corners[(k + 2) % 3], corners[(k + 1) % 3]));
+    let apex = (0..3).fold(0, |best, k| if length(k) > length(best) * (1.0 + 1e-8) { k } else { best });
+    let [top, left, right] = [0, 1, 2].map(|k| corners[(apex + k) % 3]);
+    let base = norm(sub(right, left));
+    let along = scaled(sub(right, left), 1.0 / base);
+    let foot = dot(sub(top, left), along);
+    let height = (norm(cross(sub(right, left), sub(top, left))) / base).max(FLATTEST * base);
+    // of the rest triangle's own size, then of the target's
+    let scale = (0.5 * base * height / target).sqrt();
+    let of_top = [0.0, scale / height];
+    let of_left = [-scale / base, -scale * (1.0 - foot / base) / height];
+    let of_right = [scale / base, -scale * (foot / base) / height];
+    let mut hats = [[0.0; 2]; 3];
+    [of_top, of_left, of_right].into_iter().enumerate().for_each(|(k, hat)| hats[(apex + k) % 3] = hat);
+    hats
+}
+
+/// Adds `factor` times the square of a linear form in the entries of the Jacobian.
+fn add_square(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3], form: &[f64; 4]) {
+    let row: [f64; 6] = std::array::from_fn(|k| {
+        let (g, axis) = (hats[k / 2], k % 2);
+        form[2 * axis] * g[0] + form[2 * axis + 1] * g[1]
+    });
+    for i in 0..6 {
+        for j in 0..6 {
+            element[i][j] += factor * row[i] * row[j];
+        }
+    }
+}
+
+/// Adds `factor` times the second derivative of the determinant of the Jacobian.
+fn add_area_curvature(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            let twist = factor * (hats[i][0] * hats[j][1] - hats[i][1] * hats[j][0]);
+            element[2 * i][2 * j + 1] += twist;
+            element[2 * j + 1][2 * i] += twist;
+        }
+    }
+}
+
+/// Adds `factor` times the squared length of the Jacobian.
+fn add_dirichlet(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            let product = factor * (hats[i][0] * hats[j][0] + hats[i][1] * hats[j][1]);
+            element[2 * i][2 * j] += product;
+            element[2 * i + 1][2 * j + 1] += product;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pyramid without its base, with a map of it.
+    fn pyramid() -> (TriangleMesh, Map) {
+        let points = [[0., 0., 1.], [1.3, 0., 0.], [0., 1., 0.2], [-1., -0.5, 0.]];
+        let mesh = TriangleMesh::new(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 1]]).unwrap();
+        (mesh, vec![[0.05, -0.1], [0.9, 0.1], [-0.2, 0.8], [-0.6, -0.7]])
+    }
+
+    #[test]
+    fn gradient_and_whole_hessian_are_the_differences_of_the_value() {
+        let (mesh, map) = pyramid();
+        let energy = Energy::new(&mesh, &[0.3, 0.5, 0.4]);
+        let weight = 0.4;
+        let along: Map =
+            (0..4).map(|v| [(1.0 + 3.0 * v as f64).sin(), (2.0 + 5.0 * v as f64).cos()]).collect();
+        let value = |step: f64| {
+            let moved: Map = (0..4).map(|v| [0, 1].map(|k| map[v][k] + step * along[v][k])).collect();
+            energy.value(&moved, weight)
+        };
+        let (h, here) = (1e-4, value(0.0));
+        assert!(here.is_finite());
+        let gradient = energy.gradient(&map, weight);
+        let slope: f64 = (0..4).map(|v| gradient[v][0] * along[v][0] + gradient[v][1] * along[v][1]).sum();
+        assert!((slope - (value(h) - value(-h)) / (2.0 * h)).abs() < 1e-5 * (1.0 + slope.abs()));
+        let how = Hessian { weight, damping: 0.0, least: 0.0, curvature: 1.0 };
+        let mut curvature = 0.0;
+        for (face, corners) in mesh.faces().iter().enumerate() {
+            let element = energy.element(&map, face, &how);
+            let x: Vec<f64> = corners.iter().flat_map(|&v| along[v as usize]).collect();
+            for i in 0..6 {
+                curvature += (0..6).map(|j| x[i] * element[i][j] * x[j]).sum::<f64>();
+            }
+        }
+        let difference = (value(h) + value(-h) - 2.0 * here) / (h * h);
+        assert!((curvature - difference).abs() < 1e-4 * (1.0 + difference.abs()), "{curvature} {difference}");
+    }
+
+    #[test]
+    fn without_the_curvature_of_areas_elements_have_no_negative_direction() {
+        let (mesh, map) = pyramid();
+        let energy = Energy::new(&mesh, &[0.3, 0.5, 0.4]);
+        let how = Hessian { weight: 0.4, damping: 0.0, least: 0.0, curvature: 0.0 };
+        for face in 0..3 {
+            let element = energy.element(&map, face, &how);
+            for seed in 0..50 {
+                let x: [f64; 6] = std::array::from_fn(|k| (1.7 * seed as f64 + 2.3 * k as f64).sin());
+                let square: f64 = (0..36).map(|k| x[k / 6] * element[k / 6][k % 6] * x[k % 6]).sum();
+                assert!(square > -1e-12, "face {face}: {square}");
+            }
+        }
+    }
+
+    #[test]
+    fn similar_maps_cost_nothing_and_folded_ones_infinitely_much() {
+        let points = [[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [0., 1., 0.]];
+        let mesh = TriangleMesh::new(&points, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let energy = Energy::new(&mesh, mesh.face_areas());
+        // turned by a right angle, of area one
+        let map: Map = points.iter().map(|x| [-x[1], x[0]].map(|c| c * 0.5f64.sqrt())).collect();
+        assert!(energy.value(&map, 1.0) < 1e-30);
+        let folded: Map = map.iter().map(|x| [-x[0], x[1]]).collect();
+        assert_eq!(energy.value(&folded, 1.0), f64::INFINITY);
+        assert!(!energy.is_unfolded(&folded));
+    }
+}

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Maps with a free outline, which may take any shape that does not cross itself.
+//!
+//! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that are
+//!    one-to-one. Where none is, an area-preserving map to the disk, which is one-to-one always.
+//! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
+//!    (`contact`), until the map is stationary.
+//! 3. Where contacts remain, the same again with contacts that act only nearer by.
+//!
+//! Holes are outlines like the longest loop. Cost: some four factorisations of two unknowns per vertex for the start, and ten
+//! to fifty for the descent.
+
+mod arap;
+mod contact;
+mod descent;
+mod energy;
+mod lscm;
+mod starts;
+
+use super::run::Run;
+use super::{Boundary, DiskMapOptions, Map, certificate, holes};
+use crate::control::{History, Observer, Phase, Status, Watch};
+use crate::error::{Elements, Error};
+use crate::mesh::TriangleMesh;
+use crate::mesh::renumbering::Renumbered;
+use crate::parallel;
+use crate::sparse::{Analysis, Failure, Order, elimination_order};
+use contact::Outline;
+use descent::{Descent, Goal, Problem};
+use energy::Energy;
+use lscm::of_area_one;
+
+/// How near outlines come to each other, in units of the heights beside them, one after the other.
+const RANGES: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];
+
+/// The next range follows where contacts might give away this part of the energy.
+const WORTHWHILE: f64 = 3e-3;
+
+/// Converged where the decrement is below this part of the energy.
+const STATIONARY: f64 = 1e-9;
+
+/// With no weight of angles, converged where √(E_A/A) is below this.
+const TOLERANCE: f64 = 2e-4;
+
+/// Where no start of free outline is one-to-one, the areas of the map to the disk are evened out this often.
+const DISK_ITERATIONS: usize = 5;
+
+/// Starts are compared with at least this weight of angles.
+const LEAST_WEIGHT: f64 = 1e-3;
+
+/// Weights of angles tried for a deviation of areas: from the heaviest, or from a light one where areas alone count, each by
+/// so much lighter, to the lightest.
+const HEAVIEST: f64 = 1.0;
+const HEAVY: f64 = 1e-3;
+const LEVEL: f64 = 0.316_227_766_016_837_94;
+const LIGHTEST: f64 = 1e-7;
+
+/// A weight of angles is judged where the decrement is below this part of the energy.
+const ROUGHLY: f64 = 1e-4;
+
+/// What is computed once for a surface.
+struct Surface<'a> {
+    energy: &'a Energy<'a>,
+    analysis: &'a Analysis,
+    outline: &'a Outline,
+}
+
+/// A surface to be mapped with a free outline.
+pub(super) struct Free<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub targets: &'a [f64],
+    pub options: &'a DiskMapOptions<'a>,
+    /// The deviation of areas at which λ need not fall any further.
+    pub area_tolerance: Option<f64>,
+}
+
+impl Free<'_> {
+    /// The map within the unit disk.
+    ///
+    /// # Errors
+    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before there
+    /// was a map without folds.
+    pub(super) fn map(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
+        let by_order = Renumbered::new(self.mesh, order);
+        let targets = by_order.of_faces(self.targets);
+        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
+        let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
+        let (map, status) = free.in_order(history, observer)?;
+        Ok((by_order.given(&map), status))
+    }
+
+    /// The map of a mesh in elimination order.
+    fn in_order(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
+        let energy = Energy::new(self.mesh, self.targets);
+        let n = self.mesh.n_vertices();
+        let analysis = Analysis::new(n, self.mesh.faces(), &vec![2; n], Order::AsGiven)?;
+        let outline = Outline::new(&energy);
+        let surface = Surface { energy: &energy, analysis: &analysis, outline: &outline };
+        // 1. A start
+        let mut phase = Phase { whole: observer, from: 0.0, to: 0.2 };
+        let (start, is_cancelled) = self.start(&surface, &mut phase)?;
+        let start = turned(self.mesh, start);
+        // 2. The descent
+        let mut phase = Phase { whole: observer, from: 0.2, to: 1.0 };
+        let (map, status) = if is_cancelled {
+            history.push_start(energy.unevenness(&start), 0.0);
+            (start, Status::Cancelled)
+        } else {
+            self.descend(&surface, start, history, &mut phase)
+        };
+        // 3. Into the disk
+        let map = self.within_the_disk(&outline, &map);
+        history.rescale(signed_area(self.mesh, &map));
+        Ok((map, status))
+    }
+
+    /// Descents with contacts that act nearer and nearer by.
+    fn descend(
+        &self,
+        surface: &Surface<'_>,
+        start: Map,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Map, Status) {
+        let outline = (!self.options.overlap).then_some(surface.outline);
+        let problem = Problem { energy: surface.energy, analysis: surface.analysis, outline };
+        let mut descent = Descent::new(problem);
+        let mut goal = Goal {
+            weight: self.options.angle_weight,
+            range: RANGES[0],
+            most_iterations: self.options.max_iterations.unwrap_or(usize::MAX),
+            precision: STATIONARY,
+        };
+        let mut map = start;
+        let mut status = Status::MaxIterations;
+        if let Some(tolerance) = self.wanted_deviation() {
+            goal.weight = if self.area_tolerance.is_some() { HEAVIEST } else { HEAVY };
+            (map, status) = least_shear(&mut descent, map, &mut goal, tolerance, history, observer);
+            if status != Status::Stalled && self.area_tolerance.is_none() {
+                return (map, status);
+            }
+        }
+        for range in RANGES {
+            goal.range = range;
+            (map, status) = descent.run(map, &goal, history, observer);
+            if status == Status::Cancelled || descent.is_worth_less(&map, &goal, WORTHWHILE) {
+                break;
+            }
+        }
+        (map, status)
+    }
+
+    /// The deviation of areas down to which λ is to fall; `None` where it is given.
+    fn wanted_deviation(&self) -> Option<f64> {
+        let is_weighted = self.options.angle_weight > 0.0;
+        self.area_tolerance.or((!is_weighted).then(|| self.options.tolerance.unwrap_or(TOLERANCE)))
+    }
+
+    /// A map that is one-to-one to start from, and whether the observer ended the run.
+    fn start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(Map, bool), Error> {
+        let outline = (!self.options.overlap).then_some(surface.outline);
+        if let Some(initial) = self.options.initial {
+            let initial = of_area_one(surface.energy, initial.to_vec());
+            return match starts::allowed(surface.energy, outline, initial) {
+                Some(map) => Ok((map, false)),
+                None => Err(self.not_allowed()),
+            };
+        }
+        let watch = Watch::new(observer, 0.0, "Start map");
+        let weight = self.options.angle_weight.max(LEAST_WEIGHT);
+        match starts::best_start(surface.energy, surface.analysis, outline, weight, &watch) {
+            Ok(Some(map)) => return Ok((map, false)),
+            Ok(None) | Err(Failure::NotPositiveDefinite) => self.disk_start(surface, observer),
+            Err(Failure::Cancelled) => self.disk_start(surface, &mut |_: f64, _: &str| false),
+        }
+    }
+
+    /// An area-preserving map to the disk with a sliding boundary, the holes filled on the way.
+    fn disk_start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(Map, bool), Error> {
+        let options = DiskMapOptions {
+            boundary: Boundary::Sliding,
+            max_iterations: Some(DISK_ITERATIONS),
+            ..Default::default()
+        };
+        let filled = match self.mesh.boundary_loops().len() {
+            1 => None,
+            _ => Some(holes::fill_holes(self.mesh, self.targets)?),
+        };
+        let (mesh, targets) =
+            filled.as_ref().map_or((self.mesh, self.targets), |fill| (&fill.mesh, &fill.targets));
+        let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
+        let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
+        map.truncate(self.mesh.n_vertices());
+        Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
+    }
+
+    /// Why the map given is no start.
+    fn not_allowed(&self) -> Error {
+        let folded = Elements::collect(certificate::folded(self.mesh, self.options.initial.unwrap_or(&[])));
+        let reason = match folded {
+            Some(_) => "with folded faces".to_string(),
+            None => "with an outline that crosses itself, or faces that are next to nothing".to_string(),
+        };
+        let expected =
+            "a map of free outline without folds, which crosses itself only with overlap".to_string();
+        Error::InvalidArray { name: "initial", found: reason, expected }
+    }
+
+    /// The map moved and scaled into the unit disk.
+    fn within_the_disk(&self, outline: &Outline, map: &[[f64; 2]]) -> Map {
+        let extreme =
+            |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
+        let centre = [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)));
+        let moved = scaled_into_the_disk(map, centre);
+        let is_simple = self.options.overlap || outline.is_simple(&moved);
+        if is_simple && certificate::folded(self.mesh, &moved).is_empty() {
+            moved
+        } else {
+            // the rounding of the shift folded a face that is next to nothing
+            scaled_into_the_disk(map, [0.0; 2])
+        }
+    }
+}
+
+/// Lowers λ from that of `goal` until the deviation of areas is within `tolerance`, to the heaviest λ at which it is, and
+/// leaves it in `goal`; converged where it is.
+fn least_shear(
+    descent: &mut Descent<'_>,
+    mut map: Map,
+    goal: &mut Goal,
+    tolerance: f64,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Map, Status) {
+    // the last λ that was too heavy, with the deviation there
+    let mut heavier: Option<[f64; 2]> = None;
+    let mut was_within = false;
+    loop {
+        let status;
+        (map, status) = descent.run(map, &Goal { precision: ROUGHLY, ..*goal }, history, observer);
+        let (weight, deviation) = (goal.weight, descent.deviation(&map));
+        let is_within = deviation <= tolerance;
+        if matches!(status, Status::Cancelled | Status::MaxIterations) {
+            return (map, if is_within { Status::Converged } else { status });
+        } else if is_within && (was_within || heavier.is_none()) {
+            return (map, Status::Converged);
+        } else if weight <= LIGHTEST {
+            return (map, Status::Stalled);
+        }
+        goal.weight = match heavier {
+            // between the two, on a straight line of logarithms and a little to the side of the tolerance
+            Some([heavy, more]) if is_within => {
+                let part = (more / (0.95 * tolerance)).ln() / (more / deviation).ln();
+                heavy * (weight / heavy).powf(part.clamp(0.1, 1.0))
+            }
+            _ if was_within => 0.8 * weight,
+            _ => LEVEL * weight,
+        };
+        was_within = was_within || is_within;
+        if !is_within {
+            heavier = Some([weight, deviation]);
+        }
+    }
+}
+
+/// The map turned so that the first vertex of the longest boundary loop lies to the right of the middle.
+fn turned(mesh: &TriangleMesh, map: Map) -> Map {
+    let [x, y] = map[mesh.boundary_loops()[0][0] as usize];
+    let length = x.hypot(y);
+    if !(length > 0.0) {
+        return map;
+    }
+    let [cosine, sine] = [x / length, y / length];
+    map.iter().map(|&[u, v]| [cosine * u + sine * v, cosine * v - sine * u]).collect()
+}
+
+fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {
+    parallel::sum(mesh.n_faces(), |face| {
+        let [a, b, c] = mesh.faces()[face].map(|v| map[v as usize]);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    })
+}
+
+/// The map around `centre`, scaled by a power of two, which keeps the orientation of every face bit for bit.
+fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2]) -> Map {
+    let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
+    let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
+    let scale = (1.0 / radius).log2().floor().exp2();
+    map.iter().map(|x| offset(x).map(|c| scale * c)).collect()
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Maps of free outline to start from: plan view, as rigid as possible, conformal; the best of those that are one-to-one.
+
+use std::f64::consts::TAU;
+
+use super::arap::as_rigid_as_possible;
+use super::contact::Outline;
+use super::energy::{Energy, Map};
+use super::lscm::{of_area_one, spectral_conformal};
+use crate::control::Watch;
+use crate::mesh::geometry::{Vector, add, area_vector, cross, dot, norm, scaled, triangle};
+use crate::sparse::{Analysis, Failure};
+
+/// A later start replaces an earlier one where its energy is below this part of it: no tie is left to rounding.
+const MARGIN: f64 = 0.9;
+
+/// No plan view where the area vectors of the faces add up to less than this part of the area.
+const STEEPEST: f64 = 0.05;
+
+/// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.
+const PULL: f64 = 1e-3;
+
+/// The start of lowest energy; `None` where none is one-to-one.
+pub(super) fn best_start(
+    energy: &Energy<'_>,
+    analysis: &Analysis,
+    outline: Option<&Outline>,
+    weight: f64,
+    watch: &Watch<'_>,
+) -> Result<Option<Map>, Failure> {
+    let mut best: Option<(f64, Map)> = None;
+    let mut consider = |map: Map| {
+        let verdict = allowed(energy, outline, map);
+        let value = verdict.as_ref().map(|map| energy.value(map, weight));
+        if let (Some(map), Some(value)) = (verdict, value)
+            && best.as_ref().is_none_or(|(least, _)| value < MARGIN * least)
+        {
+            best = Some((value, map));
+        }
+    };
+    if let Some(map) = plan_view(energy) {
+        consider(map);
+    }
+    let conformal = match spectral_conformal(energy, analysis, watch) {
+        Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+        conformal => conformal.ok(),
+    };
+    if let Some(conformal) = conformal {
+        match as_rigid_as_possible(energy, conformal.clone(), watch) {
+            Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+            rigid => rigid.into_iter().for_each(|map| consider(map)),
+        }
+        consider(conformal);
+    }
+    Ok(best.map(|(_, map)| map))
+}
+
+/// The map, pulled in where its outline only touches itself; `None` where it is not one-to-one.
+pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: Map) -> Option<Map> {
+    let is_finite = map.iter().flatten().all(|x| x.is_finite());
+    if !is_finite || !energy.is_unfolded(&map) || !turns_once_around_every_vertex(energy, &map) {
+        return None;
+    }
+    let Some(outline) = outline else { return Some(map) };
+    if outline.is_simple(&map) {
+        return Some(map);
+    }
+    let pulled = pulled_in(energy, outline, &map);
+    (energy.is_unfolded(&pulled) && outline.is_simple(&pulled)).then_some(pulled)
+}
+
+/// Whether the faces around every inner vertex turn around it once.
+fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool {
+    let mesh = energy.mesh;
+    let angle = |corner: u32| {
+        let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
+        let [o, p, q] = [0, 1, 2].map(|step| map[face[(k + step) % 3] as usize]);
+        let ([a, b], [c, d]) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
+        (a * d - b * c).atan2(a * c + b * d)
+    };
+    crate::parallel::all(mesh.n_vertices(), |v| {
+        mesh.is_boundary(v)
+            || mesh.vertex_corners(v).iter().map(|&corner| angle(corner)).sum::<f64>() < 1.5 * TAU
+    })
+}
+
+/// The map with vertices that touch an edge of the outline moved a little towards their neighbors.
+fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Map {
+    let mesh = energy.mesh;
+    let mut pulled = map.to_vec();
+    for contact in outline.contacts(map, PULL) {
+        let v = contact.vertices[0] as usize;
+        let corners = mesh.vertex_corners(v);
+        let mut sum = [0.0; 2];
+        for &corner in corners {
+            let face = mesh.faces()[corner as usize / 3];
+            for k in 1..3 {
+                let x = map[face[(corner as usize % 3 + k) % 3] as usize];
+                (0..2).for_each(|axis| sum[axis] += x[axis] - map[v][axis]);
+            }
+        }
+        let length = sum[0].hypot(sum[1]);
+        let by = PULL * contact.height_of_reach(PULL) / length.max(f64::MIN_POSITIVE);
+        pulled[v] = [map[v][0] + by * sum[0], map[v][1] + by * sum[1]];
+    }
+    pulled
+}
+
+/// The projection along the sum of the area vectors.
+fn plan_view(energy: &Energy<'_>) -> Option<Map> {
+    let mesh = energy.mesh;
+    let normal =
+        mesh.faces().iter().fold([0.0; 3], |sum, &face| add(sum, area_vector(triangle(mesh.points(), face))));
+    let length = norm(normal);
+    if length < STEEPEST * mesh.face_areas().iter().sum::<f64>() {
+        return None;
+    }
+    let normal = scaled(normal, 1.0 / length);
+    let axis =
+        (0..3).fold(0, |least, k| if normal[k].abs() < normal[least].abs() - 1e-6 { k } else { least });
+    let mut x: Vector = [0.0; 3];
+    x[axis] = 1.0;
+    let x = cross(cross(normal, x), normal);
+    let x = scaled(x, 1.0 / norm(x));
+    let y = cross(normal, x);
+    Some(of_area_one(energy, mesh.points().iter().map(|&p| [dot(p, x), dot(p, y)]).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Silent;
+    use crate::mesh::TriangleMesh;
+    use crate::sparse::Order;
+
+    /// A flat comb of unit squares, stood upright, with a tooth in every other column.
+    fn comb() -> TriangleMesh {
+        let (columns, rows) = (7, 4);
+        let mut points = Vec::new();
+        let mut number = std::collections::BTreeMap::new();
+        let mut vertex = |i: u32, j: u32| {
+            *number.entry((i, j)).or_insert_with(|| {
+                points.push([f64::from(i), 0.0, f64::from(j)]);
+                points.len() as u32 - 1
+            })
+        };
+        let mut faces = Vec::new();
+        for j in 0..rows {
+            for i in (0..columns).filter(|i| j < 2 || i % 2 == 0) {
+                let [a, b, c, d] =
+                    [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| vertex(i, j));
+                faces.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        TriangleMesh::new(&points, &faces).unwrap()
+    }
+
+    fn with_comb(test: impl FnOnce(&Energy<'_>, &Analysis, &Watch<'_>)) {
+        let mesh = comb();
+        let energy = Energy::new(&mesh, mesh.face_areas());
+        let n = mesh.n_vertices();
+        let analysis = Analysis::new(n, mesh.faces(), &vec![2; n], Order::Sparse).unwrap();
+        let mut silent = Silent;
+        test(&energy, &analysis, &Watch::new(&mut silent, 0.0, ""));
+    }
+
+    #[test]
+    fn a_flat_surface_keeps_its_shape_in_plan_view_and_conformally() {
+        with_comb(|energy, analysis, watch| {
+            let plan = plan_view(energy).unwrap();
+            assert!(energy.value(&plan, 1.0) < 1e-28);
+            let conformal = spectral_conformal(energy, analysis, watch).unwrap();
+            assert!(energy.value(&conformal, 1.0) < 1e-12, "{}", energy.value(&conformal, 1.0));
+        });
+    }
+
+    #[test]
+    fn what_only_touches_is_pulled_in_and_what_crosses_is_refused() {
+        with_comb(|energy, _, _| {
+            let outline = Outline::new(energy);
+            let plan = plan_view(energy).unwrap();
+            assert!(allowed(energy, Some(&outline), plan.clone()).is_some_and(|map| map == plan));
+            let mirrored: Map = plan.iter().map(|x| [-x[0], x[1]]).collect();
+            assert!(allowed(energy, Some(&outline), mirrored).is_none());
+        });
+    }
+}

@@ -95,7 +95,7 @@ impl DiskMap {
 ///     only. Default: none, `angle_weight` decides.
 /// initial : (n, 2) real array, optional
 ///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop; with a
-///     free boundary any map without folds whose outline does not cross itself. Default: harmonic, then five
+///     free boundary any map without folds whose outline does not cross itself (another one is not used). Default: harmonic, then five
 ///     fixed-point steps; with a free boundary the best of plan view, as-rigid-as-possible and conformal map.
 /// max_iterations : int, optional
 ///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a

@@ -20,7 +20,7 @@ mod starts;
 use super::run::Run;
 use super::{Boundary, DiskMapOptions, Map, certificate, holes};
 use crate::control::{History, Observer, Phase, Status, Watch};
-use crate::error::{Elements, Error};
+use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::renumbering::Renumbered;
 use crate::parallel;
@@ -167,15 +167,14 @@ impl Free<'_> {
         let outline = (!self.options.overlap).then_some(surface.outline);
         if let Some(initial) = self.options.initial {
             let initial = of_area_one(surface.energy, initial.to_vec());
-            return match starts::allowed(surface.energy, outline, initial) {
-                Some(map) => Ok((map, false)),
-                None => Err(self.not_allowed()),
-            };
+            if let Some(map) = starts::allowed(surface.energy, outline, initial) {
+                return Ok((map, false));
+            }
         }
         let watch = Watch::new(observer, 0.0, "Start map");
         let weight = self.options.angle_weight.max(LEAST_WEIGHT);
         match starts::best_start(surface.energy, surface.analysis, outline, weight, &watch) {
-            Ok(Some(map)) => return Ok((map, false)),
+            Ok(Some(map)) => Ok((map, false)),
             Ok(None) | Err(Failure::NotPositiveDefinite) => self.disk_start(surface, observer),
             Err(Failure::Cancelled) => self.disk_start(surface, &mut |_: f64, _: &str| false),
         }
@@ -198,18 +197,6 @@ impl Free<'_> {
         let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
         map.truncate(self.mesh.n_vertices());
         Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
-    }
-
-    /// Why the map given is no start.
-    fn not_allowed(&self) -> Error {
-        let folded = Elements::collect(certificate::folded(self.mesh, self.options.initial.unwrap_or(&[])));
-        let reason = match folded {
-            Some(_) => "with folded faces".to_string(),
-            None => "with an outline that crosses itself, or faces that are next to nothing".to_string(),
-        };
-        let expected =
-            "a map of free outline without folds, which crosses itself only with overlap".to_string();
-        Error::InvalidArray { name: "initial", found: reason, expected }
     }
 
     /// The map moved and scaled into the unit disk.
@@ -246,9 +233,9 @@ fn least_shear(
         (map, status) = descent.run(map, &Goal { precision: ROUGHLY, ..*goal }, history, observer);
         let (weight, deviation) = (goal.weight, descent.deviation(&map));
         let is_within = deviation <= tolerance;
-        if matches!(status, Status::Cancelled | Status::MaxIterations) {
-            return (map, if is_within { Status::Converged } else { status });
-        } else if is_within && (was_within || heavier.is_none()) {
+        if status == Status::Cancelled || (status == Status::MaxIterations && !is_within) {
+            return (map, status);
+        } else if is_within && (was_within || heavier.is_none() || status == Status::MaxIterations) {
             return (map, Status::Converged);
         } else if weight <= LIGHTEST {
             return (map, Status::Stalled);

@@ -48,7 +48,7 @@ pub(super) fn best_start(
     if let Some(conformal) = conformal {
         match as_rigid_as_possible(energy, conformal.clone(), watch) {
             Err(Failure::Cancelled) => return Err(Failure::Cancelled),
-            rigid => rigid.into_iter().for_each(|map| consider(map)),
+            rigid => rigid.into_iter().for_each(|map| consider(of_area_one(energy, map))),
         }
         consider(conformal);
     }

@@ -70,8 +70,6 @@ pub(super) struct Free<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub options: &'a DiskMapOptions<'a>,
-    /// The deviation of areas at which λ need not fall any further.
-    pub area_tolerance: Option<f64>,
 }
 
 impl Free<'_> {
@@ -140,9 +138,10 @@ impl Free<'_> {
         let mut map = start;
         let mut status = Status::MaxIterations;
         if let Some(tolerance) = self.wanted_deviation() {
-            goal.weight = if self.area_tolerance.is_some() { HEAVIEST } else { HEAVY };
+            let is_given = self.options.area_tolerance.is_some();
+            goal.weight = if is_given { HEAVIEST } else { HEAVY };
             (map, status) = least_shear(&mut descent, map, &mut goal, tolerance, history, observer);
-            if status != Status::Stalled && self.area_tolerance.is_none() {
+            if status != Status::Converged || !is_given {
                 return (map, status);
             }
         }
@@ -159,7 +158,7 @@ impl Free<'_> {
     /// The deviation of areas down to which λ is to fall; `None` where it is given.
     fn wanted_deviation(&self) -> Option<f64> {
         let is_weighted = self.options.angle_weight > 0.0;
-        self.area_tolerance.or((!is_weighted).then(|| self.options.tolerance.unwrap_or(TOLERANCE)))
+        self.options.area_tolerance.or((!is_weighted).then(|| self.options.tolerance.unwrap_or(TOLERANCE)))
     }
 
     /// A map that is one-to-one to start from, and whether the observer ended the run.

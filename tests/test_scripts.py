@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
 
 import bench_angle
 import bench_angle_front
+import bench_default
 import bench_fuzz
 import bench_fuzz_cases
 import bench_fuzz_rust
@@ -120,6 +121,14 @@ def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
         assert re.search(r"(?m)^\| (cap|ellipsoid)", text) and "Error" not in text, text
         for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
             assert (target.parent / picture).stat().st_size > 0, picture
+
+
+def test_the_default_is_measured_beside_the_papers_methods(tiny_meshes, tmp_path):
+    target = tmp_path / "default.md"
+    bench_default.main([str(target)])
+    rows = [line for line in target.read_text(encoding="utf-8").splitlines() if line.startswith("|")]
+    assert [line.split("|")[1].strip() for line in rows[2:]] == ["cap", "ellipsoid"]
+    assert all("×" in line for line in rows[2:])
 
 
 def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Free outlines: flat surfaces keep their shape, nothing crosses itself, and "converged" means stationary."""
 
+import itertools
 from fractions import Fraction
 
 import numpy as np
@@ -10,7 +11,13 @@ import authalic
 
 from . import meshes, oracle
 
-SLITS = {"max_planck": (1.27, 1.27), "hand_1": (1.30, 1.23), "suzanne": (1.30, 1.286), "spot": (1.49, 1.266), "torus": (1.28, 1.277)}
+SLITS = {
+    "max_planck": (1.27, 1.27),
+    "hand_1": (1.30, 1.23),
+    "suzanne": (1.30, 1.286),
+    "spot": (1.49, 1.266),
+    "torus": (1.28, 1.277),
+}
 """Bounds of the mean σ1/σ2 of slit surfaces at a weight of 1e-3: one-to-one, and with overlaps."""
 
 
@@ -40,14 +47,14 @@ def ragged(seed):
     for _ in range(size):
         a, b, c, d = kept[:-1, :-1], kept[1:, :-1], kept[:-1, 1:], kept[1:, 1:]
         touches = ((a == d) & (b == c) & (a != b)).nonzero()
-        for i, j in zip(*touches):
+        for i, j in zip(*touches, strict=False):
             kept[i : i + 2, j : j + 2] = True
     return squares(size, size, largest(kept))
 
 
 def largest(kept):
     """Whether a square is in the largest connected part."""
-    left, parts = set(zip(*np.nonzero(kept))), []
+    left, parts = set(zip(*np.nonzero(kept), strict=False)), []
     while left:
         open_squares = {left.pop()}
         part = set(open_squares)
@@ -102,7 +109,7 @@ def figures(vertices, result):
 
 
 def energy_gradient(vertices, faces, uv, weight):
-    """The energy of areas and angles, targets of sum one, and its gradient, by formulas of singular values' products."""
+    """The energy of areas and angles, and its gradient, by products of singular values."""
     corners = vertices[faces]
     e, f = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     base = np.linalg.norm(e, axis=1)
@@ -169,7 +176,7 @@ def test_ragged_regions_with_holes_keep_their_shape(seed):
 def test_banks_of_a_slit_that_touch_stay_apart():
     vertices, faces = squares(8, 6)
     slit = [int(np.flatnonzero((vertices[:, 0] == x) & (vertices[:, 1] == 3))[0]) for x in range(2, 9)]
-    edges = np.array(list(zip(slit[:-1], slit[1:])))
+    edges = np.array(list(itertools.pairwise(slit)))
     patch = authalic.cut(vertices, faces, seams=edges)[0]
     result = authalic.disk_map(patch.vertices, patch.faces, boundary="free", angle_weight=0.1)
     deviation, _, shear = figures(np.asarray(patch.vertices), result)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""One map: noise, rotations and renumbering do not move it, and no tolerance buys more shear than it needs."""
+"""One map: noise, rotations and numbering do not move it, and no tolerance buys more shear than it needs."""
 
 import numpy as np
 import pytest

@@ -108,8 +108,8 @@ impl Run<'_> {
     ) -> Result<(super::Map, Status), Error> {
         // 1. Targets of slivers raised to a floor
         let floor = floors::floors(self.targets)[0];
-        let energy = floors::energy(self.mesh, self.targets, self.codomain(), floor);
-        let problem = Problem::new(energy, self.motions(), Order::AsGiven)?.with_outline(self.outline());
+        let energy = floors::energy(self.mesh, self.targets, Codomain::Disk, floor);
+        let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
         // 2. The quick start; what folds is unfolded by an unguarded descent
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let (quick, status) = match is_cancelled {
@@ -129,54 +129,15 @@ impl Run<'_> {
         // 5. Another one from the progressive embedding where the result is uneven
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let (map, status) = self.second_try(problem, map, status, history, &mut phase);
-        Ok((self.within_the_disk(flat(&map)), status))
-    }
-
-    fn codomain(&self) -> Codomain {
-        match self.options.boundary {
-            Boundary::Free => Codomain::Plane,
-            Boundary::ArcLength | Boundary::Sliding | Boundary::Rectangle => Codomain::Disk,
-        }
-    }
-
-    /// The boundary loop, where it may take any shape.
-    fn outline(&self) -> Vec<u32> {
-        match self.options.boundary {
-            Boundary::Free => self.mesh.boundary_loops()[0].clone(),
-            Boundary::ArcLength | Boundary::Sliding | Boundary::Rectangle => Vec::new(),
-        }
-    }
-
-    /// A map with a free boundary moved and scaled into the unit disk.
-    fn within_the_disk(&self, map: super::Map) -> super::Map {
-        if self.options.boundary != Boundary::Free {
-            return map;
-        }
-        let extreme =
-            |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
-        let centre = [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)));
-        let moved = scaled_into_the_disk(&map, centre);
-        match certificate::folded(self.mesh, &moved).is_empty() {
-            true => moved,
-            // the rounding of the shift folded a face that is next to nothing
-            false => scaled_into_the_disk(&map, [0.0; 2]),
-        }
+        Ok((flat(&map), status))
     }
 
     /// How the vertices may move.
     fn motions(&self) -> Vec<Motion> {
-        let on_boundary = match self.options.boundary {
-            Boundary::ArcLength | Boundary::Rectangle => Motion::Held,
-            Boundary::Sliding => Motion::Circle,
-            Boundary::Free => Motion::Plane,
-        };
+        let on_boundary =
+            if self.options.boundary == Boundary::Sliding { Motion::Circle } else { Motion::Held };
         let motion = |v: usize| if self.mesh.is_boundary(v) { on_boundary } else { Motion::Plane };
-        let mut motions: Vec<Motion> = (0..self.mesh.n_vertices()).map(motion).collect();
-        if self.options.boundary == Boundary::Free {
-            // the whole map must not drift
-            motions[self.mesh.boundary_loops()[0][0] as usize] = Motion::Held;
-        }
-        motions
+        (0..self.mesh.n_vertices()).map(motion).collect()
     }
 
     /// A map without folds near the minimum by fixed-point steps and an unguarded descent; `None` where some stay.
@@ -199,9 +160,7 @@ impl Run<'_> {
         }
         // 2. Unguarded steps until nothing is folded; angles would be lost on the way, so none more where these count
         let [least, most] = OPEN_ITERATIONS;
-        let is_done = self.options.angle_weight > 0.0
-            || self.options.area_tolerance.is_some()
-            || self.options.boundary == Boundary::Free;
+        let is_done = self.options.angle_weight > 0.0 || self.options.area_tolerance.is_some();
         let least = match self.mesh.n_vertices() {
             _ if is_done => 0,
             LARGE.. => least,
@@ -239,11 +198,7 @@ impl Run<'_> {
         if let Some(initial) = self.options.initial {
             return Ok((lifted(initial.to_vec()), Status::MaxIterations));
         }
-        let boundary = match self.options.boundary {
-            Boundary::Free => Boundary::Sliding,
-            other => other,
-        };
-        let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), boundary)?;
+        let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), self.options.boundary)?;
         let start = start::start(self.mesh, &mut domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let stopping = Stopping { max_iterations: FIXED_POINT_STEPS, tolerance: NEAR };
         let (map, status) = fixed_point(&mut domain, start, &stopping, history, observer);
@@ -313,21 +268,14 @@ impl Run<'_> {
         }
         let options = GaussNewtonOptions { path, ..self.gauss_newton_options() };
         let begun = map.clone();
-        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: self.codomain() };
+        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Disk };
         let (problem, map, status) = match self.options.area_tolerance {
             Some(tolerance) => {
                 within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
             }
             None => floors::descend(&surface, problem, map, &options, history, observer),
         };
-        let is_bijective = match self.options.boundary {
-            // no fold and an outline that does not cross itself
-            Boundary::Free => {
-                certificate::folded(self.mesh, &flat(&map)).is_empty() && problem.is_simple(&map)
-            }
-            _ => certificate::is_bijective(self.mesh, &flat(&map)),
-        };
-        match is_bijective {
+        match certificate::is_bijective(self.mesh, &flat(&map)) {
             true => (problem, map, status),
             // no step folds a face, so only a boundary that turned twice leads here
             false => (problem, begun, Status::Stalled),
@@ -397,14 +345,6 @@ impl Run<'_> {
             until_open: None,
         }
     }
-}
-
-/// The map around `centre`, scaled by a power of two, which keeps the orientation of every face bit for bit.
-fn scaled_into_the_disk(map: &super::Map, centre: [f64; 2]) -> super::Map {
-    let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
-    let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
-    let scale = (1.0 / radius).log2().floor().exp2();
-    map.iter().map(|x| offset(x).map(|c| scale * c)).collect()
 }
 
 fn lifted(map: super::Map) -> Map {

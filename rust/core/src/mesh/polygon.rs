@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Whether a closed polygon of the plane crosses or touches itself, decided exactly.
+//! Whether closed polygons of the plane cross or touch themselves or each other, decided exactly.
 //!
 //! Sweep and prune: edges sorted by where they begin from left to right, each compared with those that begin before it
 //! ends. Cost: O(n log n), and one comparison for every two edges that overlap in x.
 
 use robust::{Coord, orient2d};
-
-/// Whether no two edges of the closed polygon meet but at a common corner. An empty polygon is simple.
-pub(crate) fn is_simple_polygon(corners: &[[f64; 2]]) -> bool {
-    let next: Vec<usize> = (0..corners.len()).map(|k| (k + 1) % corners.len()).collect();
-    is_simple_outline(corners, &next)
-}
 
 /// Whether no two edges of one or several closed polygons meet but at a common corner; the corner after corner k is
 /// `next[k]`.
@@ -62,6 +56,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    fn is_simple_polygon(corners: &[[f64; 2]]) -> bool {
+        let next: Vec<usize> = (0..corners.len()).map(|k| (k + 1) % corners.len()).collect();
+        is_simple_outline(corners, &next)
+    }
 
     #[test]
     fn simple_polygons_are_told_from_others() {

@@ -54,8 +54,7 @@ mod tests {
 
     /// Pairs of mirrored points, one above the other in the list.
     fn mirrored() -> Vec<Vector> {
-        let half =
-            (0..20).map(|k| f64::from(k)).map(|k| [1.0 + k.sin().abs(), k.cos() + 0.1 * k, (2.0 * k).sin()]);
+        let half = (0..20).map(f64::from).map(|k| [1.0 + k.sin().abs(), k.cos() + 0.1 * k, (2.0 * k).sin()]);
         half.flat_map(|[x, y, z]| [[x, y, z], [-x, y, z]]).collect()
     }
 

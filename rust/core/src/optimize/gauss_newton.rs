@@ -29,7 +29,6 @@ use crate::energy::motion::{Frame, Motion, frames};
 use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::mesh::geometry::Vector;
-use crate::mesh::polygon::is_simple_polygon;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
@@ -86,8 +85,6 @@ const NOTHING: f64 = 1e-12;
 pub(crate) struct Problem {
     pub energy: AuthalicEnergy,
     pub motions: Vec<Motion>,
-    /// The boundary loop where it may take any shape that does not cross itself; empty elsewhere.
-    pub outline: Vec<u32>,
     /// Landmarks that are wanted at places; none elsewhere.
     pub penalty: LandmarkPenalty,
     analysis: Analysis,
@@ -122,12 +119,7 @@ impl Problem {
     pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>, order: Order) -> Result<Self, Error> {
         let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
         let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns, order)?;
-        Ok(Self { energy, motions, outline: Vec::new(), penalty: LandmarkPenalty::default(), analysis })
-    }
-
-    /// The same with a boundary loop that must not cross itself.
-    pub(crate) fn with_outline(self, outline: Vec<u32>) -> Self {
-        Self { outline, ..self }
+        Ok(Self { energy, motions, penalty: LandmarkPenalty::default(), analysis })
     }
 
     /// The same with landmarks that are wanted at places.
@@ -135,7 +127,7 @@ impl Problem {
         Self { penalty, ..self }
     }
 
-    /// The energy of a map, that of landmarks included; infinite where its outline crosses itself.
+    /// The energy of a map, that of landmarks included.
     fn value(&self, state: &State, weights: &Weights) -> f64 {
         self.energy.value(&state.costs, weights) + state.penalty
     }
@@ -150,13 +142,6 @@ impl Problem {
         let mut gradient = self.energy.gradient(map, frames, weights);
         self.penalty.add_gradient(map, frames, &mut gradient);
         gradient
-    }
-
-    /// Whether the outline does not cross itself.
-    pub(crate) fn is_simple(&self, map: &[Vector]) -> bool {
-        let corners: Vec<[f64; 2]> =
-            self.outline.iter().map(|&v| [0, 1].map(|k| map[v as usize][k])).collect();
-        is_simple_polygon(&corners)
     }
 
     /// E_A of a map over the area of its image.
@@ -350,10 +335,7 @@ impl<'a> Descent<'a> {
         let angle = self.schedule.advance(&progress);
         // what was flat need not be with another λ
         self.flat &= angle == before;
-        // a free image would grow or shrink for ever if its targets followed it
-        if self.scale.is_nan() || self.problem.outline.is_empty() {
-            self.scale = sums.area / self.total_target;
-        }
+        self.scale = sums.area / self.total_target;
         Weights { scale: self.scale, angle, profile: self.options.profile }
     }
 
@@ -459,14 +441,14 @@ impl<'a> Descent<'a> {
 struct State {
     map: Map,
     costs: Vec<[f64; 2]>,
-    /// The penalty on landmarks; infinite where the outline crosses itself.
+    /// The penalty on landmarks.
     penalty: f64,
 }
 
 impl State {
     fn new(problem: &Problem, map: Map) -> Self {
         let costs = problem.energy.costs(&map);
-        let penalty = if problem.is_simple(&map) { problem.penalty.value(&map) } else { f64::INFINITY };
+        let penalty = problem.penalty.value(&map);
         Self { map, costs, penalty }
     }
 }

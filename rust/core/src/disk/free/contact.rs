@@ -145,7 +145,7 @@ impl Outline {
         let t = ((offset[0] * along[0] + offset[1] * along[1]) / squared).clamp(0.0, 1.0);
         let apart = [offset[0] - t * along[0], offset[1] - t * along[1]];
         let distance = apart[0].hypot(apart[1]);
-        if !(distance < reach) {
+        if distance.is_nan() || distance >= reach {
             return None;
         }
         let [u, v] = if distance > 0.0 { apart.map(|c| c / distance) } else { [0.0; 2] };

@@ -343,7 +343,7 @@ impl<'a> Descent<'a> {
             }
             let kp = self.product(contacts, springs, curvature, &p);
             let curvature = dot(&p, &kp);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 return Err(Failure::NotPositiveDefinite);
             }
             let step = rz / curvature;

@@ -118,7 +118,7 @@ impl<'a> Energy<'a> {
         parallel::sum(self.mesh.n_faces(), |face| {
             let jacobian = self.jacobian(map, face);
             let rho = jacobian.ratio;
-            if !(rho > 0.0) {
+            if rho.is_nan() || rho <= 0.0 {
                 return f64::INFINITY;
             }
             let areas = 0.5 * (rho - 1.0).powi(2) * (1.0 + 1.0 / rho);

@@ -88,7 +88,7 @@ impl Free<'_> {
         let targets = by_order.of_faces(self.targets);
         let initial = self.options.initial.map(|map| by_order.of_vertices(map));
         let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
-        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
+        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options };
         let (map, status) = free.in_order(history, observer)?;
         Ok((by_order.given(&map), status))
     }
@@ -259,7 +259,7 @@ fn least_shear(
 fn turned(mesh: &TriangleMesh, map: Map) -> Map {
     let [x, y] = map[mesh.boundary_loops()[0][0] as usize];
     let length = x.hypot(y);
-    if !(length > 0.0) {
+    if length.is_nan() || length <= 0.0 {
         return map;
     }
     let [cosine, sine] = [x / length, y / length];

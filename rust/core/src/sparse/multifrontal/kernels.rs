@@ -17,33 +17,7 @@ fn arch() -> pulp::Arch {
 
 #[cfg(test)]
 fn arch() -> pulp::Arch {
-    processor::chosen().unwrap_or_else(pulp::Arch::new)
-}
-
-/// Computes as another processor would, in tests.
-#[cfg(test)]
-pub(crate) mod processor {
-    use std::cell::Cell;
-
-    thread_local! {
-        static CHOSEN: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
-    }
-
-    pub(in super::super) fn chosen() -> Option<pulp::Arch> {
-        CHOSEN.get()
-    }
-
-    /// What `work` gives by this crate's own loops alone, on one thread, with vectors of each width there is here.
-    pub(crate) fn with_each_width<R: Send>(work: impl Fn() -> R + Send + Sync) -> Vec<R> {
-        let on_its_own_thread = |arch: pulp::Arch| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-            pool.install(|| {
-                CHOSEN.set(Some(arch));
-                work()
-            })
-        };
-        [pulp::Arch::Scalar, pulp::Arch::new()].map(on_its_own_thread).into()
-    }
+    processor::chosen().unwrap_or_default()
 }
 
 /// `out -= Σ_p columns[p] · factors[p]`, all as long as `out`.
@@ -134,5 +108,31 @@ pub(super) fn subtract_square<T: Scalar>(update: &mut [T], panel: &[T], height: 
         let row = width + j;
         out.fill(T::ZERO);
         subtract_columns(out, (panel, height, width), row, |p| panel[p * height + row]);
+    }
+}
+
+/// Computes as another processor would, in tests.
+#[cfg(test)]
+pub(crate) mod processor {
+    use std::cell::Cell;
+
+    thread_local! {
+        static CHOSEN: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
+    }
+
+    pub(in super::super) fn chosen() -> Option<pulp::Arch> {
+        CHOSEN.get()
+    }
+
+    /// What `work` gives by this crate's own loops alone, on one thread, with vectors of each width there is here.
+    pub(crate) fn with_each_width<R: Send>(work: impl Fn() -> R + Send + Sync) -> Vec<R> {
+        let on_its_own_thread = |arch: pulp::Arch| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+            pool.install(|| {
+                CHOSEN.set(Some(arch));
+                work()
+            })
+        };
+        [pulp::Arch::Scalar, pulp::Arch::new()].map(on_its_own_thread).into()
     }
 }

@@ -44,7 +44,7 @@ pub(super) struct Progress {
     pub deviation: f64,
     /// The length of the last step.
     pub step: f64,
-    /// Whether the slope promised next to nothing at the last λ.
+    /// Whether next to nothing is left to gain at the last λ.
     pub is_flat: bool,
 }
 
@@ -104,6 +104,8 @@ impl AngleSchedule {
         let goal = (ratio * progress.balance).clamp(least, most).max(self.least);
         match self.weight {
             weight if weight.is_nan() => goal,
+            // where areas become no evener at this λ, the balance would hold it for ever
+            weight if progress.is_flat => goal.min(FASTEST_FALL * weight).max(self.least).max(least),
             weight if goal < weight && progress.step >= SHORT => goal.max(FASTEST_FALL * weight),
             weight => weight,
         }

@@ -201,12 +201,12 @@ pub(crate) fn minimize(
     let mut best = (f64::INFINITY, Map::new());
     for done in 0.. {
         // 1. Targets on the scale of the image, λ on its way
-        let was_staged = descent.schedule.is_staged();
-        let weights = descent.balance(&sums);
-        if was_staged && !descent.schedule.is_staged() {
-            trend = Trend::default();
-        }
         trend.energies.push(sums.total());
+        let was_staged = descent.schedule.is_staged();
+        let weights = descent.balance(&sums, &trend);
+        if was_staged && !descent.schedule.is_staged() {
+            trend = Trend { energies: vec![sums.total()], norms: Vec::new() };
+        }
         if sums.total() < best.0 && descent.keeps_the_best() {
             best = (sums.total(), state.map.clone());
         }
@@ -327,10 +327,13 @@ impl<'a> Descent<'a> {
     }
 
     /// The weights of the next iteration.
-    fn balance(&mut self, sums: &Sums) -> Weights {
+    fn balance(&mut self, sums: &Sums, trend: &Trend) -> Weights {
         let balance = sums.total() / sums.angle_energy.max(1e-3);
         let deviation = (sums.total() / sums.area).sqrt();
-        let progress = Progress { balance, deviation, step: self.last_step, is_flat: self.flat };
+        // on the way to a weight that was asked for, a descent that is slow has to go on
+        let is_on_its_way = self.options.angle_weight > 0.0 && !self.schedule.is_staged();
+        let is_flat = self.flat || (is_on_its_way && trend.is_slow());
+        let progress = Progress { balance, deviation, step: self.last_step, is_flat };
         let before = self.schedule.weight();
         let angle = self.schedule.advance(&progress);
         // what was flat need not be with another λ
@@ -349,7 +352,7 @@ impl<'a> Descent<'a> {
     ) -> Option<Status> {
         let options = &self.options;
         let (is_held, is_staged) = (self.schedule.is_held(), self.schedule.is_staged());
-        let is_slow = !is_held && !is_staged && trend.is_slow();
+        let is_slow = options.angle_weight == 0.0 && !is_staged && trend.is_slow();
         let deviation = (sums.total() / sums.area).sqrt();
         let is_asked = options.usual_iterations == usize::MAX;
         let is_even = deviation <= options.tolerance

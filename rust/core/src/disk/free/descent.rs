@@ -36,8 +36,9 @@ const MOST_TRIALS: usize = 40;
 /// The decrement's share that a step must gain.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A decrement below this is rounding.
+/// A decrement below this, or below this part of the energy, is rounding.
 const NOTHING: f64 = 1e-16;
+const ROUNDING: f64 = 1e-13;
 
 /// The conjugate gradients end when they have reduced the residual to this part, the more exactly the nearer the minimum
 /// is, and after so many steps.
@@ -144,6 +145,9 @@ impl<'a> Descent<'a> {
             // 3. The step
             let least = (goal.precision * place.value).max(NOTHING);
             let is_flat = direction.decrement <= least;
+            if direction.decrement <= (ROUNDING * place.value).max(NOTHING) {
+                return (place.map, Status::Converged);
+            }
             let Some((next, step)) = self.step(&place, &direction, goal) else {
                 return (place.map, if is_flat { Status::Converged } else { Status::Stalled });
             };

@@ -37,7 +37,7 @@ const NEAR: f64 = 0.15;
 const OPEN_ITERATIONS: [usize; 2] = [8, 12];
 
 /// Guarded iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
-const GUARDED_ITERATIONS: [usize; 2] = [12, 1000];
+const GUARDED_ITERATIONS: [usize; 2] = [16, 1000];
 
 /// On surfaces with fewer vertices twice as many cost next to nothing.
 const SMALL: usize = 10_000;
@@ -295,6 +295,7 @@ impl Run<'_> {
         // the progressive embedding has a boundary of its own
         let is_held = self.options.boundary == Boundary::ArcLength;
         let is_given = is_held
+            || self.options.max_iterations.is_some()
             || self.options.initial.is_some()
             || self.options.angle_weight > 0.0
             || self.options.area_tolerance.is_some();

@@ -29,7 +29,7 @@ pub(crate) fn tie_breakers(points: &[Vector]) -> Vec<f64> {
     // 1. Centered, of unit size
     let center = mean(&|x| x);
     let size = parallel::sum(n, |v| dot(sub(points[v], center), sub(points[v], center)) / n as f64).sqrt();
-    let local = |x: Vector| scaled(sub(x, center), 1.0 / size);
+    let local = |x: Vector| scaled(sub(x, center), 1.0 / size.max(f64::MIN_POSITIVE));
     // 2. The directions of the surface
     let skewness = mean(&|x| scaled(local(x), dot(local(x), local(x))));
     let stretched = mean(&|x| scaled(local(x), dot(local(x), skewness)));

@@ -10,7 +10,7 @@
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
 /// [`NEARLY_EVEN`] and from then on. Larger values spare angles and cost iterations.
-const BALANCE: [f64; 2] = [2.5, 1.0];
+const BALANCE: [f64; 2] = [2.5, 0.3];
 const NEARLY_EVEN: f64 = 0.004;
 
 /// A balanced λ stays between these.

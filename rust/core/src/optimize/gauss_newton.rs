@@ -68,7 +68,7 @@ const SUFFICIENT: f64 = 1e-4;
 const EVEN_ENOUGH: [f64; 2] = [0.005, 0.003];
 
 /// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
-const EVEN: f64 = 0.0012;
+const EVEN: f64 = 7e-4;
 const MANY: usize = 10_000;
 
 /// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.

@@ -37,9 +37,9 @@ const FIXED_POINT_STEPS: usize = 5;
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
 /// Iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
-const ITERATIONS: [usize; 2] = [10, 1000];
+const ITERATIONS: [usize; 2] = [16, 1000];
 
-/// On surfaces with fewer vertices three times as many cost next to nothing.
+/// On surfaces with fewer vertices twice as many cost next to nothing.
 const SMALL: usize = 10_000;
 
 /// A cancelled run on more vertices ends at once, also without a map.
@@ -110,7 +110,10 @@ impl Run<'_> {
         let path = if problem.unevenness(&map) > FAR { AnglePath::Staged } else { AnglePath::Balanced };
         let (problem, map, status) = self.descend(problem, map, path, status, history, &mut phase);
         // 4. Another one from the progressive embedding where the result is uneven
-        let is_final = path == AnglePath::Staged
+        // a limit of iterations is one for all of them
+        let is_limited = self.options.max_iterations.is_some();
+        let is_final = is_limited
+            || path == AnglePath::Staged
             || self.options.initial.is_some()
             || self.options.angle_weight > 0.0
             || self.options.area_tolerance.is_some();
@@ -185,7 +188,7 @@ impl Run<'_> {
             return (problem, map, status);
         }
         let [usual, most] = ITERATIONS;
-        let usual = if self.mesh.n_vertices() < SMALL { 3 * usual } else { usual };
+        let usual = if self.mesh.n_vertices() < SMALL { 2 * usual } else { usual };
         // who asks for a tolerance gets it
         let is_asked = self.options.max_iterations.is_some() || self.options.tolerance.is_some();
         let options = GaussNewtonOptions {

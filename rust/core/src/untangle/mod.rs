@@ -3,11 +3,11 @@
 //!
 //! The outline and the pins stay, bit for bit, and so does all that is not near a fold:
 //!
-//! 1. The vertices that move form small patches around the folded faces ([`patches`](self::patches)), as small as they
+//! 1. The vertices that move form small patches around the folded faces ([`patches`]), as small as they
 //!    can be at first; only what resists grows.
 //! 2. Within a patch a map without folds is found by the regularized foldover-free energy of Garanzha et al. (2021)
-//!    ([`foldover`](self::foldover)).
-//! 3. From there the vertices return to their old places as far as open faces let them ([`closest`](self::closest)).
+//!    ([`foldover`]).
+//! 3. From there the vertices return to their old places as far as open faces let them ([`closest`]).
 //!
 //! Exact predicates decide what is folded. There is a map without folds or an error, never a map with folds.
 //!

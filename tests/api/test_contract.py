@@ -46,21 +46,12 @@ REGISTRATION = {
     "progress": None,
 }
 KEYWORDS = {
-    "stretch_hessian",
-}
-REGISTRATION = {
-    "source_landmarks": inspect.Parameter.empty,
-    "target_landmarks": inspect.Parameter.empty,
-    "weight": 1.0,
-    "angle_weight": 0.0,
-    "progress": None,
-}
-KEYWORDS = {
     "disk_map": {
         "method": "gauss_newton",
         "boundary": "sliding",
         "density": None,
         "angle_weight": 0.0,
+        "area_tolerance": None,
         "initial": None,
         "max_iterations": None,
         "tolerance": None,
@@ -75,6 +66,7 @@ KEYWORDS = {
         "line_search": "interpolation",
         "density": None,
         "angle_weight": 0.0,
+        "area_tolerance": None,
         "initial": None,
         "max_iterations": None,
         "tolerance": None,

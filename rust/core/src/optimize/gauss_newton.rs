@@ -63,9 +63,9 @@ const MOST_TRIALS: usize = 30;
 /// The slope's share that a step must gain.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this, on
-/// the balanced path and after stages, which few surfaces need.
-const EVEN_ENOUGH: [f64; 2] = [0.005, 0.003];
+/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this: on
+/// surfaces of fewer than [`MANY`] vertices, on others, and after stages, which few surfaces need.
+const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
 
 /// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
 const EVEN: f64 = 7e-4;
@@ -300,7 +300,10 @@ impl<'a> Descent<'a> {
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
             schedule: AngleSchedule::new(options.path, options.angle_weight),
-            even_enough: EVEN_ENOUGH[usize::from(options.path == AnglePath::Staged)],
+            even_enough: match options.path {
+                AnglePath::Staged => EVEN_ENOUGH[2],
+                AnglePath::Balanced => EVEN_ENOUGH[usize::from(problem.motions.len() >= MANY)],
+            },
             is_large: problem.motions.len() >= MANY && options.profile == Profile::Barrier,
             is_straight: false,
             scale: f64::NAN,

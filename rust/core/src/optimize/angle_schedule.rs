@@ -9,9 +9,12 @@
 //!   stationary, and balanced in the end. For long limbs, whose faces lock each other once they are sheared.
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
-/// [`NEARLY_EVEN`] and from then on. Larger values spare angles and cost iterations.
-const BALANCE: [f64; 2] = [2.5, 0.3];
+/// [`NEARLY_EVEN`]. Larger values spare angles and cost iterations.
+const BALANCE: f64 = 2.5;
 const NEARLY_EVEN: f64 = 0.004;
+
+/// From then on, where iterations are cheap, and where they are not.
+const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 
 /// A balanced λ stays between these.
 const BALANCED: [f64; 2] = [1e-7, 1.0];
@@ -53,6 +56,8 @@ pub(super) struct Progress {
 pub(super) struct AngleSchedule {
     /// λ never falls below this.
     least: f64,
+    /// κ in the end.
+    last_balance: f64,
     /// λ; NaN before the first iteration.
     weight: f64,
     /// The stage and its iterations so far; `None` where λ is balanced.
@@ -60,9 +65,9 @@ pub(super) struct AngleSchedule {
 }
 
 impl AngleSchedule {
-    pub(super) fn new(path: AnglePath, least: f64) -> Self {
+    pub(super) fn new(path: AnglePath, least: f64, is_large: bool) -> Self {
         let stage = (path == AnglePath::Staged).then_some((0, 0));
-        Self { least, weight: f64::NAN, stage }
+        Self { least, last_balance: LAST_BALANCE[usize::from(is_large)], weight: f64::NAN, stage }
     }
 
     /// λ of the next iteration.
@@ -99,8 +104,7 @@ impl AngleSchedule {
 
     fn balanced(&self, progress: &Progress) -> f64 {
         let [least, most] = BALANCED;
-        let [far, near] = BALANCE;
-        let ratio = if progress.deviation > NEARLY_EVEN { far } else { near };
+        let ratio = if progress.deviation > NEARLY_EVEN { BALANCE } else { self.last_balance };
         let goal = (ratio * progress.balance).clamp(least, most).max(self.least);
         match self.weight {
             weight if weight.is_nan() => goal,

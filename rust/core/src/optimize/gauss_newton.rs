@@ -299,7 +299,7 @@ impl<'a> Descent<'a> {
             problem,
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
-            schedule: AngleSchedule::new(options.path, options.angle_weight),
+            schedule: AngleSchedule::new(options.path, options.angle_weight, problem.motions.len() >= MANY),
             even_enough: match options.path {
                 AnglePath::Staged => EVEN_ENOUGH[2],
                 AnglePath::Balanced => EVEN_ENOUGH[usize::from(problem.motions.len() >= MANY)],

@@ -170,9 +170,10 @@ pub fn disk_map(
         Method::GaussNewton => run.renumbered(&mut history, observer)?,
         Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
     };
-    if status != Status::Cancelled {
-        observer.progress(1.0, "Done");
-    }
+    let status = match status != Status::Cancelled && !observer.progress(1.0, "Done") {
+        true => Status::Cancelled,
+        false => status,
+    };
     // 4. Figures of the faces given
     uv.truncate(mesh.n_vertices());
     let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;

@@ -295,16 +295,19 @@ pub(super) struct Newton {
 impl<'a> Descent<'a> {
     fn new(problem: &'a Problem, options: GaussNewtonOptions) -> Self {
         let targets = problem.energy.targets();
+        let is_large = problem.motions.len() >= MANY;
+        let has_landmarks = !problem.penalty.vertices().is_empty();
         Self {
             problem,
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
-            schedule: AngleSchedule::new(options.path, options.angle_weight, problem.motions.len() >= MANY),
+            schedule: AngleSchedule::new(options.path, options.angle_weight, is_large),
             even_enough: match options.path {
                 AnglePath::Staged => EVEN_ENOUGH[2],
-                AnglePath::Balanced => EVEN_ENOUGH[usize::from(problem.motions.len() >= MANY)],
+                AnglePath::Balanced => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
             },
-            is_large: problem.motions.len() >= MANY && options.profile == Profile::Barrier,
+            // landmarks have to meet, however even areas are
+            is_large: is_large && !has_landmarks && options.profile == Profile::Barrier,
             is_straight: false,
             scale: f64::NAN,
             damping: DAMPING,

@@ -154,9 +154,10 @@ pub fn sphere_map(
         SphereMethod::GaussNewton => run.renumbered(&mut history, observer)?,
         SphereMethod::FixedPoint | SphereMethod::GradientDescent => run.solve(&mut history, observer)?,
     };
-    if status != Status::Cancelled {
-        observer.progress(1.0, "Done");
-    }
+    let status = match status != Status::Cancelled && !observer.progress(1.0, "Done") {
+        true => Status::Cancelled,
+        false => status,
+    };
     // 4. Of all rotated copies the one that lies over the surface; figures
     let positions = match options.initial {
         None => alignment::aligned(mesh, map, &weights),

@@ -82,8 +82,7 @@ def real(*folders):
 
 
 UNSTABLE = {"bull_6200", "cowboyhat_2327", "lionhead_8356", "spot_2930"}
-"""Long thin horns: a hundred steps between faces that lock each other amplify noise to some 1e-4; the other three move by
-up to 9e-6, as a descent of some thirty steps amplifies noise about a millionfold."""
+"""Long thin horns, where a hundred steps amplify noise to 1e-4; the other three move by up to 9e-6."""
 
 
 @real("disk", "sphere")

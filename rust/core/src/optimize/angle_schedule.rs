@@ -16,6 +16,9 @@ const NEARLY_EVEN: f64 = 0.004;
 /// From then on, where iterations are cheap, and where they are not.
 const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 
+/// And all along where landmarks pull, which angles must not hold back.
+const WITH_LANDMARKS: f64 = 0.3;
+
 /// A balanced λ stays between these.
 const BALANCED: [f64; 2] = [1e-7, 1.0];
 
@@ -56,8 +59,8 @@ pub(super) struct Progress {
 pub(super) struct AngleSchedule {
     /// λ never falls below this.
     least: f64,
-    /// κ in the end.
-    last_balance: f64,
+    /// κ at first and in the end.
+    balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
     /// The stage and its iterations so far; `None` where λ is balanced.
@@ -65,9 +68,13 @@ pub(super) struct AngleSchedule {
 }
 
 impl AngleSchedule {
-    pub(super) fn new(path: AnglePath, least: f64, is_large: bool) -> Self {
+    pub(super) fn new(path: AnglePath, least: f64, is_large: bool, has_landmarks: bool) -> Self {
+        let balance = match has_landmarks {
+            true => [WITH_LANDMARKS; 2],
+            false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
+        };
         let stage = (path == AnglePath::Staged).then_some((0, 0));
-        Self { least, last_balance: LAST_BALANCE[usize::from(is_large)], weight: f64::NAN, stage }
+        Self { least, balance, weight: f64::NAN, stage }
     }
 
     /// λ of the next iteration.
@@ -104,7 +111,7 @@ impl AngleSchedule {
 
     fn balanced(&self, progress: &Progress) -> f64 {
         let [least, most] = BALANCED;
-        let ratio = if progress.deviation > NEARLY_EVEN { BALANCE } else { self.last_balance };
+        let ratio = self.balance[usize::from(progress.deviation <= NEARLY_EVEN)];
         let goal = (ratio * progress.balance).clamp(least, most).max(self.least);
         match self.weight {
             weight if weight.is_nan() => goal,

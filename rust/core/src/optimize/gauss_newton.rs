@@ -301,7 +301,7 @@ impl<'a> Descent<'a> {
             problem,
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
-            schedule: AngleSchedule::new(options.path, options.angle_weight, is_large),
+            schedule: AngleSchedule::new(options.path, options.angle_weight, is_large, has_landmarks),
             even_enough: match options.path {
                 AnglePath::Staged => EVEN_ENOUGH[2],
                 AnglePath::Balanced => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],

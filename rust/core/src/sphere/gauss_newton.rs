@@ -37,7 +37,7 @@ const FIXED_POINT_STEPS: usize = 5;
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
 /// Iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
-const ITERATIONS: [usize; 2] = [16, 1000];
+const ITERATIONS: [usize; 2] = [20, 1000];
 
 /// On surfaces with fewer vertices twice as many cost next to nothing.
 const SMALL: usize = 10_000;

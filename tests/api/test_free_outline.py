@@ -220,6 +220,21 @@ def test_holes_stay_open_and_free():
     assert start.status == "max_iterations"
 
 
+@pytest.mark.parametrize("rings", [20, 60])
+def test_long_tubes_come_to_an_end(rings):
+    """Conformal maps of them collapse, so the map to the disk has to be the start."""
+    angle = np.arange(8) * np.pi / 4
+    vertices = [(np.cos(a), np.sin(a), 0.8 * ring) for ring in range(rings) for a in angle]
+    faces = []
+    for ring in range(rings - 1):
+        for k in range(8):
+            a, b = 8 * ring + k, 8 * ring + (k + 1) % 8
+            faces += [(a, b, b + 8), (a, b + 8, a + 8)]
+    result = authalic.disk_map(vertices, np.array(faces), boundary="free", angle_weight=1e-3)
+    assert result.status == "converged" and len(result.distortion.folded) == 0
+    assert result.distortion.area_ratio_std < 0.15 and crossings(result.uv, np.array(faces)) == 0
+
+
 def test_overlap_is_for_free_outlines():
     mesh = meshes.bumpy_cap()
     for boundary in ("sliding", "arc_length"):

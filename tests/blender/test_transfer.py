@@ -27,10 +27,10 @@ def copies(matrix=None):
     return pairs.pair(source, target, pairs.nearest(source, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)]))
 
 
-def coarse_and_fine():
+def coarse_and_fine(more=()):
     """Two grids of one shape, the target with three times as many vertices along a side."""
     source, target = meshes.add_grid("Sheet", n=10), meshes.add_grid("Twin", n=30)
-    spots = [(0.4, 0.4, 0.4), (-0.4, 0, 0.4), (0.2, -0.6, 0), (-0.6, 0.6, 0)]
+    spots = [(0.4, 0.4, 0.4), (-0.4, 0, 0.4), (0.2, -0.6, 0), (-0.6, 0.6, 0), *more]
     ends = zip(pairs.nearest(source, spots), pairs.nearest(target, spots), strict=True)
     return pairs.pair(source, target, {f"Spot {number}": both for number, both in enumerate(ends)})
 
@@ -116,13 +116,18 @@ def test_an_existing_map_is_replaced_and_others_stay():
 
 
 def test_linear_uvs_between_tessellations():
-    source, target = coarse_and_fine()
+    """They are the registered positions seen from above, with landmarks in the corners near the true ones."""
+    source, target = coarse_and_fine([(0.8, 0.8, 0), (-0.8, 0.8, 0), (0.8, -0.8, 0), (-0.8, -0.8, 0)])
+    angles = {"angle_weight": 0.545}
+    bpy.ops.authalic.register(**angles)
     target.data.uv_layers.new(name="Plan")
     corner = [loop.vertex_index for loop in target.data.loops]
     meshes.set_uv(target, pairs.positions(target)[corner, :2], "Plan")
-    only("uv_maps")
+    only("uv_maps", **angles)
     corner = [loop.vertex_index for loop in source.data.loops]
-    np.testing.assert_allclose(meshes.uv(source, "Plan"), pairs.positions(source)[corner, :2], atol=0.12)
+    uv = meshes.uv(source, "Plan")
+    np.testing.assert_allclose(uv, pairs.positions(source, "Morph → Twin")[corner, :2], atol=1e-4)
+    np.testing.assert_allclose(uv, pairs.positions(source)[corner, :2], atol=0.12)
 
 
 def test_a_seam_stays_a_seam():

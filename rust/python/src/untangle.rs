@@ -93,8 +93,8 @@ impl Untangled {
 /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
 /// >>> uv = [[2, 0], [1, 0], [0, 1], [-1, 0], [0, -1]]
 /// >>> result = authalic.untangle((pyramid, faces), uv)
-/// >>> result.folded_before.tolist(), result.moved.tolist(), len(result.distortion.folded)
-/// ([0, 3], [0], 0)
+/// >>> len(result.folded_before), len(result.moved), len(result.distortion.folded)
+/// (2, 1, 0)
 #[pyfunction]
 #[pyo3(signature = (surface, image, *, fixed=None, tolerance=0.01, progress=None))]
 pub fn untangle(

@@ -40,6 +40,10 @@ const SUFFICIENT: f64 = 1e-4;
 const NOTHING: f64 = 1e-16;
 const ROUNDING: f64 = 1e-13;
 
+/// The descent has stalled when this many iterations have lowered the energy by less than this part of it.
+const PATIENCE: usize = 50;
+const LEAST_GAIN: f64 = 1e-4;
+
 /// The conjugate gradients end when they have reduced the residual to this part, the more exactly the nearer the minimum
 /// is, and after so many steps.
 const RESIDUALS: [f64; 2] = [1e-4, 0.1];
@@ -125,6 +129,7 @@ impl<'a> Descent<'a> {
         if !place.value.is_finite() {
             return (place.map, Status::Stalled);
         }
+        let mut values = vec![place.value];
         loop {
             // 1. Whether to go on
             if self.done >= goal.most_iterations {
@@ -153,6 +158,7 @@ impl<'a> Descent<'a> {
             };
             self.done += 1;
             place = next;
+            values.push(place.value);
             history.push(
                 self.problem.energy.unevenness(&place.map),
                 step,
@@ -160,6 +166,9 @@ impl<'a> Descent<'a> {
             );
             if is_flat && step > 0.5 {
                 return (place.map, Status::Converged);
+            }
+            if has_stalled(&values) {
+                return (place.map, Status::Stalled);
             }
         }
     }
@@ -401,6 +410,13 @@ impl<'a> Descent<'a> {
         });
         first.into_iter().fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Whether the last iterations gained next to nothing.
+fn has_stalled(values: &[f64]) -> bool {
+    let last = values[values.len() - 1];
+    let before = values.len().checked_sub(PATIENCE + 1).map(|k| values[k]);
+    before.is_some_and(|before| last > (1.0 - LEAST_GAIN) * before)
 }
 
 /// The contacts' diagonal blocks (xx, xy, yy), at the first corner of each vertex, in the order of the corners.

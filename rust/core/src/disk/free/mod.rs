@@ -2,7 +2,7 @@
 //! Maps with a free outline, which may take any shape that does not cross itself.
 //!
 //! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that are
-//!    one-to-one. Where none is, an area-preserving map to the disk, which is one-to-one always.
+//!    one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one always.
 //! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
 //!    (`contact`), until the map is stationary.
 //! 3. Where contacts remain, the same again with contacts that act only nearer by.
@@ -44,6 +44,10 @@ const TOLERANCE: f64 = 2e-4;
 
 /// Where no start of free outline is one-to-one, the areas of the map to the disk are evened out this often.
 const DISK_ITERATIONS: usize = 5;
+
+/// A start has collapsed, as conformal maps of long tubes do, where its energy is above this: the map to the disk is
+/// tried too.
+const COLLAPSED: f64 = 1e4;
 
 /// Starts are compared with at least this weight of angles.
 const LEAST_WEIGHT: f64 = 1e-3;
@@ -173,29 +177,52 @@ impl Free<'_> {
         let watch = Watch::new(observer, 0.0, "Start map");
         let weight = self.options.angle_weight.max(LEAST_WEIGHT);
         match starts::best_start(surface.energy, surface.analysis, outline, weight, &watch) {
-            Ok(Some(map)) => Ok((map, false)),
+            Ok(Some((energy, map))) if energy <= COLLAPSED => Ok((map, false)),
+            Ok(Some((energy, map))) => self.better_start(surface, (energy, map), observer),
             Ok(None) | Err(Failure::NotPositiveDefinite) => self.disk_start(surface, observer),
             Err(Failure::Cancelled) => self.disk_start(surface, &mut |_: f64, _: &str| false),
         }
     }
 
+    /// The start of lower energy: the one at hand or the map to the disk.
+    fn better_start(
+        &self,
+        surface: &Surface<'_>,
+        start: starts::Start,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, bool), Error> {
+        let (energy, map) = start;
+        let weight = self.options.angle_weight.max(LEAST_WEIGHT);
+        match self.disk_start(surface, observer) {
+            Ok((disk, is_cancelled)) if surface.energy.value(&disk, weight) < energy => {
+                Ok((disk, is_cancelled))
+            }
+            Ok((_, is_cancelled)) => Ok((map, is_cancelled)),
+            Err(_) => Ok((map, false)),
+        }
+    }
+
     /// An area-preserving map to the disk with a sliding boundary, the holes filled on the way.
     fn disk_start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(Map, bool), Error> {
-        let options = DiskMapOptions {
-            boundary: Boundary::Sliding,
-            max_iterations: Some(DISK_ITERATIONS),
-            ..Default::default()
-        };
         let filled = match self.mesh.boundary_loops().len() {
             1 => None,
             _ => Some(holes::fill_holes(self.mesh, self.targets)?),
         };
         let (mesh, targets) =
             filled.as_ref().map_or((self.mesh, self.targets), |fill| (&fill.mesh, &fill.targets));
-        let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
-        let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
-        map.truncate(self.mesh.n_vertices());
-        Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
+        let mut evened_out = |max_iterations: Option<usize>| {
+            let options =
+                DiskMapOptions { boundary: Boundary::Sliding, max_iterations, ..Default::default() };
+            let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
+            let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
+            map.truncate(self.mesh.n_vertices());
+            Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
+        };
+        let (map, is_cancelled) = evened_out(Some(DISK_ITERATIONS))?;
+        if is_cancelled || surface.energy.value(&map, LEAST_WEIGHT) <= COLLAPSED {
+            return Ok((map, is_cancelled));
+        }
+        evened_out(None)
     }
 
     /// The map moved and scaled into the unit disk.

@@ -20,6 +20,9 @@ const STEEPEST: f64 = 0.05;
 /// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.
 const PULL: f64 = 1e-3;
 
+/// A start of free outline with its energy.
+pub(super) type Start = (f64, Map);
+
 /// The start of lowest energy; `None` where none is one-to-one.
 pub(super) fn best_start(
     energy: &Energy<'_>,
@@ -27,8 +30,8 @@ pub(super) fn best_start(
     outline: Option<&Outline>,
     weight: f64,
     watch: &Watch<'_>,
-) -> Result<Option<Map>, Failure> {
-    let mut best: Option<(f64, Map)> = None;
+) -> Result<Option<Start>, Failure> {
+    let mut best: Option<Start> = None;
     let mut consider = |map: Map| {
         let verdict = allowed(energy, outline, map);
         let value = verdict.as_ref().map(|map| energy.value(map, weight));
@@ -52,7 +55,7 @@ pub(super) fn best_start(
         }
         consider(conformal);
     }
-    Ok(best.map(|(_, map)| map))
+    Ok(best)
 }
 
 /// The map, pulled in where its outline only touches itself; `None` where it is not one-to-one.

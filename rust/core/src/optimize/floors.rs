@@ -19,7 +19,7 @@ use crate::parallel;
 /// Floors one after the other, in units of the mean target.
 const FLOORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
-/// Iterations of each floor but the first: so many where they suffice, and at the most.
+/// Iterations of each floor but the first: so many where they suffice, and at the most but on the last.
 const ITERATIONS: [usize; 2] = [2, 8];
 
 /// Rest triangles are fattened to a height of at most this part of their longest edge,
@@ -73,6 +73,7 @@ pub(crate) fn descend(
         _ => FIRST_PART + (1.0 - FIRST_PART) * (k - 1) as f64 / (floors.len() - 1) as f64,
     };
     let (mut map, mut status) = (start, Status::MaxIterations);
+    let before = history.iterations();
     for (k, &floor) in floors.iter().enumerate() {
         let mut options = *options;
         if k > 0 {
@@ -80,7 +81,9 @@ pub(crate) fn descend(
             let [usual, most] = ITERATIONS;
             let is_last = k + 1 == floors.len();
             options.usual_iterations = if is_last { (options.usual_iterations / 2).min(most) } else { usual };
-            options.most_iterations = options.most_iterations.min(most);
+            // only the last floor has a verdict of its own
+            let left = options.most_iterations.saturating_sub(history.iterations() - before);
+            options.most_iterations = if is_last { left } else { left.min(most) };
             // the stages were for the first floor
             options.path = AnglePath::Balanced;
         }

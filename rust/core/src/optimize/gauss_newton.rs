@@ -67,6 +67,9 @@ const SUFFICIENT: f64 = 1e-4;
 /// surfaces of fewer than [`MANY`] vertices, on others, and after stages, which few surfaces need.
 const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
 
+/// And it is good enough for a descent that has become slow when it is below this.
+const GOOD_ENOUGH: f64 = 0.005;
+
 /// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
 const EVEN: f64 = 7e-4;
 const MANY: usize = 10_000;
@@ -369,7 +372,8 @@ impl<'a> Descent<'a> {
             Some(Status::Converged)
         } else if is_slow {
             // a minimum that is not 0, as coarse surfaces have, is stationary
-            Some(if self.flat { Status::Converged } else { Status::Stalled })
+            let is_at_rest = self.flat || (!is_asked && deviation <= GOOD_ENOUGH);
+            Some(if is_at_rest { Status::Converged } else { Status::Stalled })
         } else if done >= options.most_iterations {
             Some(Status::MaxIterations)
         } else if observer.progress(self.fraction(done), MESSAGE) {

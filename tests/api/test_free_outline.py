@@ -230,9 +230,9 @@ def test_long_tubes_come_to_an_end(rings):
         for k in range(8):
             a, b = 8 * ring + k, 8 * ring + (k + 1) % 8
             faces += [(a, b, b + 8), (a, b + 8, a + 8)]
-    result = authalic.disk_map(vertices, np.array(faces), boundary="free", angle_weight=1e-3)
+    result = authalic.disk_map(vertices, np.array(faces), boundary="free", angle_weight=1e-3, fill_holes=True)
     assert result.status == "converged" and len(result.distortion.folded) == 0
-    assert result.distortion.area_ratio_std < 0.15 and crossings(result.uv, np.array(faces)) == 0
+    assert result.distortion.area_ratio_std < 0.15 and not crossings(result.uv, np.array(faces))
 
 
 def test_overlap_is_for_free_outlines():

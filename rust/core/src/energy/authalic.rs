@@ -16,7 +16,8 @@
 //! The Hessian of a face is composite and positive semidefinite as it stands: Gauss–Newton in the area; for m − 1 =
 //! (Q − D)/D the Hessian of a quadratic over a linear function, with C = Q − 2a, which is D short of Q on fine meshes and
 //! in the plane: half the squared distance of the face from the similarity transformations, convex. So it leaves out only
-//! what vanishes with ψ′ and with m − 1, and turning a face costs nothing.
+//! what vanishes with ψ′ and with m − 1, and turning a face costs nothing. Where those do not vanish, the exact Hessian,
+//! or a part of the way to it, leads to a stationary point in far fewer iterations; it may be indefinite.
 
 use super::motion::Frame;
 use super::stretch::Profile;
@@ -66,6 +67,20 @@ pub(crate) struct Weights {
     /// The papers' profile lets faces fold and counts signed areas, the barrier does neither.
     pub profile: Profile,
 }
+
+/// How the Hessian of a face is made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hessian {
+    /// What a face that is wholly off its target is damped by.
+    pub damping: f64,
+    /// What every face is damped by in units of the deviation of its area ratio.
+    pub least: f64,
+    /// From the composite Hessian, 0, to the exact one without damping, 1.
+    pub curvature: f64,
+}
+
+/// Deviations count up to this.
+const MOST_DEVIATION: f64 = 1e3;
 
 /// Sums over the faces of a map.
 #[derive(Debug, Clone, Copy)]
@@ -243,20 +258,21 @@ impl AuthalicEnergy {
         })
     }
 
-    /// The Hessian of one face by the unknowns of its corners, positive semidefinite, with `damping` by the deviation
-    /// of its area ratio, |ρ − 1|: the weight of the triangle's graph Laplacian.
+    /// The Hessian of one face by the unknowns of its corners, positive semidefinite where no curvature counts, with the
+    /// damping of its deviation, |ρ − 1|, as the weight of the triangle's graph Laplacian.
     pub(crate) fn element(
         &self,
         map: &[Vector],
         frames: &[Frame],
         weights: &Weights,
-        damping: impl Fn(f64) -> f64,
+        how: &Hessian,
         face: usize,
     ) -> Element {
         let (corners, target) = (self.triangle(map, face), weights.scale * self.targets[face]);
         let (frames, cotangents) = (self.frames(frames, face), self.cotangents[face]);
         let ratio = 0.5 * corners.doubled_area / target;
-        let damping = 0.5 * damping((ratio - 1.0).abs());
+        let composite = 1.0 - how.curvature;
+        let damping = 0.5 * how.damping * ((ratio - 1.0).abs().min(MOST_DEVIATION) + how.least) * composite;
         let stiffness = 2.0 * weights.profile.stiffness(ratio) / target;
         let mut element = [[0.0; 6]; 6];
         if weights.profile == Profile::Stretch {
@@ -266,9 +282,13 @@ impl AuthalicEnergy {
         }
         let slopes = corners.slopes(frames, cotangents);
         add_product(&mut element, stiffness, &slopes.area);
-        let by_quadratic = corners.add_angle(&mut element, weights.angle * target, &slopes);
+        let by_quadratic = corners.add_angle(&mut element, weights.angle * target, &slopes, how.curvature);
         add_quadratic(&mut element, frames, cotangents.map(|cotangent| by_quadratic * cotangent + damping));
-        corners.subtract_area(&mut element, by_quadratic, frames);
+        corners.subtract_area(&mut element, composite * by_quadratic, frames);
+        if how.curvature > 0.0 {
+            let outer = self.outer(&corners, face, weights).times(how.curvature);
+            corners.add_curvature(&mut element, &outer, frames, cotangents);
+        }
         element
     }
 
@@ -322,6 +342,14 @@ impl AuthalicEnergy {
 }
 
 impl Outer {
+    fn times(&self, factor: f64) -> Self {
+        Self {
+            by_area: factor * self.by_area,
+            by_determinant: factor * self.by_determinant,
+            by_quadratic: factor * self.by_quadratic,
+        }
+    }
+
     fn along(&self, slopes: &Slopes, k: usize) -> f64 {
         self.by_area * slopes.area[k]
             + self.by_determinant * slopes.determinant[k]
@@ -389,17 +417,19 @@ impl Triangle {
         out
     }
 
-    /// Adds `weight` times the composite Hessian of (m − 1) + ½ β (m − 1)² but for that of C = Q − 2a; returns what that
-    /// is to be multiplied by.
-    fn add_angle(&self, element: &mut Element, weight: f64, slopes: &Slopes) -> f64 {
+    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² but for those of Q, D and a, with `curvature` from the
+    /// composite to the exact one; returns what that of Q is to be multiplied by.
+    fn add_angle(&self, element: &mut Element, weight: f64, slopes: &Slopes, curvature: f64) -> f64 {
         let (d, angle) = (self.determinant, self.angle());
         let by_quadratic = weight * (1.0 + STEEPNESS * (angle - 1.0)) / d;
-        let conformal = (self.quadratic - self.doubled_area) / d;
+        // ∇m
         let by_angle: [f64; 6] =
             std::array::from_fn(|k| (slopes.quadratic[k] - angle * slopes.determinant[k]) / d);
-        // ∇(C/D)
+        // ∇(C/D), with C = Q − 2a for the composite and C = Q for the exact Hessian
+        let doubled = 2.0 * (1.0 - curvature);
+        let conformal = angle - 0.5 * doubled * self.doubled_area / d;
         let by_conformal: [f64; 6] = std::array::from_fn(|k| {
-            (slopes.quadratic[k] - 2.0 * slopes.area[k] - conformal * slopes.determinant[k]) / d
+            (slopes.quadratic[k] - doubled * slopes.area[k] - conformal * slopes.determinant[k]) / d
         });
         for row in 0..6 {
             for column in 0..6 {
@@ -411,6 +441,47 @@ impl Triangle {
             }
         }
         by_quadratic
+    }
+
+    /// Adds the Hessians of the area and of D, and the pull of the gradient along the bends of the vertices' paths.
+    fn add_curvature(&self, element: &mut Element, outer: &Outer, frames: [&Frame; 3], cotangents: [f64; 3]) {
+        let axis = |k: usize| frames[k / 2].axes[k % 2];
+        let in_plane: [Vector; 6] = std::array::from_fn(|k| {
+            let c = k / 2;
+            let turned = cross(axis(k), sub(self.x[(c + 1) % 3], self.x[(c + 2) % 3]));
+            sub(turned, scaled(self.normal, dot(turned, self.normal)))
+        });
+        // corners c and e after it: ∂²D is det(axis, axis, third corner), ∂²(2a) has the normal for that
+        for c in 0..3 {
+            let (e, third) = ((c + 1) % 3, self.x[(c + 2) % 3]);
+            let bent = add(scaled(self.normal, 0.5 * outer.by_area), scaled(third, outer.by_determinant));
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let triple = dot(cross(axis(2 * c + i), axis(2 * e + j)), bent);
+                element[2 * c + i][2 * e + j] += triple;
+                element[2 * e + j][2 * c + i] += triple;
+            }
+        }
+        let stretch = 0.5 * outer.by_area / self.doubled_area;
+        for row in 0..6 {
+            (0..6).for_each(|column| element[row][column] += stretch * dot(in_plane[row], in_plane[column]));
+        }
+        for c in 0..3 {
+            let pull = dot(self.slope_in_space(outer, cotangents, c), frames[c].outward);
+            (0..2).for_each(|axis| element[2 * c + axis][2 * c + axis] -= pull);
+        }
+    }
+
+    /// The gradient of the face's energy by the place of a corner in space.
+    fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector {
+        let (n, a) = ((c + 1) % 3, (c + 2) % 3);
+        let (next, after) = (self.x[n], self.x[a]);
+        let by_area = scaled(cross(sub(next, after), self.normal), 0.5 * outer.by_area);
+        let by_determinant = scaled(cross(next, sub(after, next)), outer.by_determinant);
+        let by_quadratic = add(
+            scaled(sub(self.x[c], after), outer.by_quadratic * cotangents[n]),
+            scaled(sub(self.x[c], next), outer.by_quadratic * cotangents[a]),
+        );
+        add(by_area, add(by_determinant, by_quadratic))
     }
 
     /// Subtracts `factor` times the Hessian of 2a in the plane of the face.
@@ -475,6 +546,8 @@ mod tests {
     use crate::energy::motion::{Motion, frames};
 
     const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    const COMPOSITE: Hessian = Hessian { damping: 0.0, least: 0.0, curvature: 0.0 };
+    const EXACT: Hessian = Hessian { damping: 0.0, least: 0.0, curvature: 1.0 };
     const WEIGHTS: Weights = Weights { scale: 0.9, angle: 0.4, profile: Profile::Barrier };
 
     /// A tetrahedron with its image on the sphere.
@@ -506,7 +579,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_the_difference_of_the_value() {
+    fn gradient_and_exact_hessian_are_the_differences_of_the_value() {
         for ((mesh, motions, map), codomain) in [(closed(), Codomain::Sphere), (open(), Codomain::Disk)] {
             let energy =
                 AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), codomain, 0.0);
@@ -520,7 +593,42 @@ mod tests {
             let (h, there, back) = (1e-4, value(1e-4), value(-1e-4));
             assert!(value(0.0).is_finite());
             assert!((slope - (there - back) / (2.0 * h)).abs() < 1e-6 * (1.0 + slope.abs()));
+            let mut curvature = 0.0;
+            for face in 0..mesh.n_faces() {
+                let element = energy.element(&map, &frames, &WEIGHTS, &EXACT, face);
+                // a vertex that cannot leave a direction has no frame there
+                let d: Vec<f64> = mesh.faces()[face].iter().flat_map(|&v| direction[v as usize]).collect();
+                curvature += (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum::<f64>();
+            }
+            let difference = (there + back - 2.0 * value(0.0)) / (h * h);
+            let missing: f64 =
+                (0..map.len()).map(|v| missing_pull(&energy, &map, &frames, &motions, &direction, v)).sum();
+            assert!(
+                (curvature + missing - difference).abs() < 1e-5 * (1.0 + difference.abs()),
+                "{curvature} {difference}"
+            );
         }
+    }
+
+    /// The diagonal entry of an unknown that does not exist, which its element carries all the same.
+    fn missing_pull(
+        energy: &AuthalicEnergy,
+        map: &[Vector],
+        frames: &[Frame],
+        motions: &[Motion],
+        direction: &[[f64; 2]],
+        vertex: usize,
+    ) -> f64 {
+        if motions[vertex] != Motion::Circle {
+            return 0.0;
+        }
+        let of_corner = |&corner: &u32| {
+            let (face, c) = (corner as usize / 3, corner as usize % 3);
+            let corners = energy.triangle(map, face);
+            let outer = energy.outer(&corners, face, &WEIGHTS);
+            dot(corners.slope_in_space(&outer, energy.cotangents[face], c), frames[vertex].outward)
+        };
+        direction[vertex][1].powi(2) * energy.corners.of(vertex).iter().map(of_corner).sum::<f64>()
     }
 
     /// dᵀ H d of a map of the plane, without damping.
@@ -532,7 +640,7 @@ mod tests {
     ) -> f64 {
         let frames = frames(&vec![Motion::Plane; map.len()], map);
         let of_face = |face: usize| {
-            let element = energy.element(map, &frames, weights, |_| 0.0, face);
+            let element = energy.element(map, &frames, weights, &COMPOSITE, face);
             let d: Vec<f64> = energy.faces[face].iter().flat_map(|&v| direction[v as usize]).collect();
             (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum::<f64>()
         };
@@ -566,7 +674,7 @@ mod tests {
                 AuthalicEnergy::new(&mesh, vec![0.3, 0.5, 0.4, 0.6][..mesh.n_faces()].into(), codomain, 0.0);
             let frames = frames(&motions, &map);
             for (face, seed) in (0..mesh.n_faces()).flat_map(|face| (0..200).map(move |seed| (face, seed))) {
-                let element = energy.element(&map, &frames, &WEIGHTS, |_| 0.0, face);
+                let element = energy.element(&map, &frames, &WEIGHTS, &COMPOSITE, face);
                 let d: [f64; 6] = std::array::from_fn(|k| (1.7 * f64::from(seed) + (k * k) as f64).sin());
                 let along: f64 = (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum();
                 let size: f64 = (0..36).map(|k| (d[k / 6] * element[k / 6][k % 6] * d[k % 6]).abs()).sum();

@@ -5,8 +5,9 @@
 //! one of two paths down to the weight that was asked for, 0 or more:
 //!
 //! - *balanced*: λ keeps the energy of angles at a fixed multiple of E_A. For starts near the minimum.
-//! - *staged*: λ is held at ten times, once, a third of, ... the energy of areas, each time until the map is all but
-//!   stationary, and balanced in the end. For long limbs, whose faces lock each other once they are sheared.
+//! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is stationary,
+//!   and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they are sheared.
+//!   A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
 /// [`NEARLY_EVEN`]. Larger values spare angles and cost iterations.
@@ -28,11 +29,32 @@ const FASTEST_FALL: f64 = 0.1;
 /// A step below this is short.
 pub(super) const SHORT: f64 = 0.3;
 
-/// λ of the stages.
-const STAGES: [f64; 11] = [10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5];
+/// The stages of a staged λ.
+#[derive(Debug)]
+struct Stages {
+    weights: &'static [f64],
+    /// Iterations of one stage but the last at the most.
+    longest: usize,
+    /// A stage ends where the slope promises less than this part of the energy.
+    least_slope: f64,
+}
 
-/// Iterations of one stage at the most.
-const LONGEST_STAGE: usize = 10;
+/// Iterations of the last stage at the most.
+const LAST_STAGE: usize = 60;
+
+/// Down to areas alone, whose map is no stationary point in the end.
+const TO_AREAS: Stages =
+    Stages { weights: &[10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 3e-5], longest: 15, least_slope: 1e-4 };
+
+/// Down to a weight that was asked for.
+const TO_WEIGHT: Stages = Stages {
+    weights: &[10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5],
+    longest: 60,
+    least_slope: 1e-5,
+};
+
+/// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy.
+const LEAST_SLOPE: f64 = 1e-3;
 
 /// Which way λ falls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +85,8 @@ pub(super) struct AngleSchedule {
     balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
+    /// `None` where λ is balanced all along.
+    stages: Option<&'static Stages>,
     /// The stage and its iterations so far; `None` where λ is balanced.
     stage: Option<(usize, usize)>,
 }
@@ -73,23 +97,28 @@ impl AngleSchedule {
             true => [WITH_LANDMARKS; 2],
             false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
         };
-        let stage = (path == AnglePath::Staged).then_some((0, 0));
-        Self { least, balance, weight: f64::NAN, stage }
+        let stages = match path {
+            AnglePath::Staged => Some(if least > 0.0 { &TO_WEIGHT } else { &TO_AREAS }),
+            AnglePath::Balanced => None,
+        };
+        Self { least, balance, weight: f64::NAN, stages, stage: stages.map(|_| (0, 0)) }
     }
 
     /// λ of the next iteration.
     pub(super) fn advance(&mut self, progress: &Progress) -> f64 {
-        if let Some((stage, iterations)) = self.stage {
-            let ends = !self.weight.is_nan() && (progress.is_flat || iterations >= LONGEST_STAGE);
+        if let (Some(stages), Some((stage, iterations))) = (self.stages, self.stage) {
+            let is_last = stage + 1 == stages.weights.len();
+            let longest = if is_last { LAST_STAGE } else { stages.longest };
+            let ends = !self.weight.is_nan() && (progress.is_flat || iterations >= longest);
             self.stage = match stage + usize::from(ends) {
-                next if next == STAGES.len() || (ends && self.is_held()) => None,
+                next if next == stages.weights.len() || (ends && self.is_held()) => None,
                 next if next > stage => Some((next, 1)),
                 _ => Some((stage, iterations + 1)),
             };
         }
-        self.weight = match self.stage {
-            Some((stage, _)) => STAGES[stage].max(self.least),
-            None => self.balanced(progress),
+        self.weight = match (self.stages, self.stage) {
+            (Some(stages), Some((stage, _))) => stages.weights[stage].max(self.least),
+            _ => self.balanced(progress),
         };
         self.weight
     }
@@ -107,6 +136,19 @@ impl AngleSchedule {
     /// Whether stages are still to come.
     pub(super) fn is_staged(&self) -> bool {
         self.stage.is_some()
+    }
+
+    /// The part of the energy that the slope promises at least while λ is to stay.
+    pub(super) fn least_slope(&self) -> f64 {
+        match self.stages {
+            Some(stages) if self.is_staged() || self.is_held() => stages.least_slope,
+            _ => LEAST_SLOPE,
+        }
+    }
+
+    /// Whether λ stays until the map is stationary.
+    pub(super) fn is_thorough(&self) -> bool {
+        self.stages.is_some() && (self.is_staged() || self.is_held())
     }
 
     fn balanced(&self, progress: &Progress) -> f64 {

@@ -6,7 +6,9 @@
 //! [falls](super::angle_schedule), and a barrier that no step can cross. In each iteration:
 //!
 //! 1. targets are rescaled to the area of the image, λ is chosen;
-//! 2. the Hessian is factored with a damping of each face in proportion to how far it is from its target, once;
+//! 2. the Hessian is factored with a damping of each face in proportion to how far it is from its target, once.
+//!    Where λ stays until the map is stationary, the exact Hessian takes its place near the end, as far as that is
+//!    positive definite;
 //! 3. the same factor gives the direction d and a second-order correction for what the areas miss of their linear
 //!    prediction;
 //! 4. the step is accepted where the energy falls.
@@ -23,7 +25,7 @@
 
 use super::angle_schedule::{AnglePath, AngleSchedule, Progress, SHORT};
 use crate::control::{History, Observer, Status, Watch};
-use crate::energy::authalic::{AuthalicEnergy, Element, Sums, Weights};
+use crate::energy::authalic::{AuthalicEnergy, Element, Hessian, Sums, Weights};
 use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::motion::{Frame, Motion, frames};
 use crate::energy::stretch::Profile;
@@ -51,9 +53,6 @@ const LEAST_DAMPING: f64 = 3e-4;
 const SINGLE_PRECISION: f64 = 2e-3;
 const LARGE: usize = 500_000;
 
-/// Deviations count up to this.
-const MOST_DEVIATION: f64 = 1e3;
-
 /// No vertex moves farther than this in one step.
 const LONGEST_MOVE: f64 = 0.5;
 
@@ -78,8 +77,19 @@ const MANY: usize = 10_000;
 const PATIENCE: usize = 5;
 const LEAST_GAIN: f64 = 0.05;
 
-/// With λ held, the descent ends when the slope promises less than this part of the energy.
-const LEAST_SLOPE: f64 = 1e-3;
+/// Where λ stays until the map is stationary, the exact Hessian is tried once the slope promised less than this part of
+/// the energy,
+const NEAR: f64 = 1e-2;
+
+/// or the way from the composite Hessian to it that was positive definite the last time, a little more of it where that
+/// was so at once and less where it was not, so often.
+const MORE: f64 = 1.6;
+const LESS: f64 = 0.6;
+const ATTEMPTS: usize = 2;
+
+/// A direction whose slope has grown by more than this comes of a Hessian that is all but singular, and would amplify
+/// noise.
+const MOST_GROWTH: f64 = 3.0;
 
 /// An energy below this part of the area is as good as none.
 const NOTHING: f64 = 1e-12;
@@ -220,15 +230,17 @@ pub(crate) fn minimize(
         // 2. One factorisation, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
         let damping = descent.damping_of(&sums);
-        let newton = match descent.linearised.direction(problem, &state.map, &weights, damping, &watch) {
-            Ok(newton) => newton,
-            Err(failure) => {
-                history.push_start(sums.authalic_energy, 0.0);
-                let is_cancelled = failure == Failure::Cancelled;
-                let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
-                return (descent.best_of(best, &sums, state.map, history), status);
-            }
-        };
+        let is_near = descent.is_near();
+        let newton =
+            match descent.linearised.direction(problem, &state.map, &weights, damping, is_near, &watch) {
+                Ok(newton) => newton,
+                Err(failure) => {
+                    history.push_start(sums.authalic_energy, 0.0);
+                    let is_cancelled = failure == Failure::Cancelled;
+                    let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
+                    return (descent.best_of(best, &sums, state.map, history), status);
+                }
+            };
         let norm = (-newton.slope).max(0.0).sqrt();
         history.push_start(sums.authalic_energy, norm);
         trend.norms.push(norm);
@@ -283,9 +295,14 @@ struct Descent<'a> {
     last_step: f64,
     /// Σ targets.
     total_target: f64,
-    /// Whether the slope promised less than [`LEAST_SLOPE`] of the energy.
+    /// The part of the energy that the last slope promised.
+    promise: f64,
+    /// Whether it was next to nothing.
     flat: bool,
 }
+
+/// A direction with its slope.
+type Direction = (Vec<[f64; 2]>, f64);
 
 /// The direction at a map, with what was needed to find it.
 pub(super) struct Newton {
@@ -316,6 +333,7 @@ impl<'a> Descent<'a> {
             damping: DAMPING,
             last_step: 1.0,
             total_target: parallel::sum(targets.len(), |face| targets[face]),
+            promise: f64::INFINITY,
             flat: false,
         }
     }
@@ -394,7 +412,9 @@ impl<'a> Descent<'a> {
     fn step(&mut self, state: &State, newton: &Newton, weights: &Weights) -> Option<(State, f64)> {
         let problem = self.problem;
         let value = problem.value(state, weights);
-        self.flat = -newton.slope <= LEAST_SLOPE * value || value <= NOTHING * self.scale * self.total_target;
+        self.promise = -newton.slope / value;
+        self.flat =
+            self.promise <= self.schedule.least_slope() || value <= NOTHING * self.scale * self.total_target;
         // 1. The longest step allowed, straight and corrected to second order
         let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
         let longest = squares.fold(0.0, f64::max).sqrt();
@@ -433,13 +453,19 @@ impl<'a> Descent<'a> {
         self.problem.moved(map, &newton.frames, &direction)
     }
 
+    /// Whether λ stays until the map is stationary, which is not far.
+    fn is_near(&self) -> bool {
+        self.schedule.is_thorough() && self.promise < NEAR
+    }
+
     /// The damping at a map.
-    fn damping_of(&self, sums: &Sums) -> Damping {
+    fn damping_of(&self, sums: &Sums) -> Hessian {
         // in proportion to the residual near the minimum, so that the damping does not decide how fast it is reached
         let deviation = (sums.total() / sums.area).sqrt();
         let least = deviation.clamp(LEAST_DAMPING, LEAST_DEVIATION);
         let is_large = self.problem.motions.len() >= LARGE;
-        Damping { whole: self.damping, least: if is_large { least.max(SINGLE_PRECISION) } else { least } }
+        let least = if is_large { least.max(SINGLE_PRECISION) } else { least };
+        Hessian { damping: self.damping, least, curvature: 0.0 }
     }
 
     /// A short step asks for more damping, a long one for less.
@@ -487,13 +513,12 @@ fn shrinkage(change: f64, promised: f64) -> f64 {
     }
 }
 
-/// How much a face is damped.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Damping {
-    /// μ, for a face that is wholly off its target.
-    pub whole: f64,
-    /// What every face is damped by in units of the deviation of its area ratio.
-    pub least: f64,
+/// Where a direction starts.
+struct Place<'a> {
+    map: &'a [Vector],
+    frames: Vec<Frame>,
+    gradient: Vec<[f64; 2]>,
+    weights: &'a Weights,
 }
 
 /// The factor of the Hessian at a map.
@@ -504,37 +529,83 @@ pub(super) struct Linearised {
     single: Option<Factor<f32>>,
     double: Option<Factor<f64>>,
     single_failed: usize,
+    /// How much of the way from the composite Hessian to the exact one is tried next.
+    curvature: f64,
+    /// The last slope.
+    slope: f64,
 }
 
 impl Linearised {
     /// None yet; in single precision while that holds where asked for.
     fn new(in_single: bool) -> Self {
-        Self { single: None, double: None, single_failed: if in_single { 0 } else { usize::MAX } }
+        let single_failed = if in_single { 0 } else { usize::MAX };
+        Self { single: None, double: None, single_failed, curvature: 1.0, slope: f64::NEG_INFINITY }
     }
 
-    /// The damped Gauss–Newton direction at `map`.
+    /// The direction at `map`: damped Gauss–Newton, or Newton's where a stationary point is near.
     pub(super) fn direction(
         &mut self,
         problem: &Problem,
         map: &[Vector],
         weights: &Weights,
-        damping: Damping,
+        damping: Hessian,
+        is_near: bool,
         watch: &Watch<'_>,
     ) -> Result<Newton, Failure> {
         let frames = frames(&problem.motions, map);
         let gradient = problem.gradient(map, &frames, weights);
-        let element = |face: usize| damped_element(problem, map, &frames, weights, damping, face);
+        let place = Place { map, frames, gradient, weights };
+        let exact = if is_near { self.exact_direction(problem, &place, damping, watch)? } else { None };
+        let (direction, slope) = match exact {
+            Some(direction) => direction,
+            None => self.composite_direction(problem, &place, damping, watch)?,
+        };
+        self.slope = slope;
+        Ok(Newton { frames: place.frames, direction, slope })
+    }
+
+    /// The direction of as much of the exact Hessian as is positive definite, with its slope; `None` where that is none.
+    fn exact_direction(
+        &mut self,
+        problem: &Problem,
+        place: &Place<'_>,
+        damping: Hessian,
+        watch: &Watch<'_>,
+    ) -> Result<Option<Direction>, Failure> {
+        let mut curvature = self.curvature;
+        for _ in 0..ATTEMPTS {
+            let element = |face: usize| element(problem, place, &Hessian { curvature, ..damping }, face);
+            match self.refactor(problem, &element, watch) {
+                Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                Err(Failure::NotPositiveDefinite) => {}
+                Ok(()) => {
+                    let (direction, slope) = self.solved(problem, place);
+                    if slope <= 0.0 && slope >= MOST_GROWTH * self.slope {
+                        let is_first = curvature == self.curvature;
+                        self.curvature = if is_first { (MORE * curvature).min(1.0) } else { curvature };
+                        return Ok(Some((direction, slope)));
+                    }
+                }
+            }
+            curvature *= LESS;
+        }
+        self.curvature = curvature;
+        Ok(None)
+    }
+
+    /// The damped Gauss–Newton direction with its slope.
+    fn composite_direction(
+        &mut self,
+        problem: &Problem,
+        place: &Place<'_>,
+        damping: Hessian,
+        watch: &Watch<'_>,
+    ) -> Result<Direction, Failure> {
         for _ in 0..3 {
-            self.refactor(problem, &element, watch)?;
-            let mut unknowns = problem.packed(&gradient);
-            self.solve(problem, &mut unknowns);
-            let direction = problem.unpacked(&unknowns);
-            let direction = parallel::map(map.len(), |v| direction[v].map(|d| -d));
-            let slope = parallel::sum(map.len(), |v| {
-                gradient[v][0] * direction[v][0] + gradient[v][1] * direction[v][1]
-            });
+            self.refactor(problem, &|face: usize| element(problem, place, &damping, face), watch)?;
+            let (direction, slope) = self.solved(problem, place);
             if slope <= 0.0 && slope.is_finite() {
-                return Ok(Newton { frames, direction, slope });
+                return Ok((direction, slope));
             }
             // single precision was not enough
             if self.single.take().is_none() {
@@ -543,6 +614,17 @@ impl Linearised {
             self.single_failed = usize::MAX;
         }
         Err(Failure::NotPositiveDefinite)
+    }
+
+    /// The direction of the factor with its slope.
+    fn solved(&self, problem: &Problem, place: &Place<'_>) -> Direction {
+        let gradient = &place.gradient;
+        let mut unknowns = problem.packed(gradient);
+        self.solve(problem, &mut unknowns);
+        let ascent = problem.unpacked(&unknowns);
+        let slope =
+            parallel::sum(ascent.len(), |v| gradient[v][0] * -ascent[v][0] + gradient[v][1] * -ascent[v][1]);
+        (parallel::map(ascent.len(), |v| ascent[v].map(|d| -d)), slope)
     }
 
     /// Second-order correction of a full step to `moved`, by the factor of the direction.
@@ -589,22 +671,20 @@ impl Linearised {
     }
 }
 
-/// The Hessian of a face, damped in proportion to the deviation of its area ratio, with a shift that keeps rotations of
-/// the whole from being free.
-fn damped_element(
-    problem: &Problem,
-    map: &[Vector],
-    frames: &[Frame],
-    weights: &Weights,
-    damping: Damping,
-    face: usize,
-) -> Element {
-    let damping = |deviation: f64| damping.whole * (deviation.min(MOST_DEVIATION) + damping.least);
-    let mut element = problem.energy.element(map, frames, weights, damping, face);
-    problem.penalty.add_element(map, frames, face, &mut element);
+/// The Hessian of a face with landmarks, and with a shift that keeps rotations of the whole from being free.
+fn element(problem: &Problem, place: &Place<'_>, how: &Hessian, face: usize) -> Element {
+    let (energy, map) = (&problem.energy, place.map);
+    let mut element = energy.element(map, &place.frames, place.weights, how, face);
+    problem.penalty.add_element(map, &place.frames, face, &mut element);
     for c in 0..3 {
         // the same for both unknowns of a corner, so that turning the map turns the result
-        let shift = 0.5e-10 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]) + 1e-14;
+        let mut shift = 0.5e-10 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]).abs() + 1e-14;
+        if how.curvature > 0.0 {
+            // away from a stationary point, a turn of the whole has a negative curvature of the size of the gradient
+            let vertex = energy.faces()[face][c] as usize;
+            let [a, b] = place.gradient[vertex];
+            shift += how.curvature * a.hypot(b) / energy.vertex_corners(vertex).len() as f64;
+        }
         (2 * c..2 * c + 2).for_each(|k| element[k][k] += shift);
     }
     element

@@ -197,6 +197,15 @@ def spiky_ball(level=3, length=5.0):
     return radial(lambda x, y, z: 1 + spike(z, 40) + spike(0.6 * x + 0.8 * y, 60), level)
 
 
+def limbed_ball(level=4, length=8.0):
+    """A bumpy ball with five limbs, whose faces a conformal map makes a thousand times too small."""
+    tips = np.array([[1, 0, 0.2], [-0.7, 0.6, 0.1], [-0.3, -0.8, 0.5], [0.2, 0.3, -0.9], [0.1, 0.2, 1]])
+    tips /= np.linalg.norm(tips, axis=1, keepdims=True)
+    vertices, faces = bumpy_ball(level)
+    cosines = vertices / np.linalg.norm(vertices, axis=1, keepdims=True) @ tips.T
+    return Mesh(vertices * (1 + length * np.exp(-30 * (1 - cosines)).sum(axis=1, keepdims=True)), faces)
+
+
 def capsule(stacks=24, slices=12):
     """A long thin tube with round ends."""
     mesh, _ = sphere(stacks, slices)

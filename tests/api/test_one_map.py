@@ -68,9 +68,10 @@ def assert_one_map(mesh, **options):
 
 @weights
 @pytest.mark.parametrize("name", [*OPEN, *CLOSED])
-def test_noise_rotation_and_numbering_do_not_move_the_map(name, angle_weight):
+def test_noise_rotation_and_numbering_do_not_move_the_map(name, angle_weight, request):
     if (name, angle_weight) == ("bumpy_cap", 0.0):
-        pytest.xfail("known: a hundred steps of a small coarse disk amplify noise to 2e-4")
+        reason = "known: a hundred steps of a small coarse disk amplify noise to 2e-4"
+        request.applymarker(pytest.mark.xfail(reason=reason))
     assert_one_map({**OPEN, **CLOSED}[name], angle_weight=angle_weight)
 
 
@@ -81,19 +82,31 @@ def real(*folders):
     return pytest.mark.parametrize("path", parameters or [pytest.param(None, marks=skip, id="no data")])
 
 
-UNSTABLE = {"bull_6200", "cowboyhat_2327", "lionhead_8356", "spot_2930"}
-"""Long thin horns, where a hundred steps amplify noise to 1e-4; the other three move by up to 9e-6."""
+UNSTABLE = {"bull_6200": (0.0, 1e-3), "cowboyhat_2327": (0.0,)}
+"""Known misses: the horns of the bull move by up to 1e-3, the hat by 2e-6 where areas alone count."""
 
 
+@weights
 @real("disk", "sphere")
-def test_noise_does_not_move_real_maps(path):
-    if path.stem in UNSTABLE:
-        pytest.xfail("known: noise moves these maps by more than 1e-6")
+def test_noise_does_not_move_real_maps(path, angle_weight, request):
+    if angle_weight in UNSTABLE.get(path.stem, ()):
+        request.applymarker(pytest.mark.xfail(reason="known: noise moves this map by more than 1e-6"))
     mesh = meshes.load(path)
     if len(mesh[0]) > 20_000:
         pytest.skip("takes long; the smaller ones suffice here")
-    plain = image_of(mesh)
-    assert np.abs(turned_onto(image_of(noisy(mesh)), plain) - plain).max() < STABLE
+    plain = image_of(mesh, angle_weight=angle_weight)
+    moved = image_of(noisy(mesh), angle_weight=angle_weight)
+    assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
+
+
+def test_noise_does_not_move_limbs():
+    """The descent goes to a stationary point at every stage, which forgets what noise has done on the way."""
+    mesh = meshes.limbed_ball()
+    results = [authalic.sphere_map(*surface, angle_weight=1e-3) for surface in (mesh, noisy(mesh))]
+    assert all(result.status == "converged" for result in results)
+    assert all(len(result.distortion.folded) == 0 for result in results)
+    plain, moved = (result.positions for result in results)
+    assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
 
 
 @pytest.mark.parametrize("name", [*OPEN, *CLOSED])

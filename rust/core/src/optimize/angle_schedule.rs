@@ -21,7 +21,7 @@ const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 const WITH_LANDMARKS: f64 = 0.3;
 
 /// A balanced λ stays between these.
-const BALANCED: [f64; 2] = [1e-7, 1.0];
+const BALANCED: [f64; 2] = [1e-6, 1.0];
 
 /// It falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
 const FASTEST_FALL: f64 = 0.1;

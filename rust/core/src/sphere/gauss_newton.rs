@@ -39,8 +39,10 @@ const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 /// Iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
 const ITERATIONS: [usize; 2] = [20, 1000];
 
-/// On surfaces with fewer vertices twice as many cost next to nothing.
+/// On surfaces with fewer vertices twice as many cost next to nothing, on larger ones fewer have to do.
 const SMALL: usize = 10_000;
+const LARGE: usize = 20_000;
+const USUAL_WHERE_LARGE: usize = 17;
 
 /// A cancelled run on more vertices ends at once, also without a map.
 const QUICK: usize = 50_000;
@@ -188,7 +190,11 @@ impl Run<'_> {
             return (problem, map, status);
         }
         let [usual, most] = ITERATIONS;
-        let usual = if self.mesh.n_vertices() < SMALL { 2 * usual } else { usual };
+        let usual = match self.mesh.n_vertices() {
+            0..SMALL => 2 * usual,
+            SMALL..LARGE => usual,
+            _ => USUAL_WHERE_LARGE,
+        };
         // who asks for a tolerance gets it
         let is_asked = self.options.max_iterations.is_some() || self.options.tolerance.is_some();
         let options = GaussNewtonOptions {

@@ -382,3 +382,12 @@ def test_hard_disks_are_mapped_without_a_fold(name, boundary):
     result = authalic.disk_map(*meshes.load(path), boundary=boundary, fill_holes=True)
     assert oracle.folded(result.uv, result.faces) == []
     assert len(result.distortion.folded) == 0
+
+
+def test_small_targets_do_not_make_a_tolerance_forgotten():
+    vertices, faces = meshes.DISKS["bumpy_cap"]
+    density = np.ones(len(faces))
+    density[100] = 1e-3
+    plain = authalic.disk_map(vertices, faces, density=density)
+    exact = authalic.disk_map(vertices, faces, density=density, tolerance=1e-6)
+    assert exact.distortion.authalic_energy <= plain.distortion.authalic_energy

@@ -138,3 +138,31 @@ def test_a_tolerance_that_cannot_be_met_is_said():
     result = authalic.disk_map(*mesh, area_tolerance=1e-13)
     assert result.status == "stalled"
     assert len(result.distortion.folded) == 0
+
+
+@pytest.mark.parametrize("boundary", ["sliding", "rectangle", "free", "sphere"])
+def test_a_limit_of_iterations_is_one_for_the_whole_search(boundary):
+    if boundary == "sphere":
+        result = authalic.sphere_map(*meshes.bumpy_ball(), area_tolerance=1e-3, max_iterations=5)
+    else:
+        mesh = meshes.DISKS["bumpy_cap"]
+        result = authalic.disk_map(*mesh, boundary=boundary, area_tolerance=1e-3, max_iterations=5)
+    # up to five fixed-point steps come first
+    assert result.status == "max_iterations" and result.iterations <= 10
+
+
+def test_no_weight_within_the_tolerance_has_much_less_shear():
+    """A map that has become sheared on the way down to an even one stays so."""
+    vertices, faces = meshes.ball()
+    vertices = vertices / np.abs(vertices).sum(axis=1, keepdims=True) * [4, 1, 1]
+    vertices = vertices + 0.05 * np.sin(3 * vertices)
+    tolerance = 0.03
+    result = authalic.sphere_map(vertices, faces, area_tolerance=tolerance)
+    area = 4 * np.pi
+    shear = []
+    for weight in (1e-3, 3e-3, 1e-2, 3e-2):
+        other = authalic.sphere_map(vertices, faces, angle_weight=weight).distortion
+        if np.sqrt(other.authalic_energy / area) <= tolerance:
+            shear.append(other.angle_distortion_mean)
+    assert shear and np.sqrt(result.distortion.authalic_energy / area) <= 1.02 * tolerance
+    assert result.distortion.angle_distortion_mean < 1.03 * min(shear)

@@ -114,6 +114,18 @@ def test_the_free_aspect_is_the_best(weight):
     assert best == pytest.approx(energy(rectangle(mesh, angle_weight=weight, aspect=aspect)), rel=1e-3)
 
 
+def test_no_limit_is_as_good_as_a_high_one():
+    columns, rows = np.meshgrid(np.arange(10.0), np.arange(7.0))
+    height = 9 * np.exp(-((columns - 2) ** 2 + (rows - 2) ** 2))
+    points = np.stack([columns, rows, height], axis=-1).reshape(-1, 3)
+    spike = meshes.Mesh(points, meshes.grid(7, 10).faces)
+    aspects = []
+    for limit in (None, 10**6):
+        result = rectangle(spike, angle_weight=0.3, max_iterations=limit)
+        aspects.append(check(result, spike))
+    assert aspects[0] == aspects[1]
+
+
 def test_neither_rounding_nor_numbering_decides():
     mesh = meshes.bumpy_cap()
     random = np.random.default_rng(1)

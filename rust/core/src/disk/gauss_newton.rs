@@ -36,7 +36,7 @@ const NEAR: f64 = 0.15;
 /// Unguarded iterations, which lose angles: at the most, and so many also where nothing is folded on large surfaces.
 const OPEN_ITERATIONS: [usize; 2] = [8, 12];
 
-/// Guarded iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
+/// Guarded iterations where those leave the area ratio a small deviation, and at the most: no descent takes as many.
 const GUARDED_ITERATIONS: [usize; 2] = [11, 1000];
 
 /// On surfaces with fewer vertices three times as many cost next to nothing.
@@ -324,7 +324,7 @@ impl Run<'_> {
         areas.iter().zip(targets).all(|(area, target)| *area > least * target)
     }
 
-    /// Iterations after which a deviation of 1 % is enough for those who asked for nothing else.
+    /// Iterations after which nearly even areas are enough for those who asked for nothing else.
     fn usual_iterations(&self) -> usize {
         let [usual, ..] = GUARDED_ITERATIONS;
         match self.mesh.n_vertices() {

@@ -82,12 +82,13 @@ pub struct DiskMapOptions<'a> {
     /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
     /// where `None`, `angle_weight` decides.
     pub area_tolerance: Option<f64>,
-    /// A start map, (n, 2), boundary once around the unit circle; the fixed-point steps from the harmonic
-    /// map where `None`.
+    /// A start map, (n, 2): its boundary once around the unit circle, along the sides of an upright rectangle, or with
+    /// a free boundary any outline that does not cross itself; the fixed-point steps from the harmonic map where
+    /// `None`.
     pub initial: Option<&'a [[f64; 2]]>,
     /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
     /// takes, with a weight of 0 11 (33 below 10,000 vertices) where those leave the area ratio a deviation of
-    /// .5 %; the papers' methods: 50, as in the paper's tables. The five fixed-point steps that come first,
+    /// .5 % (.2 % below 10,000 vertices); the papers' methods: 50, as in the paper's tables. The five fixed-point steps that come first,
     /// the unguarded steps that unfold (12 at the most) and a descent that follows where folds were mended
     /// come on top, and where some targets are below 1 % of the mean up to eight for each of the floors that
     /// are lowered step by step.
@@ -106,7 +107,7 @@ pub struct DiskMapOptions<'a> {
     pub aspect: Option<f64>,
 }
 
-/// A one-to-one map of a disk to the unit disk.
+/// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
 #[derive(Debug, Clone)]
 pub struct DiskMap {
     /// (n, 2): the image of each vertex in the unit disk, or on the rectangle asked for; positive faces run

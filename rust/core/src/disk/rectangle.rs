@@ -43,7 +43,7 @@ const FIXED_POINT: Stopping = Stopping { max_iterations: 5, tolerance: 0.15 };
 /// Unguarded iterations that unfold, at the most.
 const OPEN_ITERATIONS: usize = 12;
 
-/// Guarded iterations where those leave the area ratio a deviation of 1 %, and at the most.
+/// Guarded iterations where those leave the area ratio a small deviation, and at the most.
 const GUARDED_ITERATIONS: [usize; 2] = [27, 1000];
 
 /// Area deviation of the result below which nothing is left to gain.
@@ -268,9 +268,9 @@ impl Rectangle<'_> {
             // 1. The best aspect; on the way a little more, as far down again on the other side of the minimum
             let (stretched, change) = self.with_best_aspect(problem, &map, 1.0);
             let counts_angles = self.run.options.angle_weight > 0.0;
-            let left = self.run.options.max_iterations.unwrap_or(usize::MAX);
-            options.most_iterations =
-                options.most_iterations.min((left + begun).saturating_sub(history.iterations()));
+            let done = history.iterations() - begun;
+            let left = self.run.options.max_iterations.map_or(usize::MAX, |most| most.saturating_sub(done));
+            options.most_iterations = options.most_iterations.min(left);
             if status == Status::Cancelled
                 || change.abs() < SETTLED
                 || !counts_angles

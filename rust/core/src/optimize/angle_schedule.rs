@@ -4,7 +4,7 @@
 //! Areas are cheap to even out and angles are not: once λ is small, shear that a map still has stays in it. So λ follows
 //! one of two paths down to the weight that was asked for, 0 or more:
 //!
-//! - *balanced*: λ keeps the energy of angles at a fixed multiple of E_A. For starts near the minimum.
+//! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts near the minimum.
 //! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is stationary,
 //!   and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they are sheared.
 //!   A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
@@ -14,16 +14,16 @@
 const BALANCE: f64 = 2.5;
 const NEARLY_EVEN: f64 = 0.004;
 
-/// From then on, where iterations are cheap, and where they are not.
+/// κ once the area ratio deviates by less than [`NEARLY_EVEN`]: where iterations are cheap, and where they are not.
 const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 
-/// And all along where landmarks pull, which angles must not hold back.
+/// κ throughout where landmarks pull, which angles must not hold back.
 const WITH_LANDMARKS: f64 = 0.3;
 
 /// A balanced λ stays between these.
 const BALANCED: [f64; 2] = [1e-6, 1.0];
 
-/// It falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
+/// A balanced λ falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
 const FASTEST_FALL: f64 = 0.1;
 
 /// A step below this is short.

@@ -3,7 +3,8 @@
 //!
 //! The minimum of E_A + λ E_angle has the less shear the larger λ is, and the more even areas the smaller. So λ falls step
 //! by step until the minimum is within the tolerance, and is then raised as far as that allows, by the secant rule for
-//! the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ.
+//! the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ. Each minimum is sought from that of
+//! a larger λ: shear that a map once has stays in it.
 
 use super::angle_schedule::AnglePath;
 use super::floors::{Surface, descend};
@@ -34,6 +35,13 @@ struct Found {
     status: Status,
 }
 
+impl Found {
+    /// Whether the run has ended before the minimum was reached.
+    fn is_final(&self) -> bool {
+        matches!(self.status, Status::Cancelled | Status::MaxIterations)
+    }
+}
+
 /// The map of least shear with √(E_A/A) of `tolerance` or less that is reached from `start`; `problem` has the energy of
 /// the first floor, and comes back with that of the last. [`Status::Stalled`] where areas cannot be made that even.
 pub(crate) fn within_tolerance(
@@ -46,13 +54,14 @@ pub(crate) fn within_tolerance(
     observer: &mut dyn Observer,
 ) -> (Problem, Map, Status) {
     // 1. λ falls until areas are within the tolerance
+    let begun = history.iterations();
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
     let first = GaussNewtonOptions { angle_weight: FIRST, ..*options };
     let (problem, map, status) = descend(surface, problem, start, &first, history, &mut phase);
-    let search = Search { problem: &problem, options: *options, goal: tolerance.ln() };
+    let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
     let mut found = search.found(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);
-    while found.deviation > search.goal && found.status != Status::Cancelled {
+    while found.deviation > search.goal && !found.is_final() {
         let weight = FALL * found.weight.exp();
         if weight < LEAST {
             let even = search.even(found.map, history, &mut part(round, observer));
@@ -81,6 +90,8 @@ struct Search<'a> {
     options: GaussNewtonOptions,
     /// ln of the tolerance.
     goal: f64,
+    /// Iterations of the history before the search, which has one limit for all its descents.
+    begun: usize,
 }
 
 impl Search<'_> {
@@ -89,9 +100,16 @@ impl Search<'_> {
         Found { weight: weight.ln(), deviation, map, status }
     }
 
+    /// The options of the next descent.
+    fn options(&self, angle_weight: f64, history: &History) -> GaussNewtonOptions {
+        let done = history.iterations() - self.begun;
+        let most_iterations = self.options.most_iterations.saturating_sub(done);
+        GaussNewtonOptions { angle_weight, most_iterations, path: AnglePath::Balanced, ..self.options }
+    }
+
     /// The minimum for one λ.
     fn minimum(&self, weight: f64, map: Map, history: &mut History, observer: &mut dyn Observer) -> Found {
-        let options = GaussNewtonOptions { angle_weight: weight, path: AnglePath::Balanced, ..self.options };
+        let options = self.options(weight, history);
         let (map, status) = minimize(self.problem, map, &options, history, observer);
         self.found(weight, map, status)
     }
@@ -99,11 +117,10 @@ impl Search<'_> {
     /// The most even map, where no λ leads to areas within the tolerance.
     fn even(&self, map: Map, history: &mut History, observer: &mut dyn Observer) -> (Map, Status) {
         let tolerance = self.goal.exp();
-        let options =
-            GaussNewtonOptions { angle_weight: 0.0, tolerance, path: AnglePath::Balanced, ..self.options };
+        let options = GaussNewtonOptions { tolerance, ..self.options(0.0, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);
         let is_within = self.problem.unevenness(&map).sqrt() <= tolerance;
-        (map, if is_within || status == Status::Cancelled { status } else { Status::Stalled })
+        (map, if is_within || status != Status::Converged { status } else { Status::Stalled })
     }
 
     /// The largest λ within the tolerance, between `coarser` beyond it and `finer` within.
@@ -117,15 +134,15 @@ impl Search<'_> {
     ) -> Found {
         let (aim, good) = (self.goal + AIM.ln(), self.goal + GOOD.ln());
         for step in 0..STEPS {
-            if finer.deviation >= good || finer.status == Status::Cancelled {
+            if finer.deviation >= good || finer.is_final() {
                 break;
             }
             let share = (aim - finer.deviation) / (coarser.deviation - finer.deviation);
             let weight = finer.weight + share.clamp(0.1, 0.9) * (coarser.weight - finer.weight);
-            let next =
-                self.minimum(weight.exp(), finer.map.clone(), history, &mut part(round + step, observer));
-            if next.status == Status::Cancelled {
-                return Found { status: Status::Cancelled, ..finer };
+            let phase = &mut part(round + step, observer);
+            let next = self.minimum(weight.exp(), coarser.map.clone(), history, phase);
+            if next.is_final() {
+                return Found { status: next.status, ..finer };
             }
             match next.deviation <= self.goal {
                 true => finer = next,

@@ -80,10 +80,16 @@ pub(crate) fn descend(
             problem = problem.with_energy(energy(mesh, targets, codomain, floor));
             let [usual, most] = ITERATIONS;
             let is_last = k + 1 == floors.len();
-            options.usual_iterations = if is_last { (options.usual_iterations / 2).min(most) } else { usual };
-            // only the last floor has a verdict of its own
+            options.usual_iterations = match options.usual_iterations {
+                // who asks for a tolerance gets it
+                usize::MAX if is_last => usize::MAX,
+                of_first if is_last => (of_first / 2).min(most),
+                _ => usual,
+            };
+            // the last floor has a verdict of its own, and what is left of the limit for that
             let left = options.most_iterations.saturating_sub(history.iterations() - before);
-            options.most_iterations = if is_last { left } else { left.min(most) };
+            let few = options.most_iterations.min(most);
+            options.most_iterations = if is_last { left.max(few) } else { few };
             // the stages were for the first floor
             options.path = AnglePath::Balanced;
         }

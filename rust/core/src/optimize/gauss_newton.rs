@@ -78,13 +78,16 @@ const PATIENCE: usize = 5;
 const LEAST_GAIN: f64 = 0.05;
 
 /// Where λ stays until the map is stationary, the exact Hessian is tried once the slope promised less than this part of
-/// the energy,
+/// the energy.
 const NEAR: f64 = 1e-2;
 
-/// or the way from the composite Hessian to it that was positive definite the last time, a little more of it where that
-/// was so at once and less where it was not, so often.
+/// The share of the exact Hessian is multiplied by this where it was positive definite at once.
 const MORE: f64 = 1.6;
+
+/// The share of the exact Hessian is multiplied by this where it was not positive definite.
 const LESS: f64 = 0.6;
+
+/// Shares of the exact Hessian tried in one iteration.
 const ATTEMPTS: usize = 2;
 
 /// A direction whose slope has grown by more than this comes of a Hessian that is all but singular, and would amplify
@@ -112,7 +115,8 @@ pub(crate) struct GaussNewtonOptions {
     pub angle_weight: f64,
     /// Which way it falls.
     pub path: AnglePath,
-    /// Iterations after which an area ratio with a deviation of 1 % is good enough.
+    /// Iterations after which a deviation below [`EVEN_ENOUGH`] is good enough; `usize::MAX` where a limit or a tolerance
+    /// was asked for.
     pub usual_iterations: usize,
     /// Iterations at the most.
     pub most_iterations: usize,

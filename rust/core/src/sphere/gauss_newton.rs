@@ -36,7 +36,7 @@ const FIXED_POINT_STEPS: usize = 5;
 /// They end when the stretch energy falls by no more than this.
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
-/// Iterations where those leave the area ratio a deviation of .5 %, and at the most: no descent takes as many.
+/// Iterations where those leave the area ratio a small deviation, and at the most: no descent takes as many.
 const ITERATIONS: [usize; 2] = [20, 1000];
 
 /// On surfaces with fewer vertices twice as many cost next to nothing, on larger ones fewer have to do.
@@ -111,8 +111,8 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
         let path = if problem.unevenness(&map) > FAR { AnglePath::Staged } else { AnglePath::Balanced };
         let (problem, map, status) = self.descend(problem, map, path, status, history, &mut phase);
-        // 4. Another one from the progressive embedding where the result is uneven
-        // a limit of iterations is one for all of them
+        // 4. Another one from the progressive embedding where the result is uneven; none where a limit of iterations was
+        //    given, which counts for all descents
         let is_limited = self.options.max_iterations.is_some();
         let is_final = is_limited
             || path == AnglePath::Staged

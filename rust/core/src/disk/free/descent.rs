@@ -40,9 +40,11 @@ const SUFFICIENT: f64 = 1e-4;
 const NOTHING: f64 = 1e-16;
 const ROUNDING: f64 = 1e-13;
 
-/// The descent has stalled when this many iterations have lowered the energy by less than this part of it.
+/// The descent has stalled when this many iterations have lowered the energy by less than [`LEAST_GAIN`] of it, or where
+/// that is more by so many times the precision that is wanted.
 const PATIENCE: usize = 50;
 const LEAST_GAIN: f64 = 1e-4;
+const IN_PRECISIONS: f64 = 100.0;
 
 /// The conjugate gradients end when they have reduced the residual to this part, the more exactly the nearer the minimum
 /// is, and after so many steps.
@@ -167,7 +169,7 @@ impl<'a> Descent<'a> {
             if is_flat && step > 0.5 {
                 return (place.map, Status::Converged);
             }
-            if has_stalled(&values) {
+            if has_stalled(&values, LEAST_GAIN.max(IN_PRECISIONS * goal.precision)) {
                 return (place.map, Status::Stalled);
             }
         }
@@ -355,11 +357,11 @@ impl<'a> Descent<'a> {
                 return Err(Failure::Cancelled);
             }
             let kp = self.product(contacts, springs, curvature, &p);
-            let curvature = dot(&p, &kp);
-            if curvature.is_nan() || curvature <= 0.0 {
+            let stiffness = dot(&p, &kp);
+            if stiffness.is_nan() || stiffness <= 0.0 {
                 return Err(Failure::NotPositiveDefinite);
             }
-            let step = rz / curvature;
+            let step = rz / stiffness;
             add(&mut x, step, &p);
             add(&mut residual, -step, &kp);
             z = self.preconditioned(&residual);
@@ -412,11 +414,11 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// Whether the last iterations gained next to nothing.
-fn has_stalled(values: &[f64]) -> bool {
+/// Whether the last iterations gained less than a part of the energy.
+fn has_stalled(values: &[f64], least_gain: f64) -> bool {
     let last = values[values.len() - 1];
     let before = values.len().checked_sub(PATIENCE + 1).map(|k| values[k]);
-    before.is_some_and(|before| last > (1.0 - LEAST_GAIN) * before)
+    before.is_some_and(|before| last > (1.0 - least_gain) * before)
 }
 
 /// The contacts' diagonal blocks (xx, xy, yy), at the first corner of each vertex, in the order of the corners.

@@ -61,6 +61,8 @@ const LEAST_SLOPE: f64 = 1e-3;
 pub(crate) enum AnglePath {
     Balanced,
     Staged,
+    /// At the weight that was asked for all along, until the map is stationary.
+    Held,
 }
 
 /// What an iteration has shown.
@@ -79,6 +81,7 @@ pub(super) struct Progress {
 /// λ now and on its way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AngleSchedule {
+    path: AnglePath,
     /// λ never falls below this.
     least: f64,
     /// κ at first and in the end.
@@ -99,9 +102,10 @@ impl AngleSchedule {
         };
         let stages = match path {
             AnglePath::Staged => Some(if least > 0.0 { &TO_WEIGHT } else { &TO_AREAS }),
-            AnglePath::Balanced => None,
+            AnglePath::Balanced | AnglePath::Held => None,
         };
-        Self { least, balance, weight: f64::NAN, stages, stage: stages.map(|_| (0, 0)) }
+        let weight = if path == AnglePath::Held { least } else { f64::NAN };
+        Self { path, least, balance, weight, stages, stage: stages.map(|_| (0, 0)) }
     }
 
     /// λ of the next iteration.
@@ -142,13 +146,14 @@ impl AngleSchedule {
     pub(super) fn least_slope(&self) -> f64 {
         match self.stages {
             Some(stages) if self.is_staged() || self.is_held() => stages.least_slope,
+            None if self.path == AnglePath::Held => TO_WEIGHT.least_slope,
             _ => LEAST_SLOPE,
         }
     }
 
     /// Whether λ stays until the map is stationary.
     pub(super) fn is_thorough(&self) -> bool {
-        self.stages.is_some() && (self.is_staged() || self.is_held())
+        self.path != AnglePath::Balanced && (self.is_staged() || self.is_held())
     }
 
     fn balanced(&self, progress: &Progress) -> f64 {
@@ -156,6 +161,7 @@ impl AngleSchedule {
         let ratio = self.balance[usize::from(progress.deviation <= NEARLY_EVEN)];
         let goal = (ratio * progress.balance).clamp(least, most).max(self.least);
         match self.weight {
+            weight if self.path == AnglePath::Held => weight,
             weight if weight.is_nan() => goal,
             // where areas become no evener at this λ, the balance would hold it for ever
             weight if progress.is_flat => goal.min(FASTEST_FALL * weight).max(self.least).max(least),

@@ -109,7 +109,7 @@ impl Search<'_> {
 
     /// The minimum for one λ.
     fn minimum(&self, weight: f64, map: Map, history: &mut History, observer: &mut dyn Observer) -> Found {
-        let options = self.options(weight, history);
+        let options = GaussNewtonOptions { path: AnglePath::Held, ..self.options(weight, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);
         self.found(weight, map, status)
     }

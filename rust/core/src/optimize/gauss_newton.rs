@@ -328,7 +328,7 @@ impl<'a> Descent<'a> {
             schedule: AngleSchedule::new(options.path, options.angle_weight, is_large, has_landmarks),
             even_enough: match options.path {
                 AnglePath::Staged => EVEN_ENOUGH[2],
-                AnglePath::Balanced => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
+                AnglePath::Balanced | AnglePath::Held => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
             },
             // landmarks have to meet, however even areas are
             is_large: is_large && !has_landmarks && options.profile == Profile::Barrier,

@@ -11,7 +11,7 @@
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
 /// [`NEARLY_EVEN`]. Larger values spare angles and cost iterations.
-const BALANCE: f64 = 2.0;
+const BALANCE: f64 = 2.2;
 const NEARLY_EVEN: f64 = 0.004;
 
 /// κ once the area ratio deviates by less than [`NEARLY_EVEN`]: where iterations are cheap, and where they are not.

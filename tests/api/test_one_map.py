@@ -70,7 +70,7 @@ def assert_one_map(mesh, **options):
 @pytest.mark.parametrize("name", [*OPEN, *CLOSED])
 def test_noise_rotation_and_numbering_do_not_move_the_map(name, angle_weight, request):
     if (name, angle_weight) == ("bumpy_cap", 0.0):
-        reason = "known: a hundred steps of a small coarse disk amplify noise to 2e-4"
+        reason = "known: a hundred steps of a small coarse disk amplify noise to 3e-3"
         request.applymarker(pytest.mark.xfail(reason=reason))
     assert_one_map({**OPEN, **CLOSED}[name], angle_weight=angle_weight)
 

@@ -126,6 +126,12 @@ def test_a_tolerance_of_areas_is_met_with_less_shear(name, tolerance):
     assert has_less or rigid.distortion.area_ratio_std <= 1.5 * tolerance
 
 
+@pytest.mark.parametrize("angle_weight", [1e-9, 3e-7])
+def test_the_lightest_weights_come_to_an_end(angle_weight):
+    result = authalic.sphere_map(*meshes.limbed_ball(3), angle_weight=angle_weight)
+    assert result.status != "max_iterations" and len(result.distortion.folded) == 0
+
+
 def test_a_tolerance_of_areas_excludes_a_weight():
     for call, mesh in ((authalic.disk_map, meshes.fan()), (authalic.sphere_map, meshes.bumpy_ball())):
         with pytest.raises(ValueError, match="area_tolerance must be not given together with angle_weight"):

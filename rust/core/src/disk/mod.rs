@@ -88,8 +88,8 @@ pub struct DiskMapOptions<'a> {
     pub initial: Option<&'a [[f64; 2]]>,
     /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
     /// takes, with a weight of 0 11 (33 below 10,000 vertices) where those leave the area ratio a deviation of
-    /// .5 % (.2 % below 10,000 vertices); the papers' methods: 50, as in the paper's tables. The five fixed-point steps that come first,
-    /// the unguarded steps that unfold (12 at the most) and a descent that follows where folds were mended
+    /// .5 % (.2 % below 10,000 vertices); the papers' methods: 50, as in the paper's tables. The five fixed-point
+    /// steps that come first, the unguarded steps that unfold (12 at the most) and a descent that follows where folds were mended
     /// come on top, and where some targets are below 1 % of the mean up to eight for each of the floors that
     /// are lowered step by step.
     pub max_iterations: Option<usize>,

@@ -4,10 +4,13 @@
 //! Areas are cheap to even out and angles are not: once λ is small, shear that a map still has stays in it. So λ follows
 //! one of two paths down to the weight that was asked for, 0 or more:
 //!
-//! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts near the minimum.
+//! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts near
+//!   the minimum.
 //! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is stationary,
 //!   and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they are sheared.
 //!   A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
+//!
+//! Or it is *held* at that weight from the outset.
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
 /// [`NEARLY_EVEN`]. Larger values spare angles and cost iterations.
@@ -20,7 +23,7 @@ const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 /// κ throughout where landmarks pull, which angles must not hold back.
 const WITH_LANDMARKS: f64 = 0.3;
 
-/// A balanced λ stays between these.
+/// A balanced λ stays between these, or goes down to the weight that was asked for.
 const BALANCED: [f64; 2] = [1e-6, 1.0];
 
 /// A balanced λ falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
@@ -81,14 +84,13 @@ pub(super) struct Progress {
 /// λ now and on its way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AngleSchedule {
-    path: AnglePath,
     /// λ never falls below this.
     least: f64,
     /// κ at first and in the end.
     balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
-    /// `None` where λ is balanced all along.
+    /// The stages, of which a held λ has only the precision; `None` where λ is balanced all along.
     stages: Option<&'static Stages>,
     /// The stage and its iterations so far; `None` where λ is balanced.
     stage: Option<(usize, usize)>,
@@ -101,11 +103,13 @@ impl AngleSchedule {
             false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
         };
         let stages = match path {
-            AnglePath::Staged => Some(if least > 0.0 { &TO_WEIGHT } else { &TO_AREAS }),
-            AnglePath::Balanced | AnglePath::Held => None,
+            AnglePath::Balanced => None,
+            AnglePath::Staged if least == 0.0 => Some(&TO_AREAS),
+            AnglePath::Staged | AnglePath::Held => Some(&TO_WEIGHT),
         };
+        let stage = (path == AnglePath::Staged).then_some((0, 0));
         let weight = if path == AnglePath::Held { least } else { f64::NAN };
-        Self { path, least, balance, weight, stages, stage: stages.map(|_| (0, 0)) }
+        Self { least, balance, weight, stages, stage }
     }
 
     /// λ of the next iteration.
@@ -145,26 +149,25 @@ impl AngleSchedule {
     /// The part of the energy that the slope promises at least while λ is to stay.
     pub(super) fn least_slope(&self) -> f64 {
         match self.stages {
-            Some(stages) if self.is_staged() || self.is_held() => stages.least_slope,
-            None if self.path == AnglePath::Held => TO_WEIGHT.least_slope,
+            Some(stages) if self.is_thorough() => stages.least_slope,
             _ => LEAST_SLOPE,
         }
     }
 
     /// Whether λ stays until the map is stationary.
     pub(super) fn is_thorough(&self) -> bool {
-        self.path != AnglePath::Balanced && (self.is_staged() || self.is_held())
+        self.stages.is_some() && (self.is_staged() || self.is_held())
     }
 
     fn balanced(&self, progress: &Progress) -> f64 {
-        let [least, most] = BALANCED;
+        let [lightest, most] = BALANCED;
+        let least = if self.least > 0.0 { self.least } else { lightest };
         let ratio = self.balance[usize::from(progress.deviation <= NEARLY_EVEN)];
-        let goal = (ratio * progress.balance).clamp(least, most).max(self.least);
+        let goal = (ratio * progress.balance).min(most).max(least);
         match self.weight {
-            weight if self.path == AnglePath::Held => weight,
             weight if weight.is_nan() => goal,
             // where areas become no evener at this λ, the balance would hold it for ever
-            weight if progress.is_flat => goal.min(FASTEST_FALL * weight).max(self.least).max(least),
+            weight if progress.is_flat => goal.min(FASTEST_FALL * weight).max(least),
             weight if goal < weight && progress.step >= SHORT => goal.max(FASTEST_FALL * weight),
             weight => weight,
         }

@@ -70,8 +70,8 @@ pub struct SphereMapOptions<'a> {
     pub initial: Option<&'a [Vector]>,
     /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
     /// takes, with a weight of 0 17 (20 below 20,000 vertices, 40 below 10,000) where those leave the area ratio
-    /// a deviation of .5 % (.2 % below 10,000 vertices); the papers' methods: 100, as in the paper's tables. The fixed-point steps before the descent and
-    /// the descent that follows where folds were mended come on top. 0 with the fixed point returns the start
+    /// a deviation of .5 % (.2 % below 10,000 vertices); the papers' methods: 100, as in the paper's tables. The
+    /// fixed-point steps before the descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the start
     /// map itself.
     pub max_iterations: Option<usize>,
     /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴

@@ -70,7 +70,7 @@ def project(
         if not _place_singular_points(mesh, layout, rank):
             continue
         chart = develop(layout, mesh.points, faces, polygons)
-        bad = _straighten(chart, areas * layout.scale, ~mesh.singular)
+        bad = _straighten(chart, polygons, areas * layout.scale, ~mesh.singular)
         if bad == 0:
             return layout.finish(chart.uv())
         fewest = min(fewest, bad)
@@ -79,7 +79,7 @@ def project(
     raise CannotProject(fewest)
 
 
-def _straighten(chart, areas, movable):
+def _straighten(chart, polygons, areas, movable):
     """Mends what straight edges do to a chart, towards `areas` (m,); returns how many folds are left."""
     if not chart.closed.all():
         return np.count_nonzero(~chart.closed)
@@ -89,7 +89,7 @@ def _straighten(chart, areas, movable):
         relax(chart, areas, movable)
     bad = len(folded_when_rounded(chart.uv()))
     if bad == 0:
-        even_out(chart, areas, movable)
+        even_out(chart, polygons, areas, movable)
         bad = len(folded_when_rounded(chart.uv()))
     return bad
 

@@ -34,12 +34,12 @@ def relax(chart, areas, movable):
             return
 
 
-def even_out(chart, areas, movable):
+def even_out(chart, polygons, areas, movable):
     """Goes on where `relax` has left areas far from proportional to `areas` (m,), with damping that adapts.
 
-    Not in coarse meshes such as UV spheres, whose rows are to stay rows.
+    Not in coarse meshes with polygons (m,) of several faces, such as UV spheres, whose rows are to stay rows.
     """
-    if len(chart.faces) < _COARSE:
+    if len(chart.faces) < _COARSE and len(np.unique(polygons)) < len(chart.faces):
         return
     areas = areas * (triangulation.signed_areas(chart.uv()).sum() / areas.sum())
     damping = _DAMPING

@@ -42,8 +42,10 @@ const STATIONARY: f64 = 1e-9;
 /// With no weight of angles, converged where √(E_A/A) is below this.
 const TOLERANCE: f64 = 2e-4;
 
-/// Where no start of free outline is one-to-one, the areas of the map to the disk are evened out this often.
-const DISK_ITERATIONS: usize = 5;
+/// Where no start of free outline is one-to-one, a map to the disk is, with this weight of angles, so that it is hardly
+/// sheared, and after so many iterations.
+const DISK_WEIGHT: f64 = 1.0;
+const DISK_ITERATIONS: usize = 15;
 
 /// A start has collapsed, as conformal maps of long tubes do, where its energy is above this: the map to the disk is
 /// tried too.
@@ -210,19 +212,19 @@ impl Free<'_> {
         };
         let (mesh, targets) =
             filled.as_ref().map_or((self.mesh, self.targets), |fill| (&fill.mesh, &fill.targets));
-        let mut evened_out = |max_iterations: Option<usize>| {
-            let options =
-                DiskMapOptions { boundary: Boundary::Sliding, max_iterations, ..Default::default() };
+        let mut evened_out = |angle_weight: f64, max_iterations: Option<usize>| {
+            let boundary = Boundary::Sliding;
+            let options = DiskMapOptions { boundary, angle_weight, max_iterations, ..Default::default() };
             let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
             let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
             map.truncate(self.mesh.n_vertices());
             Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
         };
-        let (map, is_cancelled) = evened_out(Some(DISK_ITERATIONS))?;
+        let (map, is_cancelled) = evened_out(DISK_WEIGHT, Some(DISK_ITERATIONS))?;
         if is_cancelled || surface.energy.value(&map, LEAST_WEIGHT) <= COLLAPSED {
             return Ok((map, is_cancelled));
         }
-        evened_out(None)
+        evened_out(0.0, None)
     }
 
     /// The map moved and scaled into the unit disk.

@@ -148,8 +148,22 @@ fn figures(
     folded: Vec<usize>,
     targets: &[f64],
 ) -> Result<Distortion, Error> {
-    // 1. Signed areas of the image, and the scale c = A/|M| of the targets
+    // 1. Signed areas of the image
     let areas = signed_areas(faces, image, &folded);
+    // 2. Singular values of the linear map of each face
+    let angle = angle_distortion(points, faces, image, &folded);
+    assembled(&areas, targets, folded, angle, image.factor)
+}
+
+/// The figures by signed image areas, in an image scaled by `factor`, targets, and σ₁/σ₂ of all faces.
+fn assembled(
+    areas: &[f64],
+    targets: &[f64],
+    folded: Vec<usize>,
+    angle: Vec<f64>,
+    factor: f64,
+) -> Result<Distortion, Error> {
+    // 1. The scale c = A/|M| of the targets
     let scale = parallel::sum(areas.len(), |face| areas[face].abs())
         / parallel::sum(targets.len(), |face| targets[face]);
     if !(scale > 0.0 && scale.is_finite()) {
@@ -166,9 +180,7 @@ fn figures(
     let mean = parallel::sum(ratio.len(), |face| ratio[face]) / count;
     let variance = parallel::sum(ratio.len(), |face| (ratio[face] - mean).powi(2)) / count;
     let energy = parallel::sum(ratio.len(), |face| scale * targets[face] * (ratio[face] - 1.0).powi(2));
-    let energy = energy / image.factor / image.factor;
-    // 3. Singular values of the linear map of each face
-    let angle = angle_distortion(points, faces, image, &folded);
+    let energy = energy / factor / factor;
     let (angle_mean, angle_p99, angle_max) = summary(&angle);
     Ok(Distortion {
         authalic_energy: energy,
@@ -181,6 +193,38 @@ fn figures(
         angle_distortion_p99: angle_p99,
         angle_distortion_max: angle_max,
     })
+}
+
+/// Measures a map of faces that are made up of parts: their areas are those of their parts together, σ₁/σ₂ is the mean
+/// over these by their targets, and a face is folded where a part is.
+///
+/// `face_of` has the face of each part, ascending from 0 without gaps; the other arguments are those of [`distortion`],
+/// of the parts.
+///
+/// # Errors
+/// As [`distortion`].
+pub(crate) fn distortion_of_wholes(
+    points: &[Vector],
+    parts: &[[u32; 3]],
+    image: Image<'_>,
+    targets: &[f64],
+    face_of: &[u32],
+) -> Result<Distortion, Error> {
+    let image = Scaled::new(image)?;
+    let folded_parts = folded(parts, image);
+    let areas = signed_areas(parts, image, &folded_parts);
+    let angle = angle_distortion(points, parts, image, &folded_parts);
+    let n_faces = face_of.last().map_or(0, |&face| face as usize + 1);
+    let mut sums = vec![[0.0; 3]; n_faces];
+    for (part, &face) in face_of.iter().enumerate() {
+        let values = [areas[part], targets[part], targets[part] * angle[part]];
+        (0..3).for_each(|k| sums[face as usize][k] += values[k]);
+    }
+    let mut folded: Vec<usize> = folded_parts.iter().map(|&part| face_of[part] as usize).collect();
+    folded.dedup();
+    let [areas, targets, angle] = [0, 1, 2].map(|k| sums.iter().map(|sum| sum[k]).collect::<Vec<f64>>());
+    let angle = angle.iter().zip(&targets).map(|(sum, target)| sum / target).collect();
+    assembled(&areas, &targets, folded, angle, image.factor)
 }
 
 /// Checks one target measure per face and scales the largest to 1, so that sums neither over- nor underflow.

@@ -15,6 +15,7 @@ __all__ = [
     "MeshError",
     "Pants",
     "Patch",
+    "Refinement",
     "Registration",
     "SolverError",
     "SphereMap",
@@ -112,6 +113,21 @@ class DiskMap:
     def seconds(self) -> float: ...
 
 @final
+class Refinement:
+    @property
+    def parents(self) -> _Indices: ...
+    @property
+    def vertices(self) -> _Reals: ...
+    @property
+    def positions(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def face_of(self) -> _Indices: ...
+    @property
+    def distortion(self) -> Distortion: ...
+
+@final
 class SphereMap:
     @property
     def positions(self) -> _Reals: ...
@@ -125,6 +141,8 @@ class SphereMap:
     def history(self) -> NDArray[np.void]: ...
     @property
     def distortion(self) -> Distortion: ...
+    @property
+    def refinement(self) -> Refinement | None: ...
     @property
     def seconds(self) -> float: ...
 
@@ -301,6 +319,7 @@ def sphere_map(
     initial: ArrayLike | None = None,
     max_iterations: int | None = None,
     tolerance: float | None = None,
+    refine: bool = False,
     unfold: bool = True,
     progress: _Progress | None = None,
 ) -> SphereMap: ...

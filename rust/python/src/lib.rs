@@ -26,6 +26,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<distortion::Distortion>()?;
     module.add_class::<disk::DiskMap>()?;
     module.add_class::<sphere::SphereMap>()?;
+    module.add_class::<sphere::Refinement>()?;
     module.add_class::<registration::Registration>()?;
     module.add_class::<registration::Certificates>()?;
     module.add_class::<structure::HyperbolicStructure>()?;

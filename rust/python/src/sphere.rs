@@ -4,11 +4,11 @@
 use authalic::mesh::TriangleMesh;
 use authalic::optimize::gradient_descent::LineSearch;
 use authalic::{SphereMapOptions, SphereMethod};
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_indices, from_points, indices, points, values};
+use crate::arrays::{from_index_list, from_indices, from_points, indices, points, values};
 use crate::distortion::Distortion;
 use crate::options::{history, parse_iterations};
 use crate::run::run;
@@ -29,13 +29,67 @@ pub struct SphereMap {
     /// gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start that
     /// "gauss_newton" keeps.
     history: Py<PyAny>,
-    /// The figures of the map.
+    /// The figures of the map. Where faces are split, the image of a face is that of its parts: its area is their sum, its
+    /// angle distortion their mean, and it is folded where one of them is.
     distortion: Py<Distortion>,
+    /// The parts of the faces where `refine` asked for them, else None.
+    refinement: Option<Py<Refinement>>,
     /// Wall time of the call.
     seconds: f64,
 }
 
+/// The faces of a surface, some of them split, and where the split points lie.
+///
+/// Vertices and split points are numbered through: the first split point has the number of the vertices.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Refinement {
+    /// (k, 2) int64: the ends of the edge that each split point halves, vertices or earlier split points.
+    parents: Py<PyArray2<i64>>,
+    /// (k, 3) float64: the split points on the surface, in the unit of the vertices.
+    vertices: Py<PyArray2<f64>>,
+    /// (k, 3) float64: their images, unit rows.
+    positions: Py<PyArray2<f64>>,
+    /// (m', 3) int64: the faces between vertices and split points, oriented like the faces of the map.
+    faces: Py<PyArray2<i64>>,
+    /// (m',) int64: the face that each of them is a part of, ascending.
+    face_of: Py<PyArray1<i64>>,
+    /// The figures of these faces.
+    distortion: Py<Distortion>,
+}
+
+impl Refinement {
+    fn new(py: Python<'_>, found: &authalic::Refinement, vertices: &[[f64; 3]]) -> PyResult<Self> {
+        let mut all = vertices.to_vec();
+        for &[a, b] in &found.parents {
+            let [a, b] = [all[a as usize], all[b as usize]];
+            // halves first, so that huge coordinates do not overflow
+            all.push(std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k]));
+        }
+        Ok(Self {
+            parents: from_indices(py, &found.parents),
+            vertices: from_points(py, &all[vertices.len()..]),
+            positions: from_points(py, &found.positions),
+            faces: from_indices(py, &found.faces),
+            face_of: from_index_list(py, found.face_of.iter().map(|&face| face as usize)),
+            distortion: Py::new(py, Distortion::new(py, &found.distortion))?,
+        })
+    }
+}
+
+#[pymethods]
+impl Refinement {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Refinement({} split points, {} faces, {})",
+            self.parents.bind(py).len()?,
+            self.faces.bind(py).len()?,
+            self.distortion.bind(py).repr()?,
+        ))
+    }
+}
+
 impl SphereMap {
+    /// The map without a refinement.
     pub fn new(py: Python<'_>, map: &authalic::SphereMap, faces: &[[u32; 3]]) -> PyResult<Self> {
         Ok(Self {
             positions: from_points(py, &map.positions),
@@ -44,6 +98,7 @@ impl SphereMap {
             iterations: map.history.iterations(),
             history: history(py, map.history.records())?,
             distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+            refinement: None,
             seconds: map.seconds,
         })
     }
@@ -105,6 +160,12 @@ impl SphereMap {
 ///     gradient descent when the norm of the Riemannian gradient, gradient_norm of the history, falls below it, default
 ///     1e-8. For "fixed_point" it is the ε of Algorithm 2, which ends when the stretch energy falls by no more; default
 ///     1e-6. -inf lets it run through rises to max_iterations and returns the last map instead of the best.
+/// refine : bool
+///     Split faces whose images are too long for their areas, as on the limbs of a body, and map again from there until
+///     areas are even: √(E_A/A) of .002, or the tolerance given, in three rounds at the most. The map is given at the
+///     vertices as ever, split points and parts of faces beside them in `refinement`; the images of the vertices alone
+///     may fold where a face is split, those of the parts never do. `max_iterations` counts for each descent. For
+///     "gauss_newton" only. Default False.
 /// unfold : bool
 ///     Unfold what the papers' methods fold. Default True; False shows what they do by themselves.
 /// progress : callable(fraction, message) -> bool, optional
@@ -135,7 +196,7 @@ impl SphereMap {
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, method="gauss_newton", line_search="interpolation", density=None,
                     angle_weight=0.0, area_tolerance=None, initial=None, max_iterations=None, tolerance=None,
-                    unfold=true, progress=None))]
+                    refine=false, unfold=true, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn sphere_map(
     py: Python<'_>,
@@ -149,6 +210,7 @@ pub fn sphere_map(
     initial: Option<&Bound<'_, PyAny>>,
     max_iterations: Option<i64>,
     tolerance: Option<f64>,
+    refine: bool,
     unfold: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<SphereMap> {
@@ -160,7 +222,7 @@ pub fn sphere_map(
     let density = density.map(|density| values(density, "density")).transpose()?;
     let initial = initial.map(|initial| points::<3>(initial, "initial")).transpose()?;
     // 2. The run
-    let (map, faces) = run(py, progress, move |observer| {
+    let (map, vertices, faces) = run(py, progress, move |observer| {
         let mesh = TriangleMesh::new(&vertices, &faces)?;
         let (density, initial) = (density.as_deref(), initial.as_deref());
         let options = SphereMapOptions {
@@ -172,12 +234,17 @@ pub fn sphere_map(
             initial,
             max_iterations,
             tolerance,
+            refine,
             unfold,
         };
-        Ok((authalic::sphere_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
+        let map = authalic::sphere_map(&mesh, &options, observer)?;
+        Ok((map, vertices, mesh.faces().to_vec()))
     })?;
     // 3. The result
-    SphereMap::new(py, &map, &faces)
+    let refinement =
+        map.refinement.as_ref().map(|found| Refinement::new(py, found, &vertices)).transpose()?;
+    let refinement = refinement.map(|found| Py::new(py, found)).transpose()?;
+    Ok(SphereMap { refinement, ..SphereMap::new(py, &map, &faces)? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

@@ -356,6 +356,7 @@ fn rough_map(mesh: &TriangleMesh, positions: &[Vector]) -> Result<SphereMap, Err
         positions: positions.to_vec(),
         status: Status::Converged,
         distortion: distortion(mesh.points(), mesh.faces(), Image::Sphere(positions), mesh.face_areas())?,
+        refinement: None,
         seconds: history.seconds(),
         history,
     })

@@ -4,6 +4,7 @@
 //! [`TriangleMesh`] is an oriented manifold surface with or without boundary, every face of which has an
 //! area. [`cut()`] opens any set of triangles along seams into [`Patch`]es that can become meshes.
 
+pub(crate) mod bisection;
 mod cut;
 pub(crate) mod decimation;
 pub mod geometry;

@@ -14,6 +14,7 @@ mod alignment;
 mod domain;
 mod fixed_point;
 mod gauss_newton;
+mod refinement;
 mod run;
 mod start;
 mod stereographic;
@@ -21,7 +22,7 @@ pub(crate) mod unfold;
 
 use std::borrow::Cow;
 
-use crate::control::{History, Observer, Status};
+use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
@@ -30,8 +31,13 @@ use crate::optimize::gradient_descent::LineSearch;
 use crate::optimize::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
 
+pub use refinement::Refinement;
+use refinement::refine;
 use run::Run;
 pub(crate) use start::rough_conformal;
+
+/// The part of the whole that the map takes before faces are split.
+const UNREFINED: f64 = 0.4;
 
 /// A map of the vertices onto the unit sphere.
 type Map = Vec<Vector>;
@@ -80,6 +86,9 @@ pub struct SphereMapOptions<'a> {
     /// where `None`, as in the paper. −∞ asks the fixed point for all iterations, through rises, and for the
     /// last map instead of the best.
     pub tolerance: Option<f64>,
+    /// Split faces that keep areas from being even, as those of long limbs do, for Gauss–Newton only; off. Iterations are
+    /// counted, and limited, for each of up to four descents.
+    pub refine: bool,
     /// Unfold what the papers' methods fold; on. The paper's tables count folds before that too.
     pub unfold: bool,
 }
@@ -95,6 +104,7 @@ impl Default for SphereMapOptions<'_> {
             initial: None,
             max_iterations: None,
             tolerance: None,
+            refine: false,
             unfold: true,
         }
     }
@@ -111,8 +121,10 @@ pub struct SphereMap {
     /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place
     /// of a folded one, a record of step 0.
     pub history: History,
-    /// The figures of the map, signed.
+    /// The figures of the map, signed. Where faces are split, the image of a face is that of its parts.
     pub distortion: Distortion,
+    /// The parts of the faces, where [`SphereMapOptions::refine`] asks for them.
+    pub refinement: Option<Refinement>,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
@@ -150,21 +162,48 @@ pub fn sphere_map(
     let weights = vertex_weights(mesh, &targets);
     // 3. Minimise the energy, unfold what folded
     let run = Run { mesh, targets: &targets, weights: &weights, options };
+    let to = if options.refine { UNREFINED } else { 1.0 };
+    let mut phase = Phase { whole: observer, from: 0.0, to };
     let (map, status) = match options.method {
-        SphereMethod::GaussNewton => run.renumbered(&mut history, observer)?,
-        SphereMethod::FixedPoint | SphereMethod::GradientDescent => run.solve(&mut history, observer)?,
+        SphereMethod::GaussNewton => run.renumbered(&mut history, &mut phase)?,
+        SphereMethod::FixedPoint | SphereMethod::GradientDescent => run.solve(&mut history, &mut phase)?,
+    };
+    // 4. Split what keeps areas uneven
+    let (refined, map, status) = if options.refine {
+        let mut phase = Phase { whole: observer, from: UNREFINED, to: 1.0 };
+        let (refined, map, status) = refine(mesh, &targets, (map, status), options, &mut history, &mut phase);
+        (Some(refined), map, status)
+    } else {
+        (None, map, status)
     };
     let status = match status != Status::Cancelled && !observer.progress(1.0, "Done") {
         true => Status::Cancelled,
         false => status,
     };
-    // 4. Of all rotated copies the one that lies over the surface; figures
-    let positions = match options.initial {
-        None => alignment::aligned(mesh, map, &weights),
-        Some(_) => map,
+    // 5. Of all rotated copies the one that lies over the surface; figures
+    let (positions, distortion, refinement) = match refined {
+        None => {
+            let positions = over_the_surface(mesh, map, &weights, options);
+            let figures = distortion(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;
+            (positions, figures, None)
+        }
+        Some(refined) => {
+            let weights = vertex_weights(&refined.mesh, &refined.targets);
+            let mut positions = over_the_surface(&refined.mesh, map, &weights, options);
+            let (of_parts, of_faces) = refined.figures(&positions)?;
+            let of_split_points = positions.split_off(mesh.n_vertices());
+            (positions, of_faces, Some(refined.into_refinement(of_split_points, of_parts)))
+        }
     };
-    let distortion = distortion(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;
-    Ok(SphereMap { positions, status, seconds: history.seconds(), history, distortion })
+    Ok(SphereMap { positions, status, seconds: history.seconds(), history, distortion, refinement })
+}
+
+/// The map rotated over its surface, or as it is where a start was given.
+fn over_the_surface(mesh: &TriangleMesh, map: Map, weights: &[f64], options: &SphereMapOptions<'_>) -> Map {
+    match options.initial {
+        None => alignment::aligned(mesh, map, weights),
+        Some(_) => map,
+    }
 }
 
 /// A third of the targets of the faces at each vertex.
@@ -186,6 +225,13 @@ impl SphereMapOptions<'_> {
             self.angle_weight,
             self.method == SphereMethod::GaussNewton,
         )?;
+        if self.refine && self.method != SphereMethod::GaussNewton {
+            return Err(Error::InvalidOption {
+                name: "refine",
+                found: "on".into(),
+                expected: "off for the papers' methods; only gauss_newton splits faces".into(),
+            });
+        }
         let fixed_point = self.method == SphereMethod::FixedPoint;
         let in_range = |tolerance: f64| match fixed_point {
             true => tolerance < f64::INFINITY,

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Splits the faces that keep a sphere map from even areas.
+//!
+//! The limbs of a body become long thin faces on the sphere. A flat face with corners on the sphere cannot be smaller
+//! than the sagitta of its longest edge l allows, about l³/16 where it is obtuse: where that is not small beside its
+//! target, no map of this mesh has even areas. So
+//!
+//! 1. the longest edges of such faces are split at their midpoints on the surface, which does not change it;
+//! 2. the image of a midpoint is that of the great arc, which folds nothing, and areas are evened out from there;
+//! 3. and so on until areas are even, or become no evener.
+//!
+//! Cost: that of a descent with an initial map, three times at the most, on a mesh of one and a half to four times as many
+//! faces.
+
+use std::f64::consts::PI;
+
+use super::run::Run;
+use super::{Map, SphereMapOptions, normalized, vertex_weights};
+use crate::control::{History, Observer, Phase, Status};
+use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::mesh::bisection::{Bisection, bisect_longest_edges};
+use crate::mesh::geometry::{Vector, add, area, distance, scaled, triangle};
+use crate::mesh::ties::tie_breakers;
+use crate::parallel;
+
+/// Rounds at the most.
+const ROUNDS: usize = 3;
+
+/// Areas are even where their deviation √(E_A/A) is below this.
+const EVEN: f64 = 0.002;
+
+/// A face is split where the least area that its longest edge allows is more than this part of its target.
+const BLOCKING: f64 = 0.1;
+
+/// The least area of an obtuse face with corners on the unit sphere, over the cube of its longest edge.
+const SAGITTA: f64 = 1.0 / 16.0;
+
+/// The faces of a surface, some of them split, and where the split points lie.
+#[derive(Debug, Clone)]
+pub struct Refinement {
+    /// (k, 2): the ends of the edge that each split point halves: vertices, or earlier split points, which are numbered
+    /// on from the vertices.
+    pub parents: Vec<[u32; 2]>,
+    /// (k, 3): the images of the split points, unit rows.
+    pub positions: Vec<[f64; 3]>,
+    /// (m', 3): the faces between vertices and split points, oriented as the surface.
+    pub faces: Vec<[u32; 3]>,
+    /// (m',): the face that each of them is a part of, ascending.
+    pub face_of: Vec<u32>,
+    /// The figures of these faces.
+    pub distortion: Distortion,
+}
+
+/// A surface with some faces split.
+pub(super) struct Refined {
+    pub mesh: TriangleMesh,
+    pub targets: Vec<f64>,
+    parents: Vec<[u32; 2]>,
+    face_of: Vec<u32>,
+}
+
+/// Splits faces until areas are even; returns the map of the vertices and split points, with the status of the last
+/// descent.
+pub(super) fn refine(
+    mesh: &TriangleMesh,
+    targets: &[f64],
+    (mut map, mut status): (Map, Status),
+    options: &SphereMapOptions<'_>,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Refined, Map, Status) {
+    let even = options.area_tolerance.or(options.tolerance).unwrap_or(EVEN);
+    let mut refined = Refined::new(mesh, targets);
+    let mut unevenness = refined.unevenness(&map);
+    for round in 0..ROUNDS {
+        if status == Status::Cancelled || unevenness.sqrt() <= even {
+            break;
+        }
+        // 1. Blocked faces are split
+        let Some((next, start)) = refined.split(&map) else { break };
+        // 2. Areas are evened out from there
+        let part = |round: usize| round as f64 / ROUNDS as f64;
+        let mut phase = Phase { whole: observer, from: part(round), to: part(round + 1) };
+        let (next_map, ended) = match next.evened_out(&start, options, history, &mut phase) {
+            Ok(result) => result,
+            Err(Error::CancelledEarly) => (start, Status::Cancelled),
+            Err(_) => break,
+        };
+        // 3. As long as that is of use
+        let next_unevenness = next.unevenness(&next_map);
+        if next_unevenness >= unevenness {
+            status = if ended == Status::Cancelled { ended } else { status };
+            break;
+        }
+        (refined, map, unevenness, status) = (next, next_map, next_unevenness, ended);
+    }
+    (refined, map, status)
+}
+
+impl Refined {
+    /// The surface as it is.
+    fn new(mesh: &TriangleMesh, targets: &[f64]) -> Self {
+        let face_of = (0..mesh.n_faces() as u32).collect();
+        Self { mesh: mesh.clone(), targets: targets.to_vec(), parents: Vec::new(), face_of }
+    }
+
+    /// E_A over the area of the image.
+    fn unevenness(&self, map: &[Vector]) -> f64 {
+        let image_area = |face: usize| area(triangle(map, self.mesh.faces()[face]));
+        let scale = parallel::sum(self.mesh.n_faces(), image_area) / self.total_target();
+        let squared = |face: usize| {
+            let target = scale * self.targets[face];
+            (image_area(face) - target).powi(2) / target
+        };
+        parallel::sum(self.mesh.n_faces(), squared) / (scale * self.total_target())
+    }
+
+    fn total_target(&self) -> f64 {
+        parallel::sum(self.targets.len(), |face| self.targets[face])
+    }
+
+    /// Which faces cannot have their targets.
+    fn blocked(&self, map: &[Vector]) -> Vec<bool> {
+        let scale = 4.0 * PI / self.total_target();
+        parallel::map(self.mesh.n_faces(), |face| {
+            let [a, b, c] = triangle(map, self.mesh.faces()[face]);
+            let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+            SAGITTA * longest.powi(3) > BLOCKING * scale * self.targets[face]
+        })
+    }
+
+    /// The surface with blocked faces split, and the map with the new midpoints; `None` where no face is blocked.
+    fn split(&self, map: &[Vector]) -> Option<(Self, Map)> {
+        let blocked = self.blocked(map);
+        if !blocked.contains(&true) {
+            return None;
+        }
+        // 1. Longest edges of the image; mirrored ones are as long as each other but for rounding
+        let points = self.mesh.points();
+        let preference = tie_breakers(points);
+        let length = |a: u32, b: u32| {
+            let [a, b] = [a as usize, b as usize];
+            distance(map[a], map[b]) * (preference[a] + preference[b])
+        };
+        let Bisection { parents, faces, face_of, parts } = bisect_longest_edges(&self.mesh, &blocked, length);
+        // 2. Midpoints on the surface and on the sphere
+        let middle = |of: &[Vector], [a, b]: [u32; 2]| scaled(add(of[a as usize], of[b as usize]), 0.5);
+        let on_surface = parents.iter().map(|&ends| middle(points, ends));
+        let points: Vec<Vector> = points.iter().copied().chain(on_surface).collect();
+        let on_sphere = parents.iter().map(|&ends| normalized(middle(map, ends)));
+        let map: Map = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
+        // 3. Targets
+        let part = |k: usize| self.targets[face_of[k] as usize] / f64::from(parts[k]);
+        let split = Self {
+            mesh: TriangleMesh::new(&points, &faces).ok()?,
+            targets: parallel::map(faces.len(), part),
+            parents: self.parents.iter().copied().chain(parents).collect(),
+            face_of: face_of.iter().map(|&face| self.face_of[face as usize]).collect(),
+        };
+        Some((split, map))
+    }
+
+    /// A descent from a map.
+    fn evened_out(
+        &self,
+        start: &Map,
+        options: &SphereMapOptions<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(Map, Status), Error> {
+        let options = SphereMapOptions { initial: Some(start), density: None, ..*options };
+        let weights = vertex_weights(&self.mesh, &self.targets);
+        let run = Run { mesh: &self.mesh, targets: &self.targets, weights: &weights, options: &options };
+        run.renumbered(history, observer)
+    }
+
+    /// The figures of a map's parts of faces, and of whole faces.
+    pub(super) fn figures(&self, map: &[Vector]) -> Result<(Distortion, Distortion), Error> {
+        let (points, faces, image) = (self.mesh.points(), self.mesh.faces(), Image::Sphere(map));
+        let of_parts = distortion(points, faces, image, &self.targets)?;
+        let of_faces = distortion_of_wholes(points, faces, image, &self.targets, &self.face_of)?;
+        Ok((of_parts, of_faces))
+    }
+
+    /// What is given to the caller, with the images of the split points.
+    pub(super) fn into_refinement(self, positions: Map, distortion: Distortion) -> Refinement {
+        let faces = self.mesh.faces().to_vec();
+        Refinement { parents: self.parents, positions, faces, face_of: self.face_of, distortion }
+    }
+}

@@ -21,6 +21,7 @@ NAMES = {
     "MeshError",
     "Pants",
     "Patch",
+    "Refinement",
     "Registration",
     "SolverError",
     "SphereMap",
@@ -70,6 +71,7 @@ KEYWORDS = {
         "initial": None,
         "max_iterations": None,
         "tolerance": None,
+        "refine": False,
         "unfold": True,
         "progress": None,
     },
@@ -172,6 +174,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         "SphereMap",
         "Distortion",
         "Patch",
+        "Refinement",
         "Registration",
         "Certificates",
         "HyperbolicStructure",
@@ -223,9 +226,9 @@ def test_the_errors_are_of_the_builtin_kinds():
 
 
 def test_a_map_has_the_attributes_of_the_contract(any_result):
-    image = {authalic.DiskMap: "uv", authalic.SphereMap: "positions"}[type(any_result)]
+    own = {authalic.DiskMap: {"uv"}, authalic.SphereMap: {"positions", "refinement"}}[type(any_result)]
     assert public_attributes(any_result) == {
-        *(image, "faces", "status", "iterations", "history", "distortion", "seconds")
+        *(*own, "faces", "status", "iterations", "history", "distortion", "seconds")
     }
     assert isinstance(any_result.distortion, authalic.Distortion)
     assert any_result.status in {"converged", "max_iterations", "stalled", "cancelled"}

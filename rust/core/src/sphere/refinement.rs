@@ -7,7 +7,7 @@
 //!
 //! 1. the longest edges of such faces are split at their midpoints on the surface, which does not change it;
 //! 2. the image of a midpoint is that of the great arc, which folds nothing, and areas are evened out from there;
-//! 3. and so on until areas are even, or become no evener.
+//! 3. and so on until areas are even; the most even map counts.
 //!
 //! Cost: that of a descent with an initial map, three times at the most, on a mesh of one and a half to four times as many
 //! faces.
@@ -54,6 +54,7 @@ pub struct Refinement {
 }
 
 /// A surface with some faces split.
+#[derive(Clone)]
 pub(super) struct Refined {
     pub mesh: TriangleMesh,
     pub targets: Vec<f64>,
@@ -73,9 +74,9 @@ pub(super) fn refine(
 ) -> (Refined, Map, Status) {
     let even = options.area_tolerance.or(options.tolerance).unwrap_or(EVEN);
     let mut refined = Refined::new(mesh, targets);
-    let mut unevenness = refined.unevenness(&map);
+    let mut best = (refined.unevenness(&map), refined.clone(), map.clone(), status);
     for round in 0..ROUNDS {
-        if status == Status::Cancelled || unevenness.sqrt() <= even {
+        if status == Status::Cancelled || best.0.sqrt() <= even {
             break;
         }
         // 1. Blocked faces are split
@@ -83,19 +84,21 @@ pub(super) fn refine(
         // 2. Areas are evened out from there
         let part = |round: usize| round as f64 / ROUNDS as f64;
         let mut phase = Phase { whole: observer, from: part(round), to: part(round + 1) };
-        let (next_map, ended) = match next.evened_out(&start, options, history, &mut phase) {
+        (map, status) = match next.evened_out(&start, options, history, &mut phase) {
             Ok(result) => result,
             Err(Error::CancelledEarly) => (start, Status::Cancelled),
             Err(_) => break,
         };
-        // 3. As long as that is of use
-        let next_unevenness = next.unevenness(&next_map);
-        if next_unevenness >= unevenness {
-            status = if ended == Status::Cancelled { ended } else { status };
-            break;
+        refined = next;
+        // 3. A round may get stuck where the next one does not
+        let unevenness = refined.unevenness(&map);
+        if unevenness < best.0 {
+            best = (unevenness, refined.clone(), map.clone(), status);
+        } else if status == Status::Cancelled {
+            best.3 = status;
         }
-        (refined, map, unevenness, status) = (next, next_map, next_unevenness, ended);
     }
+    let (_, refined, map, status) = best;
     (refined, map, status)
 }
 

@@ -36,23 +36,24 @@ pub(super) const SHORT: f64 = 0.3;
 #[derive(Debug)]
 struct Stages {
     weights: &'static [f64],
-    /// Iterations of one stage but the last at the most.
-    longest: usize,
+    /// Iterations of one stage at the most, and of the last one.
+    longest: [usize; 2],
     /// A stage ends where the slope promises less than this part of the energy.
     least_slope: f64,
 }
 
-/// Iterations of the last stage at the most.
-const LAST_STAGE: usize = 60;
-
-/// Down to areas alone, whose map is no stationary point in the end.
-const TO_AREAS: Stages =
-    Stages { weights: &[10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 3e-5], longest: 15, least_slope: 1e-4 };
+/// Down to areas alone: the last stage only begins to even out what a stationary map has left, because maps of areas alone
+/// have hardly any curvature to hold them, and noise would grow.
+const TO_AREAS: Stages = Stages {
+    weights: &[10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5],
+    longest: [60, 10],
+    least_slope: 1e-5,
+};
 
 /// Down to a weight that was asked for.
 const TO_WEIGHT: Stages = Stages {
     weights: &[10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5],
-    longest: 60,
+    longest: [60, 60],
     least_slope: 1e-5,
 };
 
@@ -116,7 +117,7 @@ impl AngleSchedule {
     pub(super) fn advance(&mut self, progress: &Progress) -> f64 {
         if let (Some(stages), Some((stage, iterations))) = (self.stages, self.stage) {
             let is_last = stage + 1 == stages.weights.len();
-            let longest = if is_last { LAST_STAGE } else { stages.longest };
+            let longest = stages.longest[usize::from(is_last)];
             let ends = !self.weight.is_nan() && (progress.is_flat || iterations >= longest);
             self.stage = match stage + usize::from(ends) {
                 next if next == stages.weights.len() || (ends && self.is_held()) => None,

@@ -227,20 +227,25 @@ impl Free<'_> {
         evened_out(0.0, None)
     }
 
-    /// The map moved and scaled into the unit disk.
+    /// The map turned, moved and scaled into the unit disk; as much of that as rounding allows without folding a face that
+    /// is next to nothing.
     fn within_the_disk(&self, outline: &Outline, map: &[[f64; 2]]) -> Map {
-        let extreme =
-            |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
-        let centre = [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)));
-        let moved = scaled_into_the_disk(map, centre);
-        let is_simple = self.options.overlap || outline.is_simple(&moved);
-        if is_simple && certificate::folded(self.mesh, &moved).is_empty() {
-            moved
-        } else {
-            // the rounding of the shift folded a face that is next to nothing
-            scaled_into_the_disk(map, [0.0; 2])
-        }
+        let is_sound = |map: &Map| {
+            (self.options.overlap || outline.is_simple(map)) && certificate::folded(self.mesh, map).is_empty()
+        };
+        let turned = turned(self.mesh, map.to_vec());
+        let candidates = [(&*turned, centre(&turned)), (map, centre(map))];
+        let moved =
+            candidates.into_iter().map(|(map, centre)| scaled_into_the_disk(map, centre)).find(is_sound);
+        moved.unwrap_or_else(|| scaled_into_the_disk(map, [0.0; 2]))
     }
+}
+
+/// The middle of the bounding box.
+fn centre(map: &[[f64; 2]]) -> [f64; 2] {
+    let extreme =
+        |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
+    [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)))
 }
 
 /// Lowers λ from that of `goal` until the deviation of areas is within `tolerance`, to the heaviest λ at which it is, and
@@ -284,15 +289,19 @@ fn least_shear(
     }
 }
 
-/// The map turned so that the first vertex of the longest boundary loop lies to the right of the middle.
+/// The map turned around the mean of its vertices so that the first vertex of the longest boundary loop lies to the right
+/// of that.
 fn turned(mesh: &TriangleMesh, map: Map) -> Map {
-    let [x, y] = map[mesh.boundary_loops()[0][0] as usize];
+    let mean = parallel::sums(map.len(), |v| map[v]).map(|sum| sum / map.len() as f64);
+    let first = map[mesh.boundary_loops()[0][0] as usize];
+    let [x, y] = [first[0] - mean[0], first[1] - mean[1]];
     let length = x.hypot(y);
     if length.is_nan() || length <= 0.0 {
         return map;
     }
     let [cosine, sine] = [x / length, y / length];
-    map.iter().map(|&[u, v]| [cosine * u + sine * v, cosine * v - sine * u]).collect()
+    let around_mean = map.iter().map(|&[u, v]| [u - mean[0], v - mean[1]]);
+    around_mean.map(|[u, v]| [cosine * u + sine * v, cosine * v - sine * u]).collect()
 }
 
 fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {

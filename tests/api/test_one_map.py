@@ -99,6 +99,21 @@ def test_noise_does_not_move_real_maps(path, angle_weight, request):
     assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
 
 
+@pytest.mark.parametrize("boundary", ["sliding", "arc_length", "free"])
+@pytest.mark.parametrize("name", [*OPEN, "slit_sphere"])
+def test_a_disk_has_one_rotation(name, boundary):
+    """The first boundary vertex lies at (1, 0), or to the right of the mean."""
+    vertices, faces = meshes.DISKS[name]
+    result = authalic.disk_map(vertices, faces, boundary=boundary, angle_weight=1e-3)
+    directed = {(a, b) for face in faces.tolist() for a, b in zip(face, face[1:] + face[:1], strict=True)}
+    first = min(a for a, b in directed if (b, a) not in directed)
+    if boundary == "free":
+        x, y = result.uv[first] - result.uv.mean(axis=0)
+        assert x > 0 and abs(y) < 1e-9
+    else:
+        np.testing.assert_allclose(result.uv[first], [1, 0], rtol=0, atol=1e-15)
+
+
 def test_noise_does_not_move_limbs():
     """The descent goes to a stationary point at every stage, which forgets what noise has done on the way."""
     mesh = meshes.limbed_ball()

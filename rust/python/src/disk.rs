@@ -128,6 +128,8 @@ impl DiskMap {
 /// Returns
 /// -------
 /// DiskMap
+///     Without `initial`, of all rotated copies the one whose lowest-numbered vertex of the (longest) boundary lies at
+///     (1, 0); with a free boundary, to the right of the mean of all vertices.
 ///
 /// Raises
 /// ------

@@ -29,6 +29,7 @@ use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::optimize::{check_angle_weight, check_area_tolerance};
+use crate::parallel;
 
 pub(crate) use holes::closed;
 use run::Run;
@@ -111,7 +112,8 @@ pub struct DiskMapOptions<'a> {
 #[derive(Debug, Clone)]
 pub struct DiskMap {
     /// (n, 2): the image of each vertex in the unit disk, or on the rectangle asked for; positive faces run
-    /// counter-clockwise.
+    /// counter-clockwise. Without a start map the lowest boundary vertex lies at (1, 0) of the disk, and with a free
+    /// boundary to the right of the mean of all vertices.
     pub uv: Vec<[f64; 2]>,
     /// Why the run ended.
     pub status: Status,
@@ -175,10 +177,28 @@ pub fn disk_map(
         true => Status::Cancelled,
         false => status,
     };
-    // 4. Figures of the faces given
+    // 4. Of all rotated copies the one that does not depend on the way there
+    if options.boundary == Boundary::Sliding && options.initial.is_none() {
+        uv = turned(surface, uv);
+    }
+    // 5. Figures of the faces given
     uv.truncate(mesh.n_vertices());
     let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
     Ok(DiskMap { uv, status, seconds: history.seconds(), history, distortion })
+}
+
+/// The map turned so that the first vertex of the boundary loop lies at (1, 0); as it was where the rounding of the
+/// rotation folds a sliver.
+fn turned(mesh: &TriangleMesh, map: Map) -> Map {
+    let first = mesh.boundary_loops()[0][0] as usize;
+    let [x, y] = map[first];
+    let mut turned = parallel::map(map.len(), |v| {
+        let [u, w] = map[v];
+        [x * u + y * w, x * w - y * u]
+    });
+    turned[first] = [1.0, 0.0];
+    let was_sound = certificate::is_bijective(mesh, &map);
+    if was_sound && !certificate::is_bijective(mesh, &turned) { map } else { turned }
 }
 
 impl DiskMapOptions<'_> {

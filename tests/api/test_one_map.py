@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 import authalic
 
@@ -83,7 +84,7 @@ def real(*folders):
 
 
 UNSTABLE = {"bull_6200": (0.0, 1e-3), "cowboyhat_2327": (0.0,)}
-"""Known misses: the horns of the bull move by up to 1e-3, the hat by 2e-6 where areas alone count."""
+"""Known misses: the horns of the bull move by up to 1e-2, the hat by 2e-6 where areas alone count."""
 
 
 @weights
@@ -139,6 +140,67 @@ def test_a_tolerance_of_areas_is_met_with_less_shear(name, tolerance):
     has_less = result.distortion.angle_distortion_mean < even.distortion.angle_distortion_mean
     # or the least shear of all is that even already
     assert has_less or rigid.distortion.area_ratio_std <= 1.5 * tolerance
+
+
+@pytest.mark.parametrize("tolerance", [0.2, 0.3])
+@pytest.mark.parametrize("kind", ["sliding", "free", "rectangle", "sphere"])
+def test_a_wide_tolerance_of_areas_is_made_use_of(kind, tolerance):
+    """Where even a weight of 1 leaves areas within the tolerance, a heavier one has less shear."""
+    if kind == "sphere":
+        mesh = meshes.bumpy_ball()
+        call, full = authalic.sphere_map, 4 * np.pi
+    else:
+        mesh = meshes.bumpy_cap()
+        full = None
+        call = lambda *mesh, **options: authalic.disk_map(*mesh, boundary=kind, **options)  # noqa: E731
+    result, lighter = call(*mesh, area_tolerance=tolerance), call(*mesh, angle_weight=1.0)
+
+    def deviation(of):
+        area = full or polygon_area(of.uv[of.faces])
+        return np.sqrt(of.distortion.authalic_energy / area)
+
+    assert result.status == "converged" and len(result.distortion.folded) == 0
+    assert deviation(result) <= 1.02 * tolerance
+    if deviation(lighter) < 0.9 * tolerance:
+        assert result.distortion.angle_distortion_mean < lighter.distortion.angle_distortion_mean
+
+
+def polygon_area(corners):
+    (ax, ay), (bx, by), (cx, cy) = (corners[:, k].T for k in range(3))
+    return 0.5 * ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).sum()
+
+
+def coarse_balls():
+    """Small random polyhedra around the origin, as convex hulls of points on an ellipsoid."""
+    for seed in range(8):
+        points = np.random.default_rng(seed).standard_normal((12 + 7 * seed, 3))
+        points /= np.linalg.norm(points, axis=1, keepdims=True)
+        faces = ConvexHull(points).simplices
+        a, b, c = np.moveaxis(points[faces], 1, 0)
+        inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+        faces[inward] = faces[inward][:, ::-1]
+        yield meshes.Mesh(points * [1, 2, 3], faces.astype(np.int64))
+
+
+def test_noise_does_not_move_coarse_spheres():
+    for mesh in coarse_balls():
+        results = [authalic.sphere_map(*surface, angle_weight=1e-3) for surface in (mesh, noisy(mesh))]
+        assert {result.status for result in results} == {"converged"}
+        plain, moved = (result.positions for result in results)
+        assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
+
+
+@pytest.mark.parametrize("aspect", [1.0, 2.0, 2 + np.sqrt(3)])
+def test_noise_does_not_change_the_size_of_a_free_outline(aspect):
+    """Nothing jumps where the radius is a power of two."""
+    mesh = meshes.grid(15, 4, aspect=aspect)
+    sizes = []
+    for seed in range(6):
+        noise = NOISE * np.random.default_rng(seed).standard_normal(mesh.vertices.shape)
+        result = authalic.disk_map(mesh.vertices + noise, mesh.faces, boundary="free", angle_weight=1e-3)
+        sizes.append(np.abs(result.uv).max())
+        assert np.hypot(*result.uv.T).max() <= 1
+    assert np.ptp(sizes) < STABLE
 
 
 @pytest.mark.parametrize("angle_weight", [1e-9, 3e-7])

@@ -106,6 +106,25 @@ def test_the_same_bits_again(refined):
     assert (again.refinement.positions == refined.refinement.positions).all()
 
 
+def test_noise_does_not_move_the_refined_map():
+    vertices, faces = LIMBED
+    noise = 1e-12 * np.ptp(vertices, axis=0).max() * np.random.default_rng(2).standard_normal(vertices.shape)
+    plain, moved = (authalic.sphere_map(v, faces, angle_weight=1e-3, refine=True) for v in (vertices, vertices + noise))
+    assert (moved.refinement.faces == plain.refinement.faces).all()
+    assert np.abs(moved.positions - plain.positions).max() < 1e-6
+
+
+def test_angles_do_not_make_faces_split():
+    """Where the weight keeps areas uneven, not the mesh, splitting gains little."""
+    result = authalic.sphere_map(*LIMBED, angle_weight=0.3, refine=True)
+    assert result.status == "converged" and len(result.refinement.parents) == 0
+
+
+def test_a_limit_of_iterations_that_was_reached_splits_nothing():
+    result = authalic.sphere_map(*LIMBED, max_iterations=5, refine=True)
+    assert result.status == "max_iterations" and len(result.refinement.parents) == 0
+
+
 def test_cancelling_between_rounds_keeps_a_sound_map():
     plain = authalic.sphere_map(*LIMBED).iterations
     seen = []

@@ -128,8 +128,8 @@ impl DiskMap {
 /// Returns
 /// -------
 /// DiskMap
-///     Without `initial`, of all rotated copies the one whose lowest-numbered vertex of the (longest) boundary lies at
-///     (1, 0); with a free boundary, to the right of the mean of all vertices.
+///     Without `initial`, of all rotated copies of a map to the disk the one whose lowest-numbered vertex of the (longest)
+///     boundary lies at (1, 0); with a free boundary, to the right of the mean of all vertices.
 ///
 /// Raises
 /// ------

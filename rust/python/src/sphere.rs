@@ -20,11 +20,14 @@ pub struct SphereMap {
     positions: Py<PyArray2<f64>>,
     /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
     faces: Py<PyArray2<i64>>,
-    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says.
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says, and converged is not
+    /// even: with a weight of angles, or on long limbs, see `distortion.area_ratio_std`. What stalled on long limbs gets even
+    /// with `refine`.
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm,
+    /// Structured array of all descents, with `refine` also of those of parts of faces that came to nothing; with the fields
+    /// iteration, authalic_energy (of unsigned areas), step, gradient_norm,
     /// seconds; the start first, and a record of step 0 where a mended map took the place of a folded one.
     /// gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start that
     /// "gauss_newton" keeps.
@@ -164,8 +167,8 @@ impl SphereMap {
 ///     Split faces whose images are too long for their areas, as on the limbs of a body, and map again from there until
 ///     areas are even: √(E_A/A) of .002, or the tolerance given, in three rounds at the most. The map is given at the
 ///     vertices as ever, split points and parts of faces beside them in `refinement`; the images of the vertices alone
-///     may fold where a face is split, those of the parts never do. `max_iterations` counts for each descent. For
-///     "gauss_newton" only. Default False.
+///     may fold where a face is split, those of the parts never do. Nothing is split where that does not halve E_A, or where
+///     `max_iterations`, which counts for each descent, was reached. For "gauss_newton" only. Default False.
 /// unfold : bool
 ///     Unfold what the papers' methods fold. Default True; False shows what they do by themselves.
 /// progress : callable(fraction, message) -> bool, optional

@@ -386,9 +386,13 @@ mod tests {
     #[test]
     fn every_processor_finds_the_same_map() {
         let mesh = cap();
-        for (boundary, angle_weight) in
-            [(Boundary::Sliding, 0.0), (Boundary::Sliding, 1e-3), (Boundary::ArcLength, 0.0)]
-        {
+        for (boundary, angle_weight) in [
+            (Boundary::Sliding, 0.0),
+            (Boundary::Sliding, 1e-3),
+            (Boundary::ArcLength, 0.0),
+            (Boundary::Free, 1e-3),
+            (Boundary::Rectangle, 1e-3),
+        ] {
             let options = DiskMapOptions { boundary, angle_weight, ..Default::default() };
             let mut maps = with_each_width(|| disk_map(&mesh, &options, &mut Silent).unwrap().uv);
             maps.push(disk_map(&mesh, &options, &mut Silent).unwrap().uv);

@@ -129,6 +129,16 @@ fn bounds(outline: &[u32], map: &[[f64; 2]]) -> [[f64; 2]; 2] {
     })
 }
 
+/// The area inside an outline, negative where it runs clockwise.
+fn signed_area(outline: &[u32], map: &[[f64; 2]]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    let cross = |(&a, &b): (&u32, &u32)| {
+        let ([x, y], [u, v]) = (map[a as usize], map[b as usize]);
+        x * v - u * y
+    };
+    0.5 * outline.iter().zip(next).map(cross).sum::<f64>()
+}
+
 /// Refuses a start map whose boundary does not run along the sides of an upright rectangle.
 pub(super) fn check_initial(
     mesh: &TriangleMesh,
@@ -146,6 +156,18 @@ pub(super) fn check_initial(
     if !(high[0] > low[0] && high[1] > low[1]) {
         return refuse(outline.vertices, "it must run around a rectangle");
     }
+    if signed_area(outline.vertices, initial) <= 0.0 {
+        return refuse(
+            outline.vertices,
+            "it must run counter-clockwise (mirror the map if it runs clockwise)",
+        );
+    }
+    let is_off = |&&v: &&u32| {
+        let on = |axis: usize, line: f64| (initial[v as usize][axis] - line).abs() <= 1e-6 * size;
+        ![0, 1].iter().any(|&axis| on(axis, low[axis]) || on(axis, high[axis]))
+    };
+    let off: Vec<u32> = outline.vertices.iter().filter(is_off).copied().collect();
+    refuse(&off, "it must lie on the sides of an upright rectangle")?;
     let corners = corners_of(mesh, options)?;
     for (k, side) in sides(outline.vertices, &corners).iter().enumerate() {
         let (across, line) = ((k + 1) % 2, if k == 0 || k == 3 { low } else { high });

@@ -57,8 +57,13 @@ const TO_WEIGHT: Stages = Stages {
     least_slope: 1e-5,
 };
 
-/// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy.
+/// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy; on surfaces
+/// of fewer than [`SMALL`] vertices, where iterations cost nothing, it is as thorough as the stages.
 const LEAST_SLOPE: f64 = 1e-3;
+const SMALL: usize = 3_000;
+
+/// On surfaces of so many vertices or more iterations cost.
+pub(super) const MANY: usize = 10_000;
 
 /// Which way λ falls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,22 +96,24 @@ pub(super) struct AngleSchedule {
     balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
-    /// The stages, of which a held λ has only the precision; `None` where λ is balanced all along.
+    /// The stages, of which a balanced λ has only the precision, once it has fallen to the weight that was asked for;
+    /// `None` where there is none.
     stages: Option<&'static Stages>,
     /// The stage and its iterations so far; `None` where λ is balanced.
     stage: Option<(usize, usize)>,
 }
 
 impl AngleSchedule {
-    pub(super) fn new(path: AnglePath, least: f64, is_large: bool, has_landmarks: bool) -> Self {
+    pub(super) fn new(path: AnglePath, least: f64, n_vertices: usize, has_landmarks: bool) -> Self {
+        let (is_small, is_large) = (n_vertices < SMALL, n_vertices >= MANY);
         let balance = match has_landmarks {
             true => [WITH_LANDMARKS; 2],
             false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
         };
         let stages = match path {
-            AnglePath::Balanced => None,
+            AnglePath::Balanced if least == 0.0 || !is_small || has_landmarks => None,
             AnglePath::Staged if least == 0.0 => Some(&TO_AREAS),
-            AnglePath::Staged | AnglePath::Held => Some(&TO_WEIGHT),
+            AnglePath::Balanced | AnglePath::Staged | AnglePath::Held => Some(&TO_WEIGHT),
         };
         let stage = (path == AnglePath::Staged).then_some((0, 0));
         let weight = if path == AnglePath::Held { least } else { f64::NAN };

@@ -2,7 +2,7 @@
 //! The map of least shear whose areas are within a tolerance.
 //!
 //! The minimum of E_A + λ E_angle has the less shear the larger λ is, and the more even areas the smaller. So λ falls step
-//! by step until the minimum is within the tolerance, and is then raised as far as that allows, by the secant rule for
+//! by step until the minimum is within the tolerance, or rises as long as it is, and is then raised as far as that allows, by the secant rule for
 //! the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ. Each minimum is sought from that of
 //! a larger λ: shear that a map once has stays in it.
 
@@ -11,9 +11,12 @@ use super::floors::{Surface, descend};
 use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::control::{History, Observer, Phase, Status};
 
-/// λ at first, and what it is multiplied by until areas are within the tolerance.
+/// λ at first, what it is multiplied by until areas are within the tolerance, and divided by while they are.
 const FIRST: f64 = 1.0;
 const FALL: f64 = 0.1;
+
+/// λ above this changes nothing any more: the map is as good as conformal.
+const MOST: f64 = 1e4;
 
 /// λ below this changes nothing any more; then areas alone count.
 const LEAST: f64 = 1e-6;
@@ -61,6 +64,23 @@ pub(crate) fn within_tolerance(
     let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
     let mut found = search.found(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);
+    // 2. Or rises as long as they are
+    while coarser.is_none() && found.deviation <= search.goal && !found.is_final() {
+        let weight = found.weight.exp() / FALL;
+        if weight > MOST {
+            break;
+        }
+        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
+        round += 1;
+        match (next.is_final(), next.deviation <= search.goal) {
+            (true, _) => {
+                found.status = next.status;
+                return (problem, found.map, found.status);
+            }
+            (false, true) => found = next,
+            (false, false) => coarser = Some(next),
+        }
+    }
     while found.deviation > search.goal && !found.is_final() {
         let weight = FALL * found.weight.exp();
         if weight < LEAST {
@@ -71,7 +91,7 @@ pub(crate) fn within_tolerance(
         round += 1;
         coarser = Some(std::mem::replace(&mut found, next));
     }
-    // 2. And is raised as far as they stay within it
+    // 3. And is raised as far as they stay within it
     if let Some(coarser) = coarser {
         found = search.raised(coarser, found, round, history, observer);
     }

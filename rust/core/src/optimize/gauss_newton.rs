@@ -23,7 +23,7 @@
 //!
 //! Cost of one iteration: one factorisation of two unknowns per vertex, two solves, some seven passes over the faces.
 
-use super::angle_schedule::{AnglePath, AngleSchedule, Progress, SHORT};
+use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
 use crate::control::{History, Observer, Status, Watch};
 use crate::energy::authalic::{AuthalicEnergy, Element, Hessian, Sums, Weights};
 use crate::energy::landmark_penalty::LandmarkPenalty;
@@ -71,7 +71,6 @@ const GOOD_ENOUGH: f64 = 0.005;
 
 /// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
 const EVEN: f64 = 7e-4;
-const MANY: usize = 10_000;
 
 /// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
 const PATIENCE: usize = 5;
@@ -325,7 +324,12 @@ impl<'a> Descent<'a> {
             problem,
             options,
             linearised: Linearised::new(problem.motions.len() >= LARGE),
-            schedule: AngleSchedule::new(options.path, options.angle_weight, is_large, has_landmarks),
+            schedule: AngleSchedule::new(
+                options.path,
+                options.angle_weight,
+                problem.motions.len(),
+                has_landmarks,
+            ),
             even_enough: match options.path {
                 AnglePath::Staged => EVEN_ENOUGH[2],
                 AnglePath::Balanced | AnglePath::Held => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],

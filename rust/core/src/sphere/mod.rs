@@ -119,12 +119,13 @@ pub struct SphereMap {
     /// Why the run ended.
     pub status: Status,
     /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place
-    /// of a folded one, a record of step 0.
+    /// of a folded one, a record of step 0. With [`SphereMapOptions::refine`] of all descents, those of parts of faces that
+    /// came to nothing included.
     pub history: History,
     /// The figures of the map, signed. Where faces are split, the image of a face is that of its parts.
     pub distortion: Distortion,
     /// The parts of the faces, where [`SphereMapOptions::refine`] asks for them.
-    pub refinement: Option<Refinement>,
+    pub refinement: Option<Box<Refinement>>,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
@@ -192,7 +193,7 @@ pub fn sphere_map(
             let mut positions = over_the_surface(&refined.mesh, map, &weights, options);
             let (of_parts, of_faces) = refined.figures(&positions)?;
             let of_split_points = positions.split_off(mesh.n_vertices());
-            (positions, of_faces, Some(refined.into_refinement(of_split_points, of_parts)))
+            (positions, of_faces, Some(Box::new(refined.into_refinement(of_split_points, of_parts))))
         }
     };
     Ok(SphereMap { positions, status, seconds: history.seconds(), history, distortion, refinement })

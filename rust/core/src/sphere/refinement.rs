@@ -7,7 +7,7 @@
 //!
 //! 1. the longest edges of such faces are split at their midpoints on the surface, which does not change it;
 //! 2. the image of a midpoint is that of the great arc, which folds nothing, and areas are evened out from there;
-//! 3. and so on until areas are even; the most even map counts.
+//! 3. and so on until areas are even, or until a round no longer halves E_A, as where angles count.
 //!
 //! Cost: that of a descent with an initial map, three times at the most, on a mesh of one and a half to four times as many
 //! faces.
@@ -30,6 +30,9 @@ const ROUNDS: usize = 3;
 
 /// Areas are even where their deviation √(E_A/A) is below this.
 const EVEN: f64 = 0.002;
+
+/// A round is of use where it lowers E_A to this part or less.
+const WORTHWHILE: f64 = 0.5;
 
 /// A face is split where the least area that its longest edge allows is more than this part of its target.
 const BLOCKING: f64 = 0.1;
@@ -76,7 +79,8 @@ pub(super) fn refine(
     let mut refined = Refined::new(mesh, targets);
     let mut best = (refined.unevenness(&map), refined.clone(), map.clone(), status);
     for round in 0..ROUNDS {
-        if status == Status::Cancelled || best.0.sqrt() <= even {
+        // a descent that was ended says nothing of the mesh
+        if matches!(status, Status::Cancelled | Status::MaxIterations) || best.0.sqrt() <= even {
             break;
         }
         // 1. Blocked faces are split
@@ -90,12 +94,14 @@ pub(super) fn refine(
             Err(_) => break,
         };
         refined = next;
-        // 3. A round may get stuck where the next one does not
+        // 3. A round may get stuck where the next one does not; one that gains little is not worth its faces
         let unevenness = refined.unevenness(&map);
-        if unevenness < best.0 {
+        if unevenness < WORTHWHILE * best.0 {
             best = (unevenness, refined.clone(), map.clone(), status);
         } else if status == Status::Cancelled {
             best.3 = status;
+        } else if unevenness < best.0 {
+            break;
         }
     }
     let (_, refined, map, status) = best;

@@ -54,10 +54,11 @@ const COLLAPSED: f64 = 1e4;
 /// Starts are compared with at least this weight of angles.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Weights of angles tried for a deviation of areas: from the heaviest, or from a light one where areas alone count, each by
-/// so much lighter, to the lightest.
+/// Weights of angles tried for a deviation of areas: from a heavy one, or from a light one where areas alone count, each by
+/// so much lighter, to the lightest; or heavier and heavier where even the first leaves areas that even.
 const HEAVIEST: f64 = 1.0;
 const HEAVY: f64 = 1e-3;
+const MOST: f64 = 1e4;
 const LEVEL: f64 = 0.316_227_766_016_837_94;
 const LIGHTEST: f64 = 1e-7;
 
@@ -109,7 +110,7 @@ impl Free<'_> {
         // 1. A start
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.2 };
         let (start, is_cancelled) = self.start(&surface, &mut phase)?;
-        let start = turned(self.mesh, start);
+        let start = if self.options.initial.is_none() { turned(self.mesh, start) } else { start };
         // 2. The descent
         let mut phase = Phase { whole: observer, from: 0.2, to: 1.0 };
         let (map, status) = if is_cancelled {
@@ -146,7 +147,8 @@ impl Free<'_> {
         if let Some(tolerance) = self.wanted_deviation() {
             let is_given = self.options.area_tolerance.is_some();
             goal.weight = if is_given { HEAVIEST } else { HEAVY };
-            (map, status) = least_shear(&mut descent, map, &mut goal, tolerance, history, observer);
+            let most = if is_given { MOST } else { HEAVY };
+            (map, status) = least_shear(&mut descent, map, &mut goal, (tolerance, most), history, observer);
             if status != Status::Converged || !is_given {
                 return (map, status);
             }
@@ -233,11 +235,15 @@ impl Free<'_> {
         let is_sound = |map: &Map| {
             (self.options.overlap || outline.is_simple(map)) && certificate::folded(self.mesh, map).is_empty()
         };
-        let turned = turned(self.mesh, map.to_vec());
-        let candidates = [(&*turned, centre(&turned)), (map, centre(map))];
-        let moved =
-            candidates.into_iter().map(|(map, centre)| scaled_into_the_disk(map, centre)).find(is_sound);
-        moved.unwrap_or_else(|| scaled_into_the_disk(map, [0.0; 2]))
+        // a start that was given keeps its rotation
+        let turned = match self.options.initial {
+            None => turned(self.mesh, map.to_vec()),
+            Some(_) => map.to_vec(),
+        };
+        let candidates = [(&*turned, true), (map, true), (&*turned, false), (map, false)];
+        let placed = |(map, to_rim)| scaled_into_the_disk(map, centre(map), to_rim);
+        let sound = candidates.into_iter().map(placed).find(is_sound);
+        sound.unwrap_or_else(|| scaled_into_the_disk(map, [0.0; 2], false))
     }
 }
 
@@ -248,13 +254,13 @@ fn centre(map: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)))
 }
 
-/// Lowers λ from that of `goal` until the deviation of areas is within `tolerance`, to the heaviest λ at which it is, and
-/// leaves it in `goal`; converged where it is.
+/// Lowers λ from that of `goal` until the deviation of areas is within `tolerance`, or raises it up to `most` as long as it
+/// is, to the heaviest λ at which it is, and leaves it in `goal`; converged where it is.
 fn least_shear(
     descent: &mut Descent<'_>,
     mut map: Map,
     goal: &mut Goal,
-    tolerance: f64,
+    (tolerance, most): (f64, f64),
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (Map, Status) {
@@ -268,6 +274,9 @@ fn least_shear(
         let is_within = deviation <= tolerance;
         if status == Status::Cancelled || (status == Status::MaxIterations && !is_within) {
             return (map, status);
+        } else if is_within && heavier.is_none() && weight < most && status != Status::MaxIterations {
+            goal.weight = weight / LEVEL.powi(2);
+            continue;
         } else if is_within && (was_within || heavier.is_none() || status == Status::MaxIterations) {
             return (map, Status::Converged);
         } else if weight <= LIGHTEST {
@@ -311,10 +320,12 @@ fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {
     })
 }
 
-/// The map around `centre`, scaled by a power of two, which keeps the orientation of every face bit for bit.
-fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2]) -> Map {
+/// The map around `centre`, scaled into the unit disk: to its rim, or by a power of two, which keeps the orientation of
+/// every face bit for bit.
+fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2], to_rim: bool) -> Map {
     let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
     let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
-    let scale = (1.0 / radius).log2().floor().exp2();
+    let scale =
+        if to_rim { (1.0 - 4.0 * f64::EPSILON) / radius } else { (1.0 / radius).log2().floor().exp2() };
     map.iter().map(|x| offset(x).map(|c| scale * c)).collect()
 }

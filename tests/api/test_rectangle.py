@@ -150,6 +150,10 @@ def test_density_holes_and_a_start_map():
     assert again.uv == pytest.approx(result.uv, abs=1e-3)
     with pytest.raises(authalic.MeshError, match="sides of an upright rectangle"):
         rectangle(mesh, corners=[0, 11, 143, 132], initial=authalic.disk_map(*mesh).uv)
+    with pytest.raises(authalic.MeshError, match="mirror the map"):
+        rectangle(mesh, initial=result.uv * [-1, 1])
+    with pytest.raises(authalic.MeshError, match="sides of an upright rectangle"):
+        rectangle(mesh, initial=result.uv @ np.array([[0.6, 0.8], [-0.8, 0.6]]))
 
 
 def test_it_can_be_cancelled_and_reports_progress():

@@ -346,3 +346,23 @@ def test_an_option_out_of_range_is_a_plain_value_error(pair, option, value, word
 def test_an_option_of_the_wrong_type_is_a_type_error(pair, option, value):
     with pytest.raises(TypeError):
         pairs.register(pair, **{option: value})
+
+
+UNSTABLE = {"ball_and_ellipsoid", "two_landmarks", "spikes"}
+"""Known misses: noise moves these small coarse spheres by up to 3e-3 of the size."""
+
+
+@pytest.mark.parametrize("name", pairs.PAIRS)
+def test_noise_does_not_move_a_registration(name, request):
+    """With a little weight of angles; where areas alone count, it moves such coarse surfaces by up to a tenth."""
+    if name in UNSTABLE:
+        request.applymarker(pytest.mark.xfail(reason="known: noise moves this registration", strict=False))
+    pair = pairs.PAIRS[name]
+
+    def noisy(mesh, seed):
+        noise = np.random.default_rng(seed).standard_normal(mesh.vertices.shape)
+        return meshes.Mesh(mesh.vertices + 1e-12 * pairs.size(mesh) * noise, mesh.faces)
+
+    moved = pair._replace(source=noisy(pair.source, 1), target=noisy(pair.target, 2))
+    plain, other = (pairs.register(each, angle_weight=1e-3).positions for each in (pair, moved))
+    assert np.abs(other - plain).max() < 1e-6 * pairs.size(pair.target)

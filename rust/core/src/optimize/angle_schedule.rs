@@ -60,7 +60,7 @@ const TO_WEIGHT: Stages = Stages {
 /// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy; on surfaces
 /// of fewer than [`SMALL`] vertices, where iterations cost nothing, it is as thorough as the stages.
 const LEAST_SLOPE: f64 = 1e-3;
-const SMALL: usize = 3_000;
+const SMALL: usize = 1_000;
 
 /// On surfaces of so many vertices or more iterations cost.
 pub(super) const MANY: usize = 10_000;

@@ -58,9 +58,11 @@ const TO_WEIGHT: Stages = Stages {
 };
 
 /// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy; on surfaces
-/// of fewer than [`SMALL`] vertices, where iterations cost nothing, it is as thorough as the stages.
+/// of fewer than [`SMALL`] vertices, where iterations cost nothing, it is as thorough as the stages, unless the weight is
+/// as heavy as [`HEAVY`] and holds the map by itself.
 const LEAST_SLOPE: f64 = 1e-3;
 const SMALL: usize = 1_000;
+const HEAVY: f64 = 0.1;
 
 /// On surfaces of so many vertices or more iterations cost.
 pub(super) const MANY: usize = 10_000;
@@ -111,7 +113,7 @@ impl AngleSchedule {
             false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
         };
         let stages = match path {
-            AnglePath::Balanced if least == 0.0 || !is_small || has_landmarks => None,
+            AnglePath::Balanced if least == 0.0 || least >= HEAVY || !is_small || has_landmarks => None,
             AnglePath::Staged if least == 0.0 => Some(&TO_AREAS),
             AnglePath::Balanced | AnglePath::Staged | AnglePath::Held => Some(&TO_WEIGHT),
         };

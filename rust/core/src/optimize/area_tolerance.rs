@@ -28,9 +28,6 @@ const GOOD: f64 = 0.95;
 /// Secant steps at the most.
 const STEPS: usize = 6;
 
-/// A deviation off the tolerance by more than this factor after a secant step is one behind a jump.
-const JUMP: f64 = 1.3;
-
 /// A stationary map for one λ.
 struct Found {
     /// ln λ.
@@ -63,8 +60,8 @@ pub(crate) fn within_tolerance(
     let begun = history.iterations();
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
     let first = GaussNewtonOptions { angle_weight: FIRST, ..*options };
-    let (problem, map, status) = descend(surface, problem, start.clone(), &first, history, &mut phase);
-    let search = Search { problem: &problem, options: *options, start: &start, goal: tolerance.ln(), begun };
+    let (problem, map, status) = descend(surface, problem, start, &first, history, &mut phase);
+    let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
     let mut found = search.found(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);
     // 2. Or rises as long as they are
@@ -111,7 +108,6 @@ fn part(round: usize, whole: &mut dyn Observer) -> Phase<'_> {
 struct Search<'a> {
     problem: &'a Problem,
     options: GaussNewtonOptions,
-    start: &'a Map,
     /// ln of the tolerance.
     goal: f64,
     /// Iterations of the history before the search, which has one limit for all its descents.
@@ -135,13 +131,6 @@ impl Search<'_> {
     fn minimum(&self, weight: f64, map: Map, history: &mut History, observer: &mut dyn Observer) -> Found {
         let options = GaussNewtonOptions { path: AnglePath::Held, ..self.options(weight, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);
-        self.found(weight, map, status)
-    }
-
-    /// A minimum for one λ, by the way that a given weight goes.
-    fn from_the_start(&self, weight: f64, history: &mut History, observer: &mut dyn Observer) -> Found {
-        let options = self.options(weight, history);
-        let (map, status) = minimize(self.problem, self.start.clone(), &options, history, observer);
         self.found(weight, map, status)
     }
 
@@ -171,14 +160,7 @@ impl Search<'_> {
             let share = (aim - finer.deviation) / (coarser.deviation - finer.deviation);
             let weight = finer.weight + share.clamp(0.1, 0.9) * (coarser.weight - finer.weight);
             let phase = &mut part(round + step, observer);
-            let mut next = self.minimum(weight.exp(), coarser.map.clone(), history, phase);
-            if !next.is_final() && (next.deviation - aim).abs() > JUMP.ln() {
-                // minima come and go with λ; there may be one between that no other leads to
-                let fresh = self.from_the_start(weight.exp(), history, phase);
-                if fresh.is_final() || (fresh.deviation - aim).abs() < (next.deviation - aim).abs() {
-                    next = fresh;
-                }
-            }
+            let next = self.minimum(weight.exp(), coarser.map.clone(), history, phase);
             if next.is_final() {
                 return Found { status: next.status, ..finer };
             }

@@ -65,6 +65,15 @@ fn scaled_to(targets: &[f64], total: f64) -> Vec<f64> {
     targets.iter().map(|target| target * total / sum).collect()
 }
 
+/// The least value between two places, of a function that falls and then rises.
+fn least(value: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    for _ in 0..100 {
+        let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+        if value(a) < value(b) { high = b } else { low = a }
+    }
+    value(low)
+}
+
 #[test]
 fn every_iteration_lowers_the_energy_where_its_weights_are_constant() {
     // λ never falls below the one given, and a free image keeps the scale of its targets
@@ -82,15 +91,20 @@ fn every_iteration_lowers_the_energy_where_its_weights_are_constant() {
         let begun: f64 = areas(&mesh, &run(0).uv).iter().sum();
         let targets = scaled_to(mesh.face_areas(), begun);
         let value = |map: &DiskMap| {
-            let areas = areas(&mesh, &map.uv);
-            // the result is scaled into the unit circle by a power of two
-            let power = (begun / areas.iter().sum::<f64>()).log2() / 2.0;
-            let scale = (2.0 * power.round()).exp2();
-            let areas: Vec<f64> = areas.iter().map(|area| scale * area).collect();
-            energy_terms(&areas, &targets, &map.distortion.angle_distortion).iter().sum::<f64>()
+            let areas = scaled_to(&areas(&mesh, &map.uv), begun);
+            let at = |scale: f64| {
+                let areas: Vec<f64> = areas.iter().map(|area| scale * area).collect();
+                energy_terms(&areas, &targets, &map.distortion.angle_distortion).iter().sum::<f64>()
+            };
+            // the result is scaled into the unit circle, so its own scale is not known; the best one is no higher
+            least(at, [0.5, 2.0])
         };
         let values: Vec<f64> = (0..8).map(|iterations| value(&run(iterations))).collect();
-        assert!(values.windows(2).all(|pair| pair[1] <= pair[0]), "{}: {values:?}", shape.name);
+        assert!(
+            values.windows(2).all(|pair| pair[1] <= (1.0 + 1e-9) * pair[0]),
+            "{}: {values:?}",
+            shape.name
+        );
         assert!(values[7] < values[0], "{}: {values:?}", shape.name);
     }
 }

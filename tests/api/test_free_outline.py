@@ -137,7 +137,7 @@ def energy_gradient(vertices, faces, uv, weight):
 
 
 def at_its_best_size(vertices, faces, uv, weight):
-    """The map at the size of least energy: a result is scaled by a power of two into the unit disk."""
+    """The map at the size of least energy: a result is scaled into the unit disk."""
     area = oracle.signed_areas(uv, faces).sum()
     scales = np.geomspace(0.9, 1.1, 2001) / np.sqrt(area)
     energies = [energy_gradient(vertices, faces, s * uv, weight)[0] for s in scales]

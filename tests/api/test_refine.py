@@ -19,7 +19,11 @@ def whole(mesh, result):
 
 
 def edges(faces):
-    return {tuple(sorted((a, b))) for face in faces.tolist() for a, b in zip(face, face[1:] + face[:1], strict=True)}
+    return {
+        tuple(sorted((a, b)))
+        for face in faces.tolist()
+        for a, b in zip(face, face[1:] + face[:1], strict=True)
+    }
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +47,9 @@ def test_the_refined_surface_is_the_same_surface(refined):
     assert (refinement.parents < halves).all() and len(refinement.parents) > 0
     np.testing.assert_allclose(vertices[n:], vertices[refinement.parents].mean(axis=1), rtol=0, atol=1e-12)
     # 2. Parts fill their faces, and look the same way
-    normals = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
+    normals = np.cross(
+        vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]]
+    )
     sums = np.zeros((len(LIMBED[1]), 3))
     np.add.at(sums, refinement.face_of, normals)
     a, b, c = np.moveaxis(vertices[refined.faces], 1, 0)
@@ -109,7 +115,9 @@ def test_the_same_bits_again(refined):
 def test_noise_does_not_move_the_refined_map():
     vertices, faces = LIMBED
     noise = 1e-12 * np.ptp(vertices, axis=0).max() * np.random.default_rng(2).standard_normal(vertices.shape)
-    plain, moved = (authalic.sphere_map(v, faces, angle_weight=1e-3, refine=True) for v in (vertices, vertices + noise))
+    plain, moved = (
+        authalic.sphere_map(v, faces, angle_weight=1e-3, refine=True) for v in (vertices, vertices + noise)
+    )
     assert (moved.refinement.faces == plain.refinement.faces).all()
     assert np.abs(moved.positions - plain.positions).max() < 1e-6
 

@@ -354,7 +354,7 @@ UNSTABLE = {"ball_and_ellipsoid", "two_landmarks", "spikes"}
 
 @pytest.mark.parametrize("name", pairs.PAIRS)
 def test_noise_does_not_move_a_registration(name, request):
-    """With a little weight of angles; where areas alone count, it moves such coarse surfaces by up to a tenth."""
+    """With a little weight of angles; where areas alone count, it moves coarse ones by up to a tenth."""
     if name in UNSTABLE:
         request.applymarker(pytest.mark.xfail(reason="known: noise moves this registration", strict=False))
     pair = pairs.PAIRS[name]

@@ -113,6 +113,7 @@ def test_a_disk_has_one_rotation(name, boundary):
         assert x > 0 and abs(y) < 1e-9
     else:
         np.testing.assert_allclose(result.uv[first], [1, 0], rtol=0, atol=1e-15)
+        assert np.abs(result.uv).max() <= 1
 
 
 def test_noise_does_not_move_limbs():

@@ -190,13 +190,18 @@ pub fn disk_map(
 /// The map turned so that the first vertex of the boundary loop lies at (1, 0); as it was where the rounding of the
 /// rotation folds a sliver.
 fn turned(mesh: &TriangleMesh, map: Map) -> Map {
-    let first = mesh.boundary_loops()[0][0] as usize;
-    let [x, y] = map[first];
+    let boundary = &mesh.boundary_loops()[0];
+    let [x, y] = map[boundary[0] as usize];
     let mut turned = parallel::map(map.len(), |v| {
         let [u, w] = map[v];
         [x * u + y * w, x * w - y * u]
     });
-    turned[first] = [1.0, 0.0];
+    for &v in boundary {
+        let [u, w] = turned[v as usize];
+        // no coordinate beyond the circle by rounding
+        turned[v as usize] = [u, w].map(|c| c / u.hypot(w));
+    }
+    turned[boundary[0] as usize] = [1.0, 0.0];
     let was_sound = certificate::is_bijective(mesh, &map);
     if was_sound && !certificate::is_bijective(mesh, &turned) { map } else { turned }
 }

@@ -198,29 +198,27 @@ fn assembled(
 /// Measures a map of faces that are made up of parts: their areas are those of their parts together, σ₁/σ₂ is the mean
 /// over these by their targets, and a face is folded where a part is.
 ///
-/// `face_of` has the face of each part, ascending from 0 without gaps; the other arguments are those of [`distortion`],
-/// of the parts.
+/// `of_parts` has the figures of the parts by [`distortion`], and the arguments are those that it took; `face_of` has the
+/// face of each part, ascending from 0 without gaps.
 ///
 /// # Errors
 /// As [`distortion`].
 pub(crate) fn distortion_of_wholes(
-    points: &[Vector],
+    of_parts: &Distortion,
     parts: &[[u32; 3]],
     image: Image<'_>,
     targets: &[f64],
     face_of: &[u32],
 ) -> Result<Distortion, Error> {
     let image = Scaled::new(image)?;
-    let folded_parts = folded(parts, image);
-    let areas = signed_areas(parts, image, &folded_parts);
-    let angle = angle_distortion(points, parts, image, &folded_parts);
+    let areas = signed_areas(parts, image, &of_parts.folded);
     let n_faces = face_of.last().map_or(0, |&face| face as usize + 1);
     let mut sums = vec![[0.0; 3]; n_faces];
     for (part, &face) in face_of.iter().enumerate() {
-        let values = [areas[part], targets[part], targets[part] * angle[part]];
+        let values = [areas[part], targets[part], targets[part] * of_parts.angle_distortion[part]];
         (0..3).for_each(|k| sums[face as usize][k] += values[k]);
     }
-    let mut folded: Vec<usize> = folded_parts.iter().map(|&part| face_of[part] as usize).collect();
+    let mut folded: Vec<usize> = of_parts.folded.iter().map(|&part| face_of[part] as usize).collect();
     folded.dedup();
     let [areas, targets, angle] = [0, 1, 2].map(|k| sums.iter().map(|sum| sum[k]).collect::<Vec<f64>>());
     let angle = angle.iter().zip(&targets).map(|(sum, target)| sum / target).collect();

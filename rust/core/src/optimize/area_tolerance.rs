@@ -2,9 +2,9 @@
 //! The map of least shear whose areas are within a tolerance.
 //!
 //! The minimum of E_A + λ E_angle has the less shear the larger λ is, and the more even areas the smaller. So λ falls step
-//! by step until the minimum is within the tolerance, or rises as long as it is, and is then raised as far as that allows, by the secant rule for
-//! the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ. Each minimum is sought from that of
-//! a larger λ: shear that a map once has stays in it.
+//! by step until the minimum is within the tolerance, or rises as long as it is, and is then raised as far as that allows,
+//! by the secant rule for the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ. But where λ
+//! rises, each minimum is sought from that of a larger λ: shear that a map once has stays in it.
 
 use super::angle_schedule::AnglePath;
 use super::floors::{Surface, descend};
@@ -64,23 +64,6 @@ pub(crate) fn within_tolerance(
     let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
     let mut found = search.found(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);
-    // 2. Or rises as long as they are
-    while coarser.is_none() && found.deviation <= search.goal && !found.is_final() {
-        let weight = found.weight.exp() / FALL;
-        if weight > MOST {
-            break;
-        }
-        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
-        round += 1;
-        match (next.is_final(), next.deviation <= search.goal) {
-            (true, _) => {
-                found.status = next.status;
-                return (problem, found.map, found.status);
-            }
-            (false, true) => found = next,
-            (false, false) => coarser = Some(next),
-        }
-    }
     while found.deviation > search.goal && !found.is_final() {
         let weight = FALL * found.weight.exp();
         if weight < LEAST {
@@ -90,6 +73,20 @@ pub(crate) fn within_tolerance(
         let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
         round += 1;
         coarser = Some(std::mem::replace(&mut found, next));
+    }
+    // 2. Or rises as long as they are
+    while coarser.is_none() && found.deviation <= search.goal && !found.is_final() {
+        let weight = found.weight.exp() / FALL;
+        if weight > MOST {
+            break;
+        }
+        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
+        round += 1;
+        match (next.is_final(), next.deviation <= search.goal) {
+            (true, _) => return (problem, found.map, next.status),
+            (false, true) => found = next,
+            (false, false) => coarser = Some(next),
+        }
     }
     // 3. And is raised as far as they stay within it
     if let Some(coarser) = coarser {

@@ -14,14 +14,15 @@
 
 use std::f64::consts::PI;
 
-use super::run::Run;
+use super::domain::SphereDomain;
+use super::run::{Run, energy_share};
 use super::{Map, SphereMapOptions, normalized, vertex_weights};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::bisection::{Bisection, bisect_longest_edges};
-use crate::mesh::geometry::{Vector, add, area, distance, scaled, triangle};
+use crate::mesh::geometry::{Vector, add, distance, scaled, triangle};
 use crate::mesh::ties::tie_breakers;
 use crate::parallel;
 
@@ -116,23 +117,13 @@ impl Refined {
     }
 
     /// E_A over the area of the image.
-    fn unevenness(&self, map: &[Vector]) -> f64 {
-        let image_area = |face: usize| area(triangle(map, self.mesh.faces()[face]));
-        let scale = parallel::sum(self.mesh.n_faces(), image_area) / self.total_target();
-        let squared = |face: usize| {
-            let target = scale * self.targets[face];
-            (image_area(face) - target).powi(2) / target
-        };
-        parallel::sum(self.mesh.n_faces(), squared) / (scale * self.total_target())
-    }
-
-    fn total_target(&self) -> f64 {
-        parallel::sum(self.targets.len(), |face| self.targets[face])
+    fn unevenness(&self, map: &Map) -> f64 {
+        energy_share(&SphereDomain::new(&self.mesh, &self.targets), map)
     }
 
     /// Which faces cannot have their targets.
     fn blocked(&self, map: &[Vector]) -> Vec<bool> {
-        let scale = 4.0 * PI / self.total_target();
+        let scale = 4.0 * PI / parallel::sum(self.targets.len(), |face| self.targets[face]);
         parallel::map(self.mesh.n_faces(), |face| {
             let [a, b, c] = triangle(map, self.mesh.faces()[face]);
             let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
@@ -189,7 +180,7 @@ impl Refined {
     pub(super) fn figures(&self, map: &[Vector]) -> Result<(Distortion, Distortion), Error> {
         let (points, faces, image) = (self.mesh.points(), self.mesh.faces(), Image::Sphere(map));
         let of_parts = distortion(points, faces, image, &self.targets)?;
-        let of_faces = distortion_of_wholes(points, faces, image, &self.targets, &self.face_of)?;
+        let of_faces = distortion_of_wholes(&of_parts, faces, image, &self.targets, &self.face_of)?;
         Ok((of_parts, of_faces))
     }
 

@@ -259,7 +259,7 @@ impl Run<'_> {
 }
 
 /// E_A/A: what is left when the size of the image does not count.
-fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
+pub(super) fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
     let value = domain.energy().value(map);
     value.authalic_energy / value.area
 }

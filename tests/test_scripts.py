@@ -343,8 +343,8 @@ def test_the_search_for_failures_notices_a_hang_and_goes_on():
 
 def test_the_property_tests_are_found():
     found = bench_fuzz_rust.properties()
-    assert found["random_disks_are_mapped_one_to_one"] == ("--test", "disk")
-    assert found["hostile_input_never_panics"] == ("--test", "mesh")
+    assert found["random_disks_are_mapped_one_to_one"] == ("--test", "it")
+    assert found["hostile_input_never_panics"] == ("--test", "it")
 
 
 def test_an_error_of_the_package_is_a_row_of_the_table():

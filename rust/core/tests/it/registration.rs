@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
 
-mod common;
-
+use crate::common::closed::{bumpy, spheres};
+use crate::common::random::Random;
+use crate::common::{self, TestMesh, bumpy_disk, cap, distance, ellipsoid};
 use authalic::mesh::TriangleMesh;
 use authalic::registration::{
     DiskRegistration, Landmarks, RegistrationOptions, SphereRegistration, register_disks, register_spheres,
 };
 use authalic::{Error, Silent, Status, folded_in_plane, folded_on_sphere};
-use common::closed::{bumpy, spheres};
-use common::random::Random;
-use common::{TestMesh, bumpy_disk, cap, distance, ellipsoid};
 use proptest::prelude::*;
 
 fn disks(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> DiskRegistration {

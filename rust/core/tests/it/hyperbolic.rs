@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registrations by curves by their properties: certificates, curves on curves, refusals, cancelling.
 
-mod common;
-
+use crate::common::closed::{dot, radial, rotation};
+use crate::common::random::Random;
+use crate::common::{TestMesh, distance, icosphere};
 use authalic::hyperbolic::{CurveRegistration, Curves, HyperbolicOptions, register_hyperbolic};
 use authalic::mesh::TriangleMesh;
 use authalic::{Error, Silent, Status};
-use common::closed::{dot, radial, rotation};
-use common::random::Random;
-use common::{TestMesh, distance, icosphere};
 use proptest::prelude::*;
 
 type Point = [f64; 3];

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cutting along seams: what comes out, what it remembers of the input, and what is refused.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::{self, TestMesh};
 use authalic::mesh::{Patch, TriangleMesh, cut};
 use authalic::{Elements, Error};
-use common::TestMesh;
 use proptest::prelude::*;
 
 /// Every corner of the input lies in exactly one patch, at its own vertex and position.

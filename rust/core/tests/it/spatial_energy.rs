@@ -2,10 +2,9 @@
 //! The stretch energy of maps into space against independent formulas: cross products, cotangents, finite
 //! differences, the identities that its degree of four and its invariance under rotations imply.
 
-mod common;
-
 use std::f64::consts::PI;
 
+use crate::common;
 use approx::assert_relative_eq;
 use authalic::energy::stretch::Profile;
 use authalic::energy::{SpatialStretchEnergy, StretchEnergy};

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a `TriangleMesh` accepts, repairs, refuses and knows.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
+use crate::common::{self, TestMesh, distance};
 use authalic::mesh::{TriangleMesh, consistent, geometry};
 use authalic::{Elements, Error};
-use common::{TestMesh, distance};
 use proptest::prelude::*;
 
 fn refusal(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Error {

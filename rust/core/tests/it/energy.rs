@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stretch energy against independent formulas: finite differences, the assembled Laplacian, invariances.
 
-mod common;
-
+use crate::common;
 use approx::assert_relative_eq;
 use authalic::energy::StretchEnergy;
 use authalic::energy::stretch::Profile;

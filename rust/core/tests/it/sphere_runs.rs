@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a run onto the sphere goes and ends: start maps, progress, cancel, limits and tolerances.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use authalic::mesh::TriangleMesh;
-use authalic::{Error, SphereMap, SphereMapOptions, SphereMethod, Status, sphere_map};
-use common::closed::{
+use crate::common;
+use crate::common::closed::{
     METHODS, assert_bijective, bumpy, dot, energies, energy_of, folded, image_areas, mapped, refused,
     rotation, spiky_spheres, with,
 };
+use authalic::mesh::TriangleMesh;
+use authalic::{Error, SphereMap, SphereMapOptions, SphereMethod, Status, sphere_map};
 
 type Point = [f64; 3];
 

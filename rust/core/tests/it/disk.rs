@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Disk maps by their properties, on every test mesh that is a disk.
 
-mod common;
-
 use std::f64::consts::TAU;
 
+use crate::common;
 use authalic::mesh::TriangleMesh;
 use authalic::{Boundary, DiskMap, DiskMapOptions, Error, Method, Silent, Status, disk_map, folded_in_plane};
 use proptest::prelude::*;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Meshes of known topology, made in code. Tests loop over all that qualify.
-#![allow(dead_code)] // each test binary uses its own part
 
 pub mod closed;
 pub mod planar;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sphere maps by their properties, on every test mesh that is a topological sphere.
 
-mod common;
-
-use authalic::mesh::TriangleMesh;
-use authalic::{Error, SphereMapOptions, SphereMethod, folded_on_sphere};
-use common::TestMesh;
-use common::closed::{
+use crate::common::closed::{
     LINE_SEARCHES, METHODS, assert_bijective, bumpy, dot, energies, energy_of, folded, image_areas, mapped,
     radial, refused, rotation, spheres, spiky_spheres, star, with,
 };
+use crate::common::{self, TestMesh};
+use authalic::mesh::TriangleMesh;
+use authalic::{Error, SphereMapOptions, SphereMethod, folded_on_sphere};
 use proptest::prelude::*;
 
 type Point = [f64; 3];

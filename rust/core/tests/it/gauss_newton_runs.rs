@@ -2,19 +2,17 @@
 //! How a run of the default method goes and ends: energies, angles against areas, densities, start maps, cancel, threads,
 //! and that neither place, size nor numbering of a surface matters.
 
-mod common;
-
+use crate::common::closed::{
+    assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
+};
+use crate::common::planar::{areas, assert_one_to_one};
+use crate::common::random::{Random, rough_disk, without_vertex};
+use crate::common::{self, TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
 use authalic::mesh::TriangleMesh;
 use authalic::{
     Boundary, DiskMap, DiskMapOptions, Distortion, Error, History, Method, Silent, SphereMap,
     SphereMapOptions, SphereMethod, Status, disk_map, sphere_map,
 };
-use common::closed::{
-    assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
-};
-use common::planar::{areas, assert_one_to_one};
-use common::random::{Random, rough_disk, without_vertex};
-use common::{TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
 
 type Point = [f64; 3];
 

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The default method folds no face, on whatever shape, and comes far closer to E_A = 0 than the papers' methods.
 
-mod common;
-
 use std::time::Instant;
 
+use crate::common::closed::{
+    assert_bijective, capsule, energy_of, flat_tube, octahedron, parallels, radial, round_tube, spheres,
+    spiky_spheres, tetrahedron,
+};
+use crate::common::planar::{assert_one_to_one, authalic_energy};
+use crate::common::random::{Random, delaunay_cap, surface, without_vertex};
+use crate::common::{self, TestMesh, bumpy_disk, cap, ellipsoid, grid, icosphere, slit_sphere};
 use authalic::mesh::TriangleMesh;
 use authalic::{
     Boundary, DiskMap, DiskMapOptions, Method, Silent, SphereMap, SphereMapOptions, SphereMethod, disk_map,
     sphere_map,
 };
-use common::closed::{
-    assert_bijective, capsule, energy_of, flat_tube, octahedron, parallels, radial, round_tube, spheres,
-    spiky_spheres, tetrahedron,
-};
-use common::planar::{assert_one_to_one, authalic_energy};
-use common::random::{Random, delaunay_cap, surface, without_vertex};
-use common::{TestMesh, bumpy_disk, cap, ellipsoid, grid, icosphere, slit_sphere};
 use proptest::prelude::*;
 
 type Point = [f64; 3];

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The documents: their examples run, and the files, links, commands and labels that they name exist."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [*GUIDES, ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md", ROOT / "tests" / "gui" / "README.md"]
+TOP = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
+MADE = ("dist/", "out/")
+"""What commands leave behind; it need not be there."""
+
+
+def relative(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+documents = pytest.mark.parametrize("document", DOCUMENTS, ids=relative)
+
+
+def blocks(document: Path) -> list[str]:
+    """The Python blocks of a document."""
+    return re.findall(r"(?ms)^```python\n(.*?)^```$", document.read_text(encoding="utf-8"))
+
+
+def without_blocks(document: Path) -> str:
+    return re.sub(r"(?ms)^```.*?^```$", "", document.read_text(encoding="utf-8"))
+
+
+def quoted(document: Path) -> list[str]:
+    """What stands between backticks, outside of blocks."""
+    return re.findall(r"`([^`\n]+)`", without_blocks(document))
+
+
+def paths(words: list[str]) -> set[str]:
+    """Those of some words that are paths of the repository."""
+    found = {word.split()[0] for word in words if word.strip()}
+    is_path = re.compile(rf"(?:{'|'.join(map(re.escape, TOP))})/[\w./-]*")
+    return {word for word in found if is_path.fullmatch(word) and not word.startswith(MADE)}
+
+
+def anchors(document: Path) -> set[str]:
+    """What links can point to: the headings of a document, as GitHub names them."""
+    headings = re.findall(r"(?m)^#+ (.*)$", without_blocks(document))
+    return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
+
+
+def literals(folder: Path) -> set[str]:
+    """The strings in the Python code of a folder."""
+    trees = (ast.parse(file.read_text(encoding="utf-8")) for file in sorted(folder.rglob("*.py")))
+    nodes = (node for tree in trees for node in ast.walk(tree))
+    return {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+
+
+@pytest.mark.parametrize("document", [guide for guide in GUIDES if blocks(guide)], ids=relative)
+def test_python_blocks_run_one_after_the_other(document: Path) -> None:
+    pytest.importorskip("authalic")
+    names: dict[str, object] = {}
+    for number, block in enumerate(blocks(document), start=1):
+        exec(compile(block, f"{document.name}, block {number}", "exec"), names)
+
+
+def test_the_readme_is_short() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
+
+
+@documents
+def test_links_lead_somewhere(document: Path) -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", without_blocks(document)):
+        if link.startswith(("http://", "https://")):
+            continue
+        name, _, anchor = link.partition("#")
+        target = (document.parent / name).resolve() if name else document
+        assert target.exists(), link
+        assert not anchor or anchor in anchors(target), link
+
+
+@documents
+def test_named_files_exist(document: Path) -> None:
+    missing = {path for path in paths(quoted(document)) if not (ROOT / path).exists()}
+    assert not missing
+
+
+@documents
+def test_named_benches_and_parts_exist(document: Path) -> None:
+    launcher = (ROOT / "scripts" / "bench").read_text(encoding="utf-8")
+    sources = literals(ROOT / "scripts" / "lib")
+    text = document.read_text(encoding="utf-8")
+    for subject in re.findall(r"`scripts/bench (\w+)", text):
+        assert f'"{subject}"' in launcher, subject
+    for part in re.findall(r"--parts ([\w-]+)", text):
+        assert part in sources, part
+
+
+@documents
+def test_named_operators_exist(document: Path) -> None:
+    known = {name for name in literals(ROOT / "addon") if name.startswith("authalic.")}
+    named = re.findall(r"bpy\.ops\.(authalic\.\w+)", document.read_text(encoding="utf-8"))
+    also = re.findall(r"`(landmark_\w+)`", document.read_text(encoding="utf-8"))
+    assert {*named, *(f"authalic.{name}" for name in also)} <= known
+
+
+def test_options_in_tables_are_labels_of_the_extension() -> None:
+    """The first cells of the tables of options, *Label* or *Label*, *Label*."""
+    text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
+    cells = re.findall(r"(?m)^\| (\*[^|]*\*) \|", text)
+    labels = {label for cell in cells for label in re.findall(r"\*([^*]+)\*", cell)}
+    assert len(labels) > 20
+    assert labels <= literals(ROOT / "addon")

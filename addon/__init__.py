@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
 
-from . import curve_markers, landmark_curves, landmarks, markers, scene_changes, ui, ui_landmarks
+from .blender import scene_changes
+from .landmarks import curves as landmark_curves
+from .landmarks import points as landmarks
 from .operators import fix_flips, landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
 from .operators import landmark_curves as curve_operators
 from .operators import landmarks as landmark_operators
 from .operators import register as register_operator
+from .overlay import curves as curve_markers
+from .overlay import points as markers
+from .ui import landmarks as ui_landmarks
+from .ui import unwrap as ui
 
 # In this order; unregistered in the reverse one.
 _MODULES = (

@@ -25,18 +25,27 @@ CORE_ROOMS = (
 )
 CORE_RANK = {room: rank for rank, rooms in enumerate(CORE_ROOMS) for room in rooms}
 
-# The same for the add-on; every module that is not named here is pure logic below the operators.
-ADDON_RANK = {
-    "bridge": 1,
-    "jobs": 2,
-    "operators": 3,
-    "ui": 4,
-    "ui_text": 4,
-    "ui_curves": 5,
-    "ui_register": 6,
-    "ui_landmarks": 7,
-    "__init__": 8,
-}
+# The rooms of the add-on, lowest first: folders, and files beside them.
+ADDON_ROOMS = (
+    {"messages"},
+    {"surfaces"},
+    {"blender", "sphere_layout"},
+    {"landmarks"},
+    {"overlay", "registration"},
+    {"bridge"},
+    {"jobs"},
+    {"operators"},
+    {"ui"},
+    {"__init__"},
+)
+ADDON_RANK = {room: rank for rank, rooms in enumerate(ADDON_ROOMS) for room in rooms}
+
+# Python code that knows nothing of Blender.
+WITHOUT_BLENDER = {"messages", "surfaces", "sphere_layout", "registration", "bridge"}
+BLENDER_MODULES = {"bpy", "bmesh", "mathutils", "gpu", "blf", "bpy_extras", "gpu_extras"}
+
+# Folders in which no files may import each other in a circle.
+PYTHON_HOUSES = (ADDON, ROOT / "scripts" / "lib", BINDINGS / "authalic")
 
 
 def rust_files(folder: Path) -> list[Path]:
@@ -79,16 +88,18 @@ def rooms_used(source: str, module: list[str]) -> set[str]:
 
 
 def python_imports(file: Path) -> set[tuple[int, str]]:
-    """(number of leading dots, dotted name) of every import in a file, also inside functions."""
-    found = set()
+    """(number of leading dots, dotted name) of every import in a file, also inside functions.
+
+    `from a import b` counts as `a.b`, since `b` may be a module.
+    """
+    imports = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {(0, alias.name) for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            found.add((node.level, node.module))
+            imports |= {(0, alias.name) for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            found |= {(node.level, alias.name) for alias in node.names}
-    return found
+            package = f"{node.module}." if node.module else ""
+            imports |= {(node.level, package + alias.name) for alias in node.names}
+    return imports
 
 
 def absolute_imports(file: Path) -> set[str]:
@@ -96,20 +107,44 @@ def absolute_imports(file: Path) -> set[str]:
     return {name.split(".")[0] for dots, name in python_imports(file) if dots == 0}
 
 
-def addon_files() -> list[Path]:
-    return sorted(ADDON.rglob("*.py"))
+def python_files(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*.py"))
 
 
 def addon_room(file: Path) -> str:
-    """`ui/panels.py` and `ui.py` belong to the room "ui"; `__init__.py` at the top to itself."""
-    parts = file.relative_to(ADDON).with_suffix("").parts
-    return parts[0]
+    """`ui/panels.py` belongs to the room "ui", `messages.py` and `__init__.py` at the top to themselves."""
+    return file.relative_to(ADDON).with_suffix("").parts[0]
 
 
-def addon_rooms_used(file: Path) -> set[str]:
-    """The add-on's own rooms that a file imports by relative imports."""
-    depth = len(file.relative_to(ADDON).parts)
-    return {name.split(".")[0] for dots, name in python_imports(file) if dots == depth}
+def imported_file(folder: Path, name: str) -> Path | None:
+    """The file below a folder that a dotted name comes from: a module or a package."""
+    parts = name.split(".")
+    for length in range(len(parts), 0, -1):
+        place = folder.joinpath(*parts[:length])
+        for file in (place.with_suffix(".py"), place / "__init__.py"):
+            if file.is_file():
+                return file
+    return None
+
+
+def files_imported(file: Path, house: Path) -> set[Path]:
+    """The files of a house that one of them imports."""
+    files = set()
+    for dots, name in python_imports(file):
+        places = [file.parents[dots - 1]] if dots else [house, house.parent]
+        files |= {imported_file(place, name) for place in places}
+    return {other for other in files if other and other != file and other.is_relative_to(house)}
+
+
+def circles(arrows: dict[str, set[str]]) -> list[str]:
+    """The nodes that lie on a circle of arrows, or between two of them."""
+    arrows = {node: targets & arrows.keys() for node, targets in arrows.items()}
+    while True:
+        reached = set().union(*arrows.values()) if arrows else set()
+        inner = {node for node, targets in arrows.items() if targets and node in reached}
+        if len(inner) == len(arrows):
+            return sorted(arrows)
+        arrows = {node: targets & inner for node, targets in arrows.items() if node in inner}
 
 
 @pytest.mark.parametrize("file", rust_files(CORE), ids=lambda file: str(file.relative_to(CORE)))
@@ -146,22 +181,61 @@ def test_package_knows_no_blender() -> None:
 
 
 def test_only_the_bridge_imports_authalic() -> None:
-    importing = {file for file in addon_files() if "authalic" in absolute_imports(file)}
-    assert importing <= {ADDON / "bridge.py"}
+    importing = {file for file in python_files(ADDON) if "authalic" in absolute_imports(file)}
+    assert {addon_room(file) for file in importing} == {"bridge"}
 
 
-@pytest.mark.parametrize("file", addon_files(), ids=lambda file: str(file.relative_to(ADDON)))
+@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: str(file.relative_to(ADDON)))
 def test_addon_uses_lower_rooms_only(file: Path) -> None:
     room = addon_room(file)
-    used = addon_rooms_used(file) - {room, "__init__"}
-    upward = {other for other in used if ADDON_RANK.get(other, 0) >= max(ADDON_RANK.get(room, 0), 1)}
+    assert room in ADDON_RANK, f"the new room {room} needs its place in ADDON_ROOMS"
+    used = {addon_room(other) for other in files_imported(file, ADDON)} - {room}
+    upward = {other for other in used if ADDON_RANK[other] >= ADDON_RANK[room]}
     assert not upward, f"{room} must not use {sorted(upward)}"
 
 
+@pytest.mark.parametrize("room", sorted(WITHOUT_BLENDER))
+def test_arrays_know_no_blender(room: str) -> None:
+    for file in python_files(ADDON):
+        if addon_room(file) == room:
+            assert not absolute_imports(file) & BLENDER_MODULES, file
+
+
 def test_ui_touches_no_arrays() -> None:
-    for file in addon_files():
-        if addon_room(file).split("_")[0] == "ui":
-            assert "numpy" not in absolute_imports(file), file
+    for file in python_files(ADDON / "ui"):
+        assert "numpy" not in absolute_imports(file), file
+
+
+@pytest.mark.parametrize("house", PYTHON_HOUSES, ids=lambda house: str(house.relative_to(ROOT)))
+def test_no_circle_of_python_files(house: Path) -> None:
+    files = python_files(house)
+    arrows = {str(file): {str(other) for other in files_imported(file, house)} for file in files}
+    assert any(arrows.values()) or len(files) == 1
+    assert circles(arrows) == []
+
+
+def test_circles_are_seen(tmp_path: Path) -> None:
+    (tmp_path / "inner").mkdir()
+    sources = {
+        "low.py": "import os",
+        "first.py": "from . import low\nfrom .inner import second",
+        "inner/__init__.py": "",
+        "inner/second.py": "def late():\n    from ..third import name",
+        "third.py": "from .first import other",
+        "top.py": "from . import first",
+    }
+    for name, source in sources.items():
+        (tmp_path / name).write_text(source)
+    files = python_files(tmp_path)
+    arrows = {
+        str(file.relative_to(tmp_path)): {
+            str(other.relative_to(tmp_path)) for other in files_imported(file, tmp_path)
+        }
+        for file in files
+    }
+    assert circles(arrows) == ["first.py", "inner/second.py", "third.py"]
+    arrows["inner/second.py"].clear()
+    assert circles(arrows) == []
 
 
 def test_the_parser_sees_upward_paths() -> None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import mesh_io, shape_keys
+from . import meshes as mesh_io
+from . import shape_keys
 
 UV_MAP, GROUP, COLOUR, KEY = "UV map", "vertex group", "colour attribute", "shape key"
 _NO_WEIGHT = 1e-6

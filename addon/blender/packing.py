@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import islands as shapes
+from ..surfaces import islands as shapes
 
 
 @dataclass

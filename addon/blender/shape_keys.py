@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import mesh_io
+from . import meshes as mesh_io
 
 
 def read(obj):

@@ -12,28 +12,15 @@ import numpy as np
 
 import authalic
 
-from . import (
-    curve_registering,
-    domains,
-    flips,
-    messages,
-    polygons,
-    projection,
-    registering,
-    spherical,
-    triangulation,
-)
-from .domains import Unsuitable
-from .results import (
-    Island,
-    Mapping,
-    Measurement,
-    Refusal,
-    Shortfall,
-    SphereShape,
-    Unflipped,
-    UnwrapSettings,
-)
+from .. import messages
+from ..registration import curves as curve_registering
+from ..registration import points as registering
+from ..sphere_layout import projection
+from ..surfaces import polygons, spherical, triangulation
+from ..surfaces import suitability as domains
+from ..surfaces import uv_map as flips
+from ..surfaces.suitability import Unsuitable
+from .results import Island, Mapping, Measurement, Refusal, Shortfall, SphereShape, Unflipped, UnwrapSettings
 from .solver import Solver, weight
 
 __all__ = (

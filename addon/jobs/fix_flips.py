@@ -3,9 +3,10 @@
 
 from dataclasses import dataclass
 
-from .. import bridge, mesh_io, messages
-from ..job import Job
+from .. import bridge, messages
+from ..blender import meshes as mesh_io
 from . import targets
+from .job import Job
 
 
 class CannotFix(Exception):

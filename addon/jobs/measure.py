@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The measurement of a context's objects: figures of their active UV layers and a face attribute."""
 
-from .. import bridge, mesh_io
-from ..job import Job
+from .. import bridge
+from ..blender import meshes as mesh_io
 from . import targets
+from .job import Job
 from .targets import NothingToDo
 
 ATTRIBUTE = "authalic_log2_area_ratio"

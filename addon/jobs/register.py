@@ -6,8 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import animation, bridge, landmark_curves, landmarks, mesh_io, messages, registering, shape_keys
-from ..job import Job
+from .. import bridge, messages
+from ..blender import animation, shape_keys
+from ..blender import meshes as mesh_io
+from ..landmarks import curves as landmark_curves
+from ..landmarks import points as landmarks
+from ..registration import points as registering
+from .job import Job
 
 UV_MAP = "Authalic Registered"
 _PREFIX = "Morph → "

@@ -4,9 +4,11 @@
 import time
 from dataclasses import dataclass, field
 
-from .. import bridge, mesh_io, messages, shape_keys
-from ..job import Job
+from .. import bridge, messages
+from ..blender import meshes as mesh_io
+from ..blender import shape_keys
 from . import targets
+from .job import Job
 
 NAME = "Authalic Sphere"
 

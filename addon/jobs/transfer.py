@@ -6,9 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import bridge, cargo, messages, registering, seams, transferring
-from ..job import Job
+from .. import bridge, messages
+from ..blender import layers as cargo
+from ..registration import elements as transferring
+from ..registration import points as registering
+from ..registration import seams
 from . import register, targets
+from .job import Job
 from .register import CannotRegister
 
 _PLURALS = {kind: f"{kind}s" for kind in (cargo.UV_MAP, cargo.GROUP, cargo.COLOUR, cargo.KEY)}

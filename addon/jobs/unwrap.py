@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import bridge, mesh_io, messages
-from .. import islands as shapes
-from ..job import Job
-from ..packing import PackSettings, pack
+from .. import bridge, messages
+from ..blender import meshes as mesh_io
+from ..blender.packing import PackSettings, pack
+from ..surfaces import islands as shapes
 from . import targets
+from .job import Job
 
 _NAMED = 3
 _FOLDS = "its faces would fold over in UV precision; cut its long or thin parts open by seams"

@@ -11,8 +11,10 @@ from typing import NamedTuple
 import bmesh
 import numpy as np
 
-from . import marks, paths, scene_changes
-from .marks import element_counts
+from ..blender import element_marks as marks
+from ..blender import scene_changes
+from ..blender.element_marks import element_counts
+from . import paths
 
 _NAME = "authalic_curve_"
 _BITS = 24

@@ -2,8 +2,8 @@
 """To which pair of landmark curves selected paths belong, and which way they run."""
 
 from . import curve_selection, paths
-from .landmark_curves import SIDES, pairs, side_object
-from .landmarks import NONE
+from .curves import SIDES, pairs, side_object
+from .points import NONE
 
 
 def place_for(source, selected):

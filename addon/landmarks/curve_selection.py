@@ -5,8 +5,9 @@ import bmesh
 import numpy as np
 from mathutils import Vector
 
-from . import messages, paths
-from .landmarks import CannotPair
+from .. import messages
+from . import paths
+from .points import CannotPair
 
 _WHAT = "select the edges of one open path or of one closed loop"
 

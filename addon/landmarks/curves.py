@@ -12,9 +12,12 @@ from typing import NamedTuple
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
-from . import curve_copies, curve_marks, landmark_undo, landmarks, messages, paths
+from .. import messages
+from . import curve_copies, curve_marks, paths
+from . import points as landmarks
+from . import undo as landmark_undo
 from .curve_copies import SIDES, side_object
-from .landmarks import NONE, CannotPair
+from .points import NONE, CannotPair
 
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 

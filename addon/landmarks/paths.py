@@ -6,7 +6,7 @@ A path is a tuple of vertices from its start to its end; that of a loop ends wit
 
 from itertools import pairwise
 
-from . import messages
+from .. import messages
 
 
 class NoPath(Exception):

@@ -5,8 +5,8 @@ Deleting a vertex renumbers those behind it, but their marks go with them. Dupli
 copies its mark; the vertex is then no longer certain.
 """
 
-from . import marks
-from .marks import element_counts
+from ..blender import element_marks as marks
+from ..blender.element_marks import element_counts
 
 NAME = "authalic_landmark"
 _MARKS = marks.Marks(NAME, "POINT")

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from . import landmark_undo, vertex_marks
+from . import point_marks as vertex_marks
+from . import undo as landmark_undo
 
 NONE = -1
 

@@ -13,7 +13,9 @@ from typing import NamedTuple
 import bpy
 from bpy.app.handlers import persistent
 
-from . import curve_marks, marks, vertex_marks
+from ..blender import element_marks as marks
+from . import curve_marks
+from . import point_marks as vertex_marks
 
 
 class Listed(NamedTuple):

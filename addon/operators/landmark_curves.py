@@ -6,7 +6,10 @@ import re
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from .. import curve_pairing, curve_selection, landmark_curves, landmarks, messages
+from .. import messages
+from ..landmarks import curve_pairing, curve_selection
+from ..landmarks import curves as landmark_curves
+from ..landmarks import points as landmarks
 from . import poll, views
 
 _GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next

@@ -7,7 +7,10 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import landmark_curves, landmark_files, landmarks, messages
+from .. import messages
+from ..landmarks import curves as landmark_curves
+from ..landmarks import files as landmark_files
+from ..landmarks import points as landmarks
 from . import poll
 
 

@@ -5,7 +5,11 @@ import bpy
 import numpy as np
 from bpy.props import IntProperty
 
-from .. import landmark_picking, landmarks, markers, vertex_marks, vertex_points
+from ..blender import vertex_positions as vertex_points
+from ..landmarks import picking as landmark_picking
+from ..landmarks import point_marks as vertex_marks
+from ..landmarks import points as landmarks
+from ..overlay import points as markers
 from . import poll
 
 # Looking around; mouse buttons and keys that do something else are held back.

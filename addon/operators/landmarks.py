@@ -5,7 +5,7 @@ import bmesh
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
-from .. import landmarks
+from ..landmarks import points as landmarks
 from . import poll, views
 
 _GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next

@@ -3,8 +3,8 @@
 
 import bpy
 
-from ..job import Cancelled
 from ..jobs import targets
+from ..jobs.job import Cancelled
 
 _INTERVAL = 0.1
 # What may go on meanwhile: looking around. Anything else could change what is being worked on.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When commands can be used."""
 
-from .. import landmarks
+from ..landmarks import points as landmarks
 
 
 def has_meshes(operator, context):

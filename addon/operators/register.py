@@ -4,8 +4,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import landmarks, registering
 from ..jobs import register as registration
+from ..landmarks import points as landmarks
+from ..registration import points as registering
 from .modal import Modal
 
 

@@ -3,7 +3,8 @@
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import bridge, solver
+from .. import bridge
+from ..bridge import solver
 
 # Numbered, because key maps keep numbers: AUTHALIC is what CIRCLE was called before there were others.
 _PRESETS = (

@@ -6,7 +6,8 @@ import math
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from .. import bridge, packing
+from .. import bridge
+from ..blender import packing
 from ..jobs import unwrap
 from . import poll, solving
 from .modal import Modal

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What brings a place on an object into view."""
 
-from .. import vertex_points
+from ..blender import vertex_positions as vertex_points
 
 
 def show(context, obj, vertex):

@@ -13,7 +13,13 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix, Vector
 
-from . import landmark_curves, landmarks, markers, marks, paths, scene_changes, vertex_points
+from ..blender import element_marks as marks
+from ..blender import scene_changes
+from ..blender import vertex_positions as vertex_points
+from ..landmarks import curves as landmark_curves
+from ..landmarks import paths
+from ..landmarks import points as landmarks
+from . import points as markers
 
 # Blender's bone color sets that differ well from each other and from the red of a problem.
 _COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)

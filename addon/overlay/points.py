@@ -11,7 +11,9 @@ from bpy.props import BoolProperty
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
-from . import landmarks, marks, vertex_points
+from ..blender import element_marks as marks
+from ..blender import vertex_positions as vertex_points
+from ..landmarks import points as landmarks
 
 _COLORS = {"source": (0.16, 0.55, 1.0), "target": (1.0, 0.58, 0.1)}
 PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)

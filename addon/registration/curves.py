@@ -5,9 +5,10 @@ import re
 
 import numpy as np
 
-from . import messages, paths
-from .domains import Unsuitable
-from .registering import Registered, is_open
+from .. import messages
+from ..landmarks import paths
+from ..surfaces.suitability import Unsuitable
+from .points import Registered, is_open
 
 # "curve 3", "curves 0 and 2", "2 curves (0, 3)".
 _FEATURE = re.compile(r"\bfeature (\d+)\b")

@@ -7,8 +7,10 @@ from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
-from . import domains, messages, triangulation
-from .domains import Unsuitable
+from .. import messages
+from ..surfaces import suitability as domains
+from ..surfaces import triangulation
+from ..surfaces.suitability import Unsuitable
 
 _KEPT = 4
 _UNIFORM = 1e-5  # matrices have single precision

@@ -9,7 +9,7 @@ poles and across the creases of the octahedral map, is evened out in the plane, 
 
 import numpy as np
 
-from . import triangulation
+from ..surfaces import triangulation
 from .charts import develop
 from .layouts import LAYOUTS
 from .relaxation import even_out, relax

@@ -8,7 +8,7 @@ what straight edges do is local. Where a step would fold a face over, or nearly,
 
 import numpy as np
 
-from . import triangulation
+from ..surfaces import triangulation
 from .untangle import folded
 
 _STEPS = 3

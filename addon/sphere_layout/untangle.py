@@ -7,7 +7,7 @@ its faces is best. As this worst is concave in the place of the vertex, a patter
 
 import numpy as np
 
-from . import triangulation
+from ..surfaces import triangulation
 
 _GOOD = 0.25
 # Sweeps without success after which to take in one more ring of faces, and to give up.

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import messages
+from .. import messages
 
 
 class Unsuitable(Exception):

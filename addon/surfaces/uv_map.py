@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import messages, triangulation
+from .. import messages
+from . import triangulation
 
 
 @dataclass

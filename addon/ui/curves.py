@@ -3,7 +3,10 @@
 
 import bpy
 
-from . import curve_markers, landmark_curves, landmarks, ui_text
+from ..landmarks import curves as landmark_curves
+from ..landmarks import points as landmarks
+from ..overlay import curves as curve_markers
+from . import text as ui_text
 
 _shown = []  # the pairs of the list that is being drawn
 

@@ -3,7 +3,10 @@
 
 import bpy
 
-from . import landmarks, ui_curves, ui_register, ui_text
+from ..landmarks import points as landmarks
+from . import curves as ui_curves
+from . import register as ui_register
+from . import text as ui_text
 
 _shown = []  # the pairs of the list that is being drawn
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the registration panel below the landmarks: the two buttons and their options."""
 
-from . import ui_curves
-from .operators import register, transfer
+from ..operators import register, transfer
+from . import curves as ui_curves
 
 
 def draw_register(layout, source, context):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .operators import sphere_shape_key, unwrap
+from ..operators import sphere_shape_key, unwrap
 
 
 class _Panel:

@@ -29,7 +29,7 @@ def add(source=(), target=(), **options):
 
 def listed(obj=None):
     """(name, source path, target path, problem) of each."""
-    found = part("landmark_curves").pairs(obj or bpy.data.objects["Head A"])
+    found = part("landmarks.curves").pairs(obj or bpy.data.objects["Head A"])
     return [(one.name, one.source.vertices, one.target.vertices, one.problem) for one in found]
 
 

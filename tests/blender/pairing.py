@@ -30,7 +30,7 @@ def add(source_vertex, target_vertex, **options):
 
 
 def listed(obj=None):
-    return [tuple(pair) for pair in part("landmarks").pairs(obj or bpy.data.objects["Head A"])]
+    return [tuple(pair) for pair in part("landmarks.points").pairs(obj or bpy.data.objects["Head A"])]
 
 
 def refused(words, call, **options):

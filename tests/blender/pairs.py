@@ -22,9 +22,9 @@ def pair(source, target, vertices):
     if not isinstance(vertices, dict):
         vertices = {f"Landmark {number}": (vertex, vertex) for number, vertex in enumerate(vertices, 1)}
     source.authalic_target = target
-    part("landmarks").clear(source)
+    part("landmarks.points").clear(source)
     for name, (first, second) in vertices.items():
-        part("landmarks").add(source, first, second, name)
+        part("landmarks.points").add(source, first, second, name)
     meshes.select(source)
     bpy.context.view_layer.update()
     return source, target

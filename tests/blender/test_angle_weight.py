@@ -109,7 +109,7 @@ def test_upright_finds_the_smallest_box(aspect):
     points = np.concatenate([rng.random((3000, 2)), [[0, 0], [1, 0], [1, 1], [0, 1]]]) * [1, aspect]
     for angle in rng.uniform(0, 2 * np.pi, 5):
         cosine, sine = np.cos(angle), np.sin(angle)
-        turned = part("islands").upright(points @ np.array([[cosine, sine], [-sine, cosine]]))
+        turned = part("surfaces.islands").upright(points @ np.array([[cosine, sine], [-sine, cosine]]))
         np.testing.assert_allclose(np.ptp(turned, axis=0), [aspect, 1], rtol=3e-3)
         sides = np.linalg.norm(np.diff(points, axis=0), axis=1)
         np.testing.assert_allclose(np.linalg.norm(np.diff(turned, axis=0), axis=1), sides)
@@ -123,7 +123,7 @@ def test_upright_finds_the_smallest_box(aspect):
 def test_upright_is_quick():
     points = np.random.default_rng(5).standard_normal((300_000, 2))
     started = time.perf_counter()
-    part("islands").upright(points)
+    part("surfaces.islands").upright(points)
     assert time.perf_counter() - started < 2
 
 
@@ -168,7 +168,7 @@ def operator_properties():
 
 
 def test_choosing_a_preset_sets_the_slider():
-    properties, solver = operator_properties(), part("solver")
+    properties, solver = operator_properties(), part("bridge.solver")
     for name in (*PRESETS, *reversed(PRESETS)):
         properties.angle_preset = name
         assert properties.angle_preset == name
@@ -225,18 +225,18 @@ def test_scripts_may_name_a_preset(name):
 
     operator(angle_preset="SOFT")
     by_name = written()
-    operator(angle_weight=part("solver").PRESETS["SOFT"])
+    operator(angle_weight=part("bridge.solver").PRESETS["SOFT"])
     assert (written() == by_name).all()
-    operator(angle_weight=part("solver").PRESETS["SOFT"], angle_preset="CUSTOM")
+    operator(angle_weight=part("bridge.solver").PRESETS["SOFT"], angle_preset="CUSTOM")
     assert (written() == by_name).all()
-    operator(angle_weight=part("solver").PRESETS["SOFT"], angle_preset="EVEN")
+    operator(angle_weight=part("bridge.solver").PRESETS["SOFT"], angle_preset="EVEN")
     assert (written() == by_name).all()
     operator()
     assert (written() != by_name).any()
 
 
 def test_the_slider_spans_the_useful_weights():
-    solver = part("solver")
+    solver = part("bridge.solver")
     assert solver.weight(0) == 0
     assert solver.weight(solver.PRESETS["EVEN"]) == pytest.approx(0.001, rel=1e-6)
     assert solver.weight(solver.PRESETS["BALANCED"]) == pytest.approx(0.03, rel=0.01)

@@ -291,7 +291,7 @@ def test_cancelling_changes_nothing():
     before = meshes.uv(obj)
     job = importlib.import_module(f"{conftest.MODULE}.jobs.fix_flips").job(bpy.context).start()
     job.cancel()
-    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.job").Cancelled):
+    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.jobs.job").Cancelled):
         job.apply()
     assert (meshes.uv(obj) == before).all()
 

@@ -47,7 +47,7 @@ def test_cancelled_job_writes_nothing():
     time.sleep(0.1)
     started = time.perf_counter()
     job.cancel()
-    with pytest.raises(part("job").Cancelled):
+    with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert time.perf_counter() - started < 2
     assert [layer.name for layer in obj.data.uv_layers] == ["Old"]
@@ -55,7 +55,7 @@ def test_cancelled_job_writes_nothing():
 
 
 def test_progress_rises_to_the_end():
-    surface, bridge = part("mesh_io").read(meshes.suzanne()), part("bridge")
+    surface, bridge = part("blender.meshes").read(meshes.suzanne()), part("bridge")
     seen = []
     bridge.unwrap([surface], bridge.UnwrapSettings(), lambda fraction, message: seen.append(fraction) or True)
     assert len(seen) > 10 and seen == sorted(seen) and seen[0] >= 0 and seen[-1] <= 1
@@ -73,7 +73,7 @@ def test_job_works_on_another_thread_and_finishes_on_this_one():
         threads.append(threading.current_thread())
         return result + 1
 
-    job = part("job").Job(work, finish)
+    job = part("jobs.job").Job(work, finish)
     assert job.execute() == 2
     assert threads[0] is not threads[1] is threading.current_thread()
     assert job.poll() == (False, 0.5, "half")
@@ -84,7 +84,7 @@ def test_job_raises_what_the_work_raised():
         raise ValueError("why")
 
     with pytest.raises(ValueError, match="why"):
-        part("job").Job(work).execute()
+        part("jobs.job").Job(work).execute()
 
 
 def test_failing_packer_changes_nothing(monkeypatch):
@@ -173,7 +173,7 @@ def test_island_that_falls_short_is_named(status, is_uneven, text, monkeypatch, 
 
 @pytest.mark.parametrize("method", ["SCALED", "ADD", "FRACTION"])
 def test_packing_is_quick_and_keeps_margins(method):
-    packing, shapes = part("packing"), part("islands")
+    packing, shapes = part("blender.packing"), part("surfaces.islands")
     angle = np.linspace(0, 2 * np.pi, 100)
     disk = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     sizes = np.random.default_rng(4).uniform(0.02, 0.2, 30)
@@ -193,7 +193,7 @@ def test_packing_is_quick_and_keeps_margins(method):
 
 def test_boxes_enclose():
     points = np.random.default_rng(3).normal(size=(500, 2)) * [3, 1]
-    box = part("islands").box(points)
+    box = part("surfaces.islands").box(points)
     assert (box[0] == points.min(axis=0)).all() and (box[2] == points.max(axis=0)).all()
 
 

@@ -25,22 +25,22 @@ def perspective(eye=(0, 0, 10), lens=1.5):
     projection = [[lens, 0, 0, 0], [0, lens * aspect, 0, 0], [0, 0, *depth], [0, 0, -1, 0]]
     away = np.eye(4)
     away[:3, 3] = -np.array(eye, float)
-    return part("landmark_picking").View(np.array(projection, float) @ away, WIDTH, HEIGHT)
+    return part("landmarks.picking").View(np.array(projection, float) @ away, WIDTH, HEIGHT)
 
 
 def orthographic(size=3.0):
     aspect = WIDTH / HEIGHT
     matrix = np.diag([1 / size, aspect / size, -1e-2, 1.0])
-    return part("landmark_picking").View(matrix, WIDTH, HEIGHT)
+    return part("landmarks.picking").View(matrix, WIDTH, HEIGHT)
 
 
 def surface(obj):
-    seen = part("vertex_points").surface(obj, bpy.context.evaluated_depsgraph_get())
-    return part("landmark_picking").Surface(*seen, obj.matrix_world)
+    seen = part("blender.vertex_positions").surface(obj, bpy.context.evaluated_depsgraph_get())
+    return part("landmarks.picking").Surface(*seen, obj.matrix_world)
 
 
 def pick(surfaces, view, pixel, **options):
-    return part("landmark_picking").pick(surfaces, view, pixel, **options)
+    return part("landmarks.picking").pick(surfaces, view, pixel, **options)
 
 
 @pytest.mark.parametrize("view", [perspective, orthographic])
@@ -149,7 +149,7 @@ class Session:
 
     def close(self):
         self.module._view_under = self.seen
-        part("markers").hints.clear()
+        part("overlay.points").hints.clear()
 
     def _report(self, kinds, text):
         self.said.append(text)
@@ -173,7 +173,7 @@ class Session:
         return self.send("LEFTMOUSE", self.at(obj, vertex))
 
     def listed(self):
-        return [pair[1:] for pair in part("landmarks").pairs(self.source)]
+        return [pair[1:] for pair in part("landmarks.points").pairs(self.source)]
 
 
 @pytest.fixture
@@ -226,10 +226,10 @@ def test_a_vertex_is_not_picked_twice(session):
 
 def test_hovering_shows_the_vertex(session):
     assert session.send("MOUSEMOVE", session.at(session.target, 12)) == {"PASS_THROUGH"}
-    ((name, vertex, *_),) = part("markers").shown(bpy.context)
+    ((name, vertex, *_),) = part("overlay.points").shown(bpy.context)
     assert (name, vertex) == ("Head B", 12)
     session.send("MOUSEMOVE", (2.0, 2.0))
-    assert part("markers").hints == []
+    assert part("overlay.points").hints == []
 
 
 def test_navigation_and_panels_are_left_to_blender(session):
@@ -246,4 +246,4 @@ def test_a_deleted_object_ends_it(session, lost):
     bpy.data.objects.remove(getattr(session, lost))
     bpy.context.view_layer.update()
     assert session.send("MOUSEMOVE", (400, 300)) == {"CANCELLED"}
-    assert "have changed" in session.said[0] and part("markers").hints == []
+    assert "have changed" in session.said[0] and part("overlay.points").hints == []

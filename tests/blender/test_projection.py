@@ -20,7 +20,7 @@ def part(name):
 
 
 def project(*arguments, **options):
-    return part("projection").project(*arguments, **options)
+    return part("sphere_layout.projection").project(*arguments, **options)
 
 
 def small_triangles(count=2000, size=1e-4):
@@ -40,7 +40,7 @@ def uneven_sphere(subdivisions=4, seed=3):
 
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_places_keep_areas(name):
-    layout, triangles = part("layouts").LAYOUTS[name], small_triangles()
+    layout, triangles = part("sphere_layout.layouts").LAYOUTS[name], small_triangles()
     places = layout.places(triangles.reshape(-1, 3)).reshape(-1, 3, 2)
     whole = (np.ptp(places[..., 0], axis=1) < 1) & (np.ptp(places[..., 1], axis=1) < 1)
     ratios = meshes.uv_areas(places[whole]) / (layout.scale * spheres.areas(triangles[whole]))
@@ -50,7 +50,7 @@ def test_places_keep_areas(name):
 
 
 def test_octahedral_square():
-    places = part("layouts").Octahedral.places
+    places = part("sphere_layout.layouts").Octahedral.places
     points = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0.6, 0.64, -0.48]], float)
     np.testing.assert_allclose(places(points)[:5], [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1]], atol=1e-15)
     assert (places(points)[5] > 0).all() and places(points)[5].sum() > 1
@@ -192,7 +192,7 @@ def test_cube_of_quads(name):
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_tetrahedron_is_refused(name):
     vertices, faces = meshes.tetrahedron()
-    projection = part("projection")
+    projection = part("sphere_layout.projection")
     with pytest.raises(projection.CannotProject) as refusal:
         project(spheres.unit(vertices.astype(float)), faces, layout=name)
     assert 0 < refusal.value.count <= 4
@@ -234,7 +234,7 @@ def test_vertices_that_may_not_move_are_at_no_pole():
 
 
 def test_twist_keeps_areas_and_fixed_points():
-    twist, triangles = part("twist").twist, small_triangles()
+    twist, triangles = part("sphere_layout.twist").twist, small_triangles()
     start, goal = spheres.unit(np.array([[1, 0.05, 0.08], [1, 0, 0]]))
     fixed = np.array([[0.0, 1, 0], [0, -1, 0], [-1, 0, 0]])
     moved = twist(triangles.reshape(-1, 3), start, goal, fixed).reshape(-1, 3, 3)
@@ -247,18 +247,22 @@ def test_twist_keeps_areas_and_fixed_points():
 
 
 def test_untangling_unfolds_and_leaves_the_rest():
-    layouts, charts, untangle = part("layouts"), part("charts"), part("untangle")
+    layouts, charts, untangle = (
+        part("sphere_layout.layouts"),
+        part("sphere_layout.charts"),
+        part("sphere_layout.untangle"),
+    )
     vertices, faces = spheres.icosphere(3, turned=11)
     for name in LAYOUTS:
         layout = layouts.LAYOUTS[name]
-        placed = part("projection")._Mesh(
+        placed = part("sphere_layout.projection")._Mesh(
             vertices,
             faces,
             np.arange(len(faces)),
             spheres.areas(vertices[faces]),
             np.ones(len(vertices), bool),
         )
-        assert part("projection")._place_singular_points(placed, layout, 0)
+        assert part("sphere_layout.projection")._place_singular_points(placed, layout, 0)
         chart = charts.develop(layout, placed.points, faces, placed.polygons)
         inner = np.flatnonzero(np.abs(placed.points[:, 2] - 0.5) < 0.1)[::7]
         before = chart.uv()
@@ -272,7 +276,7 @@ def test_untangling_unfolds_and_leaves_the_rest():
 
 
 def test_map_of_an_inside_out_surface_lies_over_it():
-    spherical = part("spherical")
+    spherical = part("surfaces.spherical")
     vertices, faces = spheres.icosphere(3)
     surface = vertices * [1, 2, 3] + [5, 6, 7]
     # Outward-oriented for faces that look inwards, so that it is turned inside out, and somehow rotated.
@@ -292,4 +296,4 @@ def test_a_sphere_of_a_cortex(name):
         key = next(key for key in file if key in ("F", "faces"))
         vertices, faces = spheres.unit(file["V_sphere"].astype(float)), file[key]
     uv = project(vertices, faces, layout=name)
-    assert len(part("untangle").folded(uv)) == 0
+    assert len(part("sphere_layout.untangle").folded(uv)) == 0

@@ -117,7 +117,7 @@ def test_another_surface(capfd):
     tree = BVHTree.FromObject(target, bpy.context.evaluated_depsgraph_get())
     extent = pairs.size(pairs.positions(target))
     assert max(tree.find_nearest(Vector(point))[3] for point in goal) < 1e-5 * extent
-    for number, landmark in enumerate(part("landmarks").pairs(source)):
+    for number, landmark in enumerate(part("landmarks.points").pairs(source)):
         missed = goal[landmark.source_vertex] - pairs.positions(target)[landmark.target_vertex]
         assert np.linalg.norm(missed) < 5e-3 * extent
         error = source.authalic_landmarks[number].error
@@ -209,7 +209,7 @@ def test_n_gons():
 
 def curve_points(obj):
     """(frame, value) of the key frames of the morph."""
-    curves = [curve for found in part("animation")._curves(obj.data.shape_keys) for curve in found]
+    curves = [curve for found in part("blender.animation")._curves(obj.data.shape_keys) for curve in found]
     assert [curve.data_path for curve in curves] == [f'key_blocks["{KEY}"].value']
     return [tuple(point.co) for point in curves[0].keyframe_points]
 
@@ -235,7 +235,7 @@ def test_animation_of_other_keys_stays():
     other = source.shape_key_add(name="Other")
     other.keyframe_insert("value", frame=5)
     register(animate=True)
-    curves = [curve for found in part("animation")._curves(source.data.shape_keys) for curve in found]
+    curves = [curve for found in part("blender.animation")._curves(source.data.shape_keys) for curve in found]
     assert [curve.data_path for curve in curves] == [
         'key_blocks["Other"].value',
         f'key_blocks["{KEY}"].value',
@@ -366,13 +366,13 @@ def test_flattened_object():
 def test_too_few_landmarks(make, count, pattern):
     source, _ = make()
     while len(source.authalic_landmarks) > count:
-        part("landmarks").remove(source, 0)
+        part("landmarks.points").remove(source, 0)
     refusal(pattern)
 
 
 def test_landmark_on_the_boundary():
     source, _ = sheets()
-    part("landmarks").add(source, 3, 40, "Rim")
+    part("landmarks.points").add(source, 3, 40, "Rim")
     refusal('Landmark "Rim" is on the boundary of Sheet, which becomes a circle; pick a vertex inside')
 
 
@@ -428,7 +428,7 @@ def test_shared_mesh(capfd):
 
 
 def test_worst_pairs_are_named():
-    one = part("registering").Registered(
+    one = part("registration.points").Registered(
         *[None] * 6,
         names=list("ABCDE"),
         errors=np.array([0.01, 0.02, 0.004, 0.011, 0.0105]),
@@ -456,7 +456,7 @@ def test_the_larger_energy_is_reported():
 
     sheets()
     sides = part("jobs.register").chosen(bpy.context).sides
-    figures = part("registering").registered
+    figures = part("registration.points").registered
     assert figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"]).energy == 0.25
     Native.target_distortion = Figures(0.5, [3])
     found = figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"])
@@ -498,7 +498,7 @@ def test_cancelled_writes_nothing():
     registration = part("jobs.register")
     job = registration.job(bpy.context, registration.Settings()).start()
     job.cancel()
-    with pytest.raises(part("job").Cancelled):
+    with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert source.data.shape_keys is None
 
@@ -530,7 +530,7 @@ def test_changed_meanwhile(change):
         meshes.select(target)
         meshes.subdivided(target, 1)
     else:
-        part("landmarks").remove(source, 0)
+        part("landmarks.points").remove(source, 0)
     with pytest.raises(registration.CannotRegister, match="changed meanwhile; nothing was written"):
         job.apply()
     assert source.data.shape_keys is None
@@ -545,7 +545,7 @@ def test_progress_rises_and_says_what_it_does():
         seen.append((fraction, message))
         return True
 
-    registration.registration(couple, part("registering").Settings(weight=2.0), listen)
+    registration.registration(couple, part("registration.points").Settings(weight=2.0), listen)
     fractions = [fraction for fraction, _ in seen]
     assert len(seen) > 3 and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1
 

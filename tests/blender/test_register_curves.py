@@ -96,7 +96,7 @@ def test_another_surface(capfd):
     said = capfd.readouterr().out
     goal = pairs.moved(pairs.positions(source, KEY), target.matrix_world.inverted())
     extent = pairs.size(pairs.positions(target))
-    for curve in part("landmark_curves").pairs(source):
+    for curve in part("landmarks.curves").pairs(source):
         ends = goal[list(curve.source.vertices)]
         line = pairs.positions(target)[list(curve.target.vertices)]
         assert from_polyline(ends, line).max() < 1e-5 * extent
@@ -140,7 +140,7 @@ def test_align_and_animate():
 
 def test_points_are_not_needed_and_do_not_count():
     source, _ = balls()
-    part("landmarks").add(source, 5, 7)
+    part("landmarks.points").add(source, 5, 7)
     assert register() == {"FINISHED"}
     assert source.authalic_landmarks[0].error == -1
     with pytest.raises(RuntimeError, match="needs at least two landmark pairs"):
@@ -183,7 +183,7 @@ def layer(target):
 def test_transfers_go_by_the_method_of_the_last_registration(capfd, tmp_path):
     source, target = balls()
     for vertex in (5, 50):
-        part("landmarks").add(source, vertex, vertex)
+        part("landmarks.points").add(source, vertex, vertex)
     register()
     layer(target)
     path = str(tmp_path / "saved.blend")
@@ -220,7 +220,7 @@ def test_there_must_be_a_curve_or_a_boundary():
 
 def test_broken_curves_are_named():
     source, _ = balls(count=2)
-    path = part("landmark_curves").pairs(source)[1].target.vertices
+    path = part("landmarks.curves").pairs(source)[1].target.vertices
     twin = source.authalic_target
     meshes.edit(twin)
     bpy.ops.mesh.select_all(action="DESELECT")
@@ -279,7 +279,7 @@ def test_messages_of_the_library_name_curves_and_vertices():
     curves = [("Brow", (), ()), ("Jaw", (), ()), ("Ear", (), ())]
 
     def said(text):
-        return part("curve_registering").in_words(text, sides, curves)
+        return part("registration.curves").in_words(text, sides, curves)
 
     assert said("source_curves: curves 0 and 2 meet at vertex 7: shorten one") == (
         'Icosphere: curves "Brow" and "Ear" meet at vertex 7: shorten one'
@@ -305,7 +305,7 @@ def test_opposite_normals_of_open_surfaces_are_told(capfd):
         register()
     said = capfd.readouterr().out
     assert "(Mesh > Normals > Flip)" in said.split("the other way round")[0]
-    assert pairs.part("curve_registering").is_open(part("jobs.register").chosen(bpy.context).sides[0])
+    assert pairs.part("registration.curves").is_open(part("jobs.register").chosen(bpy.context).sides[0])
     assert source.authalic_target == target
 
 
@@ -333,12 +333,12 @@ def test_stopped(end):
     """Enter keeps what there is; where nothing is yet, it is an error, and neither writes half a morph."""
     source, _ = balls()
     registration = part("jobs.register")
-    settings = registration.Settings(part("registering").Settings(method="CURVES"))
+    settings = registration.Settings(part("registration.points").Settings(method="CURVES"))
     job = registration.job(bpy.context, settings).start()
     getattr(job, end)()
     try:
         report = job.apply()
-    except (part("job").Cancelled, registration.CannotRegister):
+    except (part("jobs.job").Cancelled, registration.CannotRegister):
         assert source.data.shape_keys is None
     else:
         assert end == "end_early" and report.registered.folds == 0
@@ -347,10 +347,10 @@ def test_stopped(end):
 def test_curves_that_changed_meanwhile():
     source, _ = balls()
     registration = part("jobs.register")
-    settings = registration.Settings(part("registering").Settings(method="CURVES"))
+    settings = registration.Settings(part("registration.points").Settings(method="CURVES"))
     job = registration.job(bpy.context, settings).start()
     job._thread.join()
-    part("landmark_curves").remove(source, 0)
+    part("landmarks.curves").remove(source, 0)
     with pytest.raises(registration.CannotRegister, match="changed meanwhile; nothing was written"):
         job.apply()
     assert source.data.shape_keys is None
@@ -365,6 +365,6 @@ def test_progress_rises():
         seen.append(fraction)
         return True
 
-    settings = part("registering").Settings(method="CURVES")
+    settings = part("registration.points").Settings(method="CURVES")
     registration.registration(registration.chosen(bpy.context), settings, listen)
     assert len(seen) > 3 and seen == sorted(seen) and 0 <= seen[0] <= seen[-1] <= 1

@@ -346,7 +346,7 @@ def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch
     if kind == "colour attribute":
         add_colours(target, "Col", "FLOAT_COLOR", "POINT")
         before = add_colours(source, "Col", "BYTE_COLOR", "CORNER")
-    cargo = part("cargo")
+    cargo = part("blender.layers")
     really = cargo._added
 
     def elsewhere(layers, item, **options):
@@ -386,7 +386,7 @@ def test_the_registration_is_used_again(monkeypatch):
     assert not made
     only("uv_maps", angle_weight=0.4)
     assert [settings.angle_weight for settings in made] == [pytest.approx(0.4)]
-    part("landmarks").remove(source, 0)
+    part("landmarks.points").remove(source, 0)
     only("uv_maps")
     assert len(made) == 2 and made[1].angle_weight == 0
 
@@ -394,7 +394,7 @@ def test_the_registration_is_used_again(monkeypatch):
 def test_problems_are_those_of_registration():
     source, target = copies()
     random_uv(target, "Map")
-    part("landmarks").clear(source)
+    part("landmarks.points").clear(source)
     with pytest.raises(RuntimeError, match="Sheet needs a landmark pair"):
         transfer(method="POINTS")
     source.authalic_target = None
@@ -408,7 +408,7 @@ def test_cancelled_writes_nothing():
     random_uv(target, "Map")
     job = part("jobs.transfer").job(bpy.context, part("jobs.transfer").Settings()).start()
     job.cancel()
-    with pytest.raises(part("job").Cancelled):
+    with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert not source.data.uv_layers
 

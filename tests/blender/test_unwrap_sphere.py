@@ -278,7 +278,7 @@ def test_cancelling():
     unwrap_job = importlib.import_module(f"{conftest.MODULE}.jobs.unwrap")
     job = unwrap_job.job(bpy.context, unwrap_job.Settings()).start()
     job.cancel()
-    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.job").Cancelled):
+    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.jobs.job").Cancelled):
         job.apply()
     assert (meshes.uv(obj) == before).all()
 
@@ -292,7 +292,9 @@ def real_meshes():
 def test_real_meshes(name, monkeypatch):
     with np.load(DATA / "sphere" / f"{name}.npz") as file:
         vertices, faces = file["V"], file["F"]
-    bridge, mesh_io = (importlib.import_module(f"{conftest.MODULE}.{part}") for part in ("bridge", "mesh_io"))
+    bridge, mesh_io = (
+        importlib.import_module(f"{conftest.MODULE}.{part}") for part in ("bridge", "blender.meshes")
+    )
     surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
     bridge_map, cache, last = bridge._sphere_map, {}, []
 

@@ -89,7 +89,7 @@ def mode(name):
 
 
 def curves():
-    found = part("landmark_curves").pairs(bpy.data.objects[A])
+    found = part("landmarks.curves").pairs(bpy.data.objects[A])
     return [(bool(one.source.vertices), bool(one.target.vertices), one.problem) for one in found]
 
 

@@ -54,7 +54,7 @@ def at(name, vertex):
 
 
 def pairs():
-    return [pair[1:] for pair in part("landmarks").pairs(bpy.data.objects[A])]
+    return [pair[1:] for pair in part("landmarks.points").pairs(bpy.data.objects[A])]
 
 
 def running():
@@ -62,7 +62,7 @@ def running():
 
 
 def hints():
-    return [marker[:2] for marker in part("markers").hints]
+    return [marker[:2] for marker in part("overlay.points").hints]
 
 
 def delete_first_vertex():

@@ -19,6 +19,8 @@
 //!
 //! Rooms and their order are described in `ARCHITECTURE.md`.
 
+mod alignment;
+mod codomain;
 mod control;
 mod disk;
 mod distortion;
@@ -26,8 +28,10 @@ pub mod embedding;
 pub mod energy;
 mod error;
 pub mod hyperbolic;
+mod location;
 pub mod mesh;
 pub mod optimize;
+mod options;
 mod parallel;
 pub mod registration;
 pub mod sparse;

@@ -2,7 +2,7 @@
 //! Bindings of `authalic::sphere_map`.
 
 use authalic::mesh::TriangleMesh;
-use authalic::optimize::gradient_descent::LineSearch;
+use authalic::optimize::published::gradient_descent::LineSearch;
 use authalic::{SphereMapOptions, SphereMethod};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;

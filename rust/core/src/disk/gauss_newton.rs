@@ -9,22 +9,22 @@
 //!
 //! Cost: about five factorisations of the interior vertices with one unknown each, about fifteen with two.
 
-use super::domain::DiskDomain;
-use super::fixed_point::fixed_point;
-use super::run::Run;
+use super::published::fixed_point::fixed_point;
+use super::published::objective::DiskDomain;
+use super::published::run::Run;
 use super::{Boundary, DiskMapOptions, certificate, start, unfold};
+use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::embedding::{Stop, progressive_disk};
 use crate::energy::authalic::Codomain;
-use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::Vector;
 use crate::mesh::renumbering::Renumbered;
-use crate::optimize::angle_schedule::AnglePath;
-use crate::optimize::area_tolerance::within_tolerance;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even};
-use crate::optimize::{Stopping, floors};
+use crate::optimize::gauss_newton::angle_schedule::AnglePath;
+use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even, target_floors};
+use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
 
 /// Fixed-point steps at the most.
@@ -107,8 +107,8 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(super::Map, Status), Error> {
         // 1. Targets of slivers raised to a floor
-        let floor = floors::floors(self.targets)[0];
-        let energy = floors::energy(self.mesh, self.targets, Codomain::Disk, floor);
+        let floor = target_floors::floors(self.targets)[0];
+        let energy = target_floors::energy(self.mesh, self.targets, Codomain::Disk, floor);
         let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
         // 2. The quick start; what folds is unfolded by an unguarded descent
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
@@ -268,12 +268,13 @@ impl Run<'_> {
         }
         let options = GaussNewtonOptions { path, ..self.gauss_newton_options() };
         let begun = map.clone();
-        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Disk };
+        let surface =
+            target_floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Disk };
         let (problem, map, status) = match self.options.area_tolerance {
             Some(tolerance) => {
                 within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
             }
-            None => floors::descend(&surface, problem, map, &options, history, observer),
+            None => target_floors::descend(&surface, problem, map, &options, history, observer),
         };
         match certificate::is_bijective(self.mesh, &flat(&map)) {
             true => (problem, map, status),

@@ -12,13 +12,11 @@
 
 mod boundary;
 mod certificate;
-mod domain;
-mod fixed_point;
 mod free;
 mod gauss_newton;
 mod holes;
+mod published;
 mod rectangle;
-mod run;
 mod start;
 pub(crate) mod unfold;
 
@@ -28,11 +26,11 @@ use crate::control::{History, Observer, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::optimize::{check_angle_weight, check_area_tolerance};
+use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
 
 pub(crate) use holes::closed;
-use run::Run;
+use published::run::Run;
 
 /// A map of the vertices into the plane.
 type Map = Vec<[f64; 2]>;

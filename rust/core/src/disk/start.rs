@@ -5,7 +5,7 @@
 //! L_S(id)) or with uniform ones. Tutte's map to a convex boundary is an embedding for every disk (Tutte
 //! 1963; Floater 2003).
 
-use super::domain::DiskDomain;
+use super::published::objective::DiskDomain;
 use super::{Map, boundary};
 use crate::control::Watch;
 use crate::error::Error;

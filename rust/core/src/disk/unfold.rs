@@ -62,7 +62,7 @@ fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[u32]) -> Option<Vec<[f64;
 mod tests {
     use super::*;
     use crate::Boundary;
-    use crate::disk::domain::DiskDomain;
+    use crate::disk::published::objective::DiskDomain;
     use crate::disk::start;
 
     /// A square grid of n × n vertices.

@@ -4,6 +4,7 @@
 //! [`progressive_sphere`] and [`progressive_disk`] build a map up vertex by vertex, [`relaxed`] moves its
 //! vertices one at a time. None of them ever folds a face, whatever the shape.
 
+mod decimation;
 mod kernel;
 mod progressive;
 mod star;

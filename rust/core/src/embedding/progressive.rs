@@ -13,12 +13,12 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::decimation::{Collapse, Decimation};
 use super::kernel::kernel_centroid;
 use super::star::{Star, angle};
+use crate::codomain::motion::{Motion, rotated};
 use crate::control::{Observer, Phase, Status};
-use crate::energy::motion::{Motion, rotated};
 use crate::mesh::TriangleMesh;
-use crate::mesh::decimation::{Collapse, Decimation};
 use crate::mesh::geometry::{Vector, distance};
 
 /// λ, the weight of the shape in the energy.

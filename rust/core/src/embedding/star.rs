@@ -13,7 +13,7 @@
 //!
 //! Cost: about a hundred operations for each face and step.
 
-use crate::energy::motion::{Frame, Motion};
+use crate::codomain::motion::{Frame, Motion};
 use crate::mesh::geometry::{Vector, add, cross, dot, scaled, sub};
 
 /// D counts as positive where it is larger than this times the size of the products it is made of; their
@@ -230,7 +230,7 @@ fn arc_energy(x: Vector, [(before, share), (behind, other)]: [(Vector, f64); 2])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::motion::rotated;
+    use crate::codomain::motion::rotated;
     use crate::mesh::geometry::norm;
 
     /// A polygon around the vertex at x: on the sphere and in the plane closed, on the circle a fan.

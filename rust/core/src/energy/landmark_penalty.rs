@@ -5,7 +5,7 @@
 //! indefinite: on the sphere that is a landmark more than a quarter turn away from its place.
 
 use super::authalic::{AuthalicEnergy, Element};
-use super::motion::Frame;
+use crate::codomain::motion::Frame;
 use crate::mesh::geometry::{Vector, distance, dot, scaled, sub};
 
 /// Vertices that are wanted at places.
@@ -72,8 +72,8 @@ impl LandmarkPenalty {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codomain::motion::{Motion, frames};
     use crate::energy::authalic::Codomain;
-    use crate::energy::motion::{Motion, frames};
     use crate::mesh::TriangleMesh;
     use crate::mesh::geometry::norm;
 

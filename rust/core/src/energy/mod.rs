@@ -4,7 +4,6 @@
 pub(crate) mod authalic;
 pub(crate) mod landmark_penalty;
 pub(crate) mod mean_value;
-pub(crate) mod motion;
 mod psd;
 pub mod spatial;
 pub mod stretch;

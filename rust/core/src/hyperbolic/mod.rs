@@ -21,32 +21,10 @@
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and pairs of [`Curves`]. Cost: some twenty sparse
 //! factorisations.
 
-mod advice;
-mod arcs;
-mod atlas;
-mod certificates;
-mod chain;
-mod curves;
-mod cutting;
-mod delaunay;
 mod features;
-mod flat;
-mod fuchsian;
 mod harmonic;
-mod heat;
-mod initial;
-mod inverse;
-mod isotopy;
-mod layout;
 mod metric;
 pub mod moebius;
-mod pants;
-mod paths;
-mod piece;
-mod pieces;
-mod placement;
-mod polyline;
-mod regions;
 mod register;
 #[cfg(test)]
 mod sample_meshes;
@@ -54,19 +32,18 @@ mod slice;
 mod structure;
 #[cfg(test)]
 mod tests;
-mod trace;
-mod track;
+mod warnings;
 
 use crate::error::Error;
 use crate::mesh::geometry::Vector;
 
-pub use certificates::Certificates;
-pub use curves::Curves;
-pub use fuchsian::CoverCopy;
-pub use harmonic::Descent;
+pub use features::curves::Curves;
+pub use harmonic::certificates::Certificates;
+pub use harmonic::newton::Descent;
 pub use metric::{FlowOptions, FlowRecord, Metric, MetricMethod};
-pub use pants::Pants;
 pub use register::{CurveRegistration, register_hyperbolic};
+pub use structure::fuchsian::CoverCopy;
+pub use structure::pants::Pants;
 pub use structure::{HyperbolicStructure, hyperbolic_structure};
 
 /// How the harmonic energy is minimised.

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registration by landmark curves, the whole pipeline (Shi et al. 2013, algorithm 1).
 
-use super::advice::warnings;
-use super::certificates::{Certificates, PieceCertificates};
-use super::features::Piece;
-use super::harmonic::Descent;
-use super::isotopy::Isotopy;
+use super::features::piece::Piece;
+use super::features::pieces::pieces;
+use super::features::placement::{Placement, placed};
+use super::features::regions::divided;
+use super::harmonic::certificates::{Certificates, PieceCertificates};
+use super::harmonic::newton::Descent;
+use super::harmonic::piece_map::{PieceMap, map_piece};
 use super::metric::Metric;
-use super::piece::{PieceMap, map_piece};
-use super::pieces::pieces;
-use super::placement::{Placement, placed};
-use super::regions::divided;
+use super::slice::isotopy::Isotopy;
 use super::slice::{Sliced, SlicedPair, slice_pair};
+use super::warnings::warnings;
 use super::{Curves, HyperbolicOptions, Solver};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
 use crate::error::{Elements, Error};
+use crate::location::{Location, Locator};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub, triangle};
 use crate::parallel;
-use crate::registration::{Location, Locator, Registration, SphereRegistration, inside_out};
+use crate::registration::{Registration, SphereRegistration, inside_out};
 use crate::sphere::SphereMap;
 
 /// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.

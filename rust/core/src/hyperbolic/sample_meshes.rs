@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::polyline::unit;
+use super::features::parameters::unit;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, dot, triangle};
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stages between metric and certificates, each by its own mathematics, on slit spheres.
 
-use super::atlas::{Atlas, Random};
-use super::certificates::{certify, signed_area};
-use super::delaunay::{Net, Weighted, delaunay};
-use super::features::Piece;
-use super::harmonic::{ChartMap, newton};
-use super::heat::diffuse;
-use super::initial::{initial_map, segment};
-use super::inverse::inverse;
+use super::features::piece::Piece;
+use super::features::pieces::pieces;
+use super::features::placement::placed;
+use super::features::regions::divided;
+use super::harmonic::atlas::{Atlas, Random};
+use super::harmonic::certificates::{certify, signed_area};
+use super::harmonic::delaunay::{Net, Weighted, delaunay};
+use super::harmonic::heat::diffuse;
+use super::harmonic::initial::{initial_map, segment};
+use super::harmonic::inverse::inverse;
+use super::harmonic::newton::{ChartMap, newton};
+use super::harmonic::piece_map::sliced_points;
 use super::metric::{Metric, MetricMethod, hyperbolic_metric};
 use super::moebius::{Complex, Moebius, distance};
-use super::piece::sliced_points;
-use super::pieces::pieces;
-use super::placement::placed;
-use super::regions::divided;
 use super::sample_meshes::{mesh, path, sphere};
 use super::slice::{NONE, Sliced, SlicedPair, slice_pair};
 use super::{Curves, moebius};
@@ -44,7 +44,7 @@ fn slit_spheres(level: u32) -> SlicedPair {
     let watch = Watch::new(&mut silent, 0.0, "");
     let placement = placed([&source, &target], &divided, None, &watch).unwrap();
     let pieces: Vec<(Piece, Piece)> = pieces(&source, &target, &divided, &placement);
-    let isotopy = super::isotopy::Isotopy::between(&pieces[0].0, &pieces[0].1, &watch);
+    let isotopy = super::slice::isotopy::Isotopy::between(&pieces[0].0, &pieces[0].1, &watch);
     let carry = |line: &[Vector]| isotopy.as_ref().map(|isotopy| isotopy.carry(line));
     slice_pair(&pieces[0].0, &pieces[0].1, &carry, &watch).unwrap()
 }
@@ -226,7 +226,7 @@ fn newton_finds_an_embedding_and_the_same_one_from_anywhere() {
 #[test]
 fn heat_lowers_the_energy_at_every_step() {
     with_map(3, |sliced, ours, mut map| {
-        let areas = super::piece::vertex_areas(&sliced.source, ours);
+        let areas = super::harmonic::piece_map::vertex_areas(&sliced.source, ours);
         let descent = diffuse(&mut map, &areas, 50, 0.0, &mut Silent);
         assert_eq!((descent.status, descent.energies.len()), (Status::MaxIterations, 51));
         assert!(descent.energies.windows(2).all(|pair| pair[1] < pair[0]));
@@ -244,7 +244,7 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
             let location = location.unwrap();
             assert!(location.barycentric.iter().all(|&weight| (0.0..=1.0).contains(&weight)));
             let face = location.triangle as usize;
-            let images = super::certificates::image(&map, &map.input, face);
+            let images = super::harmonic::certificates::image(&map, &map.input, face);
             let first = map.input.faces[face][0] as usize;
             // the same point of the hyperboloid from the images of the corners
             let weighted = |k: usize| scaled(moebius::to_hyperboloid(images[k]), location.barycentric[k]);

@@ -3,8 +3,8 @@
 //!
 //! Cost: linear.
 
-use super::certificates::Certificates;
-use super::placement::Placement;
+use super::features::placement::Placement;
+use super::harmonic::certificates::Certificates;
 use crate::distortion::Distortion;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, area_vector, dot, norm, triangle};

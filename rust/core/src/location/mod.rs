@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Point location: the triangle of a map in which a point lies, and where in it.
 //!
-//! Maps live in space as in [`motion`](crate::energy::motion): in the plane z = 1, or on the sphere around
+//! Maps live in space as in [`motion`](crate::codomain::motion): in the plane z = 1, or on the sphere around
 //! the origin. A point x lies in the triangle (a, b, c) where det(a, b, x), det(b, c, x) and det(c, a, x) are
 //! not negative, decided by exact predicates, so that no point falls between two triangles. The same three
 //! determinants are its barycentric coordinates up to a factor: on the sphere those of its central projection
@@ -193,4 +193,4 @@ fn nearest_on_edges(corners: [Vector; 3], x: Vector) -> (f64, [f64; 3]) {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

@@ -5,10 +5,10 @@ use super::*;
 use crate::control::Silent;
 
 /// Positions and faces.
-pub(in crate::registration) type Map = (Vec<Vector>, Vec<[u32; 3]>);
+pub(crate) type Map = (Vec<Vector>, Vec<[u32; 3]>);
 
 /// Numbers in [-1, 1) without order.
-pub(in crate::registration) fn number(i: usize) -> f64 {
+pub(crate) fn number(i: usize) -> f64 {
     let mixed = (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
@@ -23,7 +23,7 @@ fn random_direction(i: usize) -> Vector {
 }
 
 /// The octahedron, each face halved along all edges some times, on the sphere.
-pub(in crate::registration) fn octasphere(level: usize) -> Map {
+pub(crate) fn octasphere(level: usize) -> Map {
     let mut points =
         vec![[1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
     let upper = (0..4u32).map(|i| [i, (i + 1) % 4, 4]);
@@ -60,7 +60,7 @@ fn spindle(n: u32) -> Map {
 }
 
 /// Rings of the unit disk around its centre, `6 j` points in ring j.
-pub(in crate::registration) fn rings(n: u32) -> Map {
+pub(crate) fn rings(n: u32) -> Map {
     let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
     let mut points = vec![[0., 0., 1.]];
     let mut faces = Vec::new();

@@ -6,7 +6,6 @@
 
 pub(crate) mod bisection;
 mod cut;
-pub(crate) mod decimation;
 pub mod geometry;
 pub mod orientation;
 pub(crate) mod polygon;

@@ -5,9 +5,8 @@
 //! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which leaves the
 //! faces next to it their areas too.
 
-use super::carry::Carrying;
+use super::landmark_descent::Carrying;
 use super::landmarks::{Domain, best_turn};
-use super::location::Locator;
 use super::{
     DiskRegistration, Landmarks, MISSED, Registration, RegistrationOptions, located, missed, verdict,
 };
@@ -15,6 +14,7 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, disk_map};
 use crate::distortion::{Image, distortion, folded_in_plane};
 use crate::error::Error;
+use crate::location::Locator;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, distance};
 

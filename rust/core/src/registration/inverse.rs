@@ -4,10 +4,10 @@
 //! Cost: one point location per vertex of the target.
 
 use super::Registration;
-use super::location::Locator;
 use crate::control::{Observer, Watch};
 use crate::distortion::Image;
 use crate::error::Error;
+use crate::location::Locator;
 use crate::mesh::geometry::Vector;
 
 /// A point of the disk or of the sphere.

@@ -13,18 +13,17 @@
 use super::RegistrationOptions;
 use super::flow::flow;
 use super::landmarks::Domain;
+use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::energy::authalic::Codomain;
 use crate::energy::landmark_penalty::LandmarkPenalty;
-use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::renumbering::Renumbered;
-use crate::optimize::angle_schedule::AnglePath;
-use crate::optimize::floors;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
+use crate::optimize::gauss_newton::angle_schedule::AnglePath;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize, target_floors};
 use crate::sparse::{Order, elimination_order};
 use crate::{disk, sphere};
 
@@ -135,8 +134,8 @@ impl Carrying<'_> {
     /// The energy of the surface's maps, with the penalty on its landmarks.
     fn problem(&self, by_order: &Renumbered) -> Result<Problem, Error> {
         let mesh = &by_order.mesh;
-        let floor = floors::floors(mesh.face_areas())[0];
-        let energy = floors::energy(mesh, mesh.face_areas(), self.codomain(), floor);
+        let floor = target_floors::floors(mesh.face_areas())[0];
+        let energy = target_floors::energy(mesh, mesh.face_areas(), self.codomain(), floor);
         let mut place_of = vec![0u32; mesh.n_vertices()];
         by_order.vertices.iter().enumerate().for_each(|(new, &given)| place_of[given as usize] = new as u32);
         let landmarks = self.landmarks.iter().map(|&vertex| place_of[vertex]).collect();
@@ -237,14 +236,15 @@ impl Carrying<'_> {
         observer: &mut dyn Observer,
     ) -> (Problem, Map, Status) {
         problem.penalty.weight = goals.weight;
-        let surface = floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
+        let surface = target_floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
         let (mut no_nearer, mut status) = (0, Status::MaxIterations);
         for stage in 0..STAGES {
             let before = farthest(&problem, &map);
             let options = descent(goals, if stage == 0 { FIRST } else { LATER });
             let from = 1.0 - 0.5f64.powi(stage as i32);
             let mut phase = Phase { whole: observer, from, to: 0.5 * (1.0 + from) };
-            (problem, map, status) = floors::descend(&surface, problem, map, &options, history, &mut phase);
+            (problem, map, status) =
+                target_floors::descend(&surface, problem, map, &options, history, &mut phase);
             let now = farthest(&problem, &map);
             // a λ that weighs less than what it works against says nothing yet
             let is_weighty = problem.penalty.weight >= 1.0 + goals.angle_weight;

@@ -5,7 +5,7 @@ use super::RegistrationOptions;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::Vector;
-use crate::optimize::check_angle_weight;
+use crate::options::check_angle_weight;
 
 /// Pairs of vertices, one on the source and one on the target, that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,7 +106,7 @@ pub(super) fn best_turn(from: &[Vector], to: &[Vector]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::motion::rotated;
+    use crate::codomain::motion::rotated;
 
     fn square() -> TriangleMesh {
         let vertices = [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [1., 1., 0.], [1.2, 1., 0.]];

@@ -9,12 +9,11 @@
 //! Input: two [`TriangleMesh`]es that are both disks or both spheres, and pairs of [`Landmarks`]. Cost: the
 //! two maps, and about as much again for carrying the landmarks.
 
-mod carry;
 mod disk;
 mod flow;
 mod inverse;
+mod landmark_descent;
 mod landmarks;
-mod location;
 mod morph;
 mod sphere;
 mod transfer;
@@ -28,12 +27,12 @@ use crate::mesh::geometry::{Vector, distance, triangle};
 use crate::parallel;
 use crate::sphere::SphereMap;
 
-pub(crate) use location::Locator;
+use crate::location::Locator;
 
+pub use crate::location::Location;
 pub use disk::register_disks;
 pub use inverse::DomainPoint;
 pub use landmarks::Landmarks;
-pub use location::Location;
 pub use morph::{Similarity, area_ratios, compare, homotopy, similarity};
 pub(crate) use sphere::inside_out;
 pub use sphere::register_spheres;

@@ -2,8 +2,8 @@
 //! What a registration is for, and how good it is: the morph along it, the similarity that keeps a morph in place, area
 //! ratios, and the agreement of data on both surfaces.
 
+use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::mesh::geometry::{Vector, add, dot, face_areas, normalized, scaled, sub};
-use crate::optimize::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
 
 /// A motion of space with a change of scale: x ↦ s R x + b.
@@ -116,8 +116,8 @@ pub fn compare(source: &[f64], pulled: &[f64], weights: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::alignment::rotation::rotation_of;
     use crate::mesh::geometry::distance;
-    use crate::optimize::rotation::rotation_of;
 
     /// Numbers in [-1, 1) without order.
     fn number(i: usize) -> f64 {

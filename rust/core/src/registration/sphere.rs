@@ -6,18 +6,18 @@
 //! h₁ move both landmarks of a pair to the middle between them, so that either surface is moved half the way
 //! only.
 
-use super::carry::Carrying;
+use super::landmark_descent::Carrying;
 use super::landmarks::Domain;
-use super::location::Locator;
 use super::{
     Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict, worst,
 };
+use crate::alignment::rotation::{best_rotation, rotate};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Image, distortion, folded_on_sphere};
 use crate::error::Error;
+use crate::location::Locator;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, area_vector, distance, dot, norm, scaled, triangle};
-use crate::optimize::rotation::{best_rotation, rotate};
 use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
 

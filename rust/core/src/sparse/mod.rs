@@ -3,14 +3,14 @@
 
 mod cholesky;
 mod dirichlet;
-mod factor;
+mod faer;
 mod laplacian;
 mod multifrontal;
 
+pub use self::faer::solve_general;
+pub(crate) use self::faer::{solve_positive_definite, top_eigenvector};
 pub use cholesky::Cholesky;
 pub(crate) use dirichlet::solve_dirichlet;
-pub use factor::solve_general;
-pub(crate) use factor::{solve_positive_definite, top_eigenvector};
 pub use laplacian::Laplacian;
 #[cfg(test)]
 pub(crate) use multifrontal::processor;

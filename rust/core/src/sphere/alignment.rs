@@ -6,10 +6,10 @@
 //! the surface's measure w.
 
 use super::Map;
+use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::distortion::folded_on_sphere;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{norm, scaled, sub};
-use crate::optimize::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
 
 /// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation

@@ -10,23 +10,22 @@
 
 use std::f64::consts::PI;
 
-use super::domain::SphereDomain;
-use super::fixed_point::{FixedPointStopping, fixed_point};
-use super::run::Run;
+use super::published::fixed_point::{FixedPointStopping, fixed_point};
+use super::published::objective::SphereDomain;
+use super::published::run::Run;
 use super::{Map, SphereMapOptions, normalized, start, unfold};
+use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::authalic::Codomain;
-use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::geometry::{cross, dot, triangle};
 use crate::mesh::renumbering::Renumbered;
-use crate::optimize::angle_schedule::AnglePath;
-use crate::optimize::area_tolerance::within_tolerance;
-use crate::optimize::floors;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even};
+use crate::optimize::gauss_newton::angle_schedule::AnglePath;
+use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, target_floors};
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
 
@@ -96,8 +95,8 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
         // 1. Targets of slivers raised to a floor
-        let floor = floors::floors(self.targets)[0];
-        let energy = floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
+        let floor = target_floors::floors(self.targets)[0];
+        let energy = target_floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
         let problem = Problem::new(energy, vec![Motion::Sphere; self.mesh.n_vertices()], Order::AsGiven)?;
         // 2. A start without folds
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
@@ -207,12 +206,13 @@ impl Run<'_> {
             until_open: None,
         };
         let begun = map.clone();
-        let surface = floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Sphere };
+        let surface =
+            target_floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Sphere };
         let (problem, map, status) = match self.options.area_tolerance {
             Some(tolerance) => {
                 within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
             }
-            None => floors::descend(&surface, problem, map, &options, history, observer),
+            None => target_floors::descend(&surface, problem, map, &options, history, observer),
         };
         match self.is_bijective(&map) {
             true => (problem, map, status),

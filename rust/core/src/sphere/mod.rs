@@ -11,11 +11,9 @@
 //! factorisation of all vertices, about ten of six tenths of them, and one gradient per iteration.
 
 mod alignment;
-mod domain;
-mod fixed_point;
 mod gauss_newton;
+mod published;
 mod refinement;
-mod run;
 mod start;
 mod stereographic;
 pub(crate) mod unfold;
@@ -27,13 +25,13 @@ use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, area_vector, dot, norm, scaled, triangle};
-use crate::optimize::gradient_descent::LineSearch;
-use crate::optimize::{check_angle_weight, check_area_tolerance};
+use crate::optimize::published::gradient_descent::LineSearch;
+use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
 
+use published::run::Run;
 pub use refinement::Refinement;
 use refinement::refine;
-use run::Run;
 pub(crate) use start::rough_conformal;
 
 /// The part of the whole that the map takes before faces are split.

@@ -14,8 +14,8 @@
 
 use std::f64::consts::PI;
 
-use super::domain::SphereDomain;
-use super::run::{Run, energy_share};
+use super::published::objective::SphereDomain;
+use super::published::run::{Run, energy_share};
 use super::{Map, SphereMapOptions, normalized, vertex_weights};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The optimisers on a domain whose minimum is known: they are generic, so any domain will do.
 
-use authalic::optimize::gradient_descent::{self, DescentOptions, LineSearch};
-use authalic::optimize::nonlinear_cg::{CgOptions, minimize};
-use authalic::optimize::{Domain, Energies, Stopping};
+use authalic::optimize::published::gradient_descent::{self, DescentOptions, LineSearch};
+use authalic::optimize::published::nonlinear_cg::{CgOptions, minimize};
+use authalic::optimize::published::{Domain, Energies, Stopping};
 use authalic::{History, Silent, Status};
 
 /// ½ xᵀ A x − bᵀ x with A = tridiag(−1, 2 + i, −1), preconditioned by its diagonal or not at all.

@@ -17,7 +17,7 @@ mod energy;
 mod lscm;
 mod starts;
 
-use super::run::Run;
+use super::published::run::Run;
 use super::{Boundary, DiskMapOptions, Map, certificate, holes};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::error::Error;

@@ -9,11 +9,11 @@
 //!
 //! Cost of one iteration: one numeric Cholesky factorisation of the interior and two solves.
 
-use super::Map;
-use super::domain::DiskDomain;
+use super::objective::DiskDomain;
 use crate::control::{History, Observer, Status, Watch};
+use crate::disk::Map;
 use crate::error::Error;
-use crate::optimize::{Domain, Stopping};
+use crate::optimize::published::{Domain, Stopping};
 use crate::parallel;
 
 const MESSAGE: &str = "Fixed-point iteration";
@@ -22,7 +22,7 @@ const MESSAGE: &str = "Fixed-point iteration";
 const HALVINGS: i32 = 20;
 
 /// Iterates from `start` and returns the map of lowest energy.
-pub(super) fn fixed_point(
+pub(crate) fn fixed_point(
     domain: &mut DiskDomain<'_>,
     start: Map,
     stopping: &Stopping,

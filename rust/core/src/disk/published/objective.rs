@@ -9,14 +9,14 @@
 
 use std::f64::consts::PI;
 
-use super::boundary::{self, ArcBarrier};
-use super::{Boundary, Map, certificate};
 use crate::control::Watch;
+use crate::disk::boundary::ArcBarrier;
+use crate::disk::{Boundary, Map, boundary, certificate};
 use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::optimize::{Domain, Energies};
+use crate::optimize::published::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
@@ -44,7 +44,7 @@ struct SlidingBoundary {
 
 /// Maps of one mesh to the unit disk.
 #[derive(Debug)]
-pub(super) struct DiskDomain<'a> {
+pub(crate) struct DiskDomain<'a> {
     mesh: &'a TriangleMesh,
     energy: StretchEnergy<'a>,
     interior: Block,
@@ -58,7 +58,7 @@ pub(super) struct DiskDomain<'a> {
 
 impl<'a> DiskDomain<'a> {
     /// Analyses the systems of the domain; the preconditioner must be set before it is used.
-    pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
+    pub(crate) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
         let interior = Block::analyse(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
             Boundary::ArcLength | Boundary::Free | Boundary::Rectangle => None,
@@ -72,7 +72,7 @@ impl<'a> DiskDomain<'a> {
     }
 
     /// Solves L_II f_I = −L_IB f_B in place for one weight per corner, the boundary held.
-    pub(super) fn solve_dirichlet(
+    pub(crate) fn solve_dirichlet(
         &mut self,
         weights: &[f64],
         map: &mut [[f64; 2]],

@@ -4,14 +4,14 @@
 //! First the papers' method as published, which may fold; then, only where it did or nearly did, unfolding and a descent
 //! behind a barrier; last of all the same descent from Tutte's embedding.
 
-use super::domain::DiskDomain;
 use super::fixed_point::fixed_point;
-use super::{DiskMapOptions, Map, Method, certificate, start, unfold};
+use super::objective::DiskDomain;
 use crate::control::{History, Observer, Phase, Status, Watch};
+use crate::disk::{DiskMapOptions, Map, Method, certificate, start, unfold};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::optimize::nonlinear_cg::{CgOptions, minimize};
-use crate::optimize::{Domain as _, Stopping};
+use crate::optimize::published::nonlinear_cg::{CgOptions, minimize};
+use crate::optimize::published::{Domain as _, Stopping};
 
 /// Fixed-point steps before the conjugate gradients, the paper's 5.
 const FIXED_POINT_STEPS: usize = 5;
@@ -23,7 +23,7 @@ const MESSAGE: &str = "Minimising the stretch energy";
 
 /// One computation on a surface with one boundary loop.
 #[derive(Clone, Copy)]
-pub(super) struct Run<'a> {
+pub(crate) struct Run<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub options: &'a DiskMapOptions<'a>,
@@ -33,7 +33,7 @@ pub(super) struct Run<'a> {
 
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -165,7 +165,7 @@ impl Run<'_> {
     }
 
     /// The face itself, or for one that fills a hole the given face at its edge of the hole.
-    pub(super) fn given_face(&self, face: usize) -> usize {
+    pub(crate) fn given_face(&self, face: usize) -> usize {
         // the third corner of a fan's face is its apex, which faces the edge
         let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);
         if face < self.n_given_faces { face } else { beside() }

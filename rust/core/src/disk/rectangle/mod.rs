@@ -18,22 +18,22 @@ mod corners;
 
 use std::f64::consts::PI;
 
-use super::domain::DiskDomain;
-use super::fixed_point::fixed_point;
-use super::run::Run;
+use super::published::fixed_point::fixed_point;
+use super::published::objective::DiskDomain;
+use super::published::run::Run;
 use super::{Boundary, DiskMapOptions, certificate, unfold};
+use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::energy::authalic::{AuthalicEnergy, Codomain};
-use crate::energy::motion::Motion;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, corner_cotangents};
 use crate::mesh::renumbering::Renumbered;
-use crate::optimize::angle_schedule::AnglePath;
-use crate::optimize::area_tolerance::within_tolerance;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize};
-use crate::optimize::{Stopping, floors};
+use crate::optimize::gauss_newton::angle_schedule::AnglePath;
+use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
+use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
 use corners::Outline;
 
@@ -246,8 +246,8 @@ impl Rectangle<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(Map, Status), Error> {
-        let floor = floors::floors(self.run.targets)[0];
-        let energy = floors::energy(self.run.mesh, self.run.targets, Codomain::Plane, floor);
+        let floor = target_floors::floors(self.run.targets)[0];
+        let energy = target_floors::energy(self.run.mesh, self.run.targets, Codomain::Plane, floor);
         let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
         // 1. A map without folds
         let boundary = self.boundary(aspect, corners, outline);
@@ -260,8 +260,11 @@ impl Rectangle<'_> {
         // 2. A guarded descent, the aspect, and so on
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let begun = history.iterations();
-        let surface =
-            floors::Surface { mesh: self.run.mesh, targets: self.run.targets, codomain: Codomain::Plane };
+        let surface = target_floors::Surface {
+            mesh: self.run.mesh,
+            targets: self.run.targets,
+            codomain: Codomain::Plane,
+        };
         if let Some(tolerance) = self.run.options.area_tolerance {
             let options = self.options();
             let (problem, map, status) =
@@ -270,7 +273,7 @@ impl Rectangle<'_> {
             return Ok((self.with_best_aspect(&problem, &map, 1.0).0, status));
         }
         let (problem, map, status) =
-            floors::descend(&surface, problem, map, &self.options(), history, &mut phase);
+            target_floors::descend(&surface, problem, map, &self.options(), history, &mut phase);
         let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
         Ok(self.settled(&problem, map, status, begun, history, &mut phase))
     }

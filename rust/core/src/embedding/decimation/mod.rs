@@ -15,10 +15,10 @@
 
 mod coarsen;
 
-use super::TriangleMesh;
-use super::geometry::{area, triangle};
-use super::ties::tie_breakers;
-use super::topology::{next_corner, previous_corner};
+use crate::mesh::TriangleMesh;
+use crate::mesh::geometry::{area, triangle};
+use crate::mesh::ties::tie_breakers;
+use crate::mesh::topology::{next_corner, previous_corner};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]

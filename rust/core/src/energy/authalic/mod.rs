@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The energy of the guarded Gauss–Newton method: area ratios behind a barrier, with a share of angle distortion.
 //!
-//! One formula for both domains (see [`motion`](super::motion)). For a face with corners x_i, N = (x_j − x_i) × (x_k −
+//! One formula for both domains (see [`motion`](crate::codomain::motion)). For a face with corners x_i, N = (x_j − x_i) × (x_k −
 //! x_i), image area a = |N|/2, D = det(x_i, x_j, x_k), target T, ρ = a/T, and Q = ½ Σ cot_c |opposite edge|² with the
 //! cotangents of the rest triangle:
 //!
@@ -19,8 +19,8 @@
 //! what vanishes with ψ′ and with m − 1, and turning a face costs nothing. Where those do not vanish, the exact Hessian,
 //! or a part of the way to it, leads to a stationary point in far fewer iterations; it may be indefinite.
 
-use super::motion::Frame;
 use super::stretch::Profile;
+use crate::codomain::motion::Frame;
 use crate::mesh::geometry::{Vector, add, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
 use crate::mesh::{TriangleMesh, VertexCorners};
 use crate::parallel;
@@ -543,7 +543,7 @@ pub(crate) fn rest_cotangents(corners: [Vector; 3], flattest: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::motion::{Motion, frames};
+    use crate::codomain::motion::{Motion, frames};
 
     const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
     const COMPOSITE: Hessian = Hessian { damping: 0.0, least: 0.0, curvature: 0.0 };

@@ -25,7 +25,7 @@ pub struct Curves<'a> {
 
 /// A checked pair of curves.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct CurvePair {
+pub(crate) struct CurvePair {
     /// The vertices on the source, each once.
     pub source: Vec<u32>,
     /// The vertices on the target, each once.
@@ -40,7 +40,7 @@ pub(super) struct CurvePair {
 
 /// Where on a closed curve an edge lies that is not part of the curve as given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gap {
+pub(crate) enum Gap {
     /// From the last vertex to the first.
     AtEnd,
     /// From the first vertex to the second.
@@ -72,7 +72,7 @@ impl Curves<'_> {
     /// genus 0; other numbers of curves or boundary loops on the target; no curves on closed surfaces; curves
     /// that are too short, leave the mesh or its edges, meet themselves, each other or the boundary, unless
     /// they run along a whole loop of it; pairs of which one is closed only or on the boundary only.
-    pub(super) fn check(
+    pub(crate) fn check(
         &self,
         source: &TriangleMesh,
         target: &TriangleMesh,
@@ -133,7 +133,7 @@ fn checked(ours: &Side<'_>, theirs: &Side<'_>) -> Result<Vec<CurvePair>, Error> 
 }
 
 /// The same for curves of one surface, each its own partner.
-pub(super) fn check_alone(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
+pub(crate) fn check_alone(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
     mesh.require_genus_zero()?;
     let side = Side { name: "curves", mesh, curves };
     checked(&side, &side)

@@ -26,7 +26,7 @@ pub(super) fn shares(points: impl Iterator<Item = Vector>) -> Vec<f64> {
 }
 
 /// The point of the unit sphere at parameter `s` of a polyline on it, of which every point has its parameter.
-pub(super) fn on_sphere(places: &[Vector], parameters: &[f64], s: f64) -> Vector {
+pub(crate) fn on_sphere(places: &[Vector], parameters: &[f64], s: f64) -> Vector {
     let after = parameters.partition_point(|&at| at < s).clamp(1, parameters.len() - 1);
     let [low, high] = [parameters[after - 1], parameters[after]];
     let t = ((s - low) / (high - low)).clamp(0.0, 1.0);
@@ -40,12 +40,12 @@ pub(super) fn nearest(parameters: &[f64], [first, last]: [usize; 2], s: f64) -> 
 }
 
 /// The length of a polyline on the unit sphere, by chords.
-pub(super) fn length(places: &[Vector]) -> f64 {
+pub(crate) fn length(places: &[Vector]) -> f64 {
     places.windows(2).map(|ends| distance(ends[0], ends[1])).sum()
 }
 
 /// A vector made a unit one; zero stays zero.
-pub(super) fn unit(x: Vector) -> Vector {
+pub(crate) fn unit(x: Vector) -> Vector {
     match norm(x) {
         0.0 => x,
         length => scaled(x, 1.0 / length),

@@ -5,7 +5,7 @@ use crate::mesh::geometry::Vector;
 
 /// One bank of a feature: vertices from its start to its end, with their parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bank {
+pub(crate) struct Bank {
     /// At least two vertices of the piece.
     pub vertices: Vec<u32>,
     /// As many parameters, strictly increasing from 0 to 1.
@@ -14,7 +14,7 @@ pub(super) struct Bank {
 
 /// A slit along a landmark curve, or a boundary loop with a start and an end vertex on it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Feature {
+pub(crate) struct Feature {
     /// From start to end with the surface on the left of travel.
     pub left: Bank,
     /// From start to end with the surface on the right of travel: of a slit the same vertices, of a loop the
@@ -26,17 +26,17 @@ pub(super) struct Feature {
 
 impl Feature {
     /// The same feature from its end to its start.
-    pub(super) fn reversed(&self) -> Self {
+    pub(crate) fn reversed(&self) -> Self {
         Self { left: self.right.reversed(), right: self.left.reversed(), is_loop: self.is_loop }
     }
 
     /// The first vertex.
-    pub(super) fn start(&self) -> u32 {
+    pub(crate) fn start(&self) -> u32 {
         self.left.vertices[0]
     }
 
     /// The last vertex.
-    pub(super) fn end(&self) -> u32 {
+    pub(crate) fn end(&self) -> u32 {
         self.left.vertices[self.left.vertices.len() - 1]
     }
 }
@@ -51,7 +51,7 @@ impl Bank {
 
 /// A connected part of a surface of genus 0 with its features, those of source and target in the same order.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// (n, 3).
     pub points: Vec<Vector>,
     /// (m, 3), oriented.

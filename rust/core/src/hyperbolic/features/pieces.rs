@@ -8,16 +8,16 @@
 //! Input: divided and placed surfaces. Cost: linear.
 
 use super::curves::{CurvePair, Gap};
-use super::features::{Bank, Feature, Piece};
+use super::parameters::{nearest, shares};
+use super::piece::{Bank, Feature, Piece};
 use super::placement::Placement;
-use super::polyline::{nearest, shares};
 use super::regions::{Divided, Regions};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::Vector;
 
 /// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
 /// same order: curves as given, then other boundary loops.
-pub(super) fn pieces(
+pub(crate) fn pieces(
     source: &TriangleMesh,
     target: &TriangleMesh,
     divided: &Divided,

@@ -10,14 +10,14 @@
 //! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorisations.
 
 use super::curves::CurvePair;
-use super::polyline::{on_sphere, shares, unit};
+use super::parameters::{on_sphere, shares, unit};
 use super::regions::Divided;
+use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::control::Watch;
 use crate::disk::closed;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
-use crate::optimize::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
 use crate::sphere::{rough_conformal, vertex_weights};
 
@@ -45,7 +45,7 @@ type Rotation = [Vector; 3];
 
 /// Both surfaces on the unit sphere.
 #[derive(Debug, Clone)]
-pub(super) struct Placement {
+pub(crate) struct Placement {
     /// (n, 3): the source's vertices, rotated over the target's.
     pub source: Vec<Vector>,
     /// (m, 3): the target's vertices.
@@ -80,7 +80,7 @@ struct Samples {
 /// [`Error::InvalidArray`] and [`Error::NoDirection`] where `spheres` are no positions,
 /// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
 /// watch.
-pub(super) fn placed(
+pub(crate) fn placed(
     meshes: [&TriangleMesh; 2],
     divided: &Divided,
     spheres: Option<[&[Vector]; 2]>,

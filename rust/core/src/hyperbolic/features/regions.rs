@@ -24,7 +24,7 @@ const OUTVOTES: f64 = 0.2;
 
 /// The regions of one surface.
 #[derive(Debug, Clone)]
-pub(super) struct Regions {
+pub(crate) struct Regions {
     /// (m,): the region of each face, numbered by their lowest faces.
     pub of_face: Vec<u32>,
     /// How many there are.
@@ -42,7 +42,7 @@ pub(super) struct Regions {
 
 /// Both surfaces divided, with closed curves of the target turned like their partners.
 #[derive(Debug, Clone)]
-pub(super) struct Divided {
+pub(crate) struct Divided {
     /// The pairs; sides of both agree.
     pub pairs: Vec<CurvePair>,
     /// The regions of the source.
@@ -57,7 +57,7 @@ pub(super) struct Divided {
 ///
 /// # Errors
 /// [`Error::CurveSides`] and [`Error::LoopSides`] where sides of a closed curve cannot belong together.
-pub(super) fn divided(
+pub(crate) fn divided(
     source: &TriangleMesh,
     target: &TriangleMesh,
     mut pairs: Vec<CurvePair>,

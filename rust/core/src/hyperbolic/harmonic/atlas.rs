@@ -7,9 +7,11 @@
 //!
 //! Input: the faces of a surface with the lengths and angles of a hyperbolic [`Metric`]. Cost: O(m).
 
-use super::metric::Metric;
-use super::moebius::{Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid};
-use super::slice::{NONE, Opened};
+use crate::hyperbolic::metric::Metric;
+use crate::hyperbolic::moebius::{
+    Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
+};
+use crate::hyperbolic::slice::{NONE, Opened};
 use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
 use crate::parallel;
 
@@ -24,7 +26,7 @@ const MOST_STEPS: usize = 100_000;
 
 /// Charts of all faces of a surface.
 #[derive(Debug, Clone)]
-pub(super) struct Atlas<'a> {
+pub(crate) struct Atlas<'a> {
     /// (m, 3): the corners of each face in its chart, counter-clockwise.
     pub charts: Vec<[Complex; 3]>,
     /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity
@@ -37,7 +39,7 @@ pub(super) struct Atlas<'a> {
 
 /// Where a walk has ended.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Walk {
+pub(crate) struct Walk {
     /// The face.
     pub face: u32,
     /// The point in its chart.
@@ -50,7 +52,7 @@ pub(super) struct Walk {
 
 impl<'a> Atlas<'a> {
     /// The charts of `surface` with a metric.
-    pub(super) fn new(surface: &'a Opened, metric: &Metric) -> Self {
+    pub(crate) fn new(surface: &'a Opened, metric: &Metric) -> Self {
         let opposite = &surface.opposite[..];
         let charts =
             parallel::map(surface.faces.len(), |face| chart(metric.lengths[face], metric.angles[face]));
@@ -67,7 +69,7 @@ impl<'a> Atlas<'a> {
     }
 
     /// Walks from a place in the chart of `face` to the face that contains it.
-    pub(super) fn walk(&self, face: u32, x: Complex) -> Walk {
+    pub(crate) fn walk(&self, face: u32, x: Complex) -> Walk {
         let mut walk = Walk { face, x, motion: Moebius::default(), is_outside: false };
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         for step in 0..MOST_STEPS {
@@ -109,7 +111,7 @@ impl<'a> Atlas<'a> {
     ///
     /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map
     /// that keeps circumcircles.
-    pub(super) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
+    pub(crate) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
         let (corners, mu) = (self.charts[face as usize], self.mu[face as usize]);
         let weighted = |k: usize| scaled(to_hyperboloid(corners[k]), barycentric[k] * mu[k]);
         from_hyperboloid(add(weighted(0), add(weighted(1), weighted(2))))
@@ -117,7 +119,7 @@ impl<'a> Atlas<'a> {
 
     /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not
     /// negative, 1 in sum.
-    pub(super) fn barycentric(&self, face: u32, x: Complex) -> [f64; 3] {
+    pub(crate) fn barycentric(&self, face: u32, x: Complex) -> [f64; 3] {
         let [a, b, c] = self.charts[face as usize].map(to_hyperboloid);
         let x = to_hyperboloid(x);
         let volumes = [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)];
@@ -154,10 +156,10 @@ fn chart(lengths: [f64; 3], angles: [f64; 3]) -> [Complex; 3] {
 
 /// Marsaglia's xorshift: the same turns in every run.
 #[derive(Debug, Clone)]
-pub(super) struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
-    pub(super) fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;

@@ -7,8 +7,8 @@
 use std::f64::consts::PI;
 
 use super::delaunay::Net;
-use super::harmonic::ChartMap;
-use super::moebius::{Complex, Moebius, orientation, seen_from};
+use super::newton::ChartMap;
+use crate::hyperbolic::moebius::{Complex, Moebius, orientation, seen_from};
 use crate::parallel;
 
 /// Figures that certify a registration by curves.
@@ -37,7 +37,7 @@ pub struct Certificates {
 
 /// The certificates of one piece, curves aside.
 #[derive(Debug, Clone, Default)]
-pub(super) struct PieceCertificates {
+pub(crate) struct PieceCertificates {
     /// Faces of the sliced source.
     pub folded: Vec<usize>,
     pub area: f64,
@@ -50,7 +50,7 @@ pub(super) struct PieceCertificates {
 }
 
 /// Certifies a map between hyperbolic surfaces of Euler characteristic `chi`.
-pub(super) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
+pub(crate) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
     let net = &map.input;
     let images = parallel::map(net.faces.len(), |face| image(map, net, face));
     let outside = |vertex: usize| map.atlas.walk(map.places.faces[vertex], map.places.positions[vertex]);
@@ -76,7 +76,7 @@ pub(super) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
 }
 
 /// The image of a face in the chart of its first vertex.
-pub(super) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] {
+pub(crate) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] {
     let x = net.faces[face].map(|vertex| map.places.positions[vertex as usize]);
     let [_, to_last, to_second] = [0, 1, 2].map(|k| net.transitions[3 * face + k]);
     // the edge opposite to corner 2 runs from vertex 0 to 1, that opposite to corner 1 from vertex 2 to 0
@@ -84,7 +84,7 @@ pub(super) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] 
 }
 
 /// The area of a geodesic triangle, negative where it is clockwise.
-pub(super) fn signed_area([a, b, c]: [Complex; 3]) -> f64 {
+pub(crate) fn signed_area([a, b, c]: [Complex; 3]) -> f64 {
     let (p, q) = (seen_from(a, b), seen_from(a, c));
     let product = p.conj() * q;
     2.0 * product.im.atan2(1.0 - product.re)

@@ -10,8 +10,8 @@
 //!
 //! Cost: O(m) flips in practice.
 
-use super::moebius::Moebius;
-use super::slice::{NONE, Opened};
+use crate::hyperbolic::moebius::Moebius;
+use crate::hyperbolic::slice::{NONE, Opened};
 
 /// An edge is flipped where its cotangents sum to less than minus this.
 const CONVEX: f64 = 1e-9;
@@ -25,7 +25,7 @@ const LEAST_AREA: f64 = 1e-3;
 
 /// A triangulation by half-edges: corner 3 f + k stands for the edge opposite to vertex k of face f.
 #[derive(Debug, Clone)]
-pub(super) struct Net {
+pub(crate) struct Net {
     /// (m, 3).
     pub faces: Vec<[u32; 3]>,
     /// (3 m,).
@@ -35,7 +35,7 @@ pub(super) struct Net {
 }
 
 /// A triangulation with one weight and one length for each corner's edge, the same from both sides.
-pub(super) struct Weighted {
+pub(crate) struct Weighted {
     pub net: Net,
     pub weights: Vec<f64>,
     pub lengths: Vec<f64>,
@@ -43,12 +43,12 @@ pub(super) struct Weighted {
 
 impl Net {
     /// The triangulation of `surface` itself.
-    pub(super) fn new(surface: &Opened, transitions: Vec<Moebius>) -> Self {
+    pub(crate) fn new(surface: &Opened, transitions: Vec<Moebius>) -> Self {
         Self { faces: surface.faces.clone(), opposite: surface.opposite.clone(), transitions }
     }
 
     /// The vertices between which the edge of a corner runs.
-    pub(super) fn ends(&self, corner: usize) -> [u32; 2] {
+    pub(crate) fn ends(&self, corner: usize) -> [u32; 2] {
         let face = self.faces[corner / 3];
         [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v)
     }
@@ -58,7 +58,7 @@ impl Net {
 /// returns it with one weight for each corner's edge, the same from both sides.
 ///
 /// Faces that are `kept` stay as they are: the weights of their edges are raised where they are not positive.
-pub(super) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Weighted {
+pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Weighted {
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
     // 1. Flip until no edge is left that should be

@@ -14,11 +14,11 @@ use std::f64::consts::PI;
 use super::certificates::PieceCertificates;
 use super::initial::{boundary_corners, segment};
 use super::layout::{Laplace, Planar, clamped_weights, lifted, planar_layout};
-use super::slice::{NONE, Sliced};
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error};
-use crate::registration::{Location, Locator};
+use crate::hyperbolic::slice::{NONE, Sliced};
+use crate::location::{Location, Locator};
 
 /// How many times a layout of a cylinder may wind around it beyond its own period.
 const WINDINGS: i32 = 8;

@@ -4,13 +4,13 @@
 //!
 //! Every image moves along the geodesic of minus its gradient over its area, all by the longest time step
 //! that is stable on the whole surface. The energy falls with every step. It takes thousands of steps for
-//! what [`newton`](super::harmonic::newton) does in four, and is there for comparison.
+//! what [`newton`](super::newton::newton) does in four, and is there for comparison.
 //!
 //! Cost: one pass over the edges per step.
 
-use super::harmonic::{ChartMap, Descent};
-use super::moebius::Complex;
+use super::newton::{ChartMap, Descent};
 use crate::control::{Observer, Status};
+use crate::hyperbolic::moebius::Complex;
 use crate::parallel;
 
 /// The part of the longest stable time step that is taken.
@@ -22,7 +22,7 @@ const BETWEEN_QUESTIONS: usize = 10;
 /// `tolerance`.
 ///
 /// `areas` (n,) are the vertices' shares of the source's hyperbolic area.
-pub(super) fn diffuse(
+pub(crate) fn diffuse(
     map: &mut ChartMap<'_>,
     areas: &[f64],
     max_steps: usize,

@@ -19,19 +19,19 @@ use robust::{Coord, orient2d};
 use super::atlas::{Atlas, Random};
 use super::delaunay::Net;
 use super::layout::{Planar, lifted, planar_layout};
-use super::moebius::{Complex, Moebius};
-use super::slice::{NONE, Opened, Sliced};
 use crate::control::Watch;
 use crate::error::Error;
+use crate::hyperbolic::moebius::{Complex, Moebius};
+use crate::hyperbolic::slice::{NONE, Opened, Sliced};
+use crate::location::{Location, Locator};
 use crate::parallel;
-use crate::registration::{Location, Locator};
 
 /// Walks give up after this many faces and search.
 const MOST_STEPS: usize = 10_000;
 
 /// The source's vertices on the target.
 #[derive(Debug, Clone)]
-pub(super) struct Places {
+pub(crate) struct Places {
     /// (n,): the face of the sliced target in whose chart each vertex of the sliced source is.
     pub faces: Vec<u32>,
     /// (n,): where in that chart.
@@ -44,7 +44,7 @@ pub(super) struct Places {
 ///
 /// # Errors
 /// [`Error::NoEmbedding`] where a disk has no planar layout in double precision, [`Error::CancelledEarly`].
-pub(super) fn initial_map(
+pub(crate) fn initial_map(
     source: &Sliced,
     target: &Sliced,
     atlas: &Atlas<'_>,
@@ -109,7 +109,7 @@ fn places_of_copies(
 
 /// The segment of ascending or descending parameters in which `s` lies, and where in it; of two the one of
 /// lower parameters, whichever way they run.
-pub(super) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
+pub(crate) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
     let n = parameters.len();
     let ascends = parameters[n - 1] > parameters[0];
     let last = n - 2;
@@ -122,7 +122,7 @@ pub(super) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
 }
 
 /// For each vertex of the boundary the corner opposite to the edge that leaves it with the disk on the left.
-pub(super) fn boundary_corners(disk: &Opened) -> Vec<u32> {
+pub(crate) fn boundary_corners(disk: &Opened) -> Vec<u32> {
     let mut corners = vec![NONE; disk.vertex_of.len()];
     for corner in (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NONE) {
         corners[disk.faces[corner / 3][(corner + 1) % 3] as usize] = corner as u32;

@@ -9,13 +9,13 @@
 //! Cost: some ten faces of the target for every face of the source.
 
 use super::certificates::image;
-use super::harmonic::ChartMap;
 use super::initial::{boundary_corners, segment};
-use super::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
-use super::slice::{NONE, Sliced};
+use super::newton::ChartMap;
+use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
+use crate::hyperbolic::slice::{NONE, Sliced};
+use crate::location::Location;
 use crate::mesh::geometry::{Vector, cross, dot};
 use crate::parallel;
-use crate::registration::Location;
 
 /// A vertex this far outside of an edge, in barycentric coordinates, may still belong to a face.
 const NEAR: f64 = 1e-9;
@@ -23,7 +23,7 @@ const NEAR: f64 = 1e-9;
 const MOST_COVERED: usize = 1_000_000;
 
 /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost it.
-pub(super) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> Vec<Option<Location>> {
+pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> Vec<Option<Location>> {
     let mut found = vec![None; target.surface.vertex_of.len()];
     // 1. Inside: what each face of the source covers; of several the one in which a vertex lies deepest
     let covered = parallel::map(map.input.faces.len(), |face| covered(map, target, face));

@@ -6,10 +6,10 @@
 //!
 //! Cost: one sparse Cholesky factorisation.
 
-use super::slice::{NONE, Opened, Sliced};
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error};
+use crate::hyperbolic::slice::{NONE, Opened, Sliced};
 use crate::mesh::geometry::{Vector, corner_cotangents};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};

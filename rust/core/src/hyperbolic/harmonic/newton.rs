@@ -16,10 +16,10 @@
 use super::atlas::{Atlas, Walk};
 use super::delaunay::{Net, Weighted, delaunay};
 use super::initial::Places;
-use super::moebius::{Complex, Moebius, exponential, seen_from};
-use super::slice::NONE;
 use crate::control::{Observer, Status, Watch};
 use crate::error::Error;
+use crate::hyperbolic::moebius::{Complex, Moebius, exponential, seen_from};
+use crate::hyperbolic::slice::NONE;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
@@ -40,7 +40,7 @@ const HALVINGS: i32 = 40;
 const SERIES: f64 = 1e-4;
 
 /// A map into the atlas of the target, by local charts.
-pub(super) struct ChartMap<'a> {
+pub(crate) struct ChartMap<'a> {
     /// The target.
     pub atlas: &'a Atlas<'a>,
     /// Where each vertex is.
@@ -83,7 +83,7 @@ struct Pull {
 /// # Errors
 /// [`Error::FactorizationFailed`] where the weights make the system singular in double precision;
 /// [`Error::CancelledEarly`].
-pub(super) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Result<Descent, Error> {
+pub(crate) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Result<Descent, Error> {
     let analysis = map.analysis()?;
     let mut factor = Factor::<f64>::new(&analysis);
     let mut energies = vec![map.energy()];
@@ -140,7 +140,7 @@ fn largest(values: &[Complex]) -> f64 {
 impl<'a> ChartMap<'a> {
     /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges
     /// are `lengths` long, but for the faces that are `kept`.
-    pub(super) fn by_delaunay(
+    pub(crate) fn by_delaunay(
         atlas: &'a Atlas<'a>,
         places: Places,
         input: Net,
@@ -164,12 +164,12 @@ impl<'a> ChartMap<'a> {
     }
 
     /// E at the present places.
-    pub(super) fn energy(&self) -> f64 {
+    pub(crate) fn energy(&self) -> f64 {
         self.energy_at(&self.places.positions)
     }
 
     /// E with every vertex elsewhere in its chart.
-    pub(super) fn energy_at(&self, positions: &[Complex]) -> f64 {
+    pub(crate) fn energy_at(&self, positions: &[Complex]) -> f64 {
         parallel::sum(self.edges.len(), |edge| {
             let pull = self.pull(self.edges[edge], positions);
             0.5 * pull.weight * pull.distance * pull.distance
@@ -211,7 +211,7 @@ impl<'a> ChartMap<'a> {
     }
 
     /// (n,): the gradient at the present places.
-    pub(super) fn gradient_now(&self) -> Vec<Complex> {
+    pub(crate) fn gradient_now(&self) -> Vec<Complex> {
         self.gradient(&self.pulls())
     }
 
@@ -258,7 +258,7 @@ impl<'a> ChartMap<'a> {
     }
 
     /// The positions after a move of every vertex along its geodesic.
-    pub(super) fn moved(&self, moves: &[Complex], part: f64) -> Vec<Complex> {
+    pub(crate) fn moved(&self, moves: &[Complex], part: f64) -> Vec<Complex> {
         let (positions, held) = (&self.places.positions, &self.places.held);
         parallel::map(positions.len(), |vertex| match held[vertex] {
             Some(_) => positions[vertex],
@@ -267,7 +267,7 @@ impl<'a> ChartMap<'a> {
     }
 
     /// Takes new positions in the present charts, and goes over to the charts of the faces in which they lie.
-    pub(super) fn recharted(&mut self, positions: Vec<Complex>) {
+    pub(crate) fn recharted(&mut self, positions: Vec<Complex>) {
         let (atlas, places) = (self.atlas, &self.places);
         let stays = |vertex: usize| Walk {
             face: places.faces[vertex],

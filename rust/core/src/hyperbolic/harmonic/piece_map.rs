@@ -6,22 +6,22 @@
 
 use super::atlas::Atlas;
 use super::certificates::{PieceCertificates, certify, folded_faces};
-use super::features::Piece;
 use super::flat::flat_map;
-use super::harmonic::{ChartMap, Descent, newton};
 use super::heat::diffuse;
 use super::initial::initial_map;
 use super::inverse::inverse;
-use super::metric::{Metric, hyperbolic_metric};
-use super::slice::{Sliced, SlicedPair};
-use super::{HyperbolicOptions, Solver};
+use super::newton::{ChartMap, Descent, newton};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
+use crate::hyperbolic::features::piece::Piece;
+use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
+use crate::hyperbolic::slice::{Sliced, SlicedPair};
+use crate::hyperbolic::{HyperbolicOptions, Solver};
+use crate::location::Location;
 use crate::mesh::geometry::Vector;
-use crate::registration::Location;
 
 /// A map between two sliced pieces.
-pub(super) struct PieceMap {
+pub(crate) struct PieceMap {
     /// For each vertex of the sliced source its place in the sliced target.
     pub locations: Vec<Location>,
     /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost
@@ -37,7 +37,7 @@ pub(super) struct PieceMap {
 ///
 /// # Errors
 /// What metric, layout and harmonic map fail with, and [`Error::CancelledEarly`].
-pub(super) fn map_piece(
+pub(crate) fn map_piece(
     pieces: [&Piece; 2],
     sliced: &SlicedPair,
     options: &HyperbolicOptions<'_>,
@@ -148,12 +148,12 @@ fn grow(is_near: &mut [bool], faces: &[[u32; 3]]) {
 }
 
 /// The points of the vertices of the sliced surface.
-pub(super) fn sliced_points(sliced: &Sliced) -> Vec<Vector> {
+pub(crate) fn sliced_points(sliced: &Sliced) -> Vec<Vector> {
     sliced.surface.vertex_of.iter().map(|&vertex| sliced.points[vertex as usize]).collect()
 }
 
 /// A third of the hyperbolic area of the faces at each vertex.
-pub(super) fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
+pub(crate) fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
     let mut areas = vec![0.0; sliced.surface.vertex_of.len()];
     for (face, angles) in sliced.surface.faces.iter().zip(&metric.angles) {
         let area = std::f64::consts::PI - angles.iter().sum::<f64>();

@@ -13,7 +13,7 @@
 use super::chain::Link;
 use super::cutting::{Cutting, Seam};
 use super::paths::{cheapest_path, lower_distances};
-use super::track::{Polyline, resampled};
+use super::polyline::{Polyline, resampled};
 use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::geometry::{Vector, distance};

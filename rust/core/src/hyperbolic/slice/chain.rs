@@ -10,7 +10,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::features::{Feature, Piece};
+use crate::hyperbolic::features::piece::{Feature, Piece};
 use crate::mesh::geometry::{Vector, distance};
 
 /// A link from the end of a feature to the start of the next.
@@ -90,7 +90,7 @@ fn gap(tips: &[Tips], (one, one_reversed): (usize, bool), (other, other_reversed
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hyperbolic::features::Bank;
+    use crate::hyperbolic::features::piece::Bank;
 
     /// Features of two vertices each, at the given angles along the equator.
     fn piece(angles: &[[f64; 2]]) -> Piece {

@@ -12,8 +12,8 @@
 //! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a
 //! vertex as many steps as it has neighbours.
 
-use super::features::Piece;
-use super::slice::Place;
+use super::Place;
+use crate::hyperbolic::features::piece::Piece;
 use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
 use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
 

@@ -10,11 +10,11 @@
 //! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k ≤ 400 or so points per
 //! step, and k for every point carried and step.
 
-use super::features::{Bank, Piece};
-use super::polyline::{length, on_sphere, unit};
+use crate::alignment::rotation::{best_rotation, rotate, rotation_of};
 use crate::control::Watch;
+use crate::hyperbolic::features::parameters::{length, on_sphere, unit};
+use crate::hyperbolic::features::piece::{Bank, Piece};
 use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled};
-use crate::optimize::rotation::{best_rotation, rotate, rotation_of};
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
 
@@ -37,7 +37,7 @@ const MOST_POINTS: f64 = 400.0;
 
 /// A motion of the sphere in small steps.
 #[derive(Debug, Clone)]
-pub(super) struct Isotopy {
+pub(crate) struct Isotopy {
     steps: Vec<Step>,
 }
 
@@ -50,7 +50,7 @@ struct Step {
 
 impl Isotopy {
     /// The motion that takes the features of `source` to those of `target`; `None` as [`Self::new`].
-    pub(super) fn between(source: &Piece, target: &Piece, watch: &Watch<'_>) -> Option<Self> {
+    pub(crate) fn between(source: &Piece, target: &Piece, watch: &Watch<'_>) -> Option<Self> {
         let [ours, theirs] = samples(source, target);
         Self::new(&ours, &theirs, watch)
     }
@@ -73,7 +73,7 @@ impl Isotopy {
     }
 
     /// Carries unit vectors along.
-    pub(super) fn carry(&self, points: &[Vector]) -> Vec<Vector> {
+    pub(crate) fn carry(&self, points: &[Vector]) -> Vec<Vector> {
         parallel::map(points.len(), |i| self.steps.iter().fold(points[i], |x, step| step.moved(x)))
     }
 }

@@ -5,9 +5,9 @@
 //! disks of source and target have the same sides in the same order, each with parameters that say which
 //! points correspond.
 //!
-//! 1. The chain: an order and directions of the features, the same on both ([`super::chain`]).
-//! 2. The features are marked for cutting and the chords between them split ([`super::cutting`]).
-//! 3. Arcs on the source, and along their images on the target ([`super::arcs`]).
+//! 1. The chain: an order and directions of the features, the same on both ([`chain`]).
+//! 2. The features are marked for cutting and the chords between them split ([`cutting`]).
+//! 3. Arcs on the source, and along their images on the target ([`arcs`]).
 //! 4. Corners that meet across edges that are not cut become one vertex; the boundary of the disk falls into
 //!    sides.
 //!
@@ -16,17 +16,22 @@
 //! Registration", CVPR 2013, which slices along the landmarks, too; the chain of arcs takes the place of its
 //! pants and hexagons. Cost: O(B n log n) at the most for B features.
 
+mod arcs;
+mod chain;
+mod cutting;
+pub(super) mod isotopy;
 mod openings;
+mod paths;
+mod polyline;
 #[cfg(test)]
 mod tests;
 
-use super::arcs::{self, Carry};
-use super::chain;
-use super::cutting::{Cutting, Seam};
-use super::features::{Feature, Piece};
+use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::geometry::Vector;
+use arcs::Carry;
+use cutting::{Cutting, Seam};
 
 pub(super) use openings::Opened;
 

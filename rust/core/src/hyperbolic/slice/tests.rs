@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
+use super::polyline::Polyline;
 use super::*;
 use crate::control::Silent;
-use crate::hyperbolic::features::Bank;
-use crate::hyperbolic::track::Polyline;
+use crate::hyperbolic::features::piece::Bank;
 use crate::mesh::geometry::{add, area, distance, dot, norm, scaled, triangle};
 use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
 
@@ -469,7 +469,7 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
     let detour = |line: &[Vector]| {
         let [from, to] = [line[0], line[line.len() - 1]];
         let ends = [from, [from[0], from[1], -0.3], [0.0, 0.0, -1.0], [to[0], to[1], -0.3], to].map(unit);
-        Some(crate::hyperbolic::track::resampled(&ends, 0.01))
+        Some(super::polyline::resampled(&ends, 0.01))
     };
     let mut silent = Silent;
     let watch = Watch::new(&mut silent, 0.0, "");

@@ -13,10 +13,10 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
-use super::atlas::Atlas;
-use super::initial::boundary_corners;
-use super::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
-use super::slice::{NONE, Side, Sliced};
+use crate::hyperbolic::harmonic::atlas::Atlas;
+use crate::hyperbolic::harmonic::initial::boundary_corners;
+use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
+use crate::hyperbolic::slice::{NONE, Side, Sliced};
 use crate::mesh::geometry::{Vector, add, scaled};
 use crate::parallel;
 

@@ -9,31 +9,34 @@
 //! Input: a surface of genus 0 with at least three features, open curves and boundary loops. Cost: that of
 //! the metric, and B layouts of the disk for B features.
 
+pub(crate) mod fuchsian;
+pub(crate) mod pants;
 #[cfg(test)]
 mod tests;
+mod trace;
 
 use std::f64::consts::PI;
 
-use super::atlas::Atlas;
-use super::curves::{CurvePair, check_alone};
-use super::features::Piece;
-use super::fuchsian::{CoverCopy, Development, cover, edges};
-use super::initial::boundary_corners;
+use super::features::curves::{CurvePair, check_alone};
+use super::features::piece::Piece;
+use super::features::pieces::pieces;
+use super::features::placement::placed;
+use super::features::regions::divided;
+use super::harmonic::atlas::Atlas;
+use super::harmonic::initial::boundary_corners;
+use super::harmonic::piece_map::sliced_points;
 use super::metric::{Metric, MetricMethod, hyperbolic_metric};
 use super::moebius::{Complex, Moebius};
-use super::pants::{Pants, pants};
-use super::piece::sliced_points;
-use super::pieces::pieces;
-use super::placement::placed;
-use super::regions::divided;
 use super::register::{on_surface, surface_vertex};
 use super::slice::{Side, Sliced, slice_alone};
-use super::trace::closed_geodesic;
 use crate::control::{Observer, Watch};
 use crate::error::Error;
+use crate::location::Location;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, triangle};
-use crate::registration::Location;
+use fuchsian::{CoverCopy, Development, cover, edges};
+use pants::{Pants, pants};
+use trace::closed_geodesic;
 
 /// A surface sliced along its features, with its hyperbolic metric, its Fuchsian group and its pants.
 ///

@@ -10,7 +10,7 @@
 //!
 //! Cost: constant.
 
-use super::moebius::{Complex, Moebius, exponential, from_hyperboloid, seen_from, to_klein};
+use crate::hyperbolic::moebius::{Complex, Moebius, exponential, from_hyperboloid, seen_from, to_klein};
 use crate::mesh::geometry::{Vector, cross, dot, scaled};
 
 /// A pair of pants.
@@ -108,8 +108,8 @@ fn lorentz_cross(one: Vector, other: Vector) -> Vector {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use super::super::moebius::{distance, from_klein};
     use super::*;
+    use crate::hyperbolic::moebius::{distance, from_klein};
 
     /// Translations to the left along two lines at equal distances below and above the origin.
     fn two_translations(lengths: [f64; 2]) -> [Moebius; 2] {

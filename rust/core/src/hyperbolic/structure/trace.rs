@@ -9,12 +9,12 @@
 //! Input: an atlas, and the ends of the axis of a deck transformation in one of its charts. Cost: linear in
 //! the edges crossed.
 
-use super::atlas::Atlas;
-use super::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
-use super::slice::{NONE, Opened};
+use crate::hyperbolic::harmonic::atlas::Atlas;
+use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
+use crate::hyperbolic::slice::{NONE, Opened};
+use crate::location::Location;
 use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
 use crate::mesh::{next_corner, previous_corner};
-use crate::registration::Location;
 
 /// The line has closed up where it crosses the first edge again after its length but for this share.
 const ROUNDING: f64 = 1e-3;

@@ -7,8 +7,8 @@
 //! rises, each minimum is sought from that of a larger λ: shear that a map once has stays in it.
 
 use super::angle_schedule::AnglePath;
-use super::floors::{Surface, descend};
-use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
+use super::target_floors::{Surface, descend};
+use super::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::control::{History, Observer, Phase, Status};
 
 /// λ at first, what it is multiplied by until areas are within the tolerance, and divided by while they are.

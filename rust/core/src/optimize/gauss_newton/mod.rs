@@ -3,7 +3,7 @@
 //!
 //! E_A is a zero-residual least-squares problem, so its Gauss–Newton Hessian is all it takes near the minimum; far from
 //! it the energy of [`authalic`](crate::energy::authalic) adds a share of angle distortion, whose weight λ
-//! [falls](super::angle_schedule), and a barrier that no step can cross. In each iteration:
+//! [falls](angle_schedule), and a barrier that no step can cross. In each iteration:
 //!
 //! 1. targets are rescaled to the area of the image, λ is chosen;
 //! 2. the Hessian is factored with a damping of each face in proportion to how far it is from its target, once.
@@ -23,16 +23,20 @@
 //!
 //! Cost of one iteration: one factorisation of two unknowns per vertex, two solves, some seven passes over the faces.
 
-use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
+pub(crate) mod angle_schedule;
+pub(crate) mod area_tolerance;
+pub(crate) mod target_floors;
+
+use crate::codomain::motion::{Frame, Motion, frames};
 use crate::control::{History, Observer, Status, Watch};
 use crate::energy::authalic::{AuthalicEnergy, Element, Hessian, Sums, Weights};
 use crate::energy::landmark_penalty::LandmarkPenalty;
-use crate::energy::motion::{Frame, Motion, frames};
 use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::mesh::geometry::Vector;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
+use angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
 
 /// A map of the vertices, in space.
 pub(crate) type Map = Vec<Vector>;

@@ -9,7 +9,7 @@
 //! While a floor holds, the energies in the history are those for the raised targets.
 
 use super::angle_schedule::AnglePath;
-use super::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize};
+use super::{GaussNewtonOptions, Map, Problem, minimize};
 use crate::control::{History, Observer, Phase, Status};
 use crate::energy::authalic::{AuthalicEnergy, Codomain};
 use crate::energy::stretch::Profile;

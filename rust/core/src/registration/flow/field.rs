@@ -10,7 +10,7 @@
 //! Cost: k³ for the weights, k for the velocity at a point.
 
 use super::super::landmarks::Domain;
-use crate::energy::motion::Frame;
+use crate::codomain::motion::Frame;
 use crate::mesh::geometry::{Vector, cross, dot};
 use crate::parallel;
 use crate::sparse::solve_positive_definite;

@@ -16,8 +16,8 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::landmarks::Domain;
+use crate::codomain::motion::Motion;
 use crate::control::Watch;
-use crate::energy::motion::Motion;
 use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled, sub};
 use crate::parallel;
 use field::Field;

@@ -6,10 +6,10 @@
 //! centroid of its face: in the corner itself, or where the way comes to a seam first, at the seam on this side of it.
 
 use super::{interpolated, rows};
+use crate::location::{Location, Locator, determinant};
 use crate::mesh::VertexCorners;
 use crate::mesh::geometry::{Vector, add, scaled, triangle};
 use crate::parallel;
-use crate::registration::location::{Location, Locator, determinant};
 
 /// Values that differ by less than this, of themselves or of 1, are the same on both sides of an edge.
 const ROUNDING: f64 = 1e-6;

@@ -9,7 +9,7 @@
 
 mod corners;
 
-use super::location::{Location, Locator};
+use crate::location::{Location, Locator};
 use crate::mesh::geometry::{Vector, add, distance, scaled, sub, triangle};
 use crate::parallel;
 

@@ -5,11 +5,12 @@
 //! fixed size that several threads share and between which a run can be cancelled. What a tile computes does not
 //! depend on who computes it.
 
-use super::super::factor::{Block, Scalar, cholesky_in_place, lower_solve_rows, subtract_product};
-use super::super::factor::{BlockRef, block, block_ref};
 use super::{Failure, kernels};
 use crate::control::Watch;
 use crate::parallel;
+use crate::sparse::faer::{
+    Block, BlockRef, Scalar, block, block_ref, cholesky_in_place, lower_solve_rows, subtract_product,
+};
 
 /// Panels with fewer entries or columns take our own loops.
 const SMALL: (usize, usize) = (400, 8);

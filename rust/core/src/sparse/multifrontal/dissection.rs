@@ -10,9 +10,9 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::super::factor::minimum_degree;
 use super::graph::{Graph, NONE};
 use crate::Error;
+use crate::sparse::faer::minimum_degree;
 
 /// Vertices in a part that is not cut any more.
 const PART: usize = 120;

@@ -3,7 +3,7 @@
 //!
 //! All are inlined into code compiled for the processor's widest vectors (see [`on_wide_vectors`]).
 
-use super::super::factor::Scalar;
+use crate::sparse::faer::Scalar;
 
 /// Runs `work` compiled for the widest vectors that this processor has.
 pub(super) fn on_wide_vectors<R>(work: impl FnOnce() -> R) -> R {

@@ -21,9 +21,9 @@ mod numeric;
 mod schedule;
 mod solve;
 
+use super::faer::{Scalar, minimum_degree};
 use crate::Error;
 use crate::control::Watch;
-use crate::sparse::factor::{Scalar, minimum_degree};
 use elimination::Elimination;
 pub(super) use fronts::Element;
 use fronts::Fronts;

@@ -4,12 +4,12 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
-use super::super::factor::Scalar;
 use super::fronts::{Element, Fronts, Run};
 use super::schedule::Schedule;
 use super::{Failure, dense};
 use crate::control::Watch;
 use crate::parallel;
+use crate::sparse::faer::Scalar;
 
 /// Multiplications between two looks at the watch.
 const LOOK: f64 = 1e6;

@@ -6,11 +6,11 @@
 
 use std::ops::Range;
 
-use super::super::factor::Scalar;
 use super::fronts::{Front, Fronts};
 use super::kernels;
 use super::schedule::Schedule;
 use crate::parallel;
+use crate::sparse::faer::Scalar;
 
 /// Solves `L Lᵀ x = b` in place for K right-hand sides, ordered by front and within a front by right-hand side.
 pub(super) fn substitute<T: Scalar, const K: usize>(fronts: &Fronts, factor: &[T], x: &mut [T]) {

@@ -18,14 +18,14 @@
 //!
 //! Cost of one iteration: one Cholesky analysis and factorisation of about 0.6 n vertices.
 
-use super::Map;
-use super::domain::SphereDomain;
-use super::stereographic::{Chart, weighted_median};
+use super::objective::SphereDomain;
 use crate::control::{History, Observer, Status, Watch};
 use crate::error::Error;
-use crate::optimize::Domain;
+use crate::optimize::published::Domain;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
+use crate::sphere::Map;
+use crate::sphere::stereographic::{Chart, weighted_median};
 
 /// r of the algorithm: modulus up to which a chart's vertices are solved for.
 const RADIUS: f64 = 1.2;
@@ -34,7 +34,7 @@ const MESSAGE: &str = "Fixed-point iteration";
 
 /// When the iteration ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FixedPointStopping {
+pub(crate) struct FixedPointStopping {
     /// Iterations at the most.
     pub max_iterations: usize,
     /// ε: ends when E_S falls by no more than this; −∞ goes on whatever happens, and the last map is returned
@@ -43,7 +43,7 @@ pub(super) struct FixedPointStopping {
 }
 
 /// Iterates from `start`; `weights` are the vertices' shares of the target area.
-pub(super) fn fixed_point(
+pub(crate) fn fixed_point(
     domain: &SphereDomain<'_>,
     weights: &[f64],
     start: Map,

@@ -8,23 +8,23 @@
 //! there. The paper's descent has no preconditioner; the guarded one has I₃ ⊗ L_S(f⁰), projected to the
 //! tangent planes.
 
-use super::Map;
 use crate::control::Watch;
 use crate::energy::SpatialStretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{Vector, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
-use crate::optimize::{Domain, Energies};
+use crate::optimize::published::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
+use crate::sphere::Map;
 
 /// Part of the mean diagonal that is added to L_S(f⁰), which takes constants to zero.
 const SHIFT: f64 = 1e-6;
 
 /// Maps of one mesh onto the unit sphere.
 #[derive(Debug)]
-pub(super) struct SphereDomain<'a> {
+pub(crate) struct SphereDomain<'a> {
     mesh: &'a TriangleMesh,
     energy: SpatialStretchEnergy<'a>,
     /// Only in a guarded descent.
@@ -34,7 +34,7 @@ pub(super) struct SphereDomain<'a> {
 }
 
 impl<'a> SphereDomain<'a> {
-    pub(super) fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
+    pub(crate) fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
         let energy = SpatialStretchEnergy::new(mesh, targets).scale_free();
         Self { mesh, energy, preconditioner: None, guarded: false }
     }

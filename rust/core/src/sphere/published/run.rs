@@ -4,17 +4,17 @@
 //! First the papers' method as published, which may fold; then, only where it did, the bijectivity correction
 //! and a descent behind a barrier, from the corrected map or else from the start.
 
-use super::domain::SphereDomain;
 use super::fixed_point::{FixedPointStopping, fixed_point};
-use super::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
+use super::objective::SphereDomain;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere, relaxed};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::optimize::gradient_descent::{DescentOptions, minimize};
-use crate::optimize::{Domain as _, Stopping};
+use crate::optimize::published::gradient_descent::{DescentOptions, minimize};
+use crate::optimize::published::{Domain as _, Stopping};
 use crate::parallel;
+use crate::sphere::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
 
 /// Iterations of either method, those of the paper's tables.
 const ITERATIONS: usize = 100;
@@ -33,7 +33,7 @@ const ROUND: usize = 10;
 
 /// One computation on a closed surface of genus 0.
 #[derive(Clone, Copy)]
-pub(super) struct Run<'a> {
+pub(crate) struct Run<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     /// The vertices' shares of the targets.
@@ -43,7 +43,7 @@ pub(super) struct Run<'a> {
 
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -259,7 +259,7 @@ impl Run<'_> {
 }
 
 /// E_A/A: what is left when the size of the image does not count.
-pub(super) fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
+pub(crate) fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
     let value = domain.energy().value(map);
     value.authalic_energy / value.area
 }

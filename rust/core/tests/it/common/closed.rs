@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 use authalic::mesh::TriangleMesh;
-use authalic::optimize::gradient_descent::LineSearch;
+use authalic::optimize::published::gradient_descent::LineSearch;
 use authalic::{Error, Silent, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 
 use super::{TestMesh, determinant, distance, ellipsoid, icosphere, known, lattice};

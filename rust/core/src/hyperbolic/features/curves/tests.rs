@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-use super::super::sample_meshes::{circle, mesh, path, sphere, without};
 use super::*;
+use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
 use crate::mesh::geometry::Vector;
 
 const X: Vector = [1.0, 0.0, 0.0];

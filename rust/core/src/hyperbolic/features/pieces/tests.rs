@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-use super::super::curves::{Curves, face_on_left};
-use super::super::placement::placed;
-use super::super::regions::divided;
-use super::super::sample_meshes::{circle, mesh, path, sphere, without};
 use super::*;
 use crate::control::{Silent, Watch};
 use crate::error::Error;
+use crate::hyperbolic::features::curves::{Curves, face_on_left};
+use crate::hyperbolic::features::placement::placed;
+use crate::hyperbolic::features::regions::divided;
+use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
 
 const Z: Vector = [0.0, 0.0, 1.0];
 

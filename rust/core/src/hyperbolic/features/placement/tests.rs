@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-use super::super::curves::Curves;
-use super::super::regions::divided;
-use super::super::sample_meshes::{circle, mesh, path, sphere, without};
 use super::*;
+use crate::alignment::rotation::rotation_of;
 use crate::control::Silent;
-use crate::optimize::rotation::rotation_of;
+use crate::hyperbolic::features::curves::Curves;
+use crate::hyperbolic::features::regions::divided;
+use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
 
 fn ellipsoid([x, y, z]: Vector) -> Vector {
     [x, 0.8 * y + 0.1 * x * x, 0.6 * z]

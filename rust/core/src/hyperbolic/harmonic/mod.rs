@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The harmonic map of one piece onto another, from local charts to the proof that it is one-to-one.
+
+pub(super) mod atlas;
+pub(super) mod certificates;
+pub(crate) mod delaunay;
+mod flat;
+pub(crate) mod heat;
+pub(super) mod initial;
+pub(crate) mod inverse;
+mod layout;
+pub(super) mod newton;
+pub(super) mod piece_map;

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from test_architecture import ADDON_ROOMS, CORE_ROOMS
 
 ROOT = Path(__file__).resolve().parents[1]
 GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -83,6 +84,29 @@ def test_links_lead_somewhere(document: Path) -> None:
 def test_named_files_exist(document: Path) -> None:
     missing = {path for path in paths(quoted(document)) if not (ROOT / path).exists()}
     assert not missing
+
+
+def test_paths_of_the_architecture_exist() -> None:
+    """Paths start at the root, in the core or in the extension; in a table, in the room of the row."""
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    places = [ROOT, ROOT / "rust" / "core" / "src", ROOT / "addon"]
+    missing = []
+    for line in text.splitlines():
+        if heading := re.match(r"## .*`([\w/]+/)`", line):
+            places[3:] = [ROOT / heading[1]]
+        names = re.findall(r"`([\w./-]+(?:/|\.rs|\.py|\.pyi))`", line)
+        rooms = [places[-1] / name for name in names[:1] if line.startswith("| `")]
+        missing += [name for name in names if not any((place / name).exists() for place in places + rooms)]
+    assert not [name for name in missing if not name.startswith(MADE)]
+
+
+def test_the_graph_of_dependencies_is_the_one_that_is_checked() -> None:
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    drawn = re.search(r"(?m)^    core (.*\n(?:    .*\n)+)", text)
+    core, _, addon = (part.splitlines() for part in drawn[1].split("↓"))
+    addon[1] = addon[1].replace("extension", "")
+    rows = [set(line.split()) for line in (*core, *addon) if line.strip()]
+    assert rows == [*CORE_ROOMS, *ADDON_ROOMS[:-1]]
 
 
 @documents

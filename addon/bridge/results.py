@@ -1,55 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes into the bridge and what comes out of it. Plain data, no bpy."""
+"""What comes out of the bridge. Plain data, no bpy."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .solver import Solver
-
-
-@dataclass
-class UnwrapSettings:
-    """How islands are mapped.
-
-    `domain` is "AUTO", "DISK" or "SPHERE". The others after it are of spheres: the layout "LAMBERT" or
-    "OCTAHEDRAL", the axis "X", "Y" or "Z" of the poles, and the angle of the seam about it.
-    """
-
-    fill_holes: bool = True
-    solver: Solver = field(default_factory=Solver)
-    domain: str = "AUTO"
-    layout: str = "LAMBERT"
-    pole_axis: str = "Z"
-    seam_direction: float = 0.0
-
-
-@dataclass
-class Shortfall:
-    """Figures of a map that has not converged, or that is bad for what it was asked for.
-
-    `status` is the solver's. `is_uneven` and `is_sheared` say which of the figures is bad, `remedy` what to
-    do about these.
-    """
-
-    status: str
-    deviation: float
-    angle: float
-    is_uneven: bool
-    is_sheared: bool
-    remedy: str
-
-    def __str__(self):
-        faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
-        named = [fault for fault, is_there in faults.items() if is_there]
-        ended = [_ENDS[self.status]] if self.status in _ENDS else []
-        figures = f"area ratio SD {self.deviation:.3g}, angle distortion {self.angle:.2f}"
-        remedy = self.remedy if named else _GOES_ON if self.status == "max_iterations" else ""
-        return "; ".join([f"{', '.join(named + ended)} ({figures})", *filter(None, [remedy])])
-
-
-_GOES_ON = "raise Iterations to go on"
-_ENDS = {"stalled": "stopped before it converged", "max_iterations": "stopped at the iteration limit"}
+from .shortfall import Shortfall
 
 
 @dataclass

@@ -9,11 +9,13 @@ import numpy as np
 from .. import bridge, messages
 from ..blender import layers as cargo
 from ..registration import elements as transferring
-from ..registration import points as registering
 from ..registration import seams
+from ..registration.settings import Settings as RegistrationSettings
+from ..registration.sides import is_open
 from . import register, targets
+from .couple import CannotRegister, check_unchanged, chosen
 from .job import Job
-from .register import CannotRegister
+from .register_report import warnings
 
 _PLURALS = {kind: f"{kind}s" for kind in (cargo.UV_MAP, cargo.GROUP, cargo.COLOUR, cargo.KEY)}
 
@@ -28,7 +30,7 @@ class Settings:
     colour_attributes: bool = True
     shape_keys: bool = True
     align: bool = False
-    registration: registering.Settings | None = None
+    registration: RegistrationSettings | None = None
 
 
 @dataclass
@@ -57,7 +59,7 @@ def job(context, settings):
     Raises `targets.NothingToDo` or `CannotRegister` before anything is computed.
     """
     started = time.perf_counter()
-    couple = register.chosen(context)
+    couple = chosen(context)
     items, refusals = cargo.writable(couple.source, _read(couple, settings))
     if not items:
         raise _nothing(couple, refusals)
@@ -72,7 +74,7 @@ def job(context, settings):
 
     def finish(found):
         registered, is_new, pulled = found
-        register.check_unchanged(couple)
+        check_unchanged(couple)
         problems = [
             cargo.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
         ]
@@ -85,7 +87,7 @@ def job(context, settings):
             by=_by(registered, is_new),
             written=[(item.kind, item.name) for item, bad in zip(items, problems, strict=True) if not bad],
             refusals=left,
-            notes=register.warnings(registered),
+            notes=warnings(registered),
             seconds=time.perf_counter() - started,
         )
 
@@ -120,12 +122,12 @@ def _registration(couple, settings, method, progress):
     found = bridge.kept(*couple.sides, couple.pairs, couple.curves, method)
     if found is not None:
         return found, False
-    return register.registration(couple, registering.Settings(method=method), progress), True
+    return register.registration(couple, RegistrationSettings(method=method), progress), True
 
 
 def _method(couple):
     """The method of the last registration with the target, or one that there is something to go by."""
-    boundaries = any(registering.is_open(one) for one in couple.sides)
+    boundaries = any(is_open(one) for one in couple.sides)
     can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
     last = couple.source.authalic_registered_by
     return next((method for method in (last, "POINTS", "CURVES") if can.get(method)), "POINTS")

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..jobs import register as registration
 from ..landmarks import points as landmarks
-from ..registration import points as registering
+from ..registration.settings import Settings
 from .modal import Modal
 
 
@@ -59,7 +59,7 @@ class Registering:
     )
 
     def registration(self):
-        return registering.Settings(self.domain, self.weight, self.angle_weight, self.method)
+        return Settings(self.domain, self.weight, self.angle_weight, self.method)
 
 
 class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):

@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..jobs import transfer
-from ..jobs.register import CannotRegister
+from ..jobs.couple import CannotRegister
 from .modal import Modal
 from .register import Registering, has_target
 

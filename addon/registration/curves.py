@@ -8,7 +8,8 @@ import numpy as np
 from .. import messages
 from ..landmarks import paths
 from ..surfaces.suitability import Unsuitable
-from .points import Registered, is_open
+from .registered import Registered
+from .sides import is_open
 
 # "curve 3", "curves 0 and 2", "2 curves (0, 3)".
 _FEATURE = re.compile(r"\bfeature (\d+)\b")
@@ -44,7 +45,7 @@ def check_curves(sides, curves, boundaries):
     return found
 
 
-def registered(native, sides, curves):
+def registered_by_curves(native, sides, curves):
     """The figures of a registration by curves (`authalic.Registration`) of two sides."""
     names = [name for name, _, _ in curves]
     return Registered(

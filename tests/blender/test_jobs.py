@@ -156,15 +156,15 @@ _FIGURES = "(area ratio SD 6, angle distortion 1.50)"
 )
 def test_island_that_falls_short_is_named(status, is_uneven, text, monkeypatch, capfd):
     meshes.add_grid()
-    bridge = part("bridge")
-    map_ = bridge._map
+    bridge, islands = part("bridge"), part("bridge.islands")
+    map_ = islands._map
 
     def stalled(*arguments):
         island = map_(*arguments)
         island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, "cut it")
         return island
 
-    monkeypatch.setattr(bridge, "_map", stalled)
+    monkeypatch.setattr(islands, "_map", stalled)
     assert bpy.ops.authalic.unwrap() == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Warning: Unwrapped 1 island" in said

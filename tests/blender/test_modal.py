@@ -128,19 +128,19 @@ def _written(obj):
 def test_what_was_not_reached_before_enter_is_named_and_left_alone():
     obj = meshes.add(*meshes.together(*(meshes.grid(offset=(4 * k, 0, 0)) for k in range(3))))
     obj.data.uv_layers.new(name="UVMap")
-    before, bridge, unwrap = meshes.uv(obj), part("bridge"), part("jobs.unwrap")
+    before, islands, unwrap = meshes.uv(obj), part("bridge.islands"), part("jobs.unwrap")
     job = unwrap.job(bpy.context, unwrap.Settings())
-    map_ = bridge._map
+    map_ = islands._map
 
     def first_only(*arguments):
         job.end_early()
         return map_(*arguments)
 
-    bridge._map = first_only
+    islands._map = first_only
     try:
         report = job.execute()
     finally:
-        bridge._map = map_
+        islands._map = map_
     assert report.islands == 1
     assert [str(refusal) for refusal in report.refusals] == [
         f"Mesh at face {face}: was not reached before the end" for face in (36, 72)

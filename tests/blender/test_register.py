@@ -250,8 +250,8 @@ def test_frames_in_the_wrong_order():
 def test_the_registration_is_kept(monkeypatch):
     source, target = balls()
     register()
-    bridge, made = part("bridge"), []
-    monkeypatch.setattr(bridge, "_registered", lambda *_: made.append(1))
+    registrations, made = part("bridge.registrations"), []
+    monkeypatch.setattr(registrations, "_registered", lambda *_: made.append(1))
     register(align=True)
     register(animate=True)
     target.location = (3, 4, 5)
@@ -428,7 +428,7 @@ def test_shared_mesh(capfd):
 
 
 def test_worst_pairs_are_named():
-    one = part("registration.points").Registered(
+    one = part("registration.registered").Registered(
         *[None] * 6,
         names=list("ABCDE"),
         errors=np.array([0.01, 0.02, 0.004, 0.011, 0.0105]),
@@ -439,10 +439,10 @@ def test_worst_pairs_are_named():
         seconds=0.0,
     )
     assert [name for name, _ in one.worst] == ["B", "D", "E"]
-    said = part("jobs.register")._worst(one)
+    said = part("jobs.register_report")._worst(one)
     assert said == ', worst at "B" 2.000 %; "D" 1.100 %; "E" 1.050 %'
     one.errors = np.full(5, 1e-7)
-    assert part("jobs.register")._worst(one) == ""
+    assert part("jobs.register_report")._worst(one) == ""
 
 
 def test_the_larger_energy_is_reported():
@@ -456,7 +456,7 @@ def test_the_larger_energy_is_reported():
 
     sheets()
     sides = part("jobs.register").chosen(bpy.context).sides
-    figures = part("registration.points").registered
+    figures = part("registration.registered").registered_by_points
     assert figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"]).energy == 0.25
     Native.target_distortion = Figures(0.5, [3])
     found = figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"])
@@ -545,21 +545,21 @@ def test_progress_rises_and_says_what_it_does():
         seen.append((fraction, message))
         return True
 
-    registration.registration(couple, part("registration.points").Settings(weight=2.0), listen)
+    registration.registration(couple, part("registration.settings").Settings(weight=2.0), listen)
     fractions = [fraction for fraction, _ in seen]
     assert len(seen) > 3 and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1
 
 
 def test_options_reach_the_library(monkeypatch):
     balls()
-    bridge, given = part("bridge"), {}
+    registrations, given = part("bridge.registrations"), {}
 
     def stop(*_, **options):
         given.update(options)
-        raise bridge.Unsuitable("seen")
+        raise registrations.Unsuitable("seen")
 
-    library = types.SimpleNamespace(**vars(bridge.authalic))
+    library = types.SimpleNamespace(**vars(registrations.authalic))
     library.register_spheres = stop
-    monkeypatch.setattr(bridge, "authalic", library)
+    monkeypatch.setattr(registrations, "authalic", library)
     refusal("seen", weight=3.0, angle_weight=1.0)
     assert given["weight"] == 3.0 and given["angle_weight"] == pytest.approx(10**0.5)

@@ -152,9 +152,9 @@ def test_the_registration_is_kept_and_transfers_use_it(monkeypatch):
     register()
     group = target.vertex_groups.new(name="Top")
     group.add([v.index for v in target.data.vertices if v.co.z > 0], 1.0, "REPLACE")
-    bridge, made = part("bridge"), []
-    monkeypatch.setattr(bridge, "_registered_by_curves", lambda *_: made.append(1))
-    monkeypatch.setattr(bridge, "_registered", lambda *_: made.append(1))
+    registrations, made = part("bridge.registrations"), []
+    monkeypatch.setattr(registrations, "_registered_by_curves", lambda *_: made.append(1))
+    monkeypatch.setattr(registrations, "_registered", lambda *_: made.append(1))
     register(align=True)
     meshes.select(source)
     assert bpy.ops.authalic.transfer() == {"FINISHED"}
@@ -188,7 +188,7 @@ def test_transfers_go_by_the_method_of_the_last_registration(capfd, tmp_path):
     layer(target)
     path = str(tmp_path / "saved.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
-    part("bridge")._registrations._found.clear()
+    part("bridge.registrations")._registrations._found.clear()
     bpy.ops.wm.open_mainfile(filepath=path)
     for said in ("by landmark curves (registered anew)", "by landmark curves, "):
         assert bpy.ops.authalic.transfer() == {"FINISHED"}
@@ -305,7 +305,7 @@ def test_opposite_normals_of_open_surfaces_are_told(capfd):
         register()
     said = capfd.readouterr().out
     assert "(Mesh > Normals > Flip)" in said.split("the other way round")[0]
-    assert pairs.part("registration.curves").is_open(part("jobs.register").chosen(bpy.context).sides[0])
+    assert pairs.part("registration.sides").is_open(part("jobs.register").chosen(bpy.context).sides[0])
     assert source.authalic_target == target
 
 
@@ -333,7 +333,7 @@ def test_stopped(end):
     """Enter keeps what there is; where nothing is yet, it is an error, and neither writes half a morph."""
     source, _ = balls()
     registration = part("jobs.register")
-    settings = registration.Settings(part("registration.points").Settings(method="CURVES"))
+    settings = registration.Settings(part("registration.settings").Settings(method="CURVES"))
     job = registration.job(bpy.context, settings).start()
     getattr(job, end)()
     try:
@@ -347,7 +347,7 @@ def test_stopped(end):
 def test_curves_that_changed_meanwhile():
     source, _ = balls()
     registration = part("jobs.register")
-    settings = registration.Settings(part("registration.points").Settings(method="CURVES"))
+    settings = registration.Settings(part("registration.settings").Settings(method="CURVES"))
     job = registration.job(bpy.context, settings).start()
     job._thread.join()
     part("landmarks.curves").remove(source, 0)
@@ -365,6 +365,6 @@ def test_progress_rises():
         seen.append(fraction)
         return True
 
-    settings = part("registration.points").Settings(method="CURVES")
+    settings = part("registration.settings").Settings(method="CURVES")
     registration.registration(registration.chosen(bpy.context), settings, listen)
     assert len(seen) > 3 and seen == sorted(seen) and 0 <= seen[0] <= seen[-1] <= 1

@@ -378,9 +378,9 @@ def test_the_registration_is_used_again(monkeypatch):
     source, target = copies()
     random_uv(target, "Map")
     bpy.ops.authalic.register(angle_weight=0.8)
-    bridge, made = part("bridge"), []
-    really = bridge._registered
-    monkeypatch.setattr(bridge, "_registered", lambda *given: made.append(given[3]) or really(*given))
+    registrations, made = part("bridge.registrations"), []
+    really = registrations._registered
+    monkeypatch.setattr(registrations, "_registered", lambda *given: made.append(given[3]) or really(*given))
     only("uv_maps")
     only("uv_maps", angle_weight=0.8)
     assert not made

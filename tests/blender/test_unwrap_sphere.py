@@ -292,18 +292,17 @@ def real_meshes():
 def test_real_meshes(name, monkeypatch):
     with np.load(DATA / "sphere" / f"{name}.npz") as file:
         vertices, faces = file["V"], file["F"]
-    bridge, mesh_io = (
-        importlib.import_module(f"{conftest.MODULE}.{part}") for part in ("bridge", "blender.meshes")
-    )
+    names = "bridge", "bridge.islands", "blender.meshes"
+    bridge, islands, mesh_io = (importlib.import_module(f"{conftest.MODULE}.{name}") for name in names)
     surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
-    bridge_map, cache, last = bridge._sphere_map, {}, []
+    bridge_map, cache, last = islands.sphere_map, {}, []
 
     def remembered(points, faces, solver, progress):
         last[:] = [cache.get(solver.angle_weight) or bridge_map(points, faces, solver, progress)]
         cache[solver.angle_weight] = last[0]
         return last[0]
 
-    monkeypatch.setattr(bridge, "_sphere_map", remembered)
+    monkeypatch.setattr(islands, "sphere_map", remembered)
     for layout in LAYOUTS:
         found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
         if name == "bull_6200" and found.refusals:

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UV maps without flipped faces, by moving as few UVs as possible."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import authalic
+
+from .. import messages
+from ..surfaces import suitability as domains
+from ..surfaces import uv_map as flips
+from ..surfaces.suitability import Unsuitable
+from .progress import NOT_REACHED, keep_going, one_by_one
+from .results import Refusal, Unflipped
+
+
+def fix_flips(surfaces, progress=keep_going):
+    """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as it can.
+
+    Outlines, pinned UVs and UVs that other faces share stay. Islands that this leaves no way out are refused,
+    not raised, as are all that come after `progress` has returned False.
+    """
+    result = Unflipped()
+    tangles = [tangle for index in range(len(surfaces)) for tangle in _tangles(surfaces, index, result)]
+    one_by_one(tangles, lambda tangle, step: _unflip(tangle, result, step), result, progress)
+    return result
+
+
+@dataclass
+class _Tangle:
+    """An island of a UV map in which faces may be flipped; arrays as those of `flips.Layout`."""
+
+    name: str
+    index: int
+    patch: object
+    points: np.ndarray
+    uv: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+    vertices: np.ndarray
+    pinned: np.ndarray
+    shared: np.ndarray
+
+    @property
+    def polygon(self):
+        return int(self.polygons[0])
+
+
+def _tangles(surfaces, index, result):
+    """The islands of a surface's UV map whose faces wind both ways, or have no area."""
+    surface = surfaces[index]
+    layout = flips.layout(surface)
+    if not flips.may_be_flipped(layout.faces, layout.uv):
+        return
+    try:
+        # A bad coordinate is for the island's own turn.
+        patches = authalic.cut(np.nan_to_num(layout.points, posinf=0, neginf=0), layout.faces)
+    except authalic.MeshError as error:
+        reason = messages.in_mesh_terms(str(error), layout.polygons, layout.vertices)
+        result.refusals.append(Refusal(surface.name, None, reason))
+        return
+    for patch in patches:
+        points, uv = np.asarray(patch.vertex_of), layout.uv[patch.vertex_of]
+        if flips.may_be_flipped(np.asarray(patch.faces), uv):
+            yield _Tangle(
+                name=surface.name,
+                index=index,
+                patch=patch,
+                points=layout.points[points],
+                uv=uv,
+                corners=layout.corners[patch.face_of],
+                polygons=layout.polygons[patch.face_of],
+                vertices=layout.vertices[points],
+                pinned=layout.pinned[points],
+                shared=layout.shared[points],
+            )
+
+
+def _unflip(tangle, result, progress):
+    """Adds what an island needs to have no flipped faces to an `Unflipped`."""
+    faces = np.asarray(tangle.patch.faces)
+    domains.check_flat(tangle.patch)
+    authalic.distortion(tangle.points, faces, tangle.uv.astype(float))  # raises where the mesh is at fault
+    found = _untangled(tangle, faces, result, progress)
+    folded = np.asarray(found.folded_before)
+    if len(folded) == 0:  # only normals that are inconsistent
+        return
+    uv = np.asarray(found.image).astype(np.float32)
+    if not _is_unfolded(tangle.points, faces, uv):
+        raise Unsuitable("its faces would flip again in UV precision; scale the island up or unwrap it anew")
+    moved = (uv != tangle.uv).any(axis=1)
+    write = moved[faces] & (tangle.corners >= 0)
+    result.writes.append((tangle.index, tangle.corners[write], uv[faces[write]]))
+    result.faces += len(np.unique(tangle.polygons[folded]))
+    result.islands += 1
+    result.moved += int(np.count_nonzero(moved & (tangle.vertices >= 0)))
+
+
+def _untangled(tangle, faces, result, progress):
+    fixed = np.flatnonzero(tangle.pinned | tangle.shared)
+    image = tangle.uv.astype(float)
+    try:
+        return authalic.untangle((tangle.points, faces), image, fixed=fixed, progress=progress)
+    except (authalic.MeshError, authalic.SolverError) as problem:
+        if result.ended_early:
+            raise Unsuitable(NOT_REACHED) from problem
+        flipped = np.unique(tangle.polygons[list(problem.indices)]) if problem.indices is not None else ()
+        raise Unsuitable(flips.why_not(flipped, tangle.pinned.any(), tangle.shared.any())) from problem
+
+
+def _is_unfolded(points, faces, uv):
+    """Whether no face is folded over, exactly, in an image or in its mirror image."""
+    images = [uv.astype(float) * [side, 1] for side in (1, -1)]
+    return any(not len(authalic.distortion(points, faces, image).folded) for image in images)

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UVs for the islands of surfaces: each by a map onto a disk or, where it is closed, onto a sphere."""
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import authalic
+
+from .. import messages
+from ..sphere_layout import projection
+from ..surfaces import spherical, triangulation
+from ..surfaces import suitability as domains
+from ..surfaces.suitability import Unsuitable
+from .progress import keep_going, one_by_one
+from .results import Island, Mapping, Refusal
+from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
+from .spheres import sphere_map
+
+_CUT = "cut its long parts open by seams"
+_NOT_FREE = f"set Outline to Free, or {_CUT}"
+_OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
+# Where the slider has to stand for shapes that a layout of the sphere does not fold.
+_FIT_TO_LAY_FLAT = 0.9
+
+
+def unwrap(surfaces, settings, progress=keep_going):
+    """Maps every island of every surface (`mesh_io.Surface`) to UVs of its own, by a disk or by a sphere.
+
+    When `progress` returns False the island at hand is kept as it is by then, and later ones are refused.
+    Islands that cannot be mapped are refused, not raised.
+    """
+    result = Mapping()
+    pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
+
+    def mapped(piece, step):
+        result.islands.append(_map(piece, settings, step))
+
+    one_by_one(pieces, mapped, result, progress)
+    return result
+
+
+@dataclass
+class _Piece:
+    """A patch of a surface, with what leads back from its numbers to those of the mesh."""
+
+    name: str
+    index: int
+    patch: object
+    points: np.ndarray
+    corners: np.ndarray
+    polygons: np.ndarray
+    vertices: np.ndarray
+    pinned: bool
+
+    @property
+    def polygon(self):
+        return int(self.polygons[0])
+
+
+def _pieces(surfaces, index, result):
+    """The islands of a surface; one that cannot be cut at all is refused as a whole."""
+    surface = surfaces[index]
+    mesh = triangulation.sound(surface)
+    used, faces = np.unique(mesh.triangles, return_inverse=True)
+    faces, points = faces.reshape(-1, 3), mesh.positions[used]
+    number = np.full(len(mesh.positions), -1)
+    number[used] = np.arange(len(used))
+    # The centre of a divided polygon is no vertex of the mesh.
+    vertices = np.where(used < len(surface.positions), used, -1)
+    try:
+        # An island with a bad coordinate is refused by itself when its turn comes.
+        patches = authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=number[surface.seams])
+    except authalic.MeshError as error:
+        reason = messages.in_mesh_terms(str(error), mesh.polygons, vertices)
+        result.refusals.append(Refusal(surface.name, None, reason))
+        return
+    for patch in patches:
+        corners = mesh.corners.ravel()[np.asarray(patch.corner_of).ravel()]
+        yield _Piece(
+            name=surface.name,
+            index=index,
+            patch=patch,
+            points=points[patch.vertex_of],
+            corners=corners,
+            polygons=mesh.polygons[patch.face_of],
+            vertices=vertices[patch.vertex_of],
+            pinned=bool(surface.pinned is not None and surface.pinned[corners[corners >= 0]].any()),
+        )
+
+
+def _map(piece, settings, progress):
+    """The UVs of one island, counter-clockwise as most of its faces are wound."""
+    if piece.pinned:
+        raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
+    to = _by_disk if domains.choose(piece.patch, settings) == "DISK" else _by_sphere
+    return to(piece, settings, progress)
+
+
+def _by_disk(piece, settings, progress):
+    faces = np.asarray(piece.patch.faces)
+    found = _disk_map(piece.points, faces, settings, progress)
+    turned = spherical.turned(faces, np.asarray(found.faces))
+    island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+    remedy = _CUT if settings.solver.is_free else _NOT_FREE
+    island.shortfall = shortfall(found.status, found.distortion, settings.solver, UNEVEN_DISK, remedy)
+    island.may_turn = settings.solver.is_free
+    return island
+
+
+def _disk_map(points, faces, settings, progress):
+    options = {"fill_holes": settings.fill_holes, "progress": progress}
+    return authalic.disk_map(points, faces, **options, **settings.solver.disk_options())
+
+
+def _by_sphere(piece, settings, progress):
+    """By the sphere map asked for, or by one with better shapes where its faces are too thin to lay flat."""
+    try:
+        return _laid_flat(piece, settings, settings.solver, progress)
+    except projection.CannotProject as problem:
+        if settings.solver.method == "GAUSS_NEWTON" and settings.solver.angle_weight < _FIT_TO_LAY_FLAT:
+            with suppress(projection.CannotProject):
+                solver = replace(settings.solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
+                return _laid_flat(piece, settings, solver, progress)
+        raise Unsuitable(
+            f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; try "
+            "another Layout, Pole Axis or Angle Weight, poke its n-gons, subdivide the mesh or mark seams"
+        ) from problem
+
+
+def _laid_flat(piece, settings, solver, progress):
+    faces = np.asarray(piece.patch.faces)
+    found, positions, turned = sphere_map(piece.points, faces, solver, progress)
+    uv = projection.project(
+        positions,
+        np.where(turned[:, None], faces[:, ::-1], faces),
+        polygons=piece.polygons,
+        areas=triangulation.areas(piece.points[faces]),
+        movable=piece.vertices >= 0,
+        layout=settings.layout,
+        axis=settings.pole_axis,
+        seam=settings.seam_direction,
+    )
+    uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
+    first, corner_point = triangulation.welded(faces, uv)
+    island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
+    figures = authalic.distortion(island.points, island.faces, island.uv)
+    island.shortfall = shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
+    return island
+
+
+def _island(piece, uv, faces, turned, points):
+    """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
+    real = piece.corners >= 0
+    return Island(
+        name=piece.name,
+        surface=piece.index,
+        polygon=piece.polygon,
+        points=piece.points[points],
+        faces=faces,
+        corners=piece.corners[real],
+        corner_point=faces.ravel()[real],
+        uv=uv,
+        turned=np.unique(piece.polygons[turned]),
+    )

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Registrations of two surfaces by landmark points or by landmark curves, and what follows from them."""
+
+import numpy as np
+
+import authalic
+
+from ..registration.curves import check_curves, in_words, registered_by_curves
+from ..registration.kept import Kept, fingerprint
+from ..registration.piece import check_piece
+from ..registration.points import check_landmarks, domain, in_mesh_terms
+from ..registration.registered import registered_by_points
+from ..registration.sides import boundaries, moved
+from ..surfaces.suitability import Unsuitable
+from .progress import keep_going
+from .solver import weight
+
+_registrations = Kept()
+
+
+def register(source, target, pairs, settings, progress=keep_going):
+    """The `Registered` of two `Side`s by pairs (name, source vertex, target vertex).
+
+    By curves the pairs are (name, source vertices, target vertices). One that was made before is not made
+    again. When `progress` returns False, as it is by then. Raises `Unsuitable`, in the words of an artist,
+    where there is none.
+    """
+    key, settings = fingerprint(source, target, pairs), settings.that_count
+    found = _registrations.get(key, settings)
+    if found is None:
+        make = _registered if settings.method == "POINTS" else _registered_by_curves
+        try:
+            found = make(source, target, pairs, settings, progress)
+        except (authalic.MeshError, authalic.SolverError) as error:
+            message = in_mesh_terms(str(error), source, target)
+            if settings.method == "CURVES":
+                message = in_words(message, (source, target), pairs)
+            raise Unsuitable(message) from error
+        _registrations.put(key, settings, found)
+    _registrations.touch(key, settings)
+    return found
+
+
+def kept(source, target, pairs, curves=(), method=None):
+    """The latest registration of these meshes by these pairs or by these curves in this session, or None.
+
+    With a method, one of that alone.
+    """
+    methods = [("POINTS", pairs), ("CURVES", curves)]
+    methods = [one for one in methods if method in (None, one[0])]
+    return _registrations.latest([(fingerprint(source, target, own), method) for method, own in methods])
+
+
+def morphed(registered, source, target, align):
+    """Where the source's points (u, 3) go in the world: onto the target, with `align` laid over the source.
+
+    The sides are those of today, which may have moved since they were registered.
+    """
+    if not align:
+        return moved(np.asarray(registered.native.positions), target.matrix)
+    over = authalic.homotopy(source.points, registered.native, 1.0, align=True)
+    return moved(np.asarray(over), source.matrix)
+
+
+def pull(registered, values, per):
+    """The target's values as those of the source, `per` "vertex" (u, ...) or per "corner" (m, 3, ...)."""
+    return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
+
+
+def _registered_by_curves(source, target, curves, _settings, progress):
+    sides = source, target
+    patches = [_patches(one) for one in sides]
+    for one, part in zip(sides, patches, strict=True):
+        check_piece(one, part)
+    paths = check_curves(sides, curves, [boundaries(part) for part in patches])
+    native = authalic.register_hyperbolic(
+        *((one.points, one.faces) for one in sides),
+        source_curves=paths[0],
+        target_curves=paths[1],
+        progress=progress,
+    )
+    return registered_by_curves(native, sides, curves)
+
+
+def _patches(one):
+    """The pieces of a side; a bad coordinate is for the solver to name."""
+    return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
+
+
+def _registered(source, target, pairs, settings, progress):
+    sides = source, target
+    patches = [_patches(one) for one in sides]
+    shape = domain(sides, patches, settings.domain)
+    borders = [np.concatenate([np.empty(0, int), *boundaries(part)]) for part in patches]
+    landmarks = check_landmarks(sides, pairs, shape, borders)
+    make = authalic.register_disks if shape == "DISK" else authalic.register_spheres
+    native = make(
+        *((one.points, one.faces) for one in sides),
+        source_landmarks=landmarks[0],
+        target_landmarks=landmarks[1],
+        weight=settings.weight,
+        angle_weight=weight(settings.angle_weight),
+        progress=progress,
+    )
+    return registered_by_points(native, sides, shape, landmarks, [name for name, _, _ in pairs])

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a map is as good as it should be. Plain data, no bpy."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Standard deviations of area ratios that are bad: on a disk where areas count, on a sphere, where large
+# polygons leave more, and with any weight of angles. A mean angle distortion that is bad.
+UNEVEN_DISK, UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
+_SHEARED = 20.0
+_GOES_ON = "raise Iterations to go on"
+_ENDS = {"stalled": "stopped before it converged", "max_iterations": "stopped at the iteration limit"}
+
+
+@dataclass
+class Shortfall:
+    """Figures of a map that has not converged, or that is bad for what it was asked for.
+
+    `status` is the solver's. `is_uneven` and `is_sheared` say which of the figures is bad, `remedy` what to
+    do about these.
+    """
+
+    status: str
+    deviation: float
+    angle: float
+    is_uneven: bool
+    is_sheared: bool
+    remedy: str
+
+    def __str__(self):
+        faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
+        named = [fault for fault, is_there in faults.items() if is_there]
+        ended = [_ENDS[self.status]] if self.status in _ENDS else []
+        figures = f"area ratio SD {self.deviation:.3g}, angle distortion {self.angle:.2f}"
+        remedy = self.remedy if named else _GOES_ON if self.status == "max_iterations" else ""
+        return "; ".join([f"{', '.join(named + ended)} ({figures})", *filter(None, [remedy])])
+
+
+def shortfall(status, figures, solver, uneven, remedy):
+    """The `Shortfall` of a map by its figures; None where it has converged to what its weight leaves.
+
+    `uneven` is a deviation of area ratios that is bad where areas count.
+    """
+    deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
+    limit = max(uneven, min(_UNEVEN, UNEVEN_DISK + solver.area_tolerance + np.sqrt(solver.weight) / 2))
+    is_uneven, is_sheared = bool(deviation > limit), bool(angle > _SHEARED)
+    if not is_uneven and not is_sheared and status in {"converged", "cancelled"}:
+        return None
+    return Shortfall(status, deviation, angle, is_uneven, is_sheared, remedy)

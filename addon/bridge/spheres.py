@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed meshes on the sphere."""
+
+import numpy as np
+
+import authalic
+
+from .. import messages
+from ..surfaces import spherical, triangulation
+from ..surfaces import suitability as domains
+from ..surfaces.suitability import Unsuitable
+from .progress import keep_going
+from .results import SphereShape
+from .shortfall import UNEVEN_SPHERE, shortfall
+from .solver import Solver
+
+_OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
+
+
+def sphere_shape(surface, solver=None, progress=keep_going):
+    """The vertices of a closed mesh (`mesh_io.Surface`) on the sphere of its area, about its area's centre.
+
+    When `progress` returns False, as they are by then. Raises `Unsuitable`, in the words of an artist, where
+    there is no such map.
+    """
+    solver = solver or Solver()
+    mesh = triangulation.sound(surface)
+    vertices = np.append(np.arange(len(surface.positions)), np.full(len(mesh.positions), -1))
+    try:
+        used, patches = _whole(mesh)
+        domains.check_closed_mesh(used, len(surface.positions), patches)
+        found, positions, turned = sphere_map(mesh.positions, mesh.triangles, solver, progress)
+    except (authalic.MeshError, authalic.SolverError) as error:
+        raise Unsuitable(messages.in_mesh_terms(str(error), mesh.polygons, vertices)) from error
+    centre = spherical.centroid(mesh.positions, mesh.triangles)
+    radius = spherical.radius(mesh.positions, mesh.triangles)
+    written = (centre + radius * positions).astype(np.float32)
+    faces = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+    if spherical.volume(mesh.positions, faces) < 0:
+        faces = faces[:, ::-1]
+    figures = authalic.distortion(mesh.positions, faces, written - centre)
+    if len(figures.folded):
+        raise Unsuitable(
+            f"{messages.count(len(figures.folded), 'triangle')} would fold over in the precision of "
+            "coordinates; remesh its thin parts"
+        )
+    return SphereShape(
+        positions=written[: len(surface.positions)],
+        radius=float(radius),
+        deviation=float(figures.area_ratio_std),
+        flips=len(figures.folded),
+        angle=float(figures.angle_distortion_mean),
+        shortfall=shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_KEY),
+        ended_early=found.status == "cancelled",
+    )
+
+
+def _whole(mesh):
+    """The vertices (u,) that have triangles, and the pieces that these make up."""
+    used, faces = np.unique(mesh.triangles, return_inverse=True)
+    # A bad coordinate is for the solver to name.
+    points = np.nan_to_num(mesh.positions[used], posinf=0, neginf=0)
+    return used, authalic.cut(points, faces.reshape(-1, 3))
+
+
+def sphere_map(points, faces, solver, progress):
+    """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
+    found = authalic.sphere_map(points, faces, progress=progress, **solver.sphere_options())
+    is_poor = found.status == "stalled" and solver.puts_areas_first
+    if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
+        start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
+        found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
+    oriented = np.asarray(found.faces)
+    over = spherical.over_surface(points, oriented, np.array(found.positions))
+    return found, over, spherical.turned(faces, oriented)
+
+
+def _is_thin(found):
+    return spherical.is_thin(np.asarray(found.positions), np.asarray(found.faces))

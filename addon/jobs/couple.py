@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two objects of a registration, read and checked."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import messages
+from ..blender import meshes as mesh_io
+from ..blender import shape_keys
+from ..landmarks import curves as landmark_curves
+from ..landmarks import points as landmarks
+from ..registration.sides import side
+
+
+class CannotRegister(Exception):
+    """There is no registration, or nowhere to write it; nothing was changed."""
+
+
+@dataclass
+class Couple:
+    """The two objects, both surfaces as they were read and as sides of a registration, and the landmarks.
+
+    `pairs` are those of points, `curves` those of curves, `problems` for either method what is wrong with its
+    pairs. `to_source` is the matrix (4, 4) from the world into the source's space.
+    """
+
+    source: object
+    target: object
+    surfaces: list
+    sides: list
+    pairs: list
+    curves: list
+    problems: dict
+    to_source: np.ndarray
+
+    def landmarks(self, method):
+        """The pairs that a method goes by. Raises `CannotRegister` where they are not sound."""
+        if self.problems[method]:
+            raise CannotRegister(messages.listed(self.problems[method]))
+        return self.pairs if method == "POINTS" else self.curves
+
+
+def chosen(context):
+    """The `Couple` of the active object and its target; raises `CannotRegister` where there is none."""
+    source = landmarks.source(context)
+    if source is None or source.type != "MESH":
+        raise CannotRegister("The active object is no mesh")
+    problem = landmarks.target_problem(source)
+    if problem:
+        raise CannotRegister(f"{source.name}: {problem}")
+    target = source.authalic_target
+    objects = [source, target]
+    for obj in objects:
+        _check(obj)
+    if source.data.library is not None:
+        raise CannotRegister(f"{source.name}: its mesh is linked from another file; make it local")
+    surfaces = [shape_keys.read(obj) for obj in objects]
+    matrices = [np.array(obj.matrix_world) for obj in objects]
+    points, curves = landmarks.pairs(source), landmark_curves.pairs(source)
+    return Couple(
+        source=source,
+        target=target,
+        surfaces=surfaces,
+        sides=[side(*part) for part in zip(surfaces, matrices, strict=True)],
+        pairs=[pair[:3] for pair in points],
+        curves=[(curve.name, curve.source.vertices, curve.target.vertices) for curve in curves],
+        problems={"POINTS": _problems("Landmark", points), "CURVES": _problems("Curve", curves)},
+        to_source=np.linalg.inv(matrices[0]),
+    )
+
+
+def check_unchanged(couple):
+    """Meshes and landmarks may have changed since they were read, where a window was alive meanwhile."""
+    for obj, surface in zip((couple.source, couple.target), couple.surfaces, strict=True):
+        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
+        if not is_there or len(obj.data.vertices) != len(surface.positions):
+            raise CannotRegister(f"{surface.name} has changed meanwhile; nothing was written")
+    counts = [len(couple.pairs), len(couple.curves)]
+    if [len(listed) for listed in pair_lists(couple.source)] != counts:
+        raise CannotRegister("The landmarks have changed meanwhile; nothing was written")
+
+
+def pair_lists(source):
+    """The lists of points and of curves."""
+    return source.authalic_landmarks, source.authalic_landmark_curves
+
+
+def _check(obj):
+    if obj.data.is_editmode:
+        raise CannotRegister(f"{obj.name} is in Edit Mode; leave that first")
+    if len(obj.data.polygons) == 0:
+        raise CannotRegister(f"{obj.name} has no faces")
+    scale = np.abs(np.linalg.svd(np.array(obj.matrix_world)[:3, :3], compute_uv=False))
+    if not scale.min() > 1e-9 * scale.max():
+        raise CannotRegister(f"{obj.name} is scaled to nothing along an axis; clear its scale")
+
+
+def _problems(kind, pairs):
+    return [f'{kind} "{pair.name}": {pair.problem}' for pair in pairs if pair.problem]

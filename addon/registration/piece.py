@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every registration asks of a surface: one piece without handles. Plain numpy, no bpy."""
+
+from ..surfaces import suitability as domains
+from ..surfaces.suitability import Unsuitable
+
+
+def check_piece(one, patches):
+    """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
+    try:
+        _check_one_piece(len(one.points), patches)
+        if patches[0].genus is None:
+            raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
+        if patches[0].genus > 0:
+            raise Unsuitable(f"has {domains.handles(patches[0])}, like a torus; close it up or remesh it")
+    except Unsuitable as problem:
+        raise Unsuitable(f"{one.name}: {problem}") from problem
+    return patches[0]
+
+
+def _check_one_piece(count, patches):
+    if sum(len(patch.vertex_of) for patch in patches) > count:
+        raise Unsuitable(
+            "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "
+            "faces (Select > All by Trait > Non Manifold shows them)"
+        )
+    if len(patches) > 1:
+        raise Unsuitable(
+            f"consists of {len(patches)} pieces where one is allowed; separate it by loose parts, or join "
+            "them by a remesh"
+        )

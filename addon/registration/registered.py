@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A registration of two surfaces and its figures. Plain numpy, no bpy."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .sides import Side
+
+_WORST, _NEXT_WORST = 3, 0.5  # so many pairs are named, of those with so much of the largest error
+_SEEN = 5e-6  # errors above this are not 0.000 %
+
+
+@dataclass
+class Registered:
+    """The library's registration of `source` onto `target` and figures of it.
+
+    `places` (u, 3) and `target_places` are the points of either in the common domain, the unit sphere or the
+    unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
+    `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain,
+    `folds` counts those of both. By curves the `domain` is "CURVES", the common domain a sphere, and
+    `remarks` say what should be looked at.
+    """
+
+    native: object
+    source: Side
+    target: Side
+    domain: str
+    places: np.ndarray
+    target_places: np.ndarray
+    names: list[str]
+    errors: np.ndarray
+    missed: list[str]
+    energy: float
+    folds: int
+    status: str
+    seconds: float
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def by_curves(self):
+        return self.domain == "CURVES"
+
+    @property
+    def method(self):
+        return "CURVES" if self.by_curves else "POINTS"
+
+    @property
+    def ended_early(self):
+        return self.status == "cancelled"
+
+    @property
+    def worst(self):
+        """The few pairs (name, error) with the largest errors, the largest first; none if all meet."""
+        order = np.argsort(-self.errors, kind="stable")[:_WORST]
+        least = max(_SEEN, _NEXT_WORST * self.errors.max(initial=0))
+        return [(self.names[pair], float(self.errors[pair])) for pair in order if self.errors[pair] >= least]
+
+
+def registered_by_points(native, sides, shape, landmarks, names):
+    """The figures of a registration (`authalic.Registration`) of two sides by landmarks (2, k)."""
+    source, target = sides
+    ends = np.asarray(native.positions)[landmarks[0]]
+    apart = np.linalg.norm(ends - target.points[landmarks[1]], axis=1)
+    figures = native.distortion, getattr(native, "target_distortion", None)
+    figures = [one for one in figures if one is not None]
+    return Registered(
+        native=native,
+        source=source,
+        target=target,
+        domain=shape,
+        places=_in_space(np.asarray(native.registered)),
+        target_places=_in_space(np.asarray(native.target_registered)),
+        names=names,
+        errors=apart / max(target.size, np.finfo(float).tiny),
+        missed=[names[pair] for pair in native.missed],
+        energy=max(float(one.authalic_energy) for one in figures),
+        folds=sum(len(one.folded) for one in figures),
+        status=native.status,
+        seconds=float(native.seconds),
+    )
+
+
+def _in_space(points):
+    """Points (n, 2) of the disk at height 1; points (n, 3) as they are."""
+    return points if points.shape[1] == 3 else np.column_stack([points, np.ones(len(points))])

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How two surfaces are registered. Plain data, no bpy."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Settings:
+    """`method` is "POINTS" or "CURVES", and the others are of points alone.
+
+    `domain` is "AUTO", "DISK" or "SPHERE", `weight` that of the landmarks at first, `angle_weight` the slider
+    from areas, 0, to angles, 1.
+    """
+
+    domain: str = "AUTO"
+    weight: float = 1.0
+    angle_weight: float = 0.0
+    method: str = "POINTS"
+
+    @property
+    def that_count(self):
+        """The same, but for options that make no difference."""
+        return self if self.method == "POINTS" else Settings(method=self.method)

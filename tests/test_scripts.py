@@ -3,6 +3,7 @@
 
 import re
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,12 @@ def test_junit_results_are_summed(tmp_path):
     report.write_text('<testsuites><testsuite tests="7" failures="1" errors="1" skipped="2"/></testsuites>')
     assert steps.count_junit(report) == steps.Count(3, 2, 2)
     assert steps.count_junit(tmp_path / "absent.xml") == steps.Count()
+
+
+def test_rust_is_checked_with_the_features_of_the_wheel():
+    maturin = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["maturin"]
+    options = steps.CARGO_OPTIONS
+    assert options[options.index("--features") + 1 :] == tuple(maturin["features"])
 
 
 def test_a_command_that_hangs_after_its_report_is_killed(monkeypatch, tmp_path):

@@ -7,8 +7,9 @@ import subprocess
 import time
 
 from shell import ROOT, tail
+from steps import CARGO_OPTIONS
 
-CARGO = ("cargo", "test", "--locked", "--release", "-p", "authalic")
+CARGO = ("cargo", "test", *CARGO_OPTIONS)
 CASES = "2000"
 """Of each property and round, where the property does not fix its number."""
 
@@ -44,8 +45,8 @@ def properties(root=ROOT / "rust"):
 
 
 def target_of(path):
-    """How cargo selects the tests of a file."""
-    return ("--test", "it") if "tests" in path.parts else ("--lib",)
+    """How cargo selects the tests of a file (`--lib` would build tests of the bindings too, which have none)."""
+    return ("--test", "it") if "tests" in path.parts else ("--tests",)
 
 
 def run_once(name, target, limit):

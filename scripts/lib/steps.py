@@ -15,8 +15,8 @@ from environment import Environment
 from shell import OUT, CommandFailed, run
 
 LOGS = OUT / "test"
-# The release profile everywhere: the tests run real solves, and all steps share what the wheel has built.
-_CARGO_OPTIONS = ("--locked", "--release", "--workspace")
+CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
+"""The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
 _PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
 
 
@@ -57,20 +57,20 @@ def check_rust_format(log: Path) -> Count:
 
 
 def check_clippy(log: Path) -> Count:
-    run(["cargo", "clippy", *_CARGO_OPTIONS, "--all-targets", "--", "-D", "warnings"], log=log)
+    run(["cargo", "clippy", *CARGO_OPTIONS, "--all-targets", "--", "-D", "warnings"], log=log)
     return Count()
 
 
 def test_rust(log: Path) -> Count:
     try:
-        output = run(["cargo", "test", *_CARGO_OPTIONS, "--no-fail-fast"], log=log)
+        output = run(["cargo", "test", *CARGO_OPTIONS, "--no-fail-fast"], log=log)
     except CommandFailed as failure:
         raise TestsFailed(count_cargo(failure.output), str(failure), failure.output) from failure
     return count_cargo(output)
 
 
 def check_rust_docs(log: Path) -> Count:
-    command = ["cargo", "doc", *_CARGO_OPTIONS, "--no-deps", "--document-private-items"]
+    command = ["cargo", "doc", *CARGO_OPTIONS, "--no-deps", "--document-private-items"]
     run(command, {"RUSTDOCFLAGS": "-D warnings"}, log)
     return Count()
 

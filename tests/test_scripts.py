@@ -12,30 +12,27 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.csgraph import shortest_path
 
 import authalic
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "lib"))
-
-import bench_angle
-import bench_angle_front
-import bench_default
-import bench_fuzz
-import bench_fuzz_cases
-import bench_fuzz_rust
-import bench_hyperbolic
-import bench_hyperbolic_harmonic
-import bench_hyperbolic_measures
-import bench_hyperbolic_methods
-import bench_hyperbolic_pairs
-import bench_hyperbolic_solvers
-import bench_meshes
-import bench_peers
-import bench_peers_methods
-import bench_peers_run
-import bench_report
-import bench_tables
-import bench_tables_stability
-import demo_figures
-import demo_measure
+import bench.angle.front
+import bench.angle.main
+import bench.default
+import bench.fuzz.cases
+import bench.fuzz.main
+import bench.fuzz.rust
+import bench.hyperbolic.harmonic
+import bench.hyperbolic.main
+import bench.hyperbolic.measures
+import bench.hyperbolic.methods
+import bench.hyperbolic.pairs
+import bench.hyperbolic.solvers
+import bench.meshes
+import bench.peers.main
+import bench.peers.methods
+import bench.peers.run
+import bench.report
+import bench.tables.main
+import bench.tables.stability
+import demo.figures
+import demo.measure
 import pythons
 import steps
 from shell import ROOT, CommandFailed, Unavailable, run, version
@@ -112,18 +109,18 @@ def test_the_changelog_has_an_entry_for_the_version():
 @pytest.fixture
 def tiny_meshes(monkeypatch):
     """For the benches one small disk and one small closed mesh, whatever data there is."""
-    vertices, faces = bench_meshes.built_spheres(level=2)["ellipsoid (built)"]
+    vertices, faces = bench.meshes.built_spheres(level=2)["ellipsoid (built)"]
     cap = authalic.cut(vertices, faces[np.all(vertices[faces][:, :, 2] > 0, axis=1)])[0]
-    monkeypatch.setattr(bench_meshes, "disks", lambda: {"cap": (cap.vertices, cap.faces)})
-    monkeypatch.setattr(bench_meshes, "spheres", lambda: {"ellipsoid": (vertices, faces)})
+    monkeypatch.setattr(bench.meshes, "disks", lambda: {"cap": (cap.vertices, cap.faces)})
+    monkeypatch.setattr(bench.meshes, "spheres", lambda: {"ellipsoid": (vertices, faces)})
     brain = {"V_white": vertices, "V_pial": 2 * vertices, "V_sphere": 100 * vertices, "F": faces}
-    monkeypatch.setattr(bench_meshes, "brains", lambda: {"ellipsoid, radius 100": brain})
+    monkeypatch.setattr(bench.meshes, "brains", lambda: {"ellipsoid, radius 100": brain})
 
 
 def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
-    for part in bench_tables.PARTS:
+    for part in bench.tables.main.PARTS:
         target = tmp_path / part / "tables.md"
-        bench_tables.main([str(target), "--parts", part])
+        bench.tables.main.main([str(target), "--parts", part])
         text = target.read_text(encoding="utf-8")
         assert re.search(r"(?m)^\| (cap|ellipsoid)", text) and "Error" not in text, text
         for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
@@ -132,7 +129,7 @@ def test_every_part_of_the_tables_has_rows(tiny_meshes, tmp_path):
 
 def test_the_default_is_measured_beside_the_papers_methods(tiny_meshes, tmp_path):
     target = tmp_path / "default.md"
-    bench_default.main([str(target)])
+    bench.default.main([str(target)])
     rows = [line for line in target.read_text(encoding="utf-8").splitlines() if line.startswith("|")]
     assert [line.split("|")[1].strip() for line in rows[2:]] == ["cap", "ellipsoid"]
     assert all("×" in line for line in rows[2:])
@@ -141,7 +138,7 @@ def test_the_default_is_measured_beside_the_papers_methods(tiny_meshes, tmp_path
 def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tmp_path):
     target = tmp_path / "peers.md"
     absent = [f"{package}=no wheel" for package in ("libigl", "xatlas", "lapy", "bpy")]
-    bench_peers.main([str(target), "--absent", *absent])
+    bench.peers.main.main([str(target), "--absent", *absent])
     text = target.read_text(encoding="utf-8")
     assert len(re.findall(r"(?m)^\| \w+ \| \d+ \| authalic[^|]*\| 0\.\d+ \|", text)) == 6, text
     assert len(re.findall(r"(?m)\| not installed: no wheel \|$", text)) == 13, text
@@ -150,10 +147,10 @@ def test_the_comparison_has_rows_with_figures_or_with_the_reason(tiny_meshes, tm
 
 
 def test_the_comparison_survives_what_happens_to_a_method(monkeypatch, tmp_path):
-    mesh, method = bench_meshes.icosphere(1), bench_peers_methods.named("authalic fixed_point", "sphere")
-    start = bench_peers_run.Starter(tmp_path, 60, "", {})
+    mesh, method = bench.meshes.icosphere(1), bench.peers.methods.named("authalic fixed_point", "sphere")
+    start = bench.peers.run.Starter(tmp_path, 60, "", {})
     code = tmp_path / "worker.py"
-    monkeypatch.setattr(bench_peers_run, "WORKER", code)
+    monkeypatch.setattr(bench.peers.run, "WORKER", (code,))
     code.write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
     assert start("sphere", "ball", mesh, method).remark == "crashed: SIGSEGV"
     code.write_text("raise SystemExit(3)")
@@ -165,7 +162,7 @@ def test_the_comparison_survives_what_happens_to_a_method(monkeypatch, tmp_path)
 
 def test_methods_are_chosen_by_name_or_by_a_part_of_it():
     def names(*words):
-        return [method.name for method in bench_peers_methods.of_kind("disk", words)]
+        return [method.name for method in bench.peers.methods.of_kind("disk", words)]
 
     assert names("authalic") == ["authalic"]
     assert names("slim", "xatlas") == ["libigl SLIM 10", "libigl SLIM 50", "xatlas"]
@@ -178,30 +175,30 @@ def test_a_mirrored_chart_is_no_fold_and_scale_does_not_count():
     vertices = np.vstack([square, square + np.array([3, 0, 0])])
     both = np.vstack([faces, faces + 4])
     image = np.vstack([7 * square[:, :2], [-7, 7] * square[:, :2]])
-    found = bench_peers_run.measured(vertices, both, image)
+    found = bench.peers.run.measured(vertices, both, image)
     assert found.folds == 0 and found.deviation < 1e-12 and np.isclose(found.angle_p99, 1)
-    ball, triangles = bench_meshes.icosphere(2)
-    mirrored = bench_peers_run.measured(ball, triangles, 100 * ball * [-1, 1, 1])
+    ball, triangles = bench.meshes.icosphere(2)
+    mirrored = bench.peers.run.measured(ball, triangles, 100 * ball * [-1, 1, 1])
     assert mirrored.folds == 0 and mirrored.energy < 1e-12
     image[6] = image[5] + 0.5 * (image[4] - image[5])  # one face of the second square folds onto the other
-    assert bench_peers_run.measured(vertices, both, image).folds == 1
+    assert bench.peers.run.measured(vertices, both, image).folds == 1
 
 
 def test_the_start_of_other_tools_is_an_embedding():
-    vertices, faces = bench_meshes.built_disks()["bumps (built)"]
+    vertices, faces = bench.meshes.built_disks()["bumps (built)"]
     edge = np.flatnonzero(np.abs(vertices[:, :2]).max(axis=1) == 1)
     loop = edge[np.argsort(np.arctan2(vertices[edge, 1], vertices[edge, 0]))]
     angle = 2 * np.pi * np.arange(len(loop)) / len(loop)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    image = bench_peers_methods.tutte(faces, loop, circle, len(vertices))
-    assert (bench_peers_methods.signed_areas(image, faces) > 0).all()
+    image = bench.peers.methods.tutte(faces, loop, circle, len(vertices))
+    assert (bench.peers.methods.signed_areas(image, faces) > 0).all()
 
 
 def test_the_curve_of_areas_against_angles_has_rows(tiny_meshes, monkeypatch, tmp_path):
-    monkeypatch.setattr(bench_angle, "WEIGHTS", (0,))
-    monkeypatch.setattr(bench_angle_front, "WEIGHTS", (1, 0.1))
+    monkeypatch.setattr(bench.angle.main, "WEIGHTS", (0,))
+    monkeypatch.setattr(bench.angle.front, "WEIGHTS", (1, 0.1))
     target = tmp_path / "angle.md"
-    bench_angle.main([str(target)])
+    bench.angle.main.main([str(target)])
     text = target.read_text(encoding="utf-8")
     assert re.search(r"(?m)^\| cap \| \d+ \| 0 \| 0\.\d+ \|", text) and "| ellipsoid |" in text, text
     assert "Not measured: there is no Blender" in text
@@ -214,12 +211,14 @@ def test_the_curve_of_areas_against_angles_has_rows(tiny_meshes, monkeypatch, tm
 
 def test_the_curve_is_read_at_equal_angles():
     points = [(1, 0.4, 1.2), (0.1, 0.1, 1.6), (0.01, 0.05, 2.0)]
-    curve = [bench_angle.Point("", w, d, 0.0, angle, 9.0, 0, 0.0) for w, d, angle in points]
-    assert np.allclose(bench_angle.at_angle(curve, 1.4), (0.2, 10**-0.5))
-    other = bench_angle.Point("Blender", np.nan, 0.8, 0.0, 1.4, 9.0, 0, 0.0)
-    assert bench_angle.beside_cells("ear", 7, other, curve)[-1] == "0.250"
-    too_flat = bench_angle.Point("Blender", np.nan, 0.8, 0.0, 1.1, 9.0, 0, 0.0)
-    assert bench_angle.beside_cells("ear", 7, too_flat, curve)[-3].startswith("outside the curve, 1.200 to")
+    curve = [bench.angle.main.Point("", w, d, 0.0, angle, 9.0, 0, 0.0) for w, d, angle in points]
+    assert np.allclose(bench.angle.main.at_angle(curve, 1.4), (0.2, 10**-0.5))
+    other = bench.angle.main.Point("Blender", np.nan, 0.8, 0.0, 1.4, 9.0, 0, 0.0)
+    assert bench.angle.main.beside_cells("ear", 7, other, curve)[-1] == "0.250"
+    too_flat = bench.angle.main.Point("Blender", np.nan, 0.8, 0.0, 1.1, 9.0, 0, 0.0)
+    assert bench.angle.main.beside_cells("ear", 7, too_flat, curve)[-3].startswith(
+        "outside the curve, 1.200 to"
+    )
 
 
 def curved(vertices, faces):
@@ -244,31 +243,31 @@ def curved(vertices, faces):
 
 
 def curved_surface(name):
-    vertices, faces = bench_meshes.icosphere(3)
-    surface = bench_meshes.built_spheres(level=3)[name][0]
+    vertices, faces = bench.meshes.icosphere(3)
+    surface = bench.meshes.built_spheres(level=3)[name][0]
     fields = {"sulc": vertices[:, 0] + 0.1 * surface[:, 2]}
-    return bench_hyperbolic_pairs.Surface(surface, faces, curved(vertices, faces), vertices, surface, fields)
+    return bench.hyperbolic.pairs.Surface(surface, faces, curved(vertices, faces), vertices, surface, fields)
 
 
 @pytest.fixture
 def curved_pair():
     """An ellipsoid onto a bumpy sphere."""
     source, target = curved_surface("ellipsoid (built)"), curved_surface("bumpy sphere (built)")
-    return bench_hyperbolic_pairs.Pair("ellipsoid → bumps", source, target)
+    return bench.hyperbolic.pairs.Pair("ellipsoid → bumps", source, target)
 
 
 def test_the_registrations_by_curves_have_rows_and_pictures(curved_pair, monkeypatch, tmp_path):
-    monkeypatch.setattr(bench_hyperbolic_pairs, "available", lambda: True)
-    monkeypatch.setattr(bench_hyperbolic_pairs, "standard", lambda: [curved_pair])
-    monkeypatch.setattr(bench_hyperbolic_pairs, "across", lambda kind, count: curved_pair)
-    monkeypatch.setattr(bench_hyperbolic, "COUNTS", (4,))
+    monkeypatch.setattr(bench.hyperbolic.pairs, "available", lambda: True)
+    monkeypatch.setattr(bench.hyperbolic.pairs, "standard", lambda: [curved_pair])
+    monkeypatch.setattr(bench.hyperbolic.pairs, "across", lambda kind, count: curved_pair)
+    monkeypatch.setattr(bench.hyperbolic.main, "COUNTS", (4,))
     few = {"Newton (default)": {}, "heat diffusion": {"solver": "heat", "max_iterations": 20}}
-    monkeypatch.setattr(bench_hyperbolic_solvers, "SOLVERS", few)
+    monkeypatch.setattr(bench.hyperbolic.solvers, "SOLVERS", few)
     target = tmp_path / "hyperbolic.md"
-    bench_hyperbolic.main([str(target), "--parts", "pairs", "cuts", "curves", "solvers"])
+    bench.hyperbolic.main.main([str(target), "--parts", "pairs", "cuts", "curves", "solvers"])
     text = target.read_text(encoding="utf-8")
     assert "Error" not in text, text
-    for method in bench_hyperbolic_methods.METHODS:
+    for method in bench.hyperbolic.methods.METHODS:
         assert re.search(rf"(?m)^\| ellipsoid → bumps \| 642 \| {method} \| \d", text), text
     assert re.search(r"(?m)^\| ellipsoid → bumps \| 4 \| \d\.\d+ / \d\.\d+ / \d", text), text
     pictures = re.findall(r"!\[.*?\]\((.*?)\)", text)
@@ -276,53 +275,53 @@ def test_the_registrations_by_curves_have_rows_and_pictures(curved_pair, monkeyp
 
 
 def test_without_cortices_the_bench_of_curves_says_what_is_missing(monkeypatch, tmp_path):
-    monkeypatch.setattr(bench_meshes, "data_folder", lambda kind: None)
+    monkeypatch.setattr(bench.meshes, "data_folder", lambda kind: None)
     target = tmp_path / "hyperbolic.md"
-    bench_hyperbolic.main([str(target)])
+    bench.hyperbolic.main.main([str(target)])
     assert "Not measured: neither ../shared/data nor" in target.read_text(encoding="utf-8")
 
 
 def test_the_conventional_registration_leaves_a_surface_where_it_is(curved_pair):
-    same = bench_hyperbolic_pairs.Pair("same", curved_pair.source, curved_pair.source)
-    found = bench_hyperbolic_methods.harmonic(same)
-    image = bench_hyperbolic_measures.interpolated(same.target.vertices, same.target, found)
+    same = bench.hyperbolic.pairs.Pair("same", curved_pair.source, curved_pair.source)
+    found = bench.hyperbolic.methods.harmonic(same)
+    image = bench.hyperbolic.measures.interpolated(same.target.vertices, same.target, found)
     assert np.allclose(image, same.source.vertices, atol=1e-9) and len(found.folded) == 0
-    measures = bench_hyperbolic_measures.measured(same, found)
+    measures = bench.hyperbolic.measures.measured(same, found)
     assert measures.variation < 1e-9 and measures.correlation > 1 - 1e-9
     assert np.allclose(measures.areas, 1) and measures.turned == 0
 
 
 def test_the_conventional_registration_takes_curves_to_their_places(curved_pair):
-    found = bench_hyperbolic_methods.harmonic(curved_pair)
-    image = bench_hyperbolic_measures.interpolated(curved_pair.target.vertices, curved_pair.target, found)
+    found = bench.hyperbolic.methods.harmonic(curved_pair)
+    image = bench.hyperbolic.measures.interpolated(curved_pair.target.vertices, curved_pair.target, found)
     for ours, theirs in zip(curved_pair.source.curves, curved_pair.target.curves, strict=True):
         path = curved_pair.target.vertices[theirs]
-        assert bench_hyperbolic_measures.distance(image[ours], path).max() < 1e-9
+        assert bench.hyperbolic.measures.distance(image[ours], path).max() < 1e-9
         assert np.allclose(image[ours[[0, -1]]], path[[0, -1]])
 
 
 def test_a_disk_that_folds_is_noticed():
     plane = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
-    assert (bench_hyperbolic_harmonic.signed_areas(plane, faces) > 0).all()
-    folded = bench_hyperbolic_harmonic.signed_areas(plane[[0, 1, 3, 2]], faces)
+    assert (bench.hyperbolic.harmonic.signed_areas(plane, faces) > 0).all()
+    folded = bench.hyperbolic.harmonic.signed_areas(plane[[0, 1, 3, 2]], faces)
     assert (folded > 0).tolist() == [True, False]
 
 
 def test_a_closed_curve_is_begun_where_its_partner_begins():
-    sphere = bench_meshes.icosphere(2)[0]
+    sphere = bench.meshes.icosphere(2)[0]
     ring = np.argsort(np.arctan2(sphere[:, 1], sphere[:, 0]))[::9]
     ours, moved = np.append(ring, ring[0]), np.roll(ring, 4)[::-1]
     assert np.array_equal(
-        bench_hyperbolic_pairs.partner(ours, np.append(moved, moved[0]), sphere, sphere), ours
+        bench.hyperbolic.pairs.partner(ours, np.append(moved, moved[0]), sphere, sphere), ours
     )
 
 
 def test_a_subdivided_surface_keeps_its_curves(curved_pair):
-    coarse, fine = curved_pair.source, bench_hyperbolic_pairs.split(curved_pair.source)
+    coarse, fine = curved_pair.source, bench.hyperbolic.pairs.split(curved_pair.source)
     assert len(fine.faces) == 4 * len(coarse.faces)
     assert all(np.array_equal(a[::2], b) for a, b in zip(fine.curves, coarse.curves, strict=True))
-    areas = [bench_hyperbolic_measures.face_areas(each.vertices, each.faces).sum() for each in (coarse, fine)]
+    areas = [bench.hyperbolic.measures.face_areas(each.vertices, each.faces).sum() for each in (coarse, fine)]
     assert np.isclose(*areas)
     sides = np.sort(fine.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     steps = [np.sort(np.stack([curve[:-1], curve[1:]], axis=1), axis=1) for curve in fine.curves]
@@ -331,15 +330,15 @@ def test_a_subdivided_surface_keeps_its_curves(curved_pair):
 
 def test_the_search_for_failures_has_a_table_and_a_replay(tmp_path, capsys):
     target = tmp_path / "fuzz.md"
-    assert bench_fuzz.main([str(target), "--cases", "4"]) == 0
+    assert bench.fuzz.main.main([str(target), "--cases", "4"]) == 0
     assert re.search(r"(?m)^\| all \| 4 \| 0 \|", target.read_text(encoding="utf-8"))
     for number in (3, 4, 5):  # one of each kind
-        assert bench_fuzz.main([str(target), "--seed", str(number)]) == 0
+        assert bench.fuzz.main.main([str(target), "--seed", str(number)]) == 0
         assert f"case {number}: " in capsys.readouterr().out
 
 
 def test_the_search_for_failures_notices_a_hang_and_goes_on():
-    worker = bench_fuzz_cases.Worker(0.001)  # too short to start the process
+    worker = bench.fuzz.cases.Worker(0.001)  # too short to start the process
     assert worker(0).failure == "not done after 0.001 s"
     worker.limit = 60
     assert worker(0).failure == ""
@@ -349,18 +348,18 @@ def test_the_search_for_failures_notices_a_hang_and_goes_on():
 
 
 def test_the_property_tests_are_found():
-    found = bench_fuzz_rust.properties()
+    found = bench.fuzz.rust.properties()
     assert found["random_disks_are_mapped_one_to_one"] == ("--test", "it")
     assert found["hostile_input_never_panics"] == ("--test", "it")
 
 
 def test_an_error_of_the_package_is_a_row_of_the_table():
-    outcome = bench_report.Runs()(authalic.disk_map, "tetrahedron", bench_meshes.icosphere(0))
+    outcome = bench.report.Runs()(authalic.disk_map, "tetrahedron", bench.meshes.icosphere(0))
     assert outcome.result is None and outcome.error.startswith("MeshError: ")
 
 
 def test_the_built_sphere_is_closed_and_seen_counter_clockwise():
-    vertices, faces = bench_meshes.icosphere(2)
+    vertices, faces = bench.meshes.icosphere(2)
     (patch,) = authalic.cut(vertices, faces)
     assert patch.genus == 0 and patch.is_closed and len(faces) == 320
     assert len(authalic.distortion(vertices, faces, vertices).folded) == 0
@@ -368,48 +367,48 @@ def test_the_built_sphere_is_closed_and_seen_counter_clockwise():
 
 def test_the_smallest_eigenvalue_is_found_in_a_cluster_and_below_zero():
     values = np.concatenate([[-2.5], np.linspace(-1e-9, 1e-9, 300), np.linspace(1, 40, 300)])
-    assert np.isclose(bench_tables_stability.smallest_eigenvalue(diags_array(values).tocsc()), -2.5)
+    assert np.isclose(bench.tables.stability.smallest_eigenvalue(diags_array(values).tocsc()), -2.5)
     nonnegative = diags_array(values[1:]).tocsc()
-    assert abs(bench_tables_stability.smallest_eigenvalue(nonnegative)) < 1e-8
+    assert abs(bench.tables.stability.smallest_eigenvalue(nonnegative)) < 1e-8
 
 
 def test_noise_has_its_deviation_and_lies_along_the_normals():
-    vertices, faces = bench_meshes.icosphere(4)
-    smooth, noisy = bench_tables_stability.with_noise(7 * vertices, faces, 1e-3)
+    vertices, faces = bench.meshes.icosphere(4)
+    smooth, noisy = bench.tables.stability.with_noise(7 * vertices, faces, 1e-3)
     amount = np.einsum("ij,ij->i", noisy - smooth, vertices)
     assert np.isclose(amount.std(), 1e-3, rtol=0.05)
     assert np.allclose(np.linalg.norm(noisy - smooth, axis=1), np.abs(amount), rtol=1e-2, atol=1e-9)
 
 
 def test_the_demo_measures_maps_onto_a_sphere():
-    vertices, faces = bench_meshes.icosphere(2)
-    same = demo_measure.Layout(3 * vertices[faces], vertices[faces], np.arange(len(faces)))
-    figures = demo_measure.summary(same)
+    vertices, faces = bench.meshes.icosphere(2)
+    same = demo.measure.Layout(3 * vertices[faces], vertices[faces], np.arange(len(faces)))
+    figures = demo.measure.summary(same)
     assert figures["flipped_triangles"] == 0 and np.isclose(figures["angle_distortion_mean"], 1)
-    assert np.allclose(demo_measure.area_ratio(same), 1)
-    assert np.allclose(demo_measure.polygon_log2_ratio(same, len(faces)), 0, atol=1e-9)
-    mirrored = demo_measure.Layout(vertices[faces], -vertices[faces], same.polygon)
-    assert demo_measure.summary(mirrored)["flipped_triangles"] == len(faces)
+    assert np.allclose(demo.measure.area_ratio(same), 1)
+    assert np.allclose(demo.measure.polygon_log2_ratio(same, len(faces)), 0, atol=1e-9)
+    mirrored = demo.measure.Layout(vertices[faces], -vertices[faces], same.polygon)
+    assert demo.measure.summary(mirrored)["flipped_triangles"] == len(faces)
 
 
 def test_the_demo_and_the_package_agree_on_a_map_onto_a_sphere():
-    vertices, faces = bench_meshes.icosphere(3)
+    vertices, faces = bench.meshes.icosphere(3)
     stretched = vertices * (1, 2, 3)
-    layout = demo_measure.Layout(stretched[faces], vertices[faces], np.arange(len(faces)))
-    ours, figures = demo_measure.summary(layout), authalic.distortion(stretched, faces, vertices)
+    layout = demo.measure.Layout(stretched[faces], vertices[faces], np.arange(len(faces)))
+    ours, figures = demo.measure.summary(layout), authalic.distortion(stretched, faces, vertices)
     assert np.isclose(ours["area_ratio_std"], figures.area_ratio_std)
     assert np.isclose(ours["angle_distortion_mean"], figures.angle_distortion_mean)
 
 
 def test_the_demo_finds_the_centre_of_a_sphere():
-    vertices, _ = bench_meshes.icosphere(1)
+    vertices, _ = bench.meshes.icosphere(1)
     cap = vertices[vertices[:, 2] > 0.3]
-    assert np.allclose(demo_measure._centre_of_sphere(2 * cap + (5, -3, 1)), (5, -3, 1))
+    assert np.allclose(demo.measure._centre_of_sphere(2 * cap + (5, -3, 1)), (5, -3, 1))
 
 
 def test_the_demo_draws_sphere_layouts_when_one_is_missing(tmp_path):
     corners = np.random.default_rng(1).random((20, 3, 2))
     arrays = {"uv": corners, "area_ratio": np.ones(20)}
     found = {"one": {"Lambert": arrays, "Octahedral": arrays}, "other": {"Lambert": arrays}}
-    demo_figures.draw_sphere_layouts(found, tmp_path / "layouts.png")
+    demo.figures.draw_sphere_layouts(found, tmp_path / "layouts.png")
     assert (tmp_path / "layouts.png").stat().st_size > 0

@@ -19,6 +19,12 @@ ROOT = Path(__file__).resolve().parents[2]
 VENVS = ROOT / ".venv"
 DIST = ROOT / "dist"
 OUT = ROOT / "out"
+DATA = Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
+"""Real meshes, where there are any."""
+PYTHONPATH = {
+    "PYTHONPATH": os.pathsep.join(str(ROOT / place) for place in ("scripts/lib", "scripts/examples", "tests"))
+}
+"""The variable with which `python -m` finds the packages `bench` and `demo` and what they import."""
 EXIT_SECONDS = 60
 """Blender as a module has been seen to hang when its interpreter ends: how long to wait for that."""
 

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The property tests of the crates, again and again with new cases."""
+
+import os
+import re
+import subprocess
+import time
+
+from shell import ROOT, tail
+from steps import CARGO_OPTIONS
+
+CARGO = ("cargo", "test", *CARGO_OPTIONS)
+CASES = "2000"
+"""Of each property and round, where the property does not fix its number."""
+
+
+def search(report, seconds, limit):
+    """Runs every property at least once, and on until the time is over; returns the failures."""
+    report.section("Property tests of the crates", "Each round makes new cases; a failure prints its own.")
+    found = properties()
+    print("building the property tests ...", flush=True)
+    subprocess.run([*CARGO, "--no-run", "--quiet"], cwd=str(ROOT), check=True)
+    failures, rounds, ends = [], dict.fromkeys(found, 0), time.monotonic() + seconds
+    while found and (time.monotonic() < ends or not all(rounds.values())):
+        name = min(found, key=lambda each: rounds[each])
+        problem = run_once(name, found[name], seconds + limit)
+        rounds[name] += 1
+        if problem:
+            failures.append(f"{name}: {problem}")
+            report.line(f"FAILED {name}:\n\n```\n{problem}\n```\n")
+            del found[name]
+    for name, number in rounds.items():
+        report.line(f"- {name}: {number} rounds")
+    return failures
+
+
+def properties(root=ROOT / "rust"):
+    """{test: the cargo options that select its binary} for every test within a `proptest!` block."""
+    found = {}
+    for path in sorted(root.rglob("*.rs")):
+        for block in re.findall(r"(?ms)^([ \t]*)proptest! \{\n(.*?)^\1\}", path.read_text(encoding="utf-8")):
+            for name in re.findall(r"#\[test\]\s*(?:#\[[^\n]*\]\s*)*fn (\w+)", block[1]):
+                found[name] = target_of(path)
+    return found
+
+
+def target_of(path):
+    """How cargo selects the tests of a file; `--lib` would build tests of the bindings, which have none."""
+    return ("--test", "it") if "tests" in path.parts else ("--tests",)
+
+
+def run_once(name, target, limit):
+    """One round of a property; what went wrong, or nothing."""
+    command = [*CARGO, "--quiet", *target, "--", name]
+    variables = {**os.environ, "PROPTEST_CASES": CASES}
+    try:
+        done = subprocess.run(
+            command, cwd=str(ROOT), env=variables, capture_output=True, text=True, timeout=limit
+        )
+    except subprocess.TimeoutExpired:
+        return f"not done after {limit:g} s"
+    if done.returncode:
+        return tail(done.stdout + done.stderr, 60)
+    return "" if re.search(r"[1-9]\d* passed", done.stdout) else f"no such test ran:\n{tail(done.stdout, 5)}"

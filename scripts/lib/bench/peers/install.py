@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What the comparison with other tools needs on this machine; what cannot be had becomes a message."""
+
+from __future__ import annotations
+
+import environment
+from environment import Environment
+from shell import CommandFailed, Unavailable, say, tail, warn
+
+PACKAGES = ("libigl", "xatlas", "lapy")
+
+
+def packages(dev: Environment) -> dict[str, str]:
+    """Installs each peer into the environment; returns {package: why it is not there}."""
+    absent = {}
+    for package in PACKAGES:
+        try:
+            environment.add(dev, f"peer-{package}")
+        except CommandFailed as failure:
+            absent[package] = tail(failure.output, 1)
+            warn(f"{package} is left out: {absent[package]}")
+    return absent
+
+
+def blender() -> tuple[str, str]:
+    """(The interpreter that has the newest Blender as a module, ""), or ("", why there is none)."""
+    try:
+        found = environment.any_blender()
+    except Unavailable as reason:
+        warn(f"Blender is left out: {reason}")
+        return "", str(reason)
+    say(f"{found.label} is one of the peers")
+    return str(found.python), ""

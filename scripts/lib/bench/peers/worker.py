@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""One method on one mesh, in a process of its own, so that its memory and its crashes are its own.
+
+Usage: python -m bench.peers.worker KIND METHOD MESH.npz RESULT.npz
+
+RESULT.npz has the map (`image`, and `vertices`, `faces` where the method cut the mesh) and `facts`, JSON with
+seconds, peak memory and a remark; or only `facts` with an error.
+"""
+
+import json
+import os
+import resource
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from bench.peers import methods
+
+
+def main(kind, name, mesh, target):
+    """Measures and writes; an exception of the method is a result."""
+    with np.load(mesh) as arrays:
+        vertices, faces = arrays["V"].astype(float), arrays["F"].astype(np.int64)
+    method = methods.named(name, kind)
+    try:
+        method.prepare()
+        before = peak_memory()
+        began = time.perf_counter()
+        found = method.call(vertices, faces)
+        seconds = found.seconds or time.perf_counter() - began
+    except Exception as problem:
+        np.savez(target, facts=json.dumps({"error": message(problem)}))
+        return
+    facts = {"seconds": seconds, "before": before, "peak": peak_memory(), "remark": found.remark}
+    arrays = {"image": found.image, "vertices": found.vertices, "faces": found.faces}
+    there = {key: array for key, array in arrays.items() if array is not None}
+    np.savez(target, facts=json.dumps(facts), **there)
+
+
+def message(problem):
+    """What an exception says, in one line."""
+    return " ".join(f"{type(problem).__name__}: {problem}".split())
+
+
+def peak_memory():
+    """The most memory that this process has had resident so far, in MiB.
+
+    Linux hands the figure of `getrusage` down from the process that started this one; that of /proc is new
+    with every program.
+    """
+    try:
+        status = Path("/proc/self/status").read_text()
+        return int(status.split("VmHWM:")[1].split()[0]) / 1024
+    except (OSError, IndexError):
+        unit = 2**20 if sys.platform == "darwin" else 2**10
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)  # Blender has been seen to hang at a normal exit

@@ -3,34 +3,42 @@
 
 from .blender import scene_changes
 from .landmarks import curves as landmark_curves
-from .landmarks import points as landmarks
-from .operators import fix_flips, landmark_files, landmark_pick, measure, sphere_shape_key, transfer, unwrap
-from .operators import landmark_curves as curve_operators
-from .operators import landmarks as landmark_operators
-from .operators import register as register_operator
-from .overlay import curves as curve_markers
-from .overlay import points as markers
+from .landmarks import points as landmark_points
+from .operators import fix_flips as operator_fix_flips
+from .operators import landmark_curves as operators_of_curves
+from .operators import landmark_files as operators_of_files
+from .operators import landmark_pick as operator_pick
+from .operators import landmark_points as operators_of_points
+from .operators import measure as operator_measure
+from .operators import register as operator_register
+from .operators import sphere_shape_key as operator_sphere_shape_key
+from .operators import transfer as operator_transfer
+from .operators import unwrap as operator_unwrap
+from .overlay import curves as overlay_curves
+from .overlay import points as overlay_points
+from .ui import curves as ui_curves
 from .ui import landmarks as ui_landmarks
-from .ui import unwrap as ui
+from .ui import unwrap as ui_unwrap
 
-# In this order; unregistered in the reverse one.
+# All modules that register something with Blender, in this order; unregistered in the reverse one.
 _MODULES = (
     scene_changes,
     landmark_curves,
-    landmarks,
-    markers,
-    curve_markers,
-    unwrap,
-    fix_flips,
-    sphere_shape_key,
-    measure,
-    landmark_operators,
-    curve_operators,
-    landmark_pick,
-    landmark_files,
-    register_operator,
-    transfer,
-    ui,
+    landmark_points,
+    overlay_points,
+    overlay_curves,
+    operator_unwrap,
+    operator_fix_flips,
+    operator_sphere_shape_key,
+    operator_measure,
+    operators_of_points,
+    operators_of_curves,
+    operator_pick,
+    operators_of_files,
+    operator_register,
+    operator_transfer,
+    ui_unwrap,
+    ui_curves,
     ui_landmarks,
 )
 

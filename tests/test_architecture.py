@@ -44,6 +44,11 @@ ADDON_RANK = {room: rank for rank, rooms in enumerate(ADDON_ROOMS) for room in r
 WITHOUT_BLENDER = {"messages", "surfaces", "sphere_layout", "registration", "bridge"}
 BLENDER_MODULES = {"bpy", "bmesh", "mathutils", "gpu", "blf", "bpy_extras", "gpu_extras"}
 
+# Names by which Blender's meshes give and take their data, and which nothing else in the add-on has.
+MESH_DATA = {"foreach_get", "foreach_set", "from_edit_mesh", "from_pydata", "update_edit_mesh"} | {
+    *("attributes", "color_attributes", "key_blocks", "modifiers", "uv_layers")
+}
+
 # Folders in which no files may import each other in a circle.
 PYTHON_HOUSES = (ADDON, ROOT / "scripts" / "lib", BINDINGS / "authalic")
 
@@ -105,6 +110,12 @@ def python_imports(file: Path) -> set[tuple[int, str]]:
 def absolute_imports(file: Path) -> set[str]:
     """The top-level packages that a file imports."""
     return {name.split(".")[0] for dots, name in python_imports(file) if dots == 0}
+
+
+def attributes_named(file: Path) -> set[str]:
+    """All x in `something.x` of a file."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    return {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
 
 
 def python_files(folder: Path) -> list[Path]:
@@ -204,6 +215,13 @@ def test_arrays_know_no_blender(room: str) -> None:
     for file in python_files(ADDON):
         if addon_room(file) == room:
             assert not absolute_imports(file) & BLENDER_MODULES, file
+
+
+def test_only_the_room_blender_reads_and_writes_meshes() -> None:
+    for file in python_files(ADDON):
+        if addon_room(file) != "blender":
+            assert "bmesh" not in absolute_imports(file), file
+            assert not attributes_named(file) & MESH_DATA, file
 
 
 def test_ui_touches_no_arrays() -> None:

@@ -41,6 +41,10 @@ class Marks:
     def __init__(self, name, domain):
         self.name, self.domain = name, domain
 
+    def is_on(self, mesh):
+        """Whether a mesh has an attribute of the name."""
+        return self.name in mesh.attributes
+
     def all(self, mesh):
         """{element: mark} of all elements that have one, in the order of the elements."""
         if mesh.is_editmode:

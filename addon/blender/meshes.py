@@ -2,45 +2,13 @@
 """Between Blender's meshes and numpy arrays, in object mode and, without leaving it, in edit mode."""
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
 
 import bmesh
 import bpy
 import numpy as np
 
-MAX_UV_LAYERS = 8
-_NAME_BYTES = 63
-
-
-@dataclass
-class Surface:
-    """The triangles of an object's mesh, or of its selected faces, with all numbers those of the mesh.
-
-    `positions` (n, 3) have the shape of the mesh and the size of the object in the world. `triangles` (t, 3)
-    are vertices, `corners` (t, 3) mesh corners, `polygons` (t,) polygons; `seams` (k, 2) vertices.
-    `pinned` (c,) and `uv` (c, 2) of the UV layer, if there is one, have one entry per mesh corner.
-    """
-
-    name: str
-    positions: np.ndarray
-    triangles: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
-    seams: np.ndarray
-    corner_vertex: np.ndarray
-    polygon_start: np.ndarray
-    polygon_size: np.ndarray
-    pinned: np.ndarray | None = None
-    uv: np.ndarray | None = None
-
-    @property
-    def polygon_count(self):
-        return len(self.polygon_start)
-
-    def restricted(self, triangles, uv):
-        """The part of the surface given by a mask (t,) of its triangles, with other UVs."""
-        part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
-        return replace(self, uv=uv, **part)
+from ..surfaces.surface import Surface
+from . import uv_maps
 
 
 def read(obj, *, selected_only=False, uv_layer=None):
@@ -64,11 +32,16 @@ def read(obj, *, selected_only=False, uv_layer=None):
             polygon_size=polygons[1],
         )
         if uv_layer is not None and uv_layer in mesh.uv_layers:
-            surface.uv = read_uv(mesh, uv_layer)
+            surface.uv = uv_maps.read(mesh, uv_layer)
             pins = _attribute(mesh, f".pn.{uv_layer}", bool)
             surface.pinned = pins if len(pins) else None
     surface.positions *= _world_size(obj, surface)
     return surface
+
+
+def has_faces(obj):
+    """Whether an object's mesh has faces, but for those that edit mode has added."""
+    return len(obj.data.polygons) > 0
 
 
 def has_corners(obj, count):
@@ -80,51 +53,6 @@ def has_corners(obj, count):
     if mesh.is_editmode:
         return sum(len(face.loops) for face in bmesh.from_edit_mesh(mesh).faces) == count
     return len(mesh.loops) == count
-
-
-def read_uv(mesh, layer):
-    """The UVs (c, 2) of a layer of a mesh that is not in edit mode, float32."""
-    uv = np.empty(2 * len(mesh.loops), np.float32)
-    mesh.uv_layers[layer].uv.foreach_get("vector", uv)
-    return uv.reshape(-1, 2)
-
-
-def write_uv(mesh, layer, corners, uv):
-    """Writes UVs (k, 2) at the mesh corners (k,) of a layer; all other corners keep theirs, bit for bit."""
-    if mesh.is_editmode:
-        _write_uv_edit(mesh, layer, corners, uv)
-        return
-    values = read_uv(mesh, layer)
-    values[corners] = uv
-    # Not `uv_layers[layer].uv`: in Blender 4.2 that writes into the array which the undo step shares.
-    mesh.attributes[layer].data.foreach_set("vector", values.ravel())
-    mesh.update()
-
-
-def layer_name(mesh, wanted):
-    """The name the UV layer `wanted` has or will have; empty is the active one, or else "UVMap"."""
-    if wanted:
-        return wanted.encode()[:_NAME_BYTES].decode(errors="ignore")
-    return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"
-
-
-def is_taken(obj, layer):
-    """Whether something else has the name, so that Blender would add the UV layer under another one."""
-    mesh = obj.data
-    return layer not in mesh.uv_layers and (layer in mesh.attributes or layer in obj.vertex_groups)
-
-
-def has_room_for(mesh, layer):
-    """Whether the UV layer is there or can be added."""
-    return layer in mesh.uv_layers or len(mesh.uv_layers) < MAX_UV_LAYERS
-
-
-def ensure_layer(mesh, layer):
-    """Makes a UV layer the active one, adding it as a copy of the active one if need be; returns its name."""
-    if layer not in mesh.uv_layers:
-        layer = _add_layer_edit(mesh, layer) if mesh.is_editmode else mesh.uv_layers.new(name=layer).name
-    mesh.uv_layers.active = mesh.uv_layers[layer]
-    return layer
 
 
 def write_face_attribute(mesh, name, values):
@@ -227,28 +155,3 @@ def _world_size(obj, surface):
 def _total_area(triangles):
     a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     return np.nansum(np.linalg.norm(np.cross(a, b), axis=1))
-
-
-def _write_uv_edit(mesh, layer, corners, uv):
-    edit = bmesh.from_edit_mesh(mesh)
-    uv_layer = edit.loops.layers.uv[layer]
-    values = dict(zip(corners.tolist(), uv.tolist(), strict=True))
-    start = 0
-    for face in edit.faces:
-        for corner, loop in enumerate(face.loops, start):
-            if corner in values:
-                loop[uv_layer].uv = values[corner]
-        start += len(face.loops)
-    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
-
-
-def _add_layer_edit(mesh, name):
-    edit = bmesh.from_edit_mesh(mesh)
-    old = mesh.uv_layers.active.name if mesh.uv_layers.active else None
-    new = edit.loops.layers.uv.new(name)
-    if old is not None:
-        source = edit.loops.layers.uv[old]
-        for face in edit.faces:
-            for loop in face.loops:
-                loop[new].uv = loop[source].uv
-    return new.name

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..surfaces import islands as shapes
+from ..surfaces.islands import box
 
 
 @dataclass
@@ -25,7 +25,7 @@ class PackSettings:
 
 def pack(islands, settings):
     """Moves and scales the UVs of islands, all by one scale, into the unit square."""
-    before = np.array([shapes.box(island.uv) for island in islands])
+    before = np.array([box(island.uv) for island in islands])
     after = _packed(before, settings)
     scale = np.ptp(after, axis=1).sum() / np.ptp(before, axis=1).sum()
     offsets = after.mean(axis=1) - scale * before.mean(axis=1)

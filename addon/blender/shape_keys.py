@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import meshes as mesh_io
+from . import meshes
 
 
 def read(obj):
     """The surface of an object in the coordinates of its mesh, or of its first shape key."""
-    surface, mesh = mesh_io.read(obj), obj.data
+    surface, mesh = meshes.read(obj), obj.data
     if mesh.shape_keys is None:
         values = np.empty(3 * len(mesh.vertices), np.float32)
         mesh.vertices.foreach_get("co", values)

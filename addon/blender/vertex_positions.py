@@ -51,6 +51,17 @@ def many(obj, vertices, depsgraph):
     return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
 
 
+def undeformed(obj, vertices):
+    """The points (k, 3) of some vertices in the mesh itself, without shape keys and modifiers."""
+    mesh = obj.data
+    if mesh.is_editmode:
+        elements = bmesh.from_edit_mesh(mesh).verts
+        elements.ensure_lookup_table()
+    else:
+        elements = mesh.vertices
+    return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
+
+
 def surface(obj, depsgraph):
     """What is seen of an object, in its own coordinates, for finding vertices.
 

@@ -8,8 +8,7 @@ import numpy as np
 import authalic
 
 from .. import messages
-from ..surfaces import suitability as domains
-from ..surfaces import uv_map as flips
+from ..surfaces import suitability, uv_map
 from ..surfaces.suitability import Unsuitable
 from .progress import NOT_REACHED, keep_going, one_by_one
 from .results import Refusal, Unflipped
@@ -29,7 +28,7 @@ def fix_flips(surfaces, progress=keep_going):
 
 @dataclass
 class _Tangle:
-    """An island of a UV map in which faces may be flipped; arrays as those of `flips.Layout`."""
+    """An island of a UV map in which faces may be flipped; arrays as those of `uv_map.UvMap`."""
 
     name: str
     index: int
@@ -50,37 +49,37 @@ class _Tangle:
 def _tangles(surfaces, index, result):
     """The islands of a surface's UV map whose faces wind both ways, or have no area."""
     surface = surfaces[index]
-    layout = flips.layout(surface)
-    if not flips.may_be_flipped(layout.faces, layout.uv):
+    joined = uv_map.joined(surface)
+    if not uv_map.may_be_flipped(joined.faces, joined.uv):
         return
     try:
         # A bad coordinate is for the island's own turn.
-        patches = authalic.cut(np.nan_to_num(layout.points, posinf=0, neginf=0), layout.faces)
+        patches = authalic.cut(np.nan_to_num(joined.points, posinf=0, neginf=0), joined.faces)
     except authalic.MeshError as error:
-        reason = messages.in_mesh_terms(str(error), layout.polygons, layout.vertices)
+        reason = messages.in_mesh_terms(str(error), joined.polygons, joined.vertices)
         result.refusals.append(Refusal(surface.name, None, reason))
         return
     for patch in patches:
-        points, uv = np.asarray(patch.vertex_of), layout.uv[patch.vertex_of]
-        if flips.may_be_flipped(np.asarray(patch.faces), uv):
+        points, uv = np.asarray(patch.vertex_of), joined.uv[patch.vertex_of]
+        if uv_map.may_be_flipped(np.asarray(patch.faces), uv):
             yield _Tangle(
                 name=surface.name,
                 index=index,
                 patch=patch,
-                points=layout.points[points],
+                points=joined.points[points],
                 uv=uv,
-                corners=layout.corners[patch.face_of],
-                polygons=layout.polygons[patch.face_of],
-                vertices=layout.vertices[points],
-                pinned=layout.pinned[points],
-                shared=layout.shared[points],
+                corners=joined.corners[patch.face_of],
+                polygons=joined.polygons[patch.face_of],
+                vertices=joined.vertices[points],
+                pinned=joined.pinned[points],
+                shared=joined.shared[points],
             )
 
 
 def _unflip(tangle, result, progress):
     """Adds what an island needs to have no flipped faces to an `Unflipped`."""
     faces = np.asarray(tangle.patch.faces)
-    domains.check_flat(tangle.patch)
+    suitability.check_flat(tangle.patch)
     authalic.distortion(tangle.points, faces, tangle.uv.astype(float))  # raises where the mesh is at fault
     found = _untangled(tangle, faces, result, progress)
     folded = np.asarray(found.folded_before)
@@ -106,7 +105,22 @@ def _untangled(tangle, faces, result, progress):
         if result.ended_early:
             raise Unsuitable(NOT_REACHED) from problem
         flipped = np.unique(tangle.polygons[list(problem.indices)]) if problem.indices is not None else ()
-        raise Unsuitable(flips.why_not(flipped, tangle.pinned.any(), tangle.shared.any())) from problem
+        raise Unsuitable(_why_not(flipped, tangle.pinned.any(), tangle.shared.any())) from problem
+
+
+def _why_not(polygons, has_pins, is_part):
+    """Why polygons (k,) stay flipped, and what to do; `is_part`: of the island only a part is selected."""
+    faces = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
+    pins = " and pinned UVs" if has_pins else ""
+    remedies = [
+        *(["select the faces around as well"] if is_part else []),
+        *(["unpin UVs"] if has_pins else []),
+        "smooth the outline there or unwrap the island again",
+    ]
+    return (
+        f"{faces if len(polygons) else 'its faces'} cannot be turned without moving its outline{pins}; "
+        f"{', '.join(remedies)}"
+    )
 
 
 def _is_unfolded(points, faces, uv):

@@ -10,8 +10,7 @@ import authalic
 
 from .. import messages
 from ..sphere_layout import projection
-from ..surfaces import spherical, triangulation
-from ..surfaces import suitability as domains
+from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.suitability import Unsuitable
 from .progress import keep_going, one_by_one
 from .results import Island, Mapping, Refusal
@@ -26,7 +25,7 @@ _FIT_TO_LAY_FLAT = 0.9
 
 
 def unwrap(surfaces, settings, progress=keep_going):
-    """Maps every island of every surface (`mesh_io.Surface`) to UVs of its own, by a disk or by a sphere.
+    """Maps every island of every surface (`Surface`) to UVs of its own, by a disk or by a sphere.
 
     When `progress` returns False the island at hand is kept as it is by then, and later ones are refused.
     Islands that cannot be mapped are refused, not raised.
@@ -94,7 +93,7 @@ def _map(piece, settings, progress):
     """The UVs of one island, counter-clockwise as most of its faces are wound."""
     if piece.pinned:
         raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
-    to = _by_disk if domains.choose(piece.patch, settings) == "DISK" else _by_sphere
+    to = _by_disk if suitability.choose(piece.patch, settings) == "DISK" else _by_sphere
     return to(piece, settings, progress)
 
 

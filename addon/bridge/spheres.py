@@ -6,8 +6,7 @@ import numpy as np
 import authalic
 
 from .. import messages
-from ..surfaces import spherical, triangulation
-from ..surfaces import suitability as domains
+from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.suitability import Unsuitable
 from .progress import keep_going
 from .results import SphereShape
@@ -18,7 +17,7 @@ _OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (pok
 
 
 def sphere_shape(surface, solver=None, progress=keep_going):
-    """The vertices of a closed mesh (`mesh_io.Surface`) on the sphere of its area, about its area's centre.
+    """The vertices of a closed mesh (`Surface`) on the sphere of its area, about its area's centre.
 
     When `progress` returns False, as they are by then. Raises `Unsuitable`, in the words of an artist, where
     there is no such map.
@@ -28,7 +27,7 @@ def sphere_shape(surface, solver=None, progress=keep_going):
     vertices = np.append(np.arange(len(surface.positions)), np.full(len(mesh.positions), -1))
     try:
         used, patches = _whole(mesh)
-        domains.check_closed_mesh(used, len(surface.positions), patches)
+        suitability.check_closed_mesh(used, len(surface.positions), patches)
         found, positions, turned = sphere_map(mesh.positions, mesh.triangles, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
         raise Unsuitable(messages.in_mesh_terms(str(error), mesh.polygons, vertices)) from error

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import messages
-from ..blender import meshes as mesh_io
-from ..blender import shape_keys
+from ..blender import meshes, shape_keys
 from ..landmarks import curves as landmark_curves
-from ..landmarks import points as landmarks
+from ..landmarks import points as landmark_points
+from ..landmarks.objects import active_source, target_problem
 from ..registration.sides import side
 
 
@@ -43,10 +43,10 @@ class Couple:
 
 def chosen(context):
     """The `Couple` of the active object and its target; raises `CannotRegister` where there is none."""
-    source = landmarks.source(context)
+    source = active_source(context)
     if source is None or source.type != "MESH":
         raise CannotRegister("The active object is no mesh")
-    problem = landmarks.target_problem(source)
+    problem = target_problem(source)
     if problem:
         raise CannotRegister(f"{source.name}: {problem}")
     target = source.authalic_target
@@ -57,7 +57,7 @@ def chosen(context):
         raise CannotRegister(f"{source.name}: its mesh is linked from another file; make it local")
     surfaces = [shape_keys.read(obj) for obj in objects]
     matrices = [np.array(obj.matrix_world) for obj in objects]
-    points, curves = landmarks.pairs(source), landmark_curves.pairs(source)
+    points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
     return Couple(
         source=source,
         target=target,
@@ -73,7 +73,7 @@ def chosen(context):
 def check_unchanged(couple):
     """Meshes and landmarks may have changed since they were read, where a window was alive meanwhile."""
     for obj, surface in zip((couple.source, couple.target), couple.surfaces, strict=True):
-        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
+        is_there = meshes.has_corners(obj, len(surface.corner_vertex))
         if not is_there or len(obj.data.vertices) != len(surface.positions):
             raise CannotRegister(f"{surface.name} has changed meanwhile; nothing was written")
     counts = [len(couple.pairs), len(couple.curves)]
@@ -89,7 +89,7 @@ def pair_lists(source):
 def _check(obj):
     if obj.data.is_editmode:
         raise CannotRegister(f"{obj.name} is in Edit Mode; leave that first")
-    if len(obj.data.polygons) == 0:
+    if not meshes.has_faces(obj):
         raise CannotRegister(f"{obj.name} has no faces")
     scale = np.abs(np.linalg.svd(np.array(obj.matrix_world)[:3, :3], compute_uv=False))
     if not scale.min() > 1e-9 * scale.max():

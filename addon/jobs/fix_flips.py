@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 
 from .. import bridge, messages
-from ..blender import meshes as mesh_io
+from ..blender import meshes, uv_maps
 from . import targets
 from .job import Job
 
@@ -53,7 +53,7 @@ def job(context):
             raise CannotFix(f"No flipped face could be fixed: {messages.listed(found.refusals)}")
         for index, corners, uv in found.writes:
             obj, layer, _ = chosen[index]
-            mesh_io.write_uv(obj.data, layer, corners, uv)
+            uv_maps.write(obj.data, layer, corners, uv)
         notes = [messages.ENDED_EARLY_FIXING] if found.ended_early else []
         return Report(found, [*refusals, *found.refusals], notes)
 
@@ -62,9 +62,9 @@ def job(context):
 
 def _chosen(objects, selected_only):
     """(object, UV layer, surface) of those objects that have UVs and faces to look at."""
-    layers = [(obj, obj.data.uv_layers.active.name) for obj in objects if obj.data.uv_layers.active]
+    layers = [(obj, layer) for obj in objects if (layer := uv_maps.active(obj))]
     read = [
-        (obj, layer, mesh_io.read(obj, selected_only=selected_only, uv_layer=layer)) for obj, layer in layers
+        (obj, layer, meshes.read(obj, selected_only=selected_only, uv_layer=layer)) for obj, layer in layers
     ]
     return [part for part in read if len(part[2].triangles)]
 
@@ -72,7 +72,7 @@ def _chosen(objects, selected_only):
 def _why_nothing(objects, selected_only, refusals):
     if refusals:
         return messages.listed(refusals)
-    if not any(obj.data.uv_layers.active for obj in objects):
+    if not any(uv_maps.active(obj) for obj in objects):
         return "The selected objects have no UV map"
     return "No faces are selected" if selected_only else "The selected objects have no faces"
 
@@ -80,6 +80,6 @@ def _why_nothing(objects, selected_only, refusals):
 def _check_unchanged(chosen):
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, layer, surface in chosen:
-        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
-        if not is_there or layer not in obj.data.uv_layers:
+        is_there = meshes.has_corners(obj, len(surface.corner_vertex))
+        if not is_there or not uv_maps.has(obj, layer):
             raise CannotFix(f"{surface.name} has changed meanwhile; nothing was written")

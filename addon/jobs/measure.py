@@ -2,7 +2,7 @@
 """The measurement of a context's objects: figures of their active UV layers and a face attribute."""
 
 from .. import bridge
-from ..blender import meshes as mesh_io
+from ..blender import meshes, uv_maps
 from . import targets
 from .job import Job
 from .targets import NothingToDo
@@ -16,8 +16,8 @@ def job(context):
     Raises `NothingToDo` where no object has faces and UVs.
     """
     objects, _ = targets.editable(context)
-    mapped = [obj for obj in objects if obj.data.uv_layers.active]
-    read = [(obj, mesh_io.read(obj, uv_layer=obj.data.uv_layers.active.name)) for obj in mapped]
+    mapped = [obj for obj in objects if uv_maps.active(obj)]
+    read = [(obj, meshes.read(obj, uv_layer=uv_maps.active(obj))) for obj in mapped]
     chosen = [(obj, surface) for obj, surface in read if len(surface.triangles)]
     if not chosen:
         raise NothingToDo("The selected objects have no faces with a UV map")
@@ -27,7 +27,7 @@ def job(context):
         if figures is None:
             raise NothingToDo("No face has an area, or all UVs lie in one point")
         for (obj, _), values in zip(chosen, figures.log2, strict=True):
-            mesh_io.write_face_attribute(obj.data, ATTRIBUTE, values)
+            meshes.write_face_attribute(obj.data, ATTRIBUTE, values)
         return figures
 
     return Job(lambda progress: bridge.measure(surfaces), finish)

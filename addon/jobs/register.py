@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import animation, shape_keys
-from ..blender import meshes as mesh_io
+from ..blender import animation, shape_keys, uv_maps
+from ..blender.appearance import deformers
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import moved
 from .couple import CannotRegister, check_unchanged, chosen, pair_lists
@@ -18,11 +18,6 @@ from .register_report import Report, warnings
 UV_MAP = "Authalic Registered"
 _PREFIX = "Morph → "
 _NAME_BYTES = 63
-_UNMOVED = 1e-6  # values of shape keys that change nothing
-# Modifiers that leave the shape of a mesh as it is.
-_SHAPELESS = {"COLLISION", "DATA_TRANSFER", "NORMAL_EDIT", "PARTICLE_SYSTEM", "WEIGHTED_NORMAL"} | {
-    *("UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "VERTEX_WEIGHT_PROXIMITY")
-}
 
 
 @dataclass
@@ -109,14 +104,13 @@ def _write_uv_map(obj, side, plane):
     mesh = obj.data
     if mesh.library is not None:
         return f"{obj.name} has no UV map, its mesh is linked from another file"
-    if mesh_io.is_taken(obj, UV_MAP) or not mesh_io.has_room_for(mesh, UV_MAP):
+    if uv_maps.is_taken(obj, UV_MAP) or not uv_maps.has_room_for(mesh, UV_MAP):
         return f"{obj.name} has no room for the UV map {UV_MAP}; remove one or rename what has its name"
-    before = mesh.uv_layers.active.name if mesh.uv_layers.active else UV_MAP
-    mesh_io.ensure_layer(mesh, UV_MAP)
     real = side.corners >= 0
     uv = 0.5 + 0.5 * plane[side.faces[real]]
-    mesh_io.write_uv(mesh, UV_MAP, side.corners[real], uv.astype(np.float32))
-    mesh.uv_layers.active = mesh.uv_layers[before]
+    with uv_maps.active_stays(mesh, UV_MAP):
+        uv_maps.ensure(mesh, UV_MAP)
+        uv_maps.write(mesh, UV_MAP, side.corners[real], uv.astype(np.float32))
     return None
 
 
@@ -125,26 +119,9 @@ def _remarks(couple, key):
     users = couple.source.data.users
     notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
     for obj in (couple.source, couple.target):
-        if ignored := _ignored(obj, but=key if obj == couple.source else None):
+        if ignored := deformers(obj, but=key if obj == couple.source else None):
             notes.append(
                 f"{obj.name} was registered without {messages.listed(ignored)}, which it is seen with; apply "
                 "what is to count first"
             )
     return notes
-
-
-def _ignored(obj, but):
-    """The modifiers and shape keys, but the one of a name, that make an object look unlike its mesh."""
-    blocks = obj.data.shape_keys.key_blocks[1:] if obj.data.shape_keys else ()
-    shown = [key for key in blocks if key.name != but and not key.mute and abs(key.value) > _UNMOVED]
-    shaping = [one for one in obj.modifiers if one.show_viewport and one.type not in _SHAPELESS]
-    return [
-        *(f'shape key "{key.name}"' for key in shown),
-        *(f'modifier "{one.name}"' for one in shaping if not _smooths_only(one)),
-    ]
-
-
-def _smooths_only(modifier):
-    """Whether it is Blender's own Shade Auto Smooth, which only splits normals."""
-    group = getattr(modifier, "node_group", None)
-    return group is not None and group.name.startswith("Smooth by Angle")

@@ -5,8 +5,7 @@ import time
 from dataclasses import dataclass, field
 
 from .. import bridge, messages
-from ..blender import meshes as mesh_io
-from ..blender import shape_keys
+from ..blender import meshes, shape_keys
 from . import targets
 from .job import Job
 
@@ -80,13 +79,13 @@ def job(context, settings):
 def _check_unchanged(chosen):
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, surface in chosen:
-        is_there = mesh_io.has_corners(obj, len(surface.corner_vertex))
+        is_there = meshes.has_corners(obj, len(surface.corner_vertex))
         if not is_there or len(obj.data.vertices) != len(surface.positions):
             raise CannotMap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
 def _why_not(obj):
-    if len(obj.data.polygons) == 0:
+    if not meshes.has_faces(obj):
         return "has no faces"
     return shape_keys.why_not(obj.data, NAME)
 
@@ -130,7 +129,7 @@ def _notes(done):
     scaled = [
         f"{obj.name}: non-uniform scale, the sphere is that of the non-scaled mesh"
         for obj, _ in done
-        if not mesh_io.has_uniform_scale(obj)
+        if not meshes.has_uniform_scale(obj)
     ]
     shared = [
         f"{obj.name} shares its mesh, all {obj.data.users} users have the key"

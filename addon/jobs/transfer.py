@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import layers as cargo
-from ..registration import elements as transferring
-from ..registration import seams
+from ..blender import layers
+from ..registration import elements, seams
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import is_open
 from . import register, targets
@@ -17,7 +16,7 @@ from .couple import CannotRegister, check_unchanged, chosen
 from .job import Job
 from .register_report import warnings
 
-_PLURALS = {kind: f"{kind}s" for kind in (cargo.UV_MAP, cargo.GROUP, cargo.COLOUR, cargo.KEY)}
+_PLURALS = {kind: f"{kind}s" for kind in (layers.UV_MAP, layers.GROUP, layers.COLOR, layers.KEY)}
 
 
 @dataclass
@@ -60,7 +59,7 @@ def job(context, settings):
     """
     started = time.perf_counter()
     couple = chosen(context)
-    items, refusals = cargo.writable(couple.source, _read(couple, settings))
+    items, refusals = layers.writable(couple.source, _read(couple, settings))
     if not items:
         raise _nothing(couple, refusals)
     method = _method(couple)
@@ -76,7 +75,7 @@ def job(context, settings):
         registered, is_new, pulled = found
         check_unchanged(couple)
         problems = [
-            cargo.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
+            layers.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
         ]
         left = refusals + [problem for problem in problems if problem is not None]
         if all(problems):
@@ -98,14 +97,14 @@ def _read(couple, settings):
     """The target's layers that are wanted."""
     items = []
     if settings.uv_maps:
-        items += cargo.uv_maps(couple.target, settings.active_uv_only)
+        items += layers.read_uv_maps(couple.target, settings.active_uv_only)
     if settings.vertex_groups:
-        items += cargo.vertex_groups(couple.target)
+        items += layers.read_vertex_groups(couple.target)
     if settings.colour_attributes:
-        items += cargo.colour_attributes(couple.target)
+        items += layers.read_color_attributes(couple.target)
     if settings.shape_keys:
         morphs = {register.key_name(obj) for obj in (couple.source, couple.target)}
-        items += cargo.keys(couple.target, but=morphs)
+        items += layers.read_shape_keys(couple.target, but=morphs)
     return items
 
 
@@ -143,20 +142,20 @@ def _by(registered, is_new):
 def _turn(registered, couple):
     """How the target is turned and scaled in the world when it is laid over the source."""
     ends = [bridge.morphed(registered, *couple.sides, align) for align in (False, True)]
-    return transferring.turn_and_scale(*ends)
+    return elements.turn_and_scale(*ends)
 
 
 def _pulled(registered, item, to_source):
     """The elements of the source's mesh (k,) and their values (k, d)."""
     source, target = registered.source, registered.target
     if not item.of_corners:
-        values = bridge.pull(registered, transferring.by_points(target, item.values), "vertex")
-        vertices, values = transferring.from_points(source, values)
-        return vertices, values @ to_source.T if item.kind == cargo.KEY else values
-    values = bridge.pull(registered, transferring.by_corners(target, item.values), "corner")
-    if item.kind == cargo.UV_MAP:
+        values = bridge.pull(registered, elements.by_points(target, item.values), "vertex")
+        vertices, values = elements.from_points(source, values)
+        return vertices, values @ to_source.T if item.kind == layers.KEY else values
+    values = bridge.pull(registered, elements.by_corners(target, item.values), "corner")
+    if item.kind == layers.UV_MAP:
         values = seams.on_one_side(source, registered.places, values)
-    return transferring.from_corners(source, values)
+    return elements.from_corners(source, values)
 
 
 def _listed(kind, names):

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import meshes as mesh_io
+from ..blender import meshes, uv_maps
 from ..blender.packing import PackSettings, pack
-from ..surfaces import islands as shapes
+from ..surfaces.islands import scale_to_one_density, upright
 from . import targets
 from .job import Job
 
@@ -63,7 +63,7 @@ def job(context, settings):
     objects, refusals = targets.editable(context)
     layers = [_layer(obj, settings.uv_layer) for obj in objects]
     read = [
-        (obj, layer, mesh_io.read(obj, selected_only=selected_only, uv_layer=layer))
+        (obj, layer, meshes.read(obj, selected_only=selected_only, uv_layer=layer))
         for obj, layer in zip(objects, layers, strict=True)
     ]
     chosen = [part for part in read if len(part[2].triangles)]
@@ -88,15 +88,15 @@ def job(context, settings):
 
 
 def _layer(obj, wanted):
-    layer = mesh_io.layer_name(obj.data, wanted)
-    if mesh_io.is_taken(obj, layer):
+    layer = uv_maps.name_of(obj.data, wanted)
+    if uv_maps.is_taken(obj, layer):
         raise CannotUnwrap(
             f'{obj.name} has an attribute or a vertex group "{layer}", which is no UV map; '
             "name another UV map or rename that"
         )
-    if not mesh_io.has_room_for(obj.data, layer):
+    if not uv_maps.has_room_for(obj.data, layer):
         raise CannotUnwrap(
-            f'{obj.name} has {mesh_io.MAX_UV_LAYERS} UV maps, no room for "{layer}"; '
+            f'{obj.name} has {uv_maps.MAX_UV_LAYERS} UV maps, no room for "{layer}"; '
             "remove one or name one of them"
         )
     return layer
@@ -111,7 +111,7 @@ def _why_nothing(selected_only, refusals):
 def _check_unchanged(chosen):
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, _, surface in chosen:
-        if not mesh_io.has_corners(obj, len(surface.corner_vertex)):
+        if not meshes.has_corners(obj, len(surface.corner_vertex)):
             raise CannotUnwrap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
@@ -125,7 +125,7 @@ def _write(chosen, mapping, settings):
         raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
     for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
         if len(corners):
-            mesh_io.write_uv(obj.data, mesh_io.ensure_layer(obj.data, layer), corners, uv)
+            uv_maps.write(obj.data, uv_maps.ensure(obj.data, layer), corners, uv)
     return figures
 
 
@@ -133,9 +133,9 @@ def _place(mapping, settings):
     """Packs the islands, without those that would fold over where they come to lie: these are refused."""
     for island in mapping.islands:
         if island.may_turn:
-            island.uv = shapes.upright(island.uv)
+            island.uv = upright(island.uv)
     while mapping.islands:
-        shapes.scale_to_one_density(mapping.islands)
+        scale_to_one_density(mapping.islands)
         pack(mapping.islands, settings)
         if not all(np.isfinite(island.uv).all() for island in mapping.islands):
             raise CannotUnwrap("The packed UVs are not finite; nothing was changed")
@@ -178,7 +178,7 @@ def _notes(chosen, islands, figures):
         )
     if figures.flips:  # of no triangle of the solver's: those were checked
         notes.append("the flips are where Blender divides polygons in other ways; triangulate them")
-    scaled = [obj.name for obj, _, _ in chosen if not mesh_io.has_uniform_scale(obj)]
+    scaled = [obj.name for obj, _, _ in chosen if not meshes.has_uniform_scale(obj)]
     if scaled:
         named = ", ".join(scaled[:_NAMED])
         notes.append(f"{named}: non-uniform scale, areas are those of the non-scaled mesh")

@@ -10,13 +10,7 @@ import uuid
 import bpy
 
 from . import curve_marks
-
-SIDES = ("source", "target")
-
-
-def side_object(source, side):
-    """The object of the "source" or the "target" side, or None."""
-    return source if side == "source" else source.authalic_target
+from .objects import SIDES, side_object
 
 
 def ensure_key(source):

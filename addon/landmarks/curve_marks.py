@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Paths along edges that can be found again after a mesh was edited, by marks (see `marks`).
+"""Paths along edges that can be found again after a mesh was edited, by marks (see `element_marks`).
 
 All edges of a path have its mark, and so have the parts into which they are divided. Its first vertex has the
 mark too, its last one the negative of it. The attributes are those of a key: no two paths of the same key
@@ -8,11 +8,8 @@ share an edge on one mesh.
 
 from typing import NamedTuple
 
-import bmesh
-import numpy as np
-
-from ..blender import element_marks as marks
-from ..blender import scene_changes
+from ..blender import element_marks, scene_changes
+from ..blender.edges import edges_between, ends_of_edges
 from ..blender.element_marks import element_counts
 from . import paths
 
@@ -43,10 +40,6 @@ class Path(NamedTuple):
 ABSENT = Path((), (), "has no edges")
 
 
-class NoEdge(Exception):
-    """No edge joins two vertices."""
-
-
 class _Found(NamedTuple):
     """A path, the numbers of its edges, and what its ends had for marks."""
 
@@ -57,7 +50,7 @@ class _Found(NamedTuple):
 
 def new():
     """A mark that no path has."""
-    return marks.new(_BITS)
+    return element_marks.new(_BITS)
 
 
 def key(source, side):
@@ -68,7 +61,7 @@ def key(source, side):
 
 def put(mesh, key, mark, path):
     """Gives the edges of a path (vertices) a mark in place of those that have it. Raises `NoEdge`."""
-    edges = _edges_of(mesh, path)
+    edges = edges_between(mesh, paths.edges(path))
     clear(mesh, key, mark)
     _of_edges(key).write(mesh, edges, mark)
     _mark_ends(mesh, key, mark, path)
@@ -104,7 +97,7 @@ def copy(mesh, key, new_key, wanted):
 def keep(mesh, key, wanted):
     """Takes all marks of a key off a mesh but the wanted ones; with the last one go the attributes."""
     for kind in _kinds(key):
-        if kind.name in mesh.attributes:
+        if kind.is_on(mesh):
             by_value = _by_value(kind, mesh)
             others = [one for value, own in by_value.items() if abs(value) not in wanted for one in own]
             if others:
@@ -120,7 +113,7 @@ def find(mesh, key, *, drawing=False):
     With `drawing`, what was found before is taken for true unless geometry has changed, and then if the paths
     are where they were and the mesh has as many elements: fast enough for drawing.
     """
-    held, own = marks.hold(mesh), (mesh.session_uid, key)
+    held, own = element_marks.hold(mesh), (mesh.session_uid, key)
     counts, found = _seen.get(own, (None, {}))
     if not drawing or _true.get(own) != scene_changes.count():
         if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, found):
@@ -139,23 +132,13 @@ def forget():
 
 def check(mesh, path):
     """Raises `NoEdge` unless edges join the consecutive vertices of a path."""
-    _edges_of(mesh, path)
+    edges_between(mesh, paths.edges(path))
 
 
 def owners(mesh, key, path):
     """The marks that the edges and the ends of a path have. Raises `NoEdge`."""
-    on_edges = _of_edges(key).of(mesh, _edges_of(mesh, path))
+    on_edges = _of_edges(key).of(mesh, edges_between(mesh, paths.edges(path)))
     return {abs(mark) for mark in [*on_edges, *_of_ends(key).of(mesh, [path[0], path[-1]])]} - {0}
-
-
-def ends_of_edges(mesh, edges):
-    """The two vertices of each of some edges."""
-    if not mesh.is_editmode:
-        return [tuple(mesh.edges[edge].vertices) for edge in edges]
-    edit = bmesh.from_edit_mesh(mesh)
-    edit.verts.index_update()
-    edit.edges.ensure_lookup_table()
-    return [tuple(vertex.index for vertex in edit.edges[edge].verts) for edge in edges]
 
 
 def _drop(mesh, key):
@@ -165,11 +148,11 @@ def _drop(mesh, key):
 
 
 def _of_edges(key):
-    return marks.Marks(_NAME + key, "EDGE")
+    return element_marks.Marks(_NAME + key, "EDGE")
 
 
 def _of_ends(key):
-    return marks.Marks(f"{_NAME}{key}_ends", "POINT")
+    return element_marks.Marks(f"{_NAME}{key}_ends", "POINT")
 
 
 def _kinds(key):
@@ -242,37 +225,3 @@ def _mark_ends(mesh, key, mark, path):
     _of_ends(key).write(mesh, [path[0]], mark)
     if not paths.is_closed(path):
         _of_ends(key).write(mesh, [path[-1]], -mark)
-
-
-def _edges_of(mesh, path):
-    """The edges between consecutive vertices of a path."""
-    if mesh.is_editmode:
-        return _edited_edges(bmesh.from_edit_mesh(mesh), path)
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    count = len(mesh.vertices)
-    keys = _keys(ends.reshape(-1, 2), count)
-    order = np.argsort(keys)
-    wanted = _keys(np.array(paths.edges(path)).reshape(-1, 2), count)
-    places = np.searchsorted(keys, wanted, sorter=order).clip(max=max(len(keys) - 1, 0))
-    bad = np.flatnonzero(keys[order[places]] != wanted) if len(keys) else np.zeros(1, int)
-    if len(bad):
-        raise NoEdge("no edge joins vertices {} and {}".format(*paths.edges(path)[bad[0]]))
-    return order[places].tolist()
-
-
-def _keys(pairs, count):
-    pairs = np.sort(pairs.astype(np.int64), axis=1)
-    return pairs[:, 0] * count + pairs[:, 1]
-
-
-def _edited_edges(edit, path):
-    edit.verts.ensure_lookup_table()
-    edit.edges.index_update()
-    found = []
-    for first, second in paths.edges(path):
-        edge = edit.edges.get((edit.verts[first], edit.verts[second]))
-        if edge is None:
-            raise NoEdge(f"no edge joins vertices {first} and {second}")
-        found.append(edge.index)
-    return found

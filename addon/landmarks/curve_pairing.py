@@ -2,8 +2,8 @@
 """To which pair of landmark curves selected paths belong, and which way they run."""
 
 from . import curve_selection, paths
-from .curves import SIDES, pairs, side_object
-from .points import NONE
+from .curves import pairs
+from .objects import NONE, SIDES, side_object
 
 
 def place_for(source, selected):

@@ -13,11 +13,9 @@ import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import messages
-from . import curve_copies, curve_marks, paths
-from . import points as landmarks
-from . import undo as landmark_undo
-from .curve_copies import SIDES, side_object
-from .points import NONE, CannotPair
+from ..blender.edges import NoEdge
+from . import curve_copies, curve_marks, paths, undo
+from .objects import NONE, SIDES, CannotPair, check_target, check_vertex, side_object, target_problem
 
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 
@@ -63,7 +61,7 @@ def pairs(source, *, drawing=False):
 
     With `drawing`, large meshes are not searched anew unless they have changed visibly.
     """
-    without_target = landmarks.target_problem(source)
+    without_target = target_problem(source)
     objects = _objects(source)
     found = [_found(source, side, drawing) for side in SIDES]
     listed, taken = [], {}
@@ -80,7 +78,7 @@ def add(source, source_path, target_path, *, name="", index=NONE):
     Paths are vertices from start to end, those of a loop end with the first one again; None leaves a side as
     it is. Raises `CannotPair` and then changes nothing.
     """
-    landmarks.check_target(source)
+    check_target(source)
     given = {side: tuple(path) for side, path in zip(SIDES, (source_path, target_path), strict=True) if path}
     if not given:
         raise CannotPair("A curve needs a path on the source or on the target")
@@ -104,7 +102,7 @@ def add(source, source_path, target_path, *, name="", index=NONE):
 def reverse(source, index, side):
     """Makes the end of a pair's path on one side its start. Raises `CannotPair` and then changes nothing."""
     curve, obj = source.authalic_landmark_curves[index], side_object(source, side)
-    if side == "target" and (problem := landmarks.target_problem(source)):
+    if side == "target" and (problem := target_problem(source)):
         raise CannotPair(f"{source.name}: {problem}")
     if not obj.data.is_editable:
         raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
@@ -124,7 +122,7 @@ def reverse(source, index, side):
 def remove(source, index):
     """Removes the pair of an index; the one that takes its place is the active one."""
     curve_copies.part(source)
-    landmark_undo.remember(source, index, landmark_undo.CURVES)
+    undo.remember(source, index, undo.CURVES)
     curve = source.authalic_landmark_curves[index]
     for side in SIDES:
         obj = side_object(source, side)
@@ -161,7 +159,7 @@ def replace(source, wanted):
 
 def check_all(source, wanted):
     """Raises `CannotPair` unless pairs (name, source path, target path) could be those of the source."""
-    landmarks.check_target(source)
+    check_target(source)
     for number_of_side, side in enumerate(SIDES, 1):
         obj, taken = side_object(source, side), {}
         for number, pair in enumerate(wanted):
@@ -268,7 +266,7 @@ def _check_path(obj, path):
     if not path:
         raise CannotPair(f"a curve has no vertices on {obj.name}")
     for vertex in path:
-        landmarks.check_vertex(obj, vertex)
+        check_vertex(obj, vertex)
     problem = _too_few(path)
     if problem is None and (twice := paths.repeated(path)) is not None:
         problem = f"comes to vertex {twice} twice"
@@ -276,7 +274,7 @@ def _check_path(obj, path):
         raise CannotPair(f"the curve {problem} on {obj.name}")
     try:
         curve_marks.check(obj.data, path)
-    except curve_marks.NoEdge as missing:
+    except NoEdge as missing:
         raise CannotPair(f"{obj.name}: {missing}; a curve runs along edges") from None
 
 

@@ -38,7 +38,7 @@ class View:
         return near, (far - near) / np.linalg.norm(far - near)
 
 
-class Surface:
+class Pickable:
     """Points (n, 3), of which those `used` (n,) count, under a matrix (4, 4) to the world.
 
     `cast` is a function of the origin and the direction of a ray among the points, and returns the point

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertices that can be found again after a mesh was edited, by marks (see `marks`).
+"""Vertices that can be found again after a mesh was edited, by marks (see `element_marks`).
 
 Deleting a vertex renumbers those behind it, but their marks go with them. Duplicating or extruding a vertex
 copies its mark; the vertex is then no longer certain.
 """
 
-from ..blender import element_marks as marks
+from ..blender import element_marks
 from ..blender.element_marks import element_counts
 
 NAME = "authalic_landmark"
-_MARKS = marks.Marks(NAME, "POINT")
+_MARKS = element_marks.Marks(NAME, "POINT")
 # What was found last: session id of a mesh -> (counts of its elements, marks).
 _seen = {}
 
@@ -19,7 +19,7 @@ def put(mesh, vertex):
     (old,) = _MARKS.of(mesh, [vertex])
     if old > 0 and len(find(mesh).get(old, ())) == 1:
         return old
-    mark = marks.new()
+    mark = element_marks.new()
     _write(mesh, [vertex], mark)
     return mark
 

@@ -2,7 +2,7 @@
 """Landmark pairs: a vertex of a source object and the vertex of its target object that it corresponds to.
 
 They live on the source object, as `authalic_landmarks` with the target in `authalic_target`, and are saved
-with it. What a pair keeps are marks (see `vertex_marks`), so that its vertices are found again after the
+with it. What a pair keeps are marks (see `point_marks`), so that its vertices are found again after the
 meshes were edited. `pairs` is the one truth on which vertices those are today, and where they are lost.
 """
 
@@ -11,14 +11,8 @@ from typing import NamedTuple
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from . import point_marks as vertex_marks
-from . import undo as landmark_undo
-
-NONE = -1
-
-
-class CannotPair(Exception):
-    """The landmarks are as they were; says why."""
+from . import point_marks, undo
+from .objects import NONE, CannotPair, check_target, check_vertex, target_problem
 
 
 class Pair(NamedTuple):
@@ -86,28 +80,6 @@ def pairs(source, *, drawing=False):
     return listed
 
 
-def source(context):
-    """The object whose landmarks are meant: the active one, or the one selected whose target that is."""
-    active = context.object
-    if active is None or active.type != "MESH" or active.authalic_target is not None:
-        return active
-    chosen = {*context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
-    aiming = [obj for obj in chosen if obj.type == "MESH" and obj.authalic_target == active]
-    return aiming[0] if len(aiming) == 1 else active
-
-
-def target_problem(source):
-    """Why a source object has no target to work with, or None."""
-    target = source.authalic_target
-    if target is None:
-        return "there is no target object, choose one"
-    if target == source or target.type != "MESH":
-        return f"{target.name} cannot be the target, choose another mesh object"
-    if not target.users_scene:
-        return f"the target object {target.name} was deleted, choose another one"
-    return None
-
-
 def add(source, source_vertex, target_vertex, name=""):
     """Adds a pair and makes it the active one; returns it. Raises `CannotPair` and then changes nothing."""
     _check_new(source, source_vertex, target_vertex)
@@ -141,12 +113,12 @@ def replace(source, wanted):
 
 def remove(source, index):
     """Removes the pair of an index; the one that takes its place is the active one."""
-    landmark_undo.remember(source, index)
+    undo.remember(source, index)
     gone = source.authalic_landmarks[index]
     source_mark, target_mark = gone.source_mark, gone.target_mark
     source.authalic_landmarks.remove(index)
     if not _release(source, source_mark):
-        landmark_undo.forget(source, source_mark)
+        undo.forget(source, source_mark)
     target = source.authalic_target
     # In another mode the mark would stay away when the step is undone.
     if target is not None and target.data.is_editmode == source.data.is_editmode:
@@ -159,23 +131,6 @@ def clear(source):
     """Removes all pairs."""
     for index in reversed(range(len(source.authalic_landmarks))):
         remove(source, index)
-
-
-def check_target(source):
-    """Raises `CannotPair` unless pairs can be added to a source object."""
-    problem = target_problem(source)
-    if problem:
-        raise CannotPair(f"{source.name}: {problem}")
-    for obj in (source, source.authalic_target):
-        if not obj.data.is_editable:
-            raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
-
-
-def check_vertex(obj, vertex):
-    """Raises `CannotPair` unless an object has a vertex."""
-    count = vertex_marks.vertex_count(obj.data)
-    if not 0 <= vertex < count:
-        raise CannotPair(f"{obj.name} has no vertex {vertex}, its {count} vertices are 0 to {count - 1}")
 
 
 def _check_new(source, source_vertex, target_vertex):
@@ -198,7 +153,7 @@ def _free_name(source):
 
 def _found(source, obj, side, drawing):
     wanted = [getattr(landmark, f"{side}_mark") for landmark in source.authalic_landmarks]
-    return vertex_marks.find(obj.data, wanted=wanted if drawing else None)
+    return point_marks.find(obj.data, wanted=wanted if drawing else None)
 
 
 def _where(mark, found, obj):
@@ -227,7 +182,7 @@ def _release(obj, mark):
             if mark in (landmark.source_mark, landmark.target_mark):
                 return False
     if obj.type == "MESH" and obj.data.is_editable:
-        vertex_marks.clear(obj.data, mark)
+        point_marks.clear(obj.data, mark)
     return True
 
 
@@ -244,7 +199,7 @@ def _vertex(landmark, side):
         return landmark.waiting
     if obj is None or obj.type != "MESH":
         return NONE
-    return _where(mark, vertex_marks.find(obj.data, wanted=[mark]), obj)[0]
+    return _where(mark, point_marks.find(obj.data, wanted=[mark]), obj)[0]
 
 
 def _bind(landmark, side, vertex):
@@ -252,8 +207,8 @@ def _bind(landmark, side, vertex):
     obj, mark = _object(landmark, side), 0
     if side == "target":
         landmark.waiting = vertex if obj is None else NONE
-    if obj is not None and obj.type == "MESH" and 0 <= vertex < vertex_marks.vertex_count(obj.data):
-        mark = vertex_marks.put(obj.data, vertex)
+    if obj is not None and obj.type == "MESH" and 0 <= vertex < point_marks.vertex_count(obj.data):
+        mark = point_marks.put(obj.data, vertex)
     setattr(landmark, f"{side}_mark", mark)
     landmark.error = -1.0
 
@@ -274,7 +229,7 @@ def _target_changed(source, _context):
 
 def register():
     bpy.utils.register_class(AUTHALIC_PG_landmark)
-    landmark_undo.register()
+    undo.register()
     bpy.types.Object.authalic_landmarks = CollectionProperty(
         type=AUTHALIC_PG_landmark, name="Landmarks", description="Pairs of vertices, here and on the target"
     )
@@ -297,5 +252,5 @@ def unregister():
     del bpy.types.Object.authalic_target
     del bpy.types.Object.authalic_landmark_index
     del bpy.types.Object.authalic_landmarks
-    landmark_undo.unregister()
+    undo.unregister()
     bpy.utils.unregister_class(AUTHALIC_PG_landmark)

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import bpy
 from bpy.app.handlers import persistent
 
-from ..blender import element_marks as marks
-from . import curve_marks
-from . import point_marks as vertex_marks
+from ..blender import element_marks
+from . import curve_marks, point_marks
 
 
 class Listed(NamedTuple):
@@ -116,9 +115,9 @@ def _state(source, listed):
     meshes = _edited(source, listed)
     if not meshes:
         return None, set()
-    sizes = [marks.element_counts(mesh) for mesh in meshes]
+    sizes = [element_marks.element_counts(mesh) for mesh in meshes]
     if listed is POINTS:
-        return sizes, {("source", mark) for mark in vertex_marks.find(source.data)}
+        return sizes, {("source", mark) for mark in point_marks.find(source.data)}
     return sizes, {(side, mark) for side in ("source", "target") for mark in _of_curves(source, side)}
 
 

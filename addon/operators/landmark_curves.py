@@ -4,53 +4,35 @@
 import re
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, StringProperty
 
 from .. import messages
+from ..blender import selection
 from ..landmarks import curve_pairing, curve_selection
 from ..landmarks import curves as landmark_curves
-from ..landmarks import points as landmarks
+from ..landmarks.objects import NONE, SIDES, CannotPair, side_object
 from . import poll, views
+from .landmark_base import GIVEN, LandmarkOperator, index_property
 
-_GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
 _SIDES = (
     ("SOURCE", "Source", "The path on this object"),
     ("TARGET", "Target", "The path on the target"),
 )
 
 
-class _CurveOperator:
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+class _CurveOperator(LandmarkOperator):
+    pairs, active, noun = "authalic_landmark_curves", "authalic_landmark_curve_index", "curve"
 
     @classmethod
     def poll(cls, context):
         return poll.has_curves(cls, context)
 
-    def execute(self, context):
-        try:
-            return self.run(context, landmarks.source(context))
-        except landmarks.CannotPair as problem:
-            self.report({"ERROR"}, str(problem)[:1].upper() + str(problem)[1:])
-            return {"CANCELLED"}
-
-    def chosen(self, source):
-        """The index of the pair that is meant."""
-        index, count = self.index, len(source.authalic_landmark_curves)
-        index = source.authalic_landmark_curve_index if index == landmarks.NONE else index
-        if not 0 <= index < count:
-            last = f", its {count} are 0 to {count - 1}" if count else ""
-            raise landmarks.CannotPair(f"{source.name} has no curve {index}{last}")
-        return index
+    def worded(self, problem):
+        return problem[:1].upper() + problem[1:]
 
 
 def _index(meaning="-1 for the active one"):
-    return IntProperty(
-        name="Index",
-        description=f"The place of the pair of curves in the list, from 0. {meaning}",
-        min=landmarks.NONE,
-        default=landmarks.NONE,
-        options=_GIVEN,
-    )
+    return index_property("the pair of curves", meaning)
 
 
 def _side(meaning, default):
@@ -63,7 +45,7 @@ def _path(name, where):
         description=f"The numbers of the vertices {where} from start to end, of a loop the first one again "
         "at the end. Empty for the selected edges",
         default="",
-        options=_GIVEN,
+        options=GIVEN,
     )
 
 
@@ -77,7 +59,7 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
     bl_label = "Add Landmark Curve"
 
     name: StringProperty(
-        name="Name", description="Empty for the one there is, or a number", default="", options=_GIVEN
+        name="Name", description="Empty for the one there is, or a number", default="", options=GIVEN
     )
     index: _index("-1 for a new pair, or for one that lacks the path")
     source_vertices: _path("Source Vertices", "on this object")
@@ -88,16 +70,16 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
         return poll.has_target(cls, context)
 
     def run(self, _context, source):
-        index = landmarks.NONE if self.index == landmarks.NONE else self.chosen(source)
+        index = NONE if self.index == NONE else self.chosen(source)
         given = {"source": _numbers(self.source_vertices), "target": _numbers(self.target_vertices)}
         given = {side: path for side, path in given.items() if path}
         if not given:
             given, index = _selected(source, index)
-        elif index == landmarks.NONE:
+        elif index == NONE:
             index, given = curve_pairing.place_for(source, given)
         landmark_curves.add(source, given.get("source"), given.get("target"), name=self.name, index=index)
         pair = landmark_curves.pairs(source)[source.authalic_landmark_curve_index]
-        said = [_described(path, landmark_curves.side_object(source, side)) for side, path in given.items()]
+        said = [_described(path, side_object(source, side)) for side, path in given.items()]
         self.report({"INFO"}, f"{pair.name}: {', '.join([*said, *filter(None, [pair.problem])])}")
         return {"FINISHED"}
 
@@ -141,14 +123,14 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
     def run(self, context, source):
         index = self.chosen(source)
         pair, side = landmark_curves.pairs(source)[index], self.side.lower()
-        obj = landmark_curves.side_object(source, side)
+        obj = side_object(source, side)
         path = getattr(pair, side)
         if not path.edges:
-            raise landmarks.CannotPair(f"{pair.name}: {pair.problem}")
+            raise CannotPair(f"{pair.name}: {pair.problem}")
         source.authalic_landmark_curve_index = index
         # With vertices, edges between any two of the path would be selected too.
         context.tool_settings.mesh_select_mode = False, True, False
-        curve_selection.select(obj, path.edges)
+        selection.select_edges(obj, path.edges)
         views.show(context, obj, _middle(path))
         self.report({"INFO"}, f"{pair.name}: {_described(path.vertices, obj, len(path.edges))}")
         return {"FINISHED"}
@@ -166,7 +148,7 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
         index, side = self.chosen(source), self.side.lower()
         landmark_curves.reverse(source, index, side)
         source.authalic_landmark_curve_index = index
-        obj = landmark_curves.side_object(source, side)
+        obj = side_object(source, side)
         pair = landmark_curves.pairs(source)[index]
         start = getattr(pair, side).vertices[0]
         self.report({"INFO"}, f"{pair.name} starts at vertex {start} of {obj.name} now")
@@ -178,24 +160,20 @@ def _numbers(text):
     words = [word for word in re.split(r"[\s,]+", text) if word]
     bad = next((word for word in words if not word.isdecimal()), None)
     if bad is not None:
-        raise landmarks.CannotPair(f'"{bad}" is not the number of a vertex')
+        raise CannotPair(f'"{bad}" is not the number of a vertex')
     return tuple(map(int, words))
 
 
 def _selected(source, index):
     """The paths {side: path} of selected edges, and the index of their pair, -1 for a new one."""
-    found = {
-        side: path
-        for side in landmark_curves.SIDES
-        if (path := curve_selection.path(landmark_curves.side_object(source, side)))
-    }
+    found = {side: path for side in SIDES if (path := curve_selection.path(side_object(source, side)))}
     if not found:
-        raise landmarks.CannotPair(
+        raise CannotPair(
             f"Select edges of {source.name} or of {source.authalic_target.name} in Edit Mode: one open path "
             "or one closed loop"
         )
     chosen = {side: path for side, (path, _) in found.items()}
-    if index == landmarks.NONE:
+    if index == NONE:
         index, chosen = curve_pairing.place_for(source, chosen)
     loose = [side for side in chosen if not found[side][1]]
     return curve_pairing.directed(source, index, chosen, loose), index

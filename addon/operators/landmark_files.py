@@ -10,7 +10,8 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from .. import messages
 from ..landmarks import curves as landmark_curves
 from ..landmarks import files as landmark_files
-from ..landmarks import points as landmarks
+from ..landmarks import points as landmark_points
+from ..landmarks.objects import CannotPair, active_source
 from . import poll
 
 
@@ -21,8 +22,8 @@ class _File:
 
     def execute(self, context):
         try:
-            return self.run(landmarks.source(context), self._path())
-        except (landmarks.CannotPair, landmark_files.CannotRead, OSError, UnicodeDecodeError) as problem:
+            return self.run(active_source(context), self._path())
+        except (CannotPair, landmark_files.CannotRead, OSError, UnicodeDecodeError) as problem:
             name = Path(self.filepath).name
             text = problem.strerror if isinstance(problem, OSError) and problem.strerror else problem
             self.report({"ERROR"}, f"{name}: {text}" if name else str(text))
@@ -30,7 +31,7 @@ class _File:
 
     def _path(self):
         if not self.filepath:
-            raise landmarks.CannotPair("No file is named")
+            raise CannotPair("No file is named")
         return Path(bpy.path.abspath(self.filepath))
 
 
@@ -45,14 +46,14 @@ class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):
         return poll.has_points_or_curves(cls, context)
 
     def run(self, source, path):
-        pairs, curves = landmarks.pairs(source), landmark_curves.pairs(source)
+        pairs, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
         sound = [pair[:3] for pair in pairs if pair.problem is None]
         whole = [
             (one.name, one.source.vertices, one.target.vertices) for one in curves if one.problem is None
         ]
         left = [f"{pair.name}: {pair.problem}" for pair in (*pairs, *curves) if pair.problem is not None]
         if not sound and not whole:
-            raise landmarks.CannotPair(f"nothing was written, {messages.listed(left)}")
+            raise CannotPair(f"nothing was written, {messages.listed(left)}")
         content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound, whole)
         path.write_text(landmark_files.to_text(content), encoding="utf-8")
         done = f"Wrote {_counted(sound, whole)} to {path.name}"
@@ -81,10 +82,10 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
             source.authalic_target = named
         try:
             landmark_curves.check_all(source, found.curves or [])
-            landmarks.replace(source, found.pairs)
+            landmark_points.replace(source, found.pairs)
             if found.curves is not None:
                 landmark_curves.replace(source, found.curves)
-        except landmarks.CannotPair:
+        except CannotPair:
             source.authalic_target = before
             raise
         target = source.authalic_target.name

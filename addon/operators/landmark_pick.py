@@ -5,11 +5,13 @@ import bpy
 import numpy as np
 from bpy.props import IntProperty
 
-from ..blender import vertex_positions as vertex_points
-from ..landmarks import picking as landmark_picking
-from ..landmarks import point_marks as vertex_marks
-from ..landmarks import points as landmarks
-from ..overlay import points as markers
+from ..blender import vertex_positions
+from ..landmarks import picking, point_marks
+from ..landmarks import points as landmark_points
+from ..landmarks.objects import NONE, CannotPair, active_source
+from ..overlay.drawing import redraw
+from ..overlay.points import Marker
+from ..overlay.points import hints as shown_hints
 from . import poll
 
 # Looking around; mouse buttons and keys that do something else are held back.
@@ -34,15 +36,15 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     source_vertex: IntProperty(
         name="Source Vertex",
         description="The vertex on this object",
-        min=landmarks.NONE,
-        default=landmarks.NONE,
+        min=NONE,
+        default=NONE,
         options={"SKIP_SAVE"},
     )
     target_vertex: IntProperty(
         name="Target Vertex",
         description="The vertex on the target",
-        min=landmarks.NONE,
-        default=landmarks.NONE,
+        min=NONE,
+        default=NONE,
         options={"SKIP_SAVE"},
     )
 
@@ -55,13 +57,13 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
 
     def execute(self, context):
         """The last pair again, with other numbers; or a pair for scripts."""
-        if landmarks.NONE in (self.source_vertex, self.target_vertex):
+        if NONE in (self.source_vertex, self.target_vertex):
             self.report({"ERROR"}, "Picking needs a window, or the numbers of two vertices")
             return {"CANCELLED"}
-        source = landmarks.source(context)
+        source = active_source(context)
         try:
-            landmarks.add(source, self.source_vertex, self.target_vertex)
-        except landmarks.CannotPair as problem:
+            landmark_points.add(source, self.source_vertex, self.target_vertex)
+        except CannotPair as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
         return {"FINISHED"}
@@ -69,7 +71,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     def invoke(self, context, _event):
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        source = landmarks.source(context)
+        source = active_source(context)
         self._names = source.name, source.authalic_target.name
         self._chosen, self._steps, self._pushed, self._states = {}, [], [], None
         AUTHALIC_OT_landmark_pick.running = True
@@ -119,8 +121,8 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         for k in shown:
             self._surfaces[k].place(objects[k].matrix_world)
         matrix = np.array(region.data.perspective_matrix)
-        seen = landmark_picking.View(matrix, region.width, region.height)
-        found = landmark_picking.pick(
+        seen = picking.View(matrix, region.width, region.height)
+        found = picking.pick(
             [self._surfaces[k] for k in shown], seen, pixel, blocked=_blocked(context, objects, seen, pixel)
         )
         return found and (_SIDES[shown[found[0]]], found[1])
@@ -131,12 +133,12 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         hints = [self._hint(side, vertex, number) for side, vertex in self._chosen.items()]
         if found is not None:
             hints.append(self._hint(*found, number))
-        if hints != markers.hints:
-            markers.hints[:] = hints
-            markers.redraw(context)
+        if hints != shown_hints:
+            shown_hints[:] = hints
+            redraw(context)
 
     def _hint(self, side, vertex, text):
-        return markers.Marker(self._names[_SIDES.index(side)], vertex, text, side, is_active=True)
+        return Marker(self._names[_SIDES.index(side)], vertex, text, side, is_active=True)
 
     def _click(self, context, objects, found):
         if found is None:
@@ -157,8 +159,8 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             if self._steps != self._pushed:  # a step of undo for each pair; the last one Blender itself makes
                 bpy.ops.ed.undo_push(message=self.bl_label)
                 self._pushed = list(self._steps)
-            added = landmarks.add(source, *vertices)
-        except landmarks.CannotPair as problem:
+            added = landmark_points.add(source, *vertices)
+        except CannotPair as problem:
             self._say(context, str(problem)[:1].upper() + str(problem)[1:])
         else:
             self._steps.append((added.name, *vertices))
@@ -173,10 +175,10 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         elif self._steps:
             (name, *_), listed = self._steps.pop(), objects[0].authalic_landmarks
             if listed and listed[-1].name == name:
-                landmarks.remove(objects[0], len(listed) - 1)
+                landmark_points.remove(objects[0], len(listed) - 1)
             self._say(context, f"Removed {name}")
         self._hover(context, None)
-        markers.redraw(context)
+        redraw(context)
 
     def _say(self, context, text):
         missing = [side for side in _SIDES if side not in self._chosen]
@@ -193,16 +195,16 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
 
         if context.workspace is not None:
             context.workspace.status_text_set(draw)
-        markers.redraw(context)
+        redraw(context)
 
     def _end(self, context):
         AUTHALIC_OT_landmark_pick.running = False
-        markers.hints.clear()
+        shown_hints.clear()
         if context.window is not None:
             context.window.cursor_modal_restore()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        markers.redraw(context)
+        redraw(context)
         if not self._steps and not self._pushed:
             return {"CANCELLED"}
         self.report({"INFO"}, f"Picked {len(self._steps)} landmarks of {self._names[0]} and {self._names[1]}")
@@ -236,14 +238,14 @@ def _contains(place, x, y):
 
 
 def _surface(obj, context):
-    seen = vertex_points.surface(obj, context.evaluated_depsgraph_get())
-    return landmark_picking.Surface(*seen, obj.matrix_world)
+    seen = vertex_positions.surface(obj, context.evaluated_depsgraph_get())
+    return picking.Pickable(*seen, obj.matrix_world)
 
 
 def _state(obj):
     """Changes where the surface of an object has to be looked at again."""
     mesh = obj.data
-    return obj.as_pointer(), mesh.session_uid, mesh.is_editmode, vertex_marks.vertex_count(mesh)
+    return obj.as_pointer(), mesh.session_uid, mesh.is_editmode, point_marks.vertex_count(mesh)
 
 
 def _blocked(context, objects, view, pixel):

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When commands can be used."""
 
-from ..landmarks import points as landmarks
+from ..blender import uv_maps
+from ..landmarks.objects import active_source, target_problem
 
 
 def has_meshes(operator, context):
@@ -28,7 +29,7 @@ def has_uv_maps(operator, context):
     if not has_meshes(operator, context):
         return False
     objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
-    if not any(obj.type == "MESH" and obj.data.uv_layers.active for obj in objects):
+    if not any(obj.type == "MESH" and uv_maps.active(obj) for obj in objects):
         operator.poll_message_set("The selected meshes have no UV map")
         return False
     return True
@@ -49,7 +50,7 @@ def has_target(operator, context):
     """The same, and a target for it."""
     if not has_source(operator, context):
         return False
-    problem = landmarks.target_problem(landmarks.source(context))
+    problem = target_problem(active_source(context))
     if problem:
         operator.poll_message_set(problem[:1].upper() + problem[1:])
     return not problem
@@ -59,7 +60,7 @@ def has_landmarks(operator, context):
     """An active mesh that has landmarks."""
     if not has_source(operator, context):
         return False
-    if not landmarks.source(context).authalic_landmarks:
+    if not active_source(context).authalic_landmarks:
         operator.poll_message_set("There are no landmarks yet")
         return False
     return True
@@ -69,7 +70,7 @@ def has_curves(operator, context):
     """An active mesh that has landmark curves."""
     if not has_source(operator, context):
         return False
-    if not landmarks.source(context).authalic_landmark_curves:
+    if not active_source(context).authalic_landmark_curves:
         operator.poll_message_set("There are no landmark curves yet")
         return False
     return True
@@ -79,7 +80,7 @@ def has_points_or_curves(operator, context):
     """An active mesh that has landmarks of either kind."""
     if not has_source(operator, context):
         return False
-    source = landmarks.source(context)
+    source = active_source(context)
     if not source.authalic_landmarks and not source.authalic_landmark_curves:
         operator.poll_message_set("There are no landmarks yet")
         return False

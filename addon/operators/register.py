@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..jobs import register as registration
-from ..landmarks import points as landmarks
+from ..landmarks.objects import active_source, target_problem
 from ..registration.settings import Settings
 from .modal import Modal
 
@@ -109,13 +109,13 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
 
 def has_target(operator, context):
     """Object mode, an active mesh and a target for it; else tells the user what is missing."""
-    obj = landmarks.source(context)
+    obj = active_source(context)
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")
     elif obj is None or obj.type != "MESH":
         operator.poll_message_set("Make the mesh that is to change the active object")
-    elif landmarks.target_problem(obj):
-        operator.poll_message_set(f"{obj.name}: {landmarks.target_problem(obj)}")
+    elif target_problem(obj):
+        operator.poll_message_set(f"{obj.name}: {target_problem(obj)}")
     else:
         return True
     return False

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import bridge
-from ..blender import packing
+from ..blender import packing, uv_maps
 from ..jobs import unwrap
 from . import poll, solving
 from .modal import Modal
@@ -16,7 +16,7 @@ from .solving import Outlining
 
 def _layer_names(_operator, context, _text):
     obj = context.object
-    return [layer.name for layer in obj.data.uv_layers] if obj and obj.type == "MESH" else []
+    return uv_maps.names(obj) if obj and obj.type == "MESH" else []
 
 
 class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):

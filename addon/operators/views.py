@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What brings a place on an object into view."""
 
-from ..blender import vertex_positions as vertex_points
+from ..blender import vertex_positions
 
 
 def show(context, obj, vertex):
     """Selects an object and puts one of its vertices into the middle of the 3D view, if there is one."""
     if obj.visible_get():
         obj.select_set(True)
-    _look_at(context, *vertex_points.in_world(obj, vertex, context.evaluated_depsgraph_get()))
+    _look_at(context, *vertex_positions.in_world(obj, vertex, context.evaluated_depsgraph_get()))
 
 
 def _look_at(context, point, normal):
@@ -18,7 +18,7 @@ def _look_at(context, point, normal):
         return
     if view.view_perspective == "CAMERA":
         view.view_perspective = "PERSP"
-    towards = view.view_rotation @ vertex_points.Z
+    towards = view.view_rotation @ vertex_positions.Z
     if normal.dot(towards) < 0.2 and normal.length > 0:
         view.view_rotation = normal.to_track_quat("Z", "Y")
     view.view_location = point

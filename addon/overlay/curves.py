@@ -13,13 +13,11 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix, Vector
 
-from ..blender import element_marks as marks
-from ..blender import scene_changes
-from ..blender import vertex_positions as vertex_points
+from ..blender import element_marks, scene_changes, vertex_positions
 from ..landmarks import curves as landmark_curves
 from ..landmarks import paths
-from ..landmarks import points as landmarks
-from . import points as markers
+from ..landmarks.objects import SIDES, active_source, side_object
+from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disc, faces_eye, is_drawn, label, sources
 
 # Blender's bone color sets that differ well from each other and from the red of a problem.
 _COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)
@@ -61,19 +59,19 @@ def shown(context):
     """The lines for what is selected: of sources and of those whose target is."""
     if not context.scene.authalic_show_landmarks:
         return []
-    listed = [source for source in markers.sources(context) if source.authalic_landmark_curves]
+    listed = [source for source in sources(context) if source.authalic_landmark_curves]
     return [line for source in listed for line in _of(source, context)]
 
 
 def _of(source, context):
-    active, is_meant = source.authalic_landmark_curve_index, source == landmarks.source(context)
+    active, is_meant = source.authalic_landmark_curve_index, source == active_source(context)
     for number, pair in enumerate(landmark_curves.pairs(source, drawing=True)):
-        is_half = any(not getattr(pair, side).edges for side in landmark_curves.SIDES)
-        for side in landmark_curves.SIDES:
+        is_half = any(not getattr(pair, side).edges for side in SIDES)
+        for side in SIDES:
             path = getattr(pair, side)
             if path.edges:
                 yield Line(
-                    object_name=landmark_curves.side_object(source, side).name,
+                    object_name=side_object(source, side).name,
                     edges=tuple(paths.edges(path.vertices)) or path.edges,
                     is_whole=bool(path.vertices),
                     is_closed=path.is_closed,
@@ -85,11 +83,11 @@ def _of(source, context):
 
 def _draw_lines():
     context = bpy.context
-    if not markers.is_drawn(context):
+    if not is_drawn(context):
         return
     drawn = _prepared(context)
     gpu.state.blend_set("ALPHA")
-    for depth_test, alpha in (("NONE", markers.BEHIND), ("LESS_EQUAL", 1.0)):
+    for depth_test, alpha in (("NONE", BEHIND), ("LESS_EQUAL", 1.0)):
         gpu.state.depth_test_set(depth_test)
         with gpu.matrix.push_pop():
             gpu.matrix.load_matrix(_towards_eye(context) @ gpu.matrix.get_model_view_matrix())
@@ -109,7 +107,7 @@ def _prepared(context):
     seen = [(line, context.view_layer.objects.get(line.object_name)) for line in lines]
     seen = [(line, obj) for line, obj in seen if obj and obj.visible_get(viewport=context.space_data)]
     new = [(line, obj) for line, obj in seen if _key(line) not in _shapes]
-    held = [marks.hold(obj.data) for _, obj in new]
+    held = [element_marks.hold(obj.data) for _, obj in new]
     for line, obj in new:
         _shapes[_key(line)] = _shape(line, obj, context.evaluated_depsgraph_get())
     del held
@@ -122,9 +120,9 @@ def _key(line):
 
 def _shape(line, obj, graph):
     vertices = [vertex for edge in line.edges for vertex in edge]
-    points = vertex_points.many(obj, vertices, graph).tolist()
+    points = vertex_positions.many(obj, vertices, graph).tolist()
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
-    ends = [[vertex_points.local(obj, vertex, graph) for vertex in edge] for edge in _end_edges(line)]
+    ends = [[vertex_positions.local(obj, vertex, graph) for vertex in edge] for edge in _end_edges(line)]
     return _Shape(batch_for_shader(shader, "LINES", {"pos": points}), *ends)
 
 
@@ -143,7 +141,7 @@ def _towards_eye(context):
 def _draw_line(line, obj, shape, context, alpha):
     scale = context.preferences.system.ui_scale
     width = (_ACTIVE_WIDTH if line.is_active else _WIDTH) * scale
-    rim = markers.ACTIVE if line.is_active else markers.DARK
+    rim = ACTIVE if line.is_active else DARK
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
     shader.uniform_float("viewportSize", (context.region.width, context.region.height))
     with gpu.matrix.push_pop():
@@ -156,14 +154,14 @@ def _draw_line(line, obj, shape, context, alpha):
 
 def _color(line, context):
     if line.has_problem:
-        return markers.PROBLEM
+        return PROBLEM
     sets = context.preferences.themes[0].bone_color_sets
     return tuple(sets[_COLOR_SETS[line.number % len(_COLOR_SETS)] - 1].active)
 
 
 def _draw_ends():
     context = bpy.context
-    if not markers.is_drawn(context):
+    if not is_drawn(context):
         return
     scale = context.preferences.system.ui_scale
     for line, obj, shape in _prepared(context):
@@ -179,22 +177,22 @@ def _draw_ends():
 
 def _end(obj, end, context):
     """(pixel of the end, pixel of the vertex next to it, how opaque), or None if not in view."""
-    ends = [vertex_points.to_world(obj, *place) for place in end]
+    ends = [vertex_positions.to_world(obj, *place) for place in end]
     pixels = [location_3d_to_region_2d(context.region, context.region_data, point) for point, _ in ends]
     if None in pixels:
         return None
-    is_front = markers.faces_eye(context, *ends[0])
-    return *pixels, 1.0 if is_front else markers.BEHIND
+    is_front = faces_eye(context, *ends[0])
+    return *pixels, 1.0 if is_front else BEHIND
 
 
 def _draw_start(line, end, color, scale):
     pixel, _, alpha = end
-    rim = markers.ACTIVE if line.is_active else markers.DARK
+    rim = ACTIVE if line.is_active else DARK
     if line.is_whole:
-        markers.disc(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
-        markers.disc(pixel, _DOT * scale, (*color, alpha))
-    text = markers.PROBLEM if line.has_problem else markers.ACTIVE
-    markers.label(str(line.number + 1), pixel, scale * (14 if line.is_active else 12), (*text, alpha))
+        disc(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
+        disc(pixel, _DOT * scale, (*color, alpha))
+    text = PROBLEM if line.has_problem else ACTIVE
+    label(str(line.number + 1), pixel, scale * (14 if line.is_active else 12), (*text, alpha))
 
 
 def _draw_arrow(end, color, scale):
@@ -203,7 +201,7 @@ def _draw_arrow(end, color, scale):
         return
     tip, before, alpha = end
     along = (tip - before).normalized() if (tip - before).length > 0 else Vector((1, 0))
-    for length, shade in ((_ARROW + 4, markers.DARK), (_ARROW, color)):
+    for length, shade in ((_ARROW + 4, DARK), (_ARROW, color)):
         wing = Vector((-along.y, along.x)) * length * math.tan(math.radians(28)) * scale
         middle = tip - along * 0.3 * _ARROW * scale  # of the circle within, so that the rim is even
         point, back = middle + along * 0.68 * length * scale, middle - along * 0.32 * length * scale

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every registration asks of a surface: one piece without handles. Plain numpy, no bpy."""
 
-from ..surfaces import suitability as domains
+from ..surfaces import suitability
 from ..surfaces.suitability import Unsuitable
 
 
@@ -12,7 +12,7 @@ def check_piece(one, patches):
         if patches[0].genus is None:
             raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
         if patches[0].genus > 0:
-            raise Unsuitable(f"has {domains.handles(patches[0])}, like a torus; close it up or remesh it")
+            raise Unsuitable(f"has {suitability.handles(patches[0])}, like a torus; close it up or remesh it")
     except Unsuitable as problem:
         raise Unsuitable(f"{one.name}: {problem}") from problem
     return patches[0]

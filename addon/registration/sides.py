@@ -43,7 +43,7 @@ class Side:
 
 
 def side(surface, matrix):
-    """The `Side` of a `mesh_io.Surface` in the mesh's own coordinates, with a matrix (4, 4) into the world.
+    """The `Side` of a `Surface` in the mesh's own coordinates, with a matrix (4, 4) into the world.
 
     A matrix that mirrors turns the faces over, as Blender does, so that fronts stay fronts.
     """

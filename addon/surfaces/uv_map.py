@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import messages
 from . import triangulation
 
 
 @dataclass
-class Layout:
-    """The triangles of a surface (`mesh_io.Surface`), joined where they share UVs at a vertex.
+class UvMap:
+    """The triangles of a surface (`Surface`), joined where they share UVs at a vertex.
 
     `points` (n, 3) in space and `uv` (n, 2) are those of UV vertices, `vertices` (n,) the mesh's, -1 at the
     centers of divided polygons. `faces` (m, 3) are UV vertices, `corners` (m, 3) mesh corners, -1 at such
@@ -29,14 +28,14 @@ class Layout:
     shared: np.ndarray
 
 
-def layout(surface):
-    """The `Layout` of a surface with UVs."""
+def joined(surface):
+    """The UV map of a surface with UVs, its triangles joined."""
     mesh = triangulation.sound(surface)
     image = _corner_uvs(surface, mesh)
     first, faces = triangulation.welded(mesh.triangles, image)
     vertices = mesh.triangles.ravel()[first]
     uv = image.reshape(-1, 2)[first]
-    return Layout(
+    return UvMap(
         points=mesh.positions[vertices],
         uv=uv,
         vertices=np.where(vertices < len(surface.positions), vertices, -1),
@@ -53,21 +52,6 @@ def may_be_flipped(faces, uv):
     # Differences and their products are exact for UVs in single precision, so the signs are as well.
     areas = triangulation.signed_areas(uv[faces].astype(float))
     return not ((areas > 0).all() or (areas < 0).all())
-
-
-def why_not(polygons, has_pins, is_part):
-    """Why polygons (k,) stay flipped, and what to do; `is_part`: of the island only a part is selected."""
-    faces = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
-    pins = " and pinned UVs" if has_pins else ""
-    remedies = [
-        *(["select the faces around as well"] if is_part else []),
-        *(["unpin UVs"] if has_pins else []),
-        "smooth the outline there or unwrap the island again",
-    ]
-    return (
-        f"{faces if len(polygons) else 'its faces'} cannot be turned without moving its outline{pins}; "
-        f"{', '.join(remedies)}"
-    )
 
 
 def _corner_uvs(surface, mesh):

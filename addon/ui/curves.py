@@ -4,9 +4,9 @@
 import bpy
 
 from ..landmarks import curves as landmark_curves
-from ..landmarks import points as landmarks
-from ..overlay import curves as curve_markers
-from . import text as ui_text
+from ..landmarks.objects import target_problem
+from ..overlay.curves import icon
+from . import text
 
 _shown = []  # the pairs of the list that is being drawn
 
@@ -20,15 +20,15 @@ class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
         number = row.row()
         number.ui_units_x = 1.1
         number.label(text=str(index + 1), translate=False)
-        row.label(icon=curve_markers.icon(index))
+        row.label(icon=icon(index))
         row.prop(item, "name", text="", emboss=False)
         if pair is None:
             return
         if pair.problem is not None:
             row.label(icon="ERROR")
         elif item.error >= 0:
-            ui_text.draw_aside(row, f"{item.error:.2f} %")
-        ui_text.draw_aside(row, f"{_edges(pair.source)} → {_edges(pair.target)}")
+            text.draw_aside(row, f"{item.error:.2f} %")
+        text.draw_aside(row, f"{_edges(pair.source)} → {_edges(pair.target)}")
 
 
 class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
@@ -81,8 +81,8 @@ def draw_curves(layout, source, context):
         operator.side = side
     row = body.row()
     row.operator("authalic.landmark_curve_reverse", text="Reverse Target", icon="ARROW_LEFTRIGHT")
-    ui_text.draw_error(body, source.authalic_landmark_curves, source.authalic_landmark_curve_index)
-    ui_text.draw_problems(body, _problems(source), context)
+    text.draw_error(body, source.authalic_landmark_curves, source.authalic_landmark_curve_index)
+    text.draw_problems(body, _problems(source), context)
 
 
 def draw_hint(layout, source, context):
@@ -90,15 +90,15 @@ def draw_hint(layout, source, context):
     pairs = landmark_curves.pairs(source, drawing=True)
     bad = sum(pair.problem is not None for pair in pairs)
     if not pairs:
-        ui_text.draw_problems(layout, ["No landmark curves yet, boundaries alone"], context, icon="INFO")
+        text.draw_problems(layout, ["No landmark curves yet, boundaries alone"], context, icon="INFO")
     elif bad:
-        ui_text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
+        text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
 
 
 def _problems(source):
     """The active pair's problem in words, or how many there are elsewhere in the list."""
     if not _shown:
-        return ["Select edges in Edit Mode and add them"] if not landmarks.target_problem(source) else []
+        return ["Select edges in Edit Mode and add them"] if not target_problem(source) else []
     active = source.authalic_landmark_curve_index
     bad = [number for number, pair in enumerate(_shown) if pair.problem is not None]
     if active in bad:

@@ -3,10 +3,10 @@
 
 import bpy
 
-from ..landmarks import points as landmarks
-from . import curves as ui_curves
-from . import register as ui_register
-from . import text as ui_text
+from ..landmarks import points as landmark_points
+from ..landmarks.objects import NONE, active_source, target_problem
+from . import curves, text
+from .register import draw_register
 
 _shown = []  # the pairs of the list that is being drawn
 
@@ -26,8 +26,8 @@ class AUTHALIC_UL_landmarks(bpy.types.UIList):
         if pair.problem is not None:
             row.label(icon="ERROR")
         elif item.error >= 0:
-            ui_text.draw_aside(row, f"{item.error:.2f} %")
-        ui_text.draw_aside(row, f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}")
+            text.draw_aside(row, f"{item.error:.2f} %")
+        text.draw_aside(row, f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}")
 
 
 class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
@@ -42,7 +42,7 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         return context.object is not None and context.object.type == "MESH"
 
     def draw(self, context):
-        layout, source = self.layout, landmarks.source(context)
+        layout, source = self.layout, active_source(context)
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
@@ -53,9 +53,9 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         split.label(text=source.name, icon="OBJECT_DATA", translate=False)
         column.prop(source, "authalic_target")
         _draw_landmarks(layout, source, context)
-        ui_curves.draw_curves(layout, source, context)
+        curves.draw_curves(layout, source, context)
         layout.separator()
-        ui_register.draw_register(layout, source, context)
+        draw_register(layout, source, context)
 
 
 class AUTHALIC_MT_landmarks(bpy.types.Menu):
@@ -70,7 +70,7 @@ class AUTHALIC_MT_landmarks(bpy.types.Menu):
 
 
 def _draw_landmarks(layout, source, context):
-    _shown[:] = landmarks.pairs(source, drawing=True)
+    _shown[:] = landmark_points.pairs(source, drawing=True)
     row = layout.row(align=True)
     row.label(text="Landmarks")
     row.prop(context.scene, "authalic_show_landmarks", text="", icon="HIDE_OFF", emboss=False)
@@ -93,13 +93,13 @@ def _draw_landmarks(layout, source, context):
     row = layout.row(align=True)
     row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
     row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"
-    ui_text.draw_error(layout, source.authalic_landmarks, source.authalic_landmark_index)
-    ui_text.draw_problems(layout, _lines(source), context)
+    text.draw_error(layout, source.authalic_landmarks, source.authalic_landmark_index)
+    text.draw_problems(layout, _lines(source), context)
 
 
 def _lines(source):
     """What is wrong with the target, or with the pairs."""
-    if target := landmarks.target_problem(source):
+    if target := target_problem(source):
         return [target] if source.authalic_target is not None or _shown else []
     return _problems(source.authalic_landmark_index)
 
@@ -112,14 +112,13 @@ def _problems(active):
 
 
 def _number(vertex):
-    return "?" if vertex == landmarks.NONE else str(vertex)
+    return "?" if vertex == NONE else str(vertex)
 
 
 _CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_registration_view3d)
 
 
 def register():
-    ui_curves.register()
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
@@ -127,4 +126,3 @@ def register():
 def unregister():
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)
-    ui_curves.unregister()

@@ -2,7 +2,7 @@
 """The part of the registration panel below the landmarks: the two buttons and their options."""
 
 from ..operators import register, transfer
-from . import curves as ui_curves
+from . import curves
 
 
 def draw_register(layout, source, context):
@@ -17,4 +17,4 @@ def draw_register(layout, source, context):
         column.use_property_decorate = False
         module.draw_options(column, last(f"authalic.{operator}"))
         if operator == "register" and last("authalic.register").method == "CURVES":
-            ui_curves.draw_hint(layout, source, context)
+            curves.draw_hint(layout, source, context)

@@ -6,9 +6,9 @@ import sys
 
 import bpy
 import pytest
+from installed import MODULE
 
 _STATUS = pytest.StashKey[int]()
-MODULE = "bl_ext.user_default.authalic"
 
 
 def _setting(name, meaning):

@@ -8,7 +8,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from pairing import part
+from installed import part
 
 ROW = (8, 9, 10, 11)  # inside Head A
 OTHER = (22, 23, 24, 25)

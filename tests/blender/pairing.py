@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of landmarks for the tests: two objects, and what is done with them."""
 
-import importlib
-
 import bmesh
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
+from installed import part
 
 
 def heads():

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects with landmark pairs, and what registrations leave on them."""
 
-import importlib
-
 import bpy
-import conftest
 import meshes
 import numpy as np
+from installed import part
 from mathutils import Euler, Matrix
 
 TILTED = Matrix.LocRotScale((3, -2, 1), Euler((0.3, -0.8, 1.1)), (1.7, 1.7, 1.7))
 SQUEEZED = Matrix.LocRotScale((-1, 4, 0.5), Euler((-0.5, 0.2, 2.0)), (0.5, 0.9, 1.4))
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
 
 
 def pair(source, target, vertices):

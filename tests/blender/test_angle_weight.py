@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is traded for what: presets, outlines, slider and tolerance, and the islands that come of it."""
 
-import importlib
 import time
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
+from installed import part
 
 PRESETS = ("CIRCLE", "EVEN", "BALANCED", "SOFT")
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
 
 
 def report_of(**solver):

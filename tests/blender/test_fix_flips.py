@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.fix_flips: flipped faces are turned over, and nothing else changes."""
 
-import importlib
-
 import bmesh
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
+from installed import part
 
 N = 8
 
@@ -289,9 +287,9 @@ def test_undo(mode):
 def test_cancelling_changes_nothing():
     obj = tangled_grid()
     before = meshes.uv(obj)
-    job = importlib.import_module(f"{conftest.MODULE}.jobs.fix_flips").job(bpy.context).start()
+    job = part("jobs.fix_flips").job(bpy.context).start()
     job.cancel()
-    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.jobs.job").Cancelled):
+    with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert (meshes.uv(obj) == before).all()
 

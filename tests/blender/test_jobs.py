@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The path below the operators: jobs, the bridge, and the plain logic around them."""
 
-import importlib
 import threading
 import time
 import types
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
+from installed import part
 
 
 def test_operator_and_job_write_the_same():

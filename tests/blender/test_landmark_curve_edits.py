@@ -10,6 +10,7 @@ import numpy as np
 import pairing
 import pytest
 from curving import LOOP, LOOP_B, OTHER, OTHER_B, ROW, ROW_B
+from installed import part
 
 call = bpy.ops.authalic
 
@@ -125,7 +126,7 @@ def test_merging_can_make_curves_meet(heads):
 def test_edits_are_noticed_while_drawing(heads):
     source, _ = heads
     curving.add(ROW, ROW_B)
-    find = pairing.part("landmarks.curves").pairs
+    find = part("landmarks.curves").pairs
     meshes.edit(source)
     assert find(source, drawing=True)[0].source.vertices == ROW
     pairing.select_vertices(source, 0, 1)
@@ -138,7 +139,7 @@ def test_edits_are_noticed_while_drawing(heads):
 def test_drawing_does_not_search_again(heads, monkeypatch):
     source, _ = heads
     curving.add(ROW)  # nothing on the target
-    module, find = pairing.part("landmarks.curve_marks"), pairing.part("landmarks.curves").pairs
+    module, find = part("landmarks.curve_marks"), part("landmarks.curves").pairs
     find(source, drawing=True)
     monkeypatch.setattr(module, "_search", None)
     assert find(source, drawing=True)[0].source.vertices == ROW
@@ -384,7 +385,7 @@ def test_drawing_looks_again_only_after_changes(heads, monkeypatch, in_edit):
     curving.add(ROW, ROW_B)
     if in_edit:
         meshes.edit(*heads)
-    module, find = pairing.part("landmarks.curve_marks"), pairing.part("landmarks.curves").pairs
+    module, find = part("landmarks.curve_marks"), part("landmarks.curves").pairs
     find(source, drawing=True)
     looked, holds = [], module._holds
     monkeypatch.setattr(module, "_holds", lambda *given: looked.append(1) or holds(*given))

@@ -11,6 +11,7 @@ import meshes
 import pairing
 import pytest
 from curving import LOOP, LOOP_B, OTHER, OTHER_B, ROW, ROW_B
+from installed import part
 
 call = bpy.ops.authalic
 
@@ -42,7 +43,7 @@ def test_closed(heads):
 
 
 def part_curves(obj):
-    return pairing.part("landmarks.curves").pairs(obj)
+    return part("landmarks.curves").pairs(obj)
 
 
 def test_one_side_after_the_other(heads):
@@ -423,7 +424,7 @@ def test_lines(heads):
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP)
-    markers = pairing.part("overlay.curves")
+    markers = part("overlay.curves")
     meshes.select(target, source)
     found = markers.shown(bpy.context)
     assert [(line.object_name, line.number, line.is_active, line.has_problem) for line in found] == [
@@ -448,7 +449,7 @@ def test_the_list_shows_edges_and_errors(heads):
     curving.add(LOOP, LOOP_B)
     curving.add((36, 37, 38))
     source.authalic_landmark_curves[0].error = 0.125
-    panel = pairing.part("ui.curves")
+    panel = part("ui.curves")
     panel._shown[:] = part_curves(source)
     said = []
     for index, item in enumerate(source.authalic_landmark_curves):

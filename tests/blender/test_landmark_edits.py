@@ -6,6 +6,7 @@ import meshes
 import numpy as np
 import pairing
 import pytest
+from installed import part
 
 
 @pytest.fixture
@@ -57,7 +58,7 @@ def test_subdividing_keeps_the_vertices(heads):
 
 def test_edits_are_noticed_before_edit_mode_is_left(heads):
     pairing.add(20, 30)
-    source, find = heads[0], pairing.part("landmarks.points").pairs
+    source, find = heads[0], part("landmarks.points").pairs
     meshes.edit(source)
     assert find(source, drawing=True)[0][1:] == (20, 30, None)
     pairing.select_vertices(source, 0, 1)

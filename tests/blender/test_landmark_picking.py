@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The vertex under the cursor by geometry alone, and the picking operator with events that are made up."""
 
-import importlib
 import types
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
-
+from installed import part
 
 WIDTH, HEIGHT = 800, 600
 
@@ -36,7 +30,7 @@ def orthographic(size=3.0):
 
 def surface(obj):
     seen = part("blender.vertex_positions").surface(obj, bpy.context.evaluated_depsgraph_get())
-    return part("landmarks.picking").Surface(*seen, obj.matrix_world)
+    return part("landmarks.picking").Pickable(*seen, obj.matrix_world)
 
 
 def pick(surfaces, view, pixel, **options):

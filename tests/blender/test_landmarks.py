@@ -9,6 +9,7 @@ import meshes
 import numpy as np
 import pairing
 import pytest
+from installed import part
 
 
 @pytest.fixture
@@ -203,7 +204,7 @@ def test_markers(heads):
     pairing.add(20, 30)
     pairing.add(21, 31)
     pairing.in_edit_mode(source, 20, do=lambda: bpy.ops.mesh.delete(type="VERT"))
-    markers = pairing.part("overlay.points")
+    markers = part("overlay.points")
     expected = [
         ("Head B", 30, "1", "target", False, True),
         ("Head A", 20, "2", "source", True, False),
@@ -231,7 +232,7 @@ def test_markers_ride_on_what_is_seen(heads):
     source.scale = (2, 2, 2)
     bpy.context.view_layer.update()
     flat = pairing.position(source, 20)
-    place = pairing.part("blender.vertex_positions").in_world
+    place = part("blender.vertex_positions").in_world
     point, normal = place(source, 20, bpy.context.evaluated_depsgraph_get())
     assert np.allclose(point, 2 * (flat + np.array([0, 0, 1])) + np.array([0, 0, 5]), atol=1e-5)
     assert abs(normal.length - 1) < 1e-5
@@ -251,8 +252,8 @@ def test_the_list_shows_the_errors_that_are_known(heads):
     pairing.add(20, 30)
     pairing.add(21, 31)
     source.authalic_landmarks[0].error = 0.125
-    panel = pairing.part("ui.landmarks")
-    panel._shown[:] = pairing.part("landmarks.points").pairs(source)
+    panel = part("ui.landmarks")
+    panel._shown[:] = part("landmarks.points").pairs(source)
     said = []
     for index, item in enumerate(source.authalic_landmarks):
         layout = mock.MagicMock()

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.measure against formulas of its own in numpy."""
 
-import importlib
 import re
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
+from installed import part
 
 ATTRIBUTE = "authalic_log2_area_ratio"
 
@@ -132,8 +131,8 @@ def test_unwrap_and_measure_agree_where_normals_differ(reverse):
     vertices, faces = meshes.grid()
     faces[::reverse] = faces[::reverse, ::-1]
     meshes.add(vertices, faces)
-    unwrap = importlib.import_module(f"{conftest.MODULE}.jobs.unwrap")
-    measure = importlib.import_module(f"{conftest.MODULE}.jobs.measure")
+    unwrap = part("jobs.unwrap")
+    measure = part("jobs.measure")
     report = unwrap.job(bpy.context, unwrap.Settings()).execute()
     again = measure.job(bpy.context).execute()
     assert again.flips == 0 and measure.line(report.figures) == measure.line(again)

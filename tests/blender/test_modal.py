@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Jobs behind a living window: Esc, Enter, progress. Without a window, so the events are made up."""
 
-import importlib
 import time
 import types
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
+from installed import part
 
 
 class Recorder:

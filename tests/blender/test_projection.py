@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From the sphere to the plane, in numpy alone: areas, gluing, singular points, folds."""
 
-import importlib
 import os
 from pathlib import Path
 
-import conftest
 import meshes
 import numpy as np
 import pytest
 import spheres
+from installed import part
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
 DATA = Path(os.environ.get("AUTHALIC_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
-
-
-def part(name):
-    return importlib.import_module(f"{conftest.MODULE}.{name}")
 
 
 def project(*arguments, **options):

@@ -11,9 +11,10 @@ import numpy as np
 import pairs
 import pytest
 import spheres
+from installed import part
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
-from pairs import SQUEEZED, TILTED, part
+from pairs import SQUEEZED, TILTED
 
 KEY = "Morph → Twin"
 UV_MAP = "Authalic Registered"

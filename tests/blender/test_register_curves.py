@@ -11,8 +11,9 @@ import numpy as np
 import pairs
 import pytest
 import spheres
+from installed import part
 from mathutils import Matrix
-from pairs import TILTED, part
+from pairs import TILTED
 
 KEY = "Morph → Twin"
 ROUTES = (
@@ -305,7 +306,7 @@ def test_opposite_normals_of_open_surfaces_are_told(capfd):
         register()
     said = capfd.readouterr().out
     assert "(Mesh > Normals > Flip)" in said.split("the other way round")[0]
-    assert pairs.part("registration.sides").is_open(part("jobs.register").chosen(bpy.context).sides[0])
+    assert part("registration.sides").is_open(part("jobs.register").chosen(bpy.context).sides[0])
     assert source.authalic_target == target
 
 

@@ -6,8 +6,9 @@ import meshes
 import numpy as np
 import pairs
 import pytest
+from installed import part
 from mathutils import Matrix
-from pairs import TILTED, part
+from pairs import TILTED
 
 KINDS = ("uv_maps", "vertex_groups", "colour_attributes", "shape_keys")
 
@@ -346,8 +347,8 @@ def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch
     if kind == "colour attribute":
         add_colours(target, "Col", "FLOAT_COLOR", "POINT")
         before = add_colours(source, "Col", "BYTE_COLOR", "CORNER")
-    cargo = part("blender.layers")
-    really = cargo._added
+    module = part("blender.layers")
+    really = module._added
 
     def elsewhere(layers, item, **options):
         if item.name == "Col":
@@ -357,7 +358,7 @@ def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch
             return made
         return really(layers, item, **options)
 
-    monkeypatch.setattr(cargo, "_added", elsewhere)
+    monkeypatch.setattr(module, "_added", elsewhere)
     expected = layers(source)
     expected[0] = ["Map"]
     assert transfer() == {"FINISHED"}

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.unwrap of closed islands: by the sphere, laid flat in either layout."""
 
-import importlib
 import os
 import re
 from pathlib import Path
 
 import bpy
-import conftest
 import meshes
 import numpy as np
 import pytest
 import spheres
+from installed import part
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
 DATA = Path(os.environ.get("AUTHALIC_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
@@ -275,10 +274,10 @@ def test_cancelling():
     meshes.icosphere(4)
     obj = bpy.context.object
     before = meshes.uv(obj)
-    unwrap_job = importlib.import_module(f"{conftest.MODULE}.jobs.unwrap")
+    unwrap_job = part("jobs.unwrap")
     job = unwrap_job.job(bpy.context, unwrap_job.Settings()).start()
     job.cancel()
-    with pytest.raises(importlib.import_module(f"{conftest.MODULE}.jobs.job").Cancelled):
+    with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert (meshes.uv(obj) == before).all()
 
@@ -293,7 +292,7 @@ def test_real_meshes(name, monkeypatch):
     with np.load(DATA / "sphere" / f"{name}.npz") as file:
         vertices, faces = file["V"], file["F"]
     names = "bridge", "bridge.islands", "blender.meshes"
-    bridge, islands, mesh_io = (importlib.import_module(f"{conftest.MODULE}.{name}") for name in names)
+    bridge, islands, mesh_io = (part(name) for name in names)
     surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
     bridge_map, cache, last = islands.sphere_map, {}, []
 

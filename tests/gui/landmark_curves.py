@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmark curves are added, drawn and registered in a real window; see README.md beside this file."""
 
-import importlib
 from itertools import pairwise
 
 import bmesh
 import bpy
+from bl_ext.user_default.authalic.landmarks import curves as landmark_curves
 from driver import call, check, click, picture, run, view
 
 A, B = "Ball", "Egg"
 _REGISTRATION = (860, 800 - 579)  # the head of the closed panel
 _CURVES = (860, 800 - 427)  # the head of the list of curves in the open one
 ROWS = (0.45, -0.05, -0.55)  # heights of the curves
-
-
-def part(name):
-    return importlib.import_module(f"bl_ext.user_default.authalic.{name}")
 
 
 def scene():
@@ -89,7 +85,7 @@ def mode(name):
 
 
 def curves():
-    found = part("landmarks.curves").pairs(bpy.data.objects[A])
+    found = landmark_curves.pairs(bpy.data.objects[A])
     return [(bool(one.source.vertices), bool(one.target.vertices), one.problem) for one in found]
 
 

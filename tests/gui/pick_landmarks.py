@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmarks are picked by clicking on two heads in a real window; see README.md beside this file."""
 
-import importlib
-
 import bmesh
 import bpy
+from bl_ext.user_default.authalic.landmarks import points as landmark_points
+from bl_ext.user_default.authalic.overlay import points as overlay_points
 from driver import call, check, click, key, move, picture, pixel, run, send, view
 
 A, B = "Suzanne", "Her Sister"
 _REGISTRATION = (860, 800 - 579)  # the head of the closed panel
-
-
-def part(name):
-    return importlib.import_module(f"bl_ext.user_default.authalic.{name}")
 
 
 def scene():
@@ -54,7 +50,7 @@ def at(name, vertex):
 
 
 def pairs():
-    return [pair[1:] for pair in part("landmarks.points").pairs(bpy.data.objects[A])]
+    return [pair[1:] for pair in landmark_points.pairs(bpy.data.objects[A])]
 
 
 def running():
@@ -62,7 +58,7 @@ def running():
 
 
 def hints():
-    return [marker[:2] for marker in part("overlay.points").hints]
+    return [marker[:2] for marker in overlay_points.hints]
 
 
 def delete_first_vertex():

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The edges of meshes and the vertices at their ends, in object mode and in edit mode."""
+
+import bmesh
+import numpy as np
+
+
+class NoEdge(Exception):
+    """No edge joins two vertices."""
+
+
+def ends_of_edges(mesh, edges):
+    """The two vertices of each of some edges."""
+    if not mesh.is_editmode:
+        return [tuple(mesh.edges[edge].vertices) for edge in edges]
+    edit = bmesh.from_edit_mesh(mesh)
+    edit.verts.index_update()
+    edit.edges.ensure_lookup_table()
+    return [tuple(vertex.index for vertex in edit.edges[edge].verts) for edge in edges]
+
+
+def edges_between(mesh, pairs):
+    """The edges that join pairs of vertices. Raises `NoEdge`."""
+    if mesh.is_editmode:
+        return _edited_between(bmesh.from_edit_mesh(mesh), pairs)
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    count = len(mesh.vertices)
+    keys = _keys(ends.reshape(-1, 2), count)
+    order = np.argsort(keys)
+    wanted = _keys(np.array(pairs).reshape(-1, 2), count)
+    places = np.searchsorted(keys, wanted, sorter=order).clip(max=max(len(keys) - 1, 0))
+    bad = np.flatnonzero(keys[order[places]] != wanted) if len(keys) else np.zeros(1, int)
+    if len(bad):
+        raise NoEdge("no edge joins vertices {} and {}".format(*pairs[bad[0]]))
+    return order[places].tolist()
+
+
+def _edited_between(edit, pairs):
+    edit.verts.ensure_lookup_table()
+    edit.edges.index_update()
+    numbers = []
+    for first, second in pairs:
+        edge = edit.edges.get((edit.verts[first], edit.verts[second]))
+        if edge is None:
+            raise NoEdge(f"no edge joins vertices {first} and {second}")
+        numbers.append(edge.index)
+    return numbers
+
+
+def _keys(pairs, count):
+    pairs = np.sort(pairs.astype(np.int64), axis=1)
+    return pairs[:, 0] * count + pairs[:, 1]

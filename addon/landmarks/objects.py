@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two objects of landmarks: the source, which keeps them, and its target."""
+
+from ..blender.element_marks import element_counts
+
+NONE = -1
+SIDES = ("source", "target")
+
+
+class CannotPair(Exception):
+    """The landmarks are as they were; says why."""
+
+
+def active_source(context):
+    """The object whose landmarks are meant: the active one, or the one selected whose target that is."""
+    active = context.object
+    if active is None or active.type != "MESH" or active.authalic_target is not None:
+        return active
+    chosen = {*context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
+    aiming = [obj for obj in chosen if obj.type == "MESH" and obj.authalic_target == active]
+    return aiming[0] if len(aiming) == 1 else active
+
+
+def target_problem(source):
+    """Why a source object has no target to work with, or None."""
+    target = source.authalic_target
+    if target is None:
+        return "there is no target object, choose one"
+    if target == source or target.type != "MESH":
+        return f"{target.name} cannot be the target, choose another mesh object"
+    if not target.users_scene:
+        return f"the target object {target.name} was deleted, choose another one"
+    return None
+
+
+def side_object(source, side):
+    """The object of the "source" or the "target" side, or None."""
+    return source if side == "source" else source.authalic_target
+
+
+def check_target(source):
+    """Raises `CannotPair` unless pairs can be added to a source object."""
+    problem = target_problem(source)
+    if problem:
+        raise CannotPair(f"{source.name}: {problem}")
+    for obj in (source, source.authalic_target):
+        if not obj.data.is_editable:
+            raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
+
+
+def check_vertex(obj, vertex):
+    """Raises `CannotPair` unless an object has a vertex."""
+    count = element_counts(obj.data)[0]
+    if not 0 <= vertex < count:
+        raise CannotPair(f"{obj.name} has no vertex {vertex}, its {count} vertices are 0 to {count - 1}")

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the operators on the landmarks of the active object have in common."""
+
+from bpy.props import IntProperty
+
+from ..landmarks.objects import NONE, CannotPair, active_source
+
+GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
+
+
+class LandmarkOperator:
+    """A mixin for operators with `run(context, source)`; where that raises `CannotPair`, it tells the reason.
+
+    `pairs` and `active` name the list of the source that it works on and the index of its active entry.
+    """
+
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+    pairs, active, noun = "authalic_landmarks", "authalic_landmark_index", "pair"
+
+    def execute(self, context):
+        try:
+            return self.run(context, active_source(context))
+        except CannotPair as problem:
+            self.report({"ERROR"}, self.worded(str(problem)))
+            return {"CANCELLED"}
+
+    def worded(self, problem):
+        """The problem as it is reported."""
+        return problem
+
+    def chosen(self, source):
+        """The index of the pair that is meant."""
+        index, count = self.index, len(getattr(source, self.pairs))
+        index = getattr(source, self.active) if index == NONE else index
+        if not 0 <= index < count:
+            last = f", its {count} are 0 to {count - 1}" if count else ""
+            raise CannotPair(f"{source.name} has no {self.noun} {index}{last}")
+        return index
+
+
+def index_property(what="the pair", meaning="-1 for the active one"):
+    """The place of a pair in its list."""
+    return IntProperty(
+        name="Index",
+        description=f"The place of {what} in the list, from 0. {meaning}",
+        min=NONE,
+        default=NONE,
+        options=GIVEN,
+    )

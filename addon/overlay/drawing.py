@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Discs and labels drawn over a 3D view, and when and for what they are drawn."""
+
+import math
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+from ..blender import vertex_positions
+
+PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
+BEHIND = 0.22  # how opaque what is hidden is
+_SIDES = 24
+
+
+def sources(context):
+    """The mesh objects that are selected, and those whose target is."""
+    chosen = {context.object, *context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
+    return [
+        obj
+        for obj in context.view_layer.objects
+        if obj.type == "MESH" and chosen & {obj, obj.authalic_target}
+    ]
+
+
+def redraw(context):
+    """Asks for all 3D views to be drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+def is_drawn(context):
+    """Whether there is a view to draw on, with its overlays turned on."""
+    space = context.space_data
+    return not bpy.app.background and space is not None and space.overlay.show_overlays
+
+
+def faces_eye(context, point, normal):
+    """Whether a surface is seen from its front at a point."""
+    return normal.length == 0 or normal.dot(_to_eye(context, point)) > -0.05
+
+
+def _to_eye(context, point):
+    view = context.region_data
+    if view.is_perspective:
+        return (view.view_matrix.inverted().translation - point).normalized()
+    return view.view_matrix.inverted().to_3x3() @ vertex_positions.Z
+
+
+def disc(center, radius, color):
+    """A disc whose rim fades out over a pixel."""
+    inner, outer = _circle(center, radius - 0.5), _circle(center, radius + 0.5)
+    clear = (*color[:3], 0.0)
+    points = [tuple(center), *inner, *outer]
+    triangles = []
+    for k in range(_SIDES):
+        a, b = 1 + k, 1 + (k + 1) % _SIDES
+        triangles += [(0, a, b), (a, a + _SIDES, b), (b, a + _SIDES, b + _SIDES)]
+    colors = [color] * (1 + _SIDES) + [clear] * _SIDES
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    flat = [(x, y, 0.0) for x, y in points]
+    batch_for_shader(shader, "TRIS", {"pos": flat, "color": colors}, indices=triangles).draw(shader)
+
+
+def _circle(center, radius):
+    turns = [2 * math.pi * k / _SIDES for k in range(_SIDES)]
+    return [(center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)) for a in turns]
+
+
+def label(text, pixel, size, color):
+    """A text of a size to the right of a pixel, on a dark ground."""
+    font, scale = 0, bpy.context.preferences.system.ui_scale
+    blf.size(font, size)
+    left, bottom = pixel[0] + 11 * scale, pixel[1] + 4 * scale
+    width, height = blf.dimensions(font, text)
+    gpu.state.blend_set("ALPHA")
+    _plate(left - 3 * scale, bottom - 3 * scale, width + 6 * scale, height + 6 * scale, 0.6 * color[3])
+    gpu.state.blend_set("NONE")
+    blf.color(font, *color)
+    blf.position(font, left, bottom, 0)
+    blf.draw(font, text)
+
+
+def _plate(left, bottom, width, height, alpha):
+    """A dark ground that makes text readable over wires."""
+    right, top = left + width, bottom + height
+    corners = [(left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0)]
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    shader.uniform_float("color", (*DARK, alpha))
+    batch_for_shader(shader, "TRIS", {"pos": corners}, indices=[(0, 1, 2), (0, 2, 3)]).draw(shader)

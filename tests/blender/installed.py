@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The modules of the extension as installed."""
+
+import importlib
+
+MODULE = "bl_ext.user_default.authalic"
+
+
+def part(name):
+    """A module by its name within the extension; looked up anew, since installing again replaces them all."""
+    return importlib.import_module(f"{MODULE}.{name}")

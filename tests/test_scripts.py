@@ -2,6 +2,7 @@
 """The parts of scripts/ that can go wrong without anyone noticing."""
 
 import re
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -31,6 +32,7 @@ import bench.peers.run
 import bench.report
 import bench.tables.main
 import bench.tables.stability
+import changes
 import demo.figures
 import demo.measure
 import pythons
@@ -92,6 +94,76 @@ def test_rust_is_checked_with_the_features_of_the_wheel():
     maturin = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["maturin"]
     options = steps.CARGO_OPTIONS
     assert options[options.index("--features") + 1 :] == tuple(maturin["features"])
+
+
+ALL = {step.name for step in steps.STEPS}
+IN_BLENDER = {"blender-4.2", "blender-5"}
+OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | IN_BLENDER
+
+
+@pytest.mark.parametrize(
+    ("file", "expected"),
+    [
+        ("README.md", {"python"}),
+        ("docs/comparison.jpg", {"python"}),
+        ("rust/core/src/disk/mod.rs", ALL),
+        ("rust/core/README.md", ALL),
+        ("rust/core/tests/it/disk.rs", {"rustfmt", "clippy", "rust"}),
+        ("rust/python/src/lib.rs", {"rustfmt", "clippy", "rustdoc"} | OF_THE_WHEEL),
+        ("rust/python/authalic/_native.pyi", {"ruff"} | OF_THE_WHEEL),
+        ("addon/ui/panels.py", {"ruff", "types", "python", "extension"} | IN_BLENDER),
+        ("addon/blender_manifest.toml.in", {"ruff", "types", "python", "extension"} | IN_BLENDER),
+        ("tests/api/test_cut.py", {"ruff", "python"}),
+        ("tests/api/oracle.py", {"ruff", "python"}),
+        ("tests/blender/test_modal.py", {"ruff", "types"} | IN_BLENDER),
+        ("tests/blender/meshes.py", {"ruff", "types"} | IN_BLENDER),
+        ("tests/gui/driver.py", {"ruff"}),
+        ("tests/test_scripts.py", {"ruff", "python"}),
+        ("scripts/bench", {"ruff", "python"}),
+        ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),
+        ("scripts/requirements/peer-lapy.txt", set()),
+        ("scripts/requirements/dev.txt", ALL),
+        ("scripts/lib/steps.py", ALL),
+        ("Cargo.lock", ALL),
+        ("pyproject.toml", ALL),
+        (".ci/run", ALL),
+        ("a file that nobody has thought of", ALL),
+    ],
+)
+def test_a_change_runs_the_steps_that_it_can_touch(file, expected):
+    assert changes.touched([file]).keys() == expected
+
+
+def test_a_change_of_tests_runs_these_tests():
+    assert changes.touched(["tests/api/test_cut.py"])["python"] == ("tests/api/test_cut.py",)
+    assert changes.touched(["tests/blender/test_modal.py"])["blender-5"] == ("tests/blender/test_modal.py",)
+    assert changes.touched(["tests/blender/test_modal.py", "addon/ui/panels.py"])["blender-5"] == ()
+    together = changes.touched(["tests/api/test_cut.py", "tests/api/test_holes.py"])
+    assert together["python"] == ("tests/api/test_cut.py", "tests/api/test_holes.py")
+    assert "python" not in changes.touched(["tests/api/test_that_was_deleted.py"])
+
+
+def test_what_has_changed_is_what_differs_from_the_main_branch(monkeypatch, tmp_path):
+    def git(*words):
+        author = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+        subprocess.run(["git", *author, *words], cwd=tmp_path, check=True, capture_output=True)
+
+    monkeypatch.setattr(changes, "ROOT", tmp_path)
+    with pytest.raises(Unavailable, match="git answers nothing"):
+        changes.changed_files()
+    git("init", "--initial-branch=main")
+    for name in ("kept", "edited", "moved", "edited later"):
+        (tmp_path / name).write_text(name)
+    git("add", ".")
+    git("commit", "--message=first")
+    assert changes.changed_files() == []
+    git("switch", "--create=branch")
+    (tmp_path / "edited").write_text("in a commit")
+    git("mv", "moved", "moved away")
+    git("commit", "--all", "--message=second")
+    (tmp_path / "edited later").write_text("in no commit")
+    (tmp_path / "new").touch()
+    assert changes.changed_files() == ["edited", "edited later", "moved", "moved away", "new"]
 
 
 def test_a_command_that_hangs_after_its_report_is_killed(monkeypatch, tmp_path):

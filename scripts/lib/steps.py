@@ -17,6 +17,8 @@ from shell import OUT, CommandFailed, run
 LOGS = OUT / "test"
 CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
+_PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui")
+_BLENDER_TESTS = ("tests/blender",)
 _PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
 
 
@@ -44,11 +46,14 @@ class TestsFailed(Exception):
 
 @dataclass(frozen=True)
 class Step:
-    """A named step; `run` takes the file for its log and returns the tests it counted."""
+    """A named step; `run` takes the file for its log and returns the tests it counted.
+
+    Where it runs pytest, it also takes `places`: the files and folders to run instead of all.
+    """
 
     name: str
     what: str
-    run: Callable[[Path], Count]
+    run: Callable[..., Count]
 
 
 def check_rust_format(log: Path) -> Count:
@@ -97,9 +102,9 @@ def check_types(log: Path) -> Count:
     return Count()
 
 
-def test_python(log: Path) -> Count:
+def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     install_wheel(log)
-    return _pytest(environment.dev(), ["tests", "--ignore=tests/blender", "--ignore=tests/gui"], {}, log)
+    return _pytest(environment.dev(), places, {}, log)
 
 
 def build_extension(log: Path) -> Count:
@@ -107,12 +112,12 @@ def build_extension(log: Path) -> Count:
     return Count()
 
 
-def test_blender_oldest(log: Path) -> Count:
-    return _test_in_blender(environment.blender_oldest(), log)
+def test_blender_oldest(log: Path, places: tuple[str, ...] = _BLENDER_TESTS) -> Count:
+    return _test_in_blender(environment.blender_oldest(), places, log)
 
 
-def test_blender_newest(log: Path) -> Count:
-    return _test_in_blender(environment.blender_newest(), log)
+def test_blender_newest(log: Path, places: tuple[str, ...] = _BLENDER_TESTS) -> Count:
+    return _test_in_blender(environment.blender_newest(), places, log)
 
 
 STEPS = (
@@ -154,13 +159,13 @@ def _extension(blender: Environment, log: Path) -> Path:
     return distribution.build_zip(wheel, blender, log)
 
 
-def _test_in_blender(blender: Environment, log: Path) -> Count:
+def _test_in_blender(blender: Environment, places: tuple[str, ...], log: Path) -> Count:
     archive = _extension(blender, log)
     variables = distribution.fresh_profile(archive, LOGS / f"profile-{blender.name}")
-    return _pytest(blender, ["tests/blender"], variables, log)
+    return _pytest(blender, places, variables, log)
 
 
-def _pytest(where: Environment, places: list[str], variables: dict[str, str], log: Path) -> Count:
+def _pytest(where: Environment, places: tuple[str, ...], variables: dict[str, str], log: Path) -> Count:
     """Runs pytest; a run that has written its report but does not end is killed and fails."""
     report = log.with_suffix(".xml")
     report.unlink(missing_ok=True)

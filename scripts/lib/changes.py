@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What a change can touch: the files that differ from the main branch, and the steps that look at them."""
+
+from __future__ import annotations
+
+import subprocess
+from fnmatch import fnmatch
+from typing import Dict, Iterable, Tuple
+
+from shell import ROOT, Unavailable
+
+Selection = Dict[str, Tuple[str, ...]]
+"""{step: what pytest is to run of it}; an empty tuple is the whole step."""
+
+BLENDER = ("blender-4.2", "blender-5")
+BUILT = ("wheel", "types", "python", "extension", *BLENDER)
+RUST = ("rustfmt", "clippy", "rust", "rustdoc")
+EVERYTHING = (*RUST, "ruff", *BUILT)
+STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
+PROJECT = (*STRUCTURE, "tests/test_scripts.py")
+
+
+def _whole(*steps: str) -> Selection:
+    return dict.fromkeys(steps, ())
+
+
+# The first pattern that fits a file counts (`*` also stands for slashes); {file} is the file itself.
+_RULES: tuple[tuple[str, Selection], ...] = (
+    ("rust/core/tests/*", _whole("rustfmt", "clippy", "rust")),
+    ("rust/core/*", _whole(*EVERYTHING)),
+    ("rust/python/authalic/*", _whole("ruff", *BUILT)),
+    ("rust/python/*", _whole("rustfmt", "clippy", "rustdoc", *BUILT)),
+    ("addon/*", {**_whole("ruff", "types", "extension", *BLENDER), "python": STRUCTURE}),
+    ("tests/api/test_*.py", {"ruff": (), "python": ("{file}",)}),
+    ("tests/api/*", {"ruff": (), "python": ("tests/api", "tests/test_scripts.py")}),
+    ("tests/blender/test_*.py", {"ruff": (), "types": (), **dict.fromkeys(BLENDER, ("{file}",))}),
+    ("tests/blender/*", _whole("ruff", "types", *BLENDER)),
+    ("tests/data/*", {"python": ("tests/api",), **_whole(*BLENDER)}),
+    ("tests/gui/*.py", _whole("ruff")),
+    ("tests/test_architecture.py", {"ruff": (), "python": STRUCTURE}),
+    ("tests/test_*.py", {"ruff": (), "python": ("{file}",)}),
+    ("scripts/lib/bench/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/lib/demo/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/examples/*", {"ruff": (), "python": PROJECT}),
+    ("scripts/bench", {"ruff": (), "python": PROJECT}),
+    ("scripts/build", {"ruff": (), "python": PROJECT}),
+    ("scripts/demo", {"ruff": (), "python": PROJECT}),
+    ("scripts/requirements/peer-*", {}),
+    ("docs/*", {"python": PROJECT}),
+    ("*.md", {"python": PROJECT}),
+    ("*", _whole(*EVERYTHING)),
+)
+
+
+def touched(files: Iterable[str]) -> Selection:
+    """The steps that look at any of the files, each with all that pytest is to run of it."""
+    selection: Selection = {}
+    for file in files:
+        for step, places in _rule(file).items():
+            before = selection.get(step)
+            whole = places == () or before == ()
+            selection[step] = () if whole else tuple(sorted({*(before or ()), *places}))
+    return selection
+
+
+def changed_files() -> list[str]:
+    """The files that differ from the main branch where HEAD left it, committed or not, and the new ones."""
+    differing = _git("diff", "--name-only", "--no-renames", "-z", base(), "--")
+    new = _git("ls-files", "--others", "--exclude-standard", "-z")
+    if differing is None or new is None:
+        raise Unavailable("`--only changed` asks git what has changed, and git answers nothing here")
+    return sorted(filter(None, [*differing.split("\0"), *new.split("\0")]))
+
+
+def base() -> str:
+    """Where HEAD left the main branch: that of origin, or the local `main`; HEAD itself where neither is."""
+    for branch in ("origin/HEAD", "main"):
+        commit = _git("merge-base", branch, "HEAD")
+        if commit is not None:
+            return commit.strip()
+    return "HEAD"
+
+
+def _rule(file: str) -> Selection:
+    """What looks at one file. A test that was deleted cannot run."""
+    steps = next(steps for pattern, steps in _RULES if fnmatch(file, pattern))
+    places = {step: tuple(place.format(file=file) for place in names) for step, names in steps.items()}
+    there = {step: tuple(name for name in names if (ROOT / name).exists()) for step, names in places.items()}
+    return {step: there[step] for step in steps if there[step] or not places[step]}
+
+
+def _git(*words: str) -> str | None:
+    """What git says, or None where it fails or there is none."""
+    try:
+        done = subprocess.run(["git", *words], cwd=str(ROOT), capture_output=True, text=True)
+    except OSError:
+        return None
+    return done.stdout if done.returncode == 0 else None

@@ -9,8 +9,9 @@
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::error::{Elements, Error};
-use crate::mesh::geometry::{Vector, area, distance, dot, sub, triangle};
+use crate::mesh::geometry::{area, triangle};
 use crate::parallel;
+use crate::vector::{Vector, distance, dot, sub};
 
 /// The least density allowed, beside the largest.
 const SMALLEST_DENSITY: f64 = 1e-12;

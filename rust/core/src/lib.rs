@@ -37,6 +37,7 @@ pub mod registration;
 pub mod sparse;
 mod sphere;
 mod untangle;
+mod vector;
 
 pub use control::{History, Observer, Record, Silent, Status};
 pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};

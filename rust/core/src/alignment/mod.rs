@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Rigid alignment of point sets.
+//! Alignment of point sets: the best rotation, the best similarity.
 
 pub(crate) mod rotation;
+pub(crate) mod similarity;

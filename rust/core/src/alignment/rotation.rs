@@ -4,9 +4,9 @@
 //! Horn (1987), *Closed-form solution of absolute orientation using unit quaternions*: it is the rotation of the
 //! quaternion that belongs to the largest eigenvalue of a symmetric 4 × 4 matrix. It never reflects.
 
-use crate::mesh::geometry::{Vector, dot};
 use crate::parallel;
 use crate::sparse::top_eigenvector;
+use crate::vector::{Vector, dot};
 
 /// The rotation R, by rows, that maximises Σ w_i (R x_i)·y_i, `from` x and `to` y.
 ///
@@ -53,7 +53,7 @@ pub(crate) fn rotate(rotation: [Vector; 3], x: Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::{distance, sub};
+    use crate::vector::{distance, sub};
 
     #[test]
     fn rotated_points_are_turned_back() {

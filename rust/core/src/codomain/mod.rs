@@ -2,3 +2,45 @@
 //! Where a map goes, the disk, the sphere or the plane, and how a vertex may move there.
 
 pub(crate) mod motion;
+
+use motion::Motion;
+
+/// Where a map goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Codomain {
+    /// The unit sphere.
+    Sphere,
+    /// The unit disk in the plane z = 1, the boundary counter-clockwise around the circle.
+    Disk,
+    /// The plane z = 1.
+    Plane,
+}
+
+/// Where both surfaces of a registration are mapped to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CanonicalDomain {
+    /// The unit disk.
+    Disk,
+    /// The unit sphere.
+    Sphere,
+}
+
+impl CanonicalDomain {
+    /// How a vertex may move.
+    pub(crate) fn motion(self, on_boundary: bool) -> Motion {
+        match (self, on_boundary) {
+            (Self::Sphere, _) => Motion::Sphere,
+            (Self::Disk, false) => Motion::Plane,
+            (Self::Disk, true) => Motion::Circle,
+        }
+    }
+}
+
+impl From<CanonicalDomain> for Codomain {
+    fn from(domain: CanonicalDomain) -> Self {
+        match domain {
+            CanonicalDomain::Disk => Self::Disk,
+            CanonicalDomain::Sphere => Self::Sphere,
+        }
+    }
+}

@@ -5,8 +5,8 @@
 //! positive exactly where a face is not folded, in either domain. A vertex has two unknowns, one or none, its
 //! coordinates along the [`Frame`] at its place; [`Motion::moved`] takes them back to the domain.
 
-use crate::mesh::geometry::{Vector, add, norm, scaled};
 use crate::parallel;
+use crate::vector::{Vector, add, norm, scaled};
 
 /// What one vertex may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +98,7 @@ fn tangent_axes([x, y, z]: Vector) -> [Vector; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::{cross, dot, sub};
+    use crate::vector::{cross, dot, sub};
 
     #[test]
     fn paths_start_along_the_frame_and_bend_away_from_outward() {

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::distance;
+use crate::vector::distance;
 
 /// Places the boundary loop on the unit circle, counter-clockwise, arcs proportional to the edge lengths;
 /// the loop's smallest vertex goes to (1, 0). Interior vertices go to the origin.

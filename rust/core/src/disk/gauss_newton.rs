@@ -13,19 +13,19 @@ use super::published::fixed_point::fixed_point;
 use super::published::objective::DiskDomain;
 use super::published::run::Run;
 use super::{Boundary, DiskMapOptions, certificate, start, unfold};
+use crate::codomain::Codomain;
 use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::embedding::{Stop, progressive_disk};
-use crate::energy::authalic::Codomain;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
-use crate::mesh::geometry::Vector;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even, target_floors};
 use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
+use crate::vector::Vector;
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;

@@ -7,7 +7,8 @@
 
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, area, area_vector, cross, dot, norm, scaled, sub};
+use crate::mesh::geometry::{area, area_vector};
+use crate::vector::{Vector, add, cross, dot, norm, scaled, sub};
 
 /// A hole's faces get at least this part of the mean target, so that a slit without area stays solvable.
 const SMALLEST_SHARE: f64 = 0.05;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Room for a vertex inside the polygon of its neighbours.
 
-use crate::mesh::geometry::{Vector, cross, dot, norm, sub};
+use crate::vector::{Vector, cross, dot, norm, sub};
 
 /// The centroid of the kernel of a polygon, in coordinates along `basis` from `centre`: of the points from
 /// which all its edges, given by their ends, are seen to run counter-clockwise.

@@ -19,7 +19,7 @@ use super::star::{Star, angle};
 use crate::codomain::motion::{Motion, rotated};
 use crate::control::{Observer, Phase, Status};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, distance};
+use crate::vector::{Vector, distance};
 
 /// λ, the weight of the shape in the energy.
 const SHAPE: f64 = 0.3;

@@ -14,7 +14,7 @@
 //! Cost: about a hundred operations for each face and step.
 
 use crate::codomain::motion::{Frame, Motion};
-use crate::mesh::geometry::{Vector, add, cross, dot, scaled, sub};
+use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
 /// D counts as positive where it is larger than this times the size of the products it is made of; their
 /// rounding is a tenth of that.
@@ -231,7 +231,7 @@ fn arc_energy(x: Vector, [(before, share), (behind, other)]: [(Vector, f64); 2])
 mod tests {
     use super::*;
     use crate::codomain::motion::rotated;
-    use crate::mesh::geometry::norm;
+    use crate::vector::norm;
 
     /// A polygon around the vertex at x: on the sphere and in the plane closed, on the circle a fan.
     fn star(motion: Motion) -> (Star, Vector) {

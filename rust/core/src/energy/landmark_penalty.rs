@@ -6,7 +6,7 @@
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;
-use crate::mesh::geometry::{Vector, distance, dot, scaled, sub};
+use crate::vector::{Vector, distance, dot, scaled, sub};
 
 /// Vertices that are wanted at places.
 #[derive(Debug, Clone, Default)]
@@ -72,10 +72,10 @@ impl LandmarkPenalty {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codomain::Codomain;
     use crate::codomain::motion::{Motion, frames};
-    use crate::energy::authalic::Codomain;
     use crate::mesh::TriangleMesh;
-    use crate::mesh::geometry::norm;
+    use crate::vector::norm;
 
     #[test]
     fn derivatives_are_the_differences_of_the_value() {

@@ -26,8 +26,9 @@ use sprs::{CsMat, TriMat};
 
 use super::stretch::{Profile, Value};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, area_vector, cross, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::{area_vector, triangle};
 use crate::parallel;
+use crate::vector::{Vector, cross, dot, norm, scaled, sub};
 
 /// Stretch energy of maps of one mesh into space, for given target areas.
 #[derive(Debug, Clone, Copy)]

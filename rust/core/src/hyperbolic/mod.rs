@@ -35,7 +35,7 @@ mod tests;
 mod warnings;
 
 use crate::error::Error;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 pub use features::curves::Curves;
 pub use harmonic::certificates::Certificates;

@@ -18,10 +18,11 @@ use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
 use crate::error::{Elements, Error};
 use crate::location::{Location, Locator};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::registration::{Registration, SphereRegistration, inside_out};
 use crate::sphere::SphereMap;
+use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
 
 /// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.
 const MISSED: f64 = 1e-9;

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::features::parameters::unit;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, dot, triangle};
+use crate::mesh::geometry::triangle;
+use crate::vector::{Vector, add, dot};
 
 /// The vertices and faces of a sphere of 8 · 4^level faces, slightly uneven so that no two faces are alike.
 pub(super) fn sphere(level: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {

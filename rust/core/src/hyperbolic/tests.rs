@@ -19,7 +19,7 @@ use super::sample_meshes::{mesh, path, sphere};
 use super::slice::{NONE, Sliced, SlicedPair, slice_pair};
 use super::{Curves, moebius};
 use crate::control::{Silent, Status, Watch};
-use crate::mesh::geometry::{Vector, add, scaled};
+use crate::vector::{Vector, add, scaled};
 
 /// Ends of four curves on the sphere.
 const ENDS: [[Vector; 2]; 4] = [

@@ -7,7 +7,8 @@ use super::features::placement::Placement;
 use super::harmonic::certificates::Certificates;
 use crate::distortion::Distortion;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, area_vector, dot, norm, triangle};
+use crate::mesh::geometry::{area_vector, triangle};
+use crate::vector::{Vector, add, dot, norm};
 
 /// A harmonic energy of more than this over that of the identity says that the curves hardly fit.
 const STRAINED: f64 = 2.0;

@@ -4,7 +4,7 @@
 //! Built by halving the elements along the longest side of their centres' box, so that it is as deep as log₂ of their
 //! number whatever their shapes. Cost: O(n log² n) to build, O(log n) for a point in boxes that overlap little.
 
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// Elements in a leaf at the most.
 const LEAF: usize = 3;

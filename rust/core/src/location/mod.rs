@@ -15,10 +15,9 @@ mod bvh;
 use robust::{Coord3D, orient3d};
 
 use crate::control::Watch;
-use crate::mesh::geometry::{
-    Vector, add, cross, determinant_rounding, distance, dot, norm, scaled, sub, triangle,
-};
+use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::parallel;
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
 use bvh::{Bounds, Tree};
 
 /// How many points are located between two questions whether to go on.

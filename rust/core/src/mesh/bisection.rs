@@ -108,7 +108,8 @@ impl Midpoints {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::{area, distance, triangle};
+    use crate::mesh::geometry::{area, triangle};
+    use crate::vector::distance;
 
     /// A bent grid of squares, each of two triangles.
     fn grid(n: u32) -> TriangleMesh {

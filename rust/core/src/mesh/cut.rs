@@ -12,13 +12,12 @@
 //!
 //! The cost is linear in the mesh, up to the union-find of its corners.
 
-use super::geometry::{self, Vector};
+use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
 use super::orientation::Orientation;
-use super::topology::{
-    EdgeTable, NO_CORNER, Topology, VertexCorners, next_corner, previous_corner, vertex_at,
-};
-use super::validate;
+use super::topology::Topology;
+use super::{geometry, validate};
 use crate::error::{Elements, Error};
+use crate::vector::Vector;
 
 /// One piece of a cut mesh.
 #[derive(Debug, Clone, PartialEq)]

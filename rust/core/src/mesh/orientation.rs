@@ -4,7 +4,7 @@
 //! The orientation that most faces of a component already have wins; at a tie that of its lowest face.
 //! Edges of three or more faces do not connect. Linear in the number of faces.
 
-use super::topology::{EdgeTable, NO_CORNER, half_edge};
+use super::corners::{EdgeTable, NO_CORNER, half_edge};
 
 /// Which faces must be flipped, and what hangs together.
 #[derive(Debug, Clone, PartialEq, Eq)]

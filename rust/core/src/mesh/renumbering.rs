@@ -4,8 +4,9 @@
 //! In the order in which a factorisation eliminates them, neighbours in space are neighbours in memory: every pass over
 //! the faces of a large mesh runs several times faster, and no later system has to be ordered again.
 
-use super::topology::{NO_CORNER, VertexCorners};
-use super::{TriangleMesh, mark_boundary};
+use super::TriangleMesh;
+use super::corners::{NO_CORNER, VertexCorners};
+use super::triangle_mesh::mark_boundary;
 use crate::error::Elements;
 use crate::parallel;
 

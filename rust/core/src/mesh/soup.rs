@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Triangles that need not form a surface, for figures that only need areas and orientations.
 
-use super::geometry::{self, Vector};
-use super::{orientation, validate};
+use super::{geometry, orientation, validate};
 use crate::error::Error;
+use crate::vector::Vector;
 
 /// Validated triangles: finite, in range, with area, oriented alike where they hang together.
 #[derive(Debug, Clone, PartialEq)]

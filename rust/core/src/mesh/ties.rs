@@ -10,8 +10,8 @@
 //! Surfaces with more symmetry than a mirror plane have fewer directions; among what these do not tell apart the lowest
 //! index has to decide.
 
-use super::geometry::{Vector, add, cross, dot, norm, scaled, sub};
 use crate::parallel;
+use crate::vector::{Vector, add, cross, dot, norm, scaled, sub};
 
 /// By how much at the most a preference changes a value: more than noise does, less than matters.
 const SHARE: f64 = 1e-6;

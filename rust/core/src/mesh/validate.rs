@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The checks a mesh has to pass, each naming the elements at fault.
 
-use super::geometry::{self, Vector, triangle};
-use super::topology::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
+use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
+use super::geometry;
+use super::geometry::triangle;
 use crate::error::{Elements, Error};
+use crate::vector::Vector;
 
 /// Corner indices must fit into 32 bits with one value to spare.
 const MOST_FACES: usize = (u32::MAX / 3) as usize;

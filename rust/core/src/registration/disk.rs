@@ -6,17 +6,18 @@
 //! faces next to it their areas too.
 
 use super::landmark_descent::Carrying;
-use super::landmarks::{Domain, best_turn};
+use super::landmarks::best_turn;
 use super::{
     DiskRegistration, Landmarks, MISSED, Registration, RegistrationOptions, located, missed, verdict,
 };
+use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, disk_map};
 use crate::distortion::{Image, distortion, folded_in_plane};
 use crate::error::Error;
 use crate::location::Locator;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, distance};
+use crate::vector::{Vector, distance};
 
 /// Registers two disks by landmarks inside them.
 ///
@@ -46,7 +47,7 @@ pub fn register_disks(
     // 1. Refuse what cannot be registered before any work
     source.require_disk().map_err(|error| error.of_surface("source"))?;
     target.require_disk().map_err(|error| error.of_surface("target"))?;
-    landmarks.check(source, target, Domain::Disk)?;
+    landmarks.check(source, target, CanonicalDomain::Disk)?;
     options.check()?;
     // 2. Both surfaces to the disk
     let alone = DiskMapOptions { angle_weight: options.angle_weight, ..Default::default() };
@@ -60,7 +61,13 @@ pub fn register_disks(
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
     // 4. h: the landmarks carried to their places; where some are missed, those of the target carried the other way
     let ours: Vec<Vector> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
-    let disk = |mesh, landmarks, places| Carrying { mesh, domain: Domain::Disk, landmarks, places, options };
+    let disk = |mesh, landmarks, places| Carrying {
+        mesh,
+        domain: CanonicalDomain::Disk,
+        landmarks,
+        places,
+        options,
+    };
     let there = disk(source, landmarks.source, &places);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
     let (carried, status) = there.carry(turned.clone(), &mut history, &mut phase)?;

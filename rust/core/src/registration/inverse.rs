@@ -8,7 +8,7 @@ use crate::control::{Observer, Watch};
 use crate::distortion::Image;
 use crate::error::Error;
 use crate::location::Locator;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// A point of the disk or of the sphere.
 pub trait DomainPoint: Copy + Send + Sync {

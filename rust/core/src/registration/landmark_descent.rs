@@ -12,19 +12,17 @@
 
 use super::RegistrationOptions;
 use super::flow::flow;
-use super::landmarks::Domain;
-use crate::codomain::motion::Motion;
+use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status, Watch};
-use crate::energy::authalic::Codomain;
 use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize, target_floors};
 use crate::sparse::{Order, elimination_order};
+use crate::vector::{Vector, distance};
 use crate::{disk, sphere};
 
 /// How often flow and pull take turns at the most.
@@ -84,7 +82,7 @@ struct Goals {
 /// An area-preserving map of a surface whose landmarks are to be carried to places.
 pub(super) struct Carrying<'a> {
     pub mesh: &'a TriangleMesh,
-    pub domain: Domain,
+    pub domain: CanonicalDomain,
     /// The landmarks of this surface, (k,).
     pub landmarks: &'a [usize],
     /// Where they are wanted, (k,).
@@ -135,12 +133,13 @@ impl Carrying<'_> {
     fn problem(&self, by_order: &Renumbered) -> Result<Problem, Error> {
         let mesh = &by_order.mesh;
         let floor = target_floors::floors(mesh.face_areas())[0];
-        let energy = target_floors::energy(mesh, mesh.face_areas(), self.codomain(), floor);
+        let energy = target_floors::energy(mesh, mesh.face_areas(), self.domain.into(), floor);
         let mut place_of = vec![0u32; mesh.n_vertices()];
         by_order.vertices.iter().enumerate().for_each(|(new, &given)| place_of[given as usize] = new as u32);
         let landmarks = self.landmarks.iter().map(|&vertex| place_of[vertex]).collect();
         let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.options.weight);
-        let motions = (0..mesh.n_vertices()).map(|vertex| self.motion(mesh.is_boundary(vertex))).collect();
+        let motions =
+            (0..mesh.n_vertices()).map(|vertex| self.domain.motion(mesh.is_boundary(vertex))).collect();
         Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
     }
 
@@ -194,8 +193,8 @@ impl Carrying<'_> {
             return self.is_sound(problem, &map).then_some(map);
         }
         let mended = match self.domain {
-            Domain::Sphere => sphere::unfold::unfold_within(mesh, &map, RINGS),
-            Domain::Disk => {
+            CanonicalDomain::Sphere => sphere::unfold::unfold_within(mesh, &map, RINGS),
+            CanonicalDomain::Disk => {
                 let flat: Vec<[f64; 2]> = map.iter().map(|x| [x[0], x[1]]).collect();
                 let mended = disk::unfold::unfold_within(mesh, &flat, RINGS);
                 mended.map(|flat| flat.iter().map(|&[u, v]| [u, v, 1.0]).collect())
@@ -210,21 +209,6 @@ impl Carrying<'_> {
         sums.angle_energy <= SHEARED * sums.area
     }
 
-    fn codomain(&self) -> Codomain {
-        match self.domain {
-            Domain::Disk => Codomain::Disk,
-            Domain::Sphere => Codomain::Sphere,
-        }
-    }
-
-    fn motion(&self, is_boundary: bool) -> Motion {
-        match (self.domain, is_boundary) {
-            (Domain::Sphere, _) => Motion::Sphere,
-            (Domain::Disk, false) => Motion::Plane,
-            (Domain::Disk, true) => Motion::Circle,
-        }
-    }
-
     /// Guarded descents with λ growing until the landmarks are near or come no nearer.
     fn descend(
         &self,
@@ -236,7 +220,8 @@ impl Carrying<'_> {
         observer: &mut dyn Observer,
     ) -> (Problem, Map, Status) {
         problem.penalty.weight = goals.weight;
-        let surface = target_floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
+        let surface =
+            target_floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.domain.into() };
         let (mut no_nearer, mut status) = (0, Status::MaxIterations);
         for stage in 0..STAGES {
             let before = farthest(&problem, &map);

@@ -2,10 +2,11 @@
 //! Pairs of landmarks, their check, and the rotations that lay them over each other.
 
 use super::RegistrationOptions;
+use crate::codomain::CanonicalDomain;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::Vector;
 use crate::options::check_angle_weight;
+use crate::vector::Vector;
 
 /// Pairs of vertices, one on the source and one on the target, that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,37 +17,20 @@ pub struct Landmarks<'a> {
     pub target: &'a [usize],
 }
 
-/// Where the surfaces are mapped to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Domain {
-    Disk,
-    Sphere,
-}
-
-impl Domain {
-    /// How many pairs it takes to determine a rotation.
-    fn fewest(self) -> usize {
-        match self {
-            Self::Disk => 1,
-            Self::Sphere => 2,
-        }
-    }
-}
-
 impl Landmarks<'_> {
     /// Refuses pairs that cannot be registered, before any work.
     pub(super) fn check(
         &self,
         source: &TriangleMesh,
         target: &TriangleMesh,
-        domain: Domain,
+        domain: CanonicalDomain,
     ) -> Result<(), Error> {
         let (ours, theirs) = (self.source.len(), self.target.len());
         if ours != theirs {
             return Err(Error::LandmarkCounts { source_count: ours, target_count: theirs });
         }
-        if ours < domain.fewest() {
-            return Err(Error::TooFewLandmarks { found: ours, needed: domain.fewest() });
+        if ours < fewest(domain) {
+            return Err(Error::TooFewLandmarks { found: ours, needed: fewest(domain) });
         }
         check_side("source_landmarks", self.source, source)?;
         check_side("target_landmarks", self.target, target)
@@ -88,6 +72,14 @@ impl RegistrationOptions {
     }
 }
 
+/// How many pairs it takes to determine a rotation.
+fn fewest(domain: CanonicalDomain) -> usize {
+    match domain {
+        CanonicalDomain::Disk => 1,
+        CanonicalDomain::Sphere => 2,
+    }
+}
+
 /// The angle by which to rotate points of the plane z = 1 about the origin so that they come nearest to others.
 ///
 /// The best R of SO(2) by Σ |R p_i − q_i|²; by no angle where the points say nothing, as at the centre.
@@ -119,7 +111,7 @@ mod tests {
         let mesh = square();
         let said = |source: &[usize], target: &[usize]| {
             let landmarks = Landmarks { source, target };
-            landmarks.check(&mesh, &mesh, Domain::Disk).map_err(|error| error.to_string())
+            landmarks.check(&mesh, &mesh, CanonicalDomain::Disk).map_err(|error| error.to_string())
         };
         assert_eq!(said(&[4, 5], &[5, 4]), Ok(()));
         assert!(said(&[4], &[4, 5]).unwrap_err().contains("1 source and 2 target"));
@@ -129,7 +121,7 @@ mod tests {
         assert!(said(&[4, 1], &[4, 5]).unwrap_err().contains("boundary"));
         let pair = Landmarks { source: &[4], target: &[5] };
         assert!(matches!(
-            pair.check(&mesh, &mesh, Domain::Sphere),
+            pair.check(&mesh, &mesh, CanonicalDomain::Sphere),
             Err(Error::TooFewLandmarks { found: 1, needed: 2 })
         ));
     }

@@ -10,6 +10,7 @@
 //! two maps, and about as much again for carrying the landmarks.
 
 mod disk;
+mod figures;
 mod flow;
 mod inverse;
 mod landmark_descent;
@@ -23,17 +24,20 @@ use crate::disk::DiskMap;
 use crate::distortion::Distortion;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, distance, triangle};
+use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::sphere::SphereMap;
+use crate::vector::{Vector, distance};
 
 use crate::location::Locator;
 
+pub use crate::alignment::similarity::{Similarity, similarity};
 pub use crate::location::Location;
 pub use disk::register_disks;
+pub use figures::{area_ratios, compare};
 pub use inverse::DomainPoint;
 pub use landmarks::Landmarks;
-pub use morph::{Similarity, area_ratios, compare, homotopy, similarity};
+pub use morph::homotopy;
 pub(crate) use sphere::inside_out;
 pub use sphere::register_spheres;
 pub use transfer::{corner_sides, nearest_corners, nearest_vertices, pull_corners, pull_rows, pull_vertices};

@@ -7,19 +7,20 @@
 //! only.
 
 use super::landmark_descent::Carrying;
-use super::landmarks::Domain;
 use super::{
     Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict, worst,
 };
 use crate::alignment::rotation::{best_rotation, rotate};
+use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Image, distortion, folded_on_sphere};
 use crate::error::Error;
 use crate::location::Locator;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, area_vector, distance, dot, norm, scaled, triangle};
+use crate::mesh::geometry::{area_vector, triangle};
 use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
+use crate::vector::{Vector, add, distance, dot, norm, scaled};
 
 /// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on
 /// either side.
@@ -58,7 +59,7 @@ pub fn register_spheres(
     // 1. Refuse what cannot be registered before any work
     source.require_sphere().map_err(|error| error.of_surface("source"))?;
     target.require_sphere().map_err(|error| error.of_surface("target"))?;
-    landmarks.check(source, target, Domain::Sphere)?;
+    landmarks.check(source, target, CanonicalDomain::Sphere)?;
     options.check()?;
     let same_side;
     let target = match inside_out(source, target) {
@@ -81,8 +82,13 @@ pub fn register_spheres(
     let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
     let places = meeting_places(&ours, &theirs);
     // 4. h₀ and h₁: the landmarks of both carried there
-    let carrying =
-        |mesh, landmarks| Carrying { mesh, domain: Domain::Sphere, landmarks, places: &places, options };
+    let carrying = |mesh, landmarks| Carrying {
+        mesh,
+        domain: CanonicalDomain::Sphere,
+        landmarks,
+        places: &places,
+        options,
+    };
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
     let (registered, first) = carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
     let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };

@@ -9,8 +9,8 @@ use super::Map;
 use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::distortion::folded_on_sphere;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{norm, scaled, sub};
 use crate::parallel;
+use crate::vector::{norm, scaled, sub};
 
 /// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
 /// folds a sliver.

@@ -14,20 +14,21 @@ use super::published::fixed_point::{FixedPointStopping, fixed_point};
 use super::published::objective::SphereDomain;
 use super::published::run::Run;
 use super::{Map, SphereMapOptions, normalized, start, unfold};
+use crate::codomain::Codomain;
 use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
-use crate::energy::authalic::Codomain;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
-use crate::mesh::geometry::{cross, dot, triangle};
+use crate::mesh::geometry::triangle;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, target_floors};
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
+use crate::vector::{cross, dot};
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;
@@ -257,8 +258,8 @@ impl Run<'_> {
 mod tests {
     use super::*;
     use crate::mesh::TriangleMesh;
-    use crate::mesh::geometry::{distance, norm, scaled};
     use crate::sparse::processor::with_each_width;
+    use crate::vector::{distance, norm, scaled};
     use crate::{Silent, sphere_map};
 
     /// An octahedron split five times, with bumps and without symmetry.

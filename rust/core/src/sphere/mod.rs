@@ -24,10 +24,11 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, area_vector, dot, norm, scaled, triangle};
+use crate::mesh::geometry::{area_vector, triangle};
 use crate::optimize::published::gradient_descent::LineSearch;
 use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
+use crate::vector::{Vector, dot, norm, scaled};
 
 use published::run::Run;
 pub use refinement::Refinement;

@@ -22,9 +22,10 @@ use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::bisection::{Bisection, bisect_longest_edges};
-use crate::mesh::geometry::{Vector, add, distance, scaled, triangle};
+use crate::mesh::geometry::triangle;
 use crate::mesh::ties::tie_breakers;
 use crate::parallel;
+use crate::vector::{Vector, add, distance, scaled};
 
 /// Rounds at the most.
 const ROUNDS: usize = 3;

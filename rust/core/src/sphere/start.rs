@@ -22,12 +22,11 @@ use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{
-    Vector, add, corner_cotangents, cross, distance, dot, norm, scaled, sub, triangle,
-};
+use crate::mesh::geometry::{corner_cotangents, triangle};
 use crate::mesh::ties::tie_breakers;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
 
 /// Newton steps of the centring; three or four are the rule.
 const CENTRING_STEPS: usize = 50;

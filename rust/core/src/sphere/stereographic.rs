@@ -6,8 +6,8 @@
 //! before every step changes charts here, and the map on the sphere keeps its orientation.
 
 use super::Map;
-use crate::mesh::geometry::Vector;
 use crate::parallel;
+use crate::vector::Vector;
 
 /// The projection from one pole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +74,7 @@ pub(super) fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::norm;
+    use crate::vector::norm;
 
     fn points() -> impl Iterator<Item = [f64; 2]> {
         (0..200).map(|i| {

@@ -11,9 +11,10 @@
 use super::Map;
 use super::stereographic::Chart;
 use crate::distortion::folded_on_sphere;
-use crate::energy::mean_value::{self, Weights, correct};
+use crate::energy::mean_value;
+use crate::energy::mean_value::{Weights, correct};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// Modulus up to which a chart's vertices may be freed, a little beyond its hemisphere; the paper's r.
 const RADIUS: f64 = 1.2;

@@ -7,7 +7,7 @@
 use super::UntangledImage;
 use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled};
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled};
 
 /// The rim of a patch on the sphere lies within this cosine of the center of its chart.
 const RIM: f64 = 0.1;
@@ -247,8 +247,7 @@ impl Chart {
             }
             (Self::Gnomonic { axes, radius, scale }, Positions::Sphere(map)) => {
                 let [u, v] = place.map(|x| x / scale);
-                let x =
-                    add(axes[2], add(crate::mesh::geometry::scaled(axes[0], u), self::scaled(axes[1], v)));
+                let x = add(axes[2], add(crate::vector::scaled(axes[0], u), self::scaled(axes[1], v)));
                 map[vertex as usize] = self::scaled(unit_vector(x), *radius);
             }
             _ => unreachable!("a chart of the same map"),

@@ -10,8 +10,9 @@
 //! every term is positive semidefinite but that of the curvature of ρ, which is left out or added on demand.
 
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, cross, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::triangle;
 use crate::parallel;
+use crate::vector::{Vector, cross, dot, norm, scaled, sub};
 
 /// β of f.
 const STIFFENING: f64 = 0.1;

@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 
 use super::energy::{Element, Energy, Map};
 use crate::control::Watch;
-use crate::mesh::geometry::distance;
 use crate::sparse::{Analysis, Factor, Failure};
+use crate::vector::distance;
 
 /// Inverse iterations; a few are enough for a start.
 const ITERATIONS: usize = 12;

@@ -8,8 +8,9 @@ use super::contact::Outline;
 use super::energy::{Energy, Map};
 use super::lscm::{of_area_one, spectral_conformal};
 use crate::control::Watch;
-use crate::mesh::geometry::{Vector, add, area_vector, cross, dot, norm, scaled, triangle};
+use crate::mesh::geometry::{area_vector, triangle};
 use crate::sparse::{Analysis, Failure};
+use crate::vector::{Vector, add, cross, dot, norm, scaled};
 
 /// A later start replaces an earlier one where its energy is below this part of it: no tie is left to rounding.
 const MARGIN: f64 = 0.9;

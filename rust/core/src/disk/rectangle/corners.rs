@@ -13,7 +13,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::triangle;
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
 
 /// Four places along the boundary loop, ascending but for where the loop ends; the first goes to the lower left.
 pub(super) type Corners = [usize; 4];

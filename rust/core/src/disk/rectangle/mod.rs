@@ -22,19 +22,21 @@ use super::published::fixed_point::fixed_point;
 use super::published::objective::DiskDomain;
 use super::published::run::Run;
 use super::{Boundary, DiskMapOptions, certificate, unfold};
+use crate::codomain::Codomain;
 use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
-use crate::energy::authalic::{AuthalicEnergy, Codomain};
+use crate::energy::authalic::AuthalicEnergy;
 use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, corner_cotangents};
+use crate::mesh::geometry::corner_cotangents;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
 use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
+use crate::vector::Vector;
 use corners::Outline;
 
 /// Fixed-point steps at the most, and where √(gᵀM⁻¹g) ends them.

@@ -10,9 +10,9 @@ use std::collections::BinaryHeap;
 
 use super::Decimation;
 use crate::control::Observer;
-use crate::mesh::geometry::{Vector, cross, dot, sub};
-use crate::mesh::topology::next_corner;
+use crate::mesh::corners::next_corner;
 use crate::parallel;
+use crate::vector::{Vector, cross, dot, sub};
 
 /// The observer is asked once for so many vertices.
 pub(super) const BEAT: usize = 1024;

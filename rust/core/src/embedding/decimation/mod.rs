@@ -16,9 +16,9 @@
 mod coarsen;
 
 use crate::mesh::TriangleMesh;
+use crate::mesh::corners::{next_corner, previous_corner};
 use crate::mesh::geometry::{area, triangle};
 use crate::mesh::ties::tie_breakers;
-use crate::mesh::topology::{next_corner, previous_corner};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]
@@ -271,7 +271,7 @@ mod tests {
     use super::coarsen::BEAT;
     use super::*;
     use crate::control::Silent;
-    use crate::mesh::geometry::Vector;
+    use crate::vector::Vector;
 
     /// A bipyramid over a polygon of n corners, all on the unit sphere; without the first `open` faces.
     fn bipyramid(n: u32, open: usize) -> TriangleMesh {

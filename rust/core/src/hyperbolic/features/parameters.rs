@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Parameters along curves, and points at parameters.
 
-use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
+use crate::vector::{Vector, add, distance, norm, scaled};
 
 /// How much of a curve is divided evenly where some of its edges are too short for the others.
 const EVEN_SHARE: f64 = 1e-9;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a surface is cut along: slits along landmark curves and boundary loops, each with two banks.
 
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// One bank of a feature: vertices from its start to its end, with their parameters.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,7 +13,7 @@ use super::piece::{Bank, Feature, Piece};
 use super::placement::Placement;
 use super::regions::{Divided, Regions};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
 /// same order: curves as given, then other boundary loops.

@@ -17,9 +17,9 @@ use crate::control::Watch;
 use crate::disk::closed;
 use crate::error::{Elements, Error};
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
 use crate::parallel;
 use crate::sphere::{rough_conformal, vertex_weights};
+use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
 
 /// The middle of a closed curve says where it is if it is farther than this from that of the sphere.
 const LEAST_MIDDLE: f64 = 0.1;

@@ -10,8 +10,9 @@
 use super::curves::{CurvePair, Gap, face_on_left, loop_along};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, add, dot, scaled, sub, triangle};
-use crate::mesh::topology::{NO_CORNER, next_corner, previous_corner, vertex_at};
+use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
+use crate::mesh::geometry::triangle;
+use crate::vector::{Vector, add, dot, scaled, sub};
 
 /// No region: beyond the boundary.
 pub(super) const OUTSIDE: u32 = u32::MAX;

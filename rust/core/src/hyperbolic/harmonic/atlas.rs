@@ -12,8 +12,8 @@ use crate::hyperbolic::moebius::{
     Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
 };
 use crate::hyperbolic::slice::{NONE, Opened};
-use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
 use crate::parallel;
+use crate::vector::{Vector, add, cross, dot, scaled};
 
 /// A point this far outside an edge still counts as inside.
 const INSIDE: f64 = 1e-13;

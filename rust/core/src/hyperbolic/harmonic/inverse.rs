@@ -14,8 +14,8 @@ use super::newton::ChartMap;
 use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
 use crate::hyperbolic::slice::{NONE, Sliced};
 use crate::location::Location;
-use crate::mesh::geometry::{Vector, cross, dot};
 use crate::parallel;
+use crate::vector::{Vector, cross, dot};
 
 /// A vertex this far outside of an edge, in barycentric coordinates, may still belong to a face.
 const NEAR: f64 = 1e-9;

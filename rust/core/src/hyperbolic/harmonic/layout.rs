@@ -10,9 +10,10 @@ use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error};
 use crate::hyperbolic::slice::{NONE, Opened, Sliced};
-use crate::mesh::geometry::{Vector, corner_cotangents};
+use crate::mesh::geometry::corner_cotangents;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
+use crate::vector::Vector;
 
 /// Weights are kept within this range.
 const WEIGHTS: [f64; 2] = [1e-2, 1e2];

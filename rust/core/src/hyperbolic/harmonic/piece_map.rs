@@ -18,7 +18,7 @@ use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
 use crate::hyperbolic::slice::{Sliced, SlicedPair};
 use crate::hyperbolic::{HyperbolicOptions, Solver};
 use crate::location::Location;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 /// A map between two sliced pieces.
 pub(crate) struct PieceMap {

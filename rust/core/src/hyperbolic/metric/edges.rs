@@ -13,9 +13,9 @@
 //! mesh in space that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be
 //! 0, the tangential packing, which knows nothing of the surface's shape; so I is kept as it is.
 
-use crate::mesh::geometry::{Vector, distance};
 use crate::mesh::{EdgeTable, corner_of_entry};
 use crate::parallel;
+use crate::vector::{Vector, distance};
 
 /// The edges of the faces.
 pub(super) struct Edges {

@@ -25,7 +25,8 @@ use std::f64::consts::TAU;
 
 use crate::control::Watch;
 use crate::error::{Elements, Error};
-use crate::mesh::geometry::{Vector, face_areas};
+use crate::mesh::geometry::face_areas;
+use crate::vector::Vector;
 use edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
 use newton::{State, Surface, flatten};
 use relaxation::{Relaxed, bad_faces, relaxed};

@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 use super::newton::{hessian, length_derivatives};
 use super::*;
 use crate::control::Silent;
-use crate::mesh::geometry::{add, cross, distance, dot, norm, scaled};
 use crate::sparse::solve_positive_definite;
+use crate::vector::{add, cross, distance, dot, norm, scaled};
 
 struct Mesh {
     points: Vec<Vector>,

@@ -16,7 +16,7 @@ use super::paths::{cheapest_path, lower_distances};
 use super::polyline::{Polyline, resampled};
 use crate::control::Watch;
 use crate::error::Error;
-use crate::mesh::geometry::{Vector, distance};
+use crate::vector::{Vector, distance};
 
 /// The angle between the points of a carried polyline.
 const SPACING: f64 = 0.01;

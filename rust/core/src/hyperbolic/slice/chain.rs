@@ -11,7 +11,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::hyperbolic::features::piece::{Feature, Piece};
-use crate::mesh::geometry::{Vector, distance};
+use crate::vector::{Vector, distance};
 
 /// A link from the end of a feature to the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

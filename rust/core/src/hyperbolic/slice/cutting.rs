@@ -14,8 +14,8 @@
 
 use super::Place;
 use crate::hyperbolic::features::piece::Piece;
-use crate::mesh::geometry::{Vector, add, distance, norm, scaled};
 use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
+use crate::vector::{Vector, add, distance, norm, scaled};
 
 /// What an edge is cut for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,9 +14,9 @@ use crate::alignment::rotation::{best_rotation, rotate, rotation_of};
 use crate::control::Watch;
 use crate::hyperbolic::features::parameters::{length, on_sphere, unit};
 use crate::hyperbolic::features::piece::{Bank, Piece};
-use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled};
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled};
 
 /// How far a displacement is felt.
 const REACH: f64 = 0.25;

@@ -29,7 +29,7 @@ mod tests;
 use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
 use crate::error::Error;
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 use arcs::Carry;
 use cutting::{Cutting, Seam};
 

@@ -4,7 +4,7 @@
 //! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball
 //! enclose the halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
 
-use crate::mesh::geometry::{Vector, add, distance, dot, norm, scaled, sub};
+use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
 
 /// The same polyline with further points, so that neighbours are about `spacing` apart at the most.
 pub(super) fn resampled(points: &[Vector], spacing: f64) -> Vec<Vector> {

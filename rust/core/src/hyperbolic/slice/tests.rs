@@ -7,8 +7,9 @@ use super::polyline::Polyline;
 use super::*;
 use crate::control::Silent;
 use crate::hyperbolic::features::piece::Bank;
-use crate::mesh::geometry::{add, area, distance, dot, norm, scaled, triangle};
+use crate::mesh::geometry::{area, triangle};
 use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
+use crate::vector::{add, distance, dot, norm, scaled};
 
 /// The icosahedron, each face divided into 4^level.
 fn icosphere(level: usize) -> (Vec<Vector>, Vec<[u32; 3]>) {

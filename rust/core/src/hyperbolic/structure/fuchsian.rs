@@ -17,8 +17,8 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::harmonic::initial::boundary_corners;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
 use crate::hyperbolic::slice::{NONE, Side, Sliced};
-use crate::mesh::geometry::{Vector, add, scaled};
 use crate::parallel;
+use crate::vector::{Vector, add, scaled};
 
 /// A copy of the fundamental domain in the universal cover.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@
 //! Cost: constant.
 
 use crate::hyperbolic::moebius::{Complex, Moebius, exponential, from_hyperboloid, seen_from, to_klein};
-use crate::mesh::geometry::{Vector, cross, dot, scaled};
+use crate::vector::{Vector, cross, dot, scaled};
 
 /// A pair of pants.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,7 +8,7 @@ use super::super::moebius::{distance, from_klein, to_hyperboloid};
 use super::super::sample_meshes::{circle, mesh, path, sphere};
 use super::*;
 use crate::control::Silent;
-use crate::mesh::geometry;
+use crate::vector;
 
 type Points = (Vec<Vector>, Vec<[u32; 3]>);
 
@@ -139,9 +139,9 @@ fn the_axis_of_the_first_generator_is_the_first_boundary() {
 /// sinh of the distance from a line.
 fn off_line(z: Complex, [from, to]: [Complex; 2]) -> f64 {
     let chord = to - from;
-    let normal = geometry::cross([from.re, from.im, 1.0], [chord.re, chord.im, 0.0]);
+    let normal = vector::cross([from.re, from.im, 1.0], [chord.re, chord.im, 0.0]);
     let point = to_hyperboloid(z);
-    (2.0 * geometry::dot(normal, point) / chord.norm_sqr()).abs()
+    (2.0 * vector::dot(normal, point) / chord.norm_sqr()).abs()
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn pants_curves_run_on_the_surface_and_close_up() {
             assert_eq!(curve.first(), curve.last());
             assert!(points.len() > 10);
             let longest =
-                points.windows(2).map(|ends| geometry::distance(ends[0], ends[1])).fold(0.0, f64::max);
+                points.windows(2).map(|ends| vector::distance(ends[0], ends[1])).fold(0.0, f64::max);
             assert!(longest < 0.12, "{longest}");
         }
     }

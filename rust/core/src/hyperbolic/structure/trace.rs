@@ -13,8 +13,8 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
 use crate::hyperbolic::slice::{NONE, Opened};
 use crate::location::Location;
-use crate::mesh::geometry::{Vector, add, cross, dot, scaled};
 use crate::mesh::{next_corner, previous_corner};
+use crate::vector::{Vector, add, cross, dot, scaled};
 
 /// The line has closed up where it crosses the first edge again after its length but for this share.
 const ROUNDING: f64 = 1e-3;

@@ -10,8 +10,9 @@
 
 use super::angle_schedule::AnglePath;
 use super::{GaussNewtonOptions, Map, Problem, minimize};
+use crate::codomain::Codomain;
 use crate::control::{History, Observer, Phase, Status};
-use crate::energy::authalic::{AuthalicEnergy, Codomain};
+use crate::energy::authalic::AuthalicEnergy;
 use crate::energy::stretch::Profile;
 use crate::mesh::TriangleMesh;
 use crate::parallel;

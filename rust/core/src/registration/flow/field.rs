@@ -9,11 +9,11 @@
 //!
 //! Cost: k³ for the weights, k for the velocity at a point.
 
-use super::super::landmarks::Domain;
+use crate::codomain::CanonicalDomain;
 use crate::codomain::motion::Frame;
-use crate::mesh::geometry::{Vector, cross, dot};
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
+use crate::vector::{Vector, cross, dot};
 
 /// What is added to the diagonal of the system, relative to its largest entry.
 const RIDGE: f64 = 1e-10;
@@ -24,7 +24,7 @@ const ROTATION: f64 = 1.0;
 /// A divergence-free velocity field on the domain.
 #[derive(Debug, Clone)]
 pub(super) struct Field {
-    domain: Domain,
+    domain: CanonicalDomain,
     scale: f64,
     sources: Vec<Source>,
 }
@@ -42,13 +42,13 @@ impl Field {
     /// The field that has `velocities` at `places`, up to the ridge; `length` is how far a velocity is felt. `None`
     /// where the places are too close for that.
     pub(super) fn through(
-        domain: Domain,
+        domain: CanonicalDomain,
         length: f64,
         places: &[Vector],
         velocities: &[Vector],
     ) -> Option<Self> {
         let scale = 5f64.sqrt() / length;
-        let frames: Vec<Frame> = places.iter().map(|&x| domain.motion().frame(x)).collect();
+        let frames: Vec<Frame> = places.iter().map(|&x| domain.motion(false).frame(x)).collect();
         // 1. The velocities along the axes of each place, and how each would answer to a weight at another
         let mut weights: Vec<f64> = (0..2 * places.len())
             .map(|row| dot(velocities[row / 2], frames[row / 2].axes[row % 2]))
@@ -78,10 +78,10 @@ impl Field {
 
 impl Source {
     /// The field of a unit covariance with the velocity at `place` along `weight`.
-    fn new(domain: Domain, scale: f64, place: Vector, weight: Vector) -> Self {
+    fn new(domain: CanonicalDomain, scale: f64, place: Vector, weight: Vector) -> Self {
         match domain {
-            Domain::Sphere => Self { place, pull: cross(weight, place), mass: 0.0 },
-            Domain::Disk => {
+            CanonicalDomain::Sphere => Self { place, pull: cross(weight, place), mass: 0.0 },
+            CanonicalDomain::Disk => {
                 let turned = [weight[1], -weight[0]];
                 let (bubble, slope) = bubble(place);
                 let mass = turned[0] * slope[0] + turned[1] * slope[1];
@@ -97,7 +97,7 @@ fn bubble([u, v, _]: Vector) -> (f64, [f64; 2]) {
 }
 
 /// The lower triangle of the covariance of the velocities at the places along their axes, column by column.
-fn responses(domain: Domain, scale: f64, places: &[Vector], frames: &[Frame]) -> Vec<f64> {
+fn responses(domain: CanonicalDomain, scale: f64, places: &[Vector], frames: &[Frame]) -> Vec<f64> {
     let k = places.len();
     // entries [α][β]: the velocity at i along its axis α for a unit weight at j along its axis β
     let blocks = parallel::map(k * k, |pair| {
@@ -116,10 +116,10 @@ fn responses(domain: Domain, scale: f64, places: &[Vector], frames: &[Frame]) ->
     })
 }
 
-fn velocity(domain: Domain, scale: f64, sources: &[Source], x: Vector) -> Vector {
+fn velocity(domain: CanonicalDomain, scale: f64, sources: &[Source], x: Vector) -> Vector {
     match domain {
-        Domain::Sphere => cross(x, spherical_gradient(scale, sources, x)),
-        Domain::Disk => {
+        CanonicalDomain::Sphere => cross(x, spherical_gradient(scale, sources, x)),
+        CanonicalDomain::Disk => {
             let (value, slope) = planar_stream(scale, sources, x);
             let (bubble, bubble_slope) = bubble(x);
             let gradient = [0, 1].map(|k| value * bubble_slope[k] + bubble * slope[k]);

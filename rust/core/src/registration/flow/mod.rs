@@ -15,11 +15,10 @@ mod field;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::landmarks::Domain;
-use crate::codomain::motion::Motion;
+use crate::codomain::CanonicalDomain;
 use crate::control::Watch;
-use crate::mesh::geometry::{Vector, add, cross, distance, dot, norm, scaled, sub};
 use crate::parallel;
+use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
 use field::Field;
 
 /// A landmark this close to its place has arrived.
@@ -46,7 +45,7 @@ const BREATH: usize = 512;
 /// `mended` returns a moved map without the folds that its coarse faces may have, `None` where there are too many. Returns
 /// the last map, the landmarks as near to their places as it came; the very map given where they are there already.
 pub(super) fn flow(
-    domain: Domain,
+    domain: CanonicalDomain,
     map: Vec<Vector>,
     landmarks: &[u32],
     places: &[Vector],
@@ -77,13 +76,13 @@ pub(super) fn flow(
 
 /// The ways of all landmarks from where they are, each in a unit of time.
 struct Paths {
-    domain: Domain,
+    domain: CanonicalDomain,
     now: Vec<Vector>,
     ways: Vec<Vector>,
 }
 
 impl Paths {
-    fn new(domain: Domain, map: &[Vector], landmarks: &[u32], places: &[Vector]) -> Self {
+    fn new(domain: CanonicalDomain, map: &[Vector], landmarks: &[u32], places: &[Vector]) -> Self {
         let now: Vec<Vector> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
         let ways: Vec<Vector> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
         let collides =
@@ -146,19 +145,11 @@ fn collide([x, y]: [Vector; 2], [way, other]: [Vector; 2]) -> bool {
     nearest < COLLISION * norm(apart).min(norm(add(apart, drift)))
 }
 
-impl Domain {
+impl CanonicalDomain {
     /// A velocity at `x` turned aside.
     fn aside(self, x: Vector, way: Vector) -> Vector {
         let normal = if self == Self::Disk { [0.0, 0.0, 1.0] } else { x };
         add(scaled(way, ASIDE.cos()), scaled(cross(normal, way), ASIDE.sin()))
-    }
-
-    /// How a vertex may move that is not on the circle.
-    fn motion(self) -> Motion {
-        match self {
-            Self::Disk => Motion::Plane,
-            Self::Sphere => Motion::Sphere,
-        }
     }
 
     /// How far the velocity of a landmark is felt: as far as keeps angles best, by measurement.
@@ -179,7 +170,7 @@ impl Domain {
         match norm(along) {
             0.0 if angle == 0.0 => [0.0; 3],
             // all ways to the opposite point are equally long
-            length if length < ARRIVED && angle > 1.0 => scaled(self.motion().frame(from).axes[0], PI),
+            length if length < ARRIVED && angle > 1.0 => scaled(self.motion(false).frame(from).axes[0], PI),
             length => scaled(along, angle / length),
         }
     }

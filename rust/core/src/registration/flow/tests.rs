@@ -24,7 +24,9 @@ fn octasphere(level: u32) -> Mesh {
         let mut middles = BTreeMap::new();
         let mut middle = |a: u32, b: u32| {
             *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                points.push(Domain::Sphere.settled([0.0; 3], add(points[a as usize], points[b as usize])));
+                points.push(
+                    CanonicalDomain::Sphere.settled([0.0; 3], add(points[a as usize], points[b as usize])),
+                );
                 points.len() as u32 - 1
             })
         };
@@ -69,7 +71,7 @@ impl Random {
 
 /// `count` landmarks, no two of them very close together, and places about `motion` away.
 fn landmarks(
-    domain: Domain,
+    domain: CanonicalDomain,
     points: &[Vector],
     count: usize,
     motion: f64,
@@ -81,11 +83,11 @@ fn landmarks(
     while vertices.len() < count {
         let vertex = (random.next() * points.len() as f64) as usize;
         let (x, angle) = (points[vertex], TAU * random.next());
-        let frame = domain.motion().frame(x);
+        let frame = domain.motion(false).frame(x);
         let way =
             add(scaled(frame.axes[0], motion * angle.cos()), scaled(frame.axes[1], motion * angle.sin()));
         let place = domain.on_path(x, way, 1.0).0;
-        let inside = |[u, v, _]: Vector| domain == Domain::Sphere || u * u + v * v < 0.9;
+        let inside = |[u, v, _]: Vector| domain == CanonicalDomain::Sphere || u * u + v * v < 0.9;
         let far = |from: Vector, others: &[Vector]| others.iter().all(|&y| distance(from, y) > apart);
         let starts: Vec<Vector> = vertices.iter().map(|&v| points[v as usize]).collect();
         if inside(x) && inside(place) && far(x, &starts) && far(place, &places) {
@@ -111,19 +113,19 @@ fn gap(map: &[Vector], landmarks: &[u32], places: &[Vector]) -> f64 {
         .fold(0.0, |most, (&v, &place)| f64::max(most, distance(map[v as usize], place)))
 }
 
-fn figures(domain: Domain, (points, faces): &Mesh, map: &[Vector]) -> Distortion {
+fn figures(domain: CanonicalDomain, (points, faces): &Mesh, map: &[Vector]) -> Distortion {
     let areas = face_areas(points, faces);
     let plane: Vec<[f64; 2]> = map.iter().map(|&[u, v, _]| [u, v]).collect();
-    let image = if domain == Domain::Sphere { Image::Sphere(map) } else { Image::Plane(&plane) };
+    let image = if domain == CanonicalDomain::Sphere { Image::Sphere(map) } else { Image::Plane(&plane) };
     distortion(points, faces, image, &areas).unwrap()
 }
 
 /// A mesh that is quick to flow.
-fn small(domain: Domain) -> Mesh {
-    if domain == Domain::Sphere { octasphere(4) } else { disk(20) }
+fn small(domain: CanonicalDomain) -> Mesh {
+    if domain == CanonicalDomain::Sphere { octasphere(4) } else { disk(20) }
 }
 
-fn flowed(domain: Domain, mesh: &Mesh, landmarks: &[u32], places: &[Vector]) -> Vec<Vector> {
+fn flowed(domain: CanonicalDomain, mesh: &Mesh, landmarks: &[u32], places: &[Vector]) -> Vec<Vector> {
     let mut silent = Silent;
     let watch = Watch::new(&mut silent, 0.0, "");
     let mended = |map: Vec<Vector>| (folded(&map, &mesh.1) == 0).then_some(map);
@@ -132,7 +134,7 @@ fn flowed(domain: Domain, mesh: &Mesh, landmarks: &[u32], places: &[Vector]) -> 
 
 #[test]
 fn fields_have_the_wanted_velocities_and_no_divergence() {
-    for domain in [Domain::Sphere, Domain::Disk] {
+    for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         let (points, _) = small(domain);
         let (vertices, places) = landmarks(domain, &points, 12, 0.2, 3);
         let now: Vec<Vector> = vertices.iter().map(|&v| points[v as usize]).collect();
@@ -146,7 +148,7 @@ fn fields_have_the_wanted_velocities_and_no_divergence() {
                 let at = |h: f64| dot(axis, field.velocity(add(x, scaled(axis, h))));
                 (at(1e-5) - at(-1e-5)) / 2e-5
             };
-            let [a, b] = domain.motion().frame(x).axes.map(slope);
+            let [a, b] = domain.motion(false).frame(x).axes.map(slope);
             assert!((a + b).abs() < 1e-7, "{domain:?} at {x:?}: {a} and {b}");
         }
     }
@@ -154,7 +156,7 @@ fn fields_have_the_wanted_velocities_and_no_divergence() {
 
 #[test]
 fn fields_run_along_the_circle() {
-    let field = Field::through(Domain::Disk, 0.6, &[[0.7, 0.2, 1.0]], &[[0.5, 0.3, 0.0]]).unwrap();
+    let field = Field::through(CanonicalDomain::Disk, 0.6, &[[0.7, 0.2, 1.0]], &[[0.5, 0.3, 0.0]]).unwrap();
     for angle in [0.0, 0.3, 2.0] {
         let x = [f64::cos(angle), f64::sin(angle), 1.0];
         let velocity = field.velocity(x);
@@ -165,10 +167,10 @@ fn fields_run_along_the_circle() {
 #[test]
 fn landmarks_arrive_and_nothing_folds() {
     for (domain, count, motion) in [
-        (Domain::Sphere, 10, 0.2),
-        (Domain::Sphere, 1, 3.0),
-        (Domain::Disk, 10, 0.15),
-        (Domain::Disk, 2, 0.4),
+        (CanonicalDomain::Sphere, 10, 0.2),
+        (CanonicalDomain::Sphere, 1, 3.0),
+        (CanonicalDomain::Disk, 10, 0.15),
+        (CanonicalDomain::Disk, 2, 0.4),
     ] {
         let mesh = small(domain);
         let (vertices, places) = landmarks(domain, &mesh.0, count, motion, 1);
@@ -183,8 +185,8 @@ fn landmarks_arrive_and_nothing_folds() {
 fn ten_landmarks_that_move_far_arrive_on_a_fine_mesh() {
     let mesh = octasphere(6);
     for seed in 0..3 {
-        let (vertices, places) = landmarks(Domain::Sphere, &mesh.0, 10, 0.3, seed);
-        let map = flowed(Domain::Sphere, &mesh, &vertices, &places);
+        let (vertices, places) = landmarks(CanonicalDomain::Sphere, &mesh.0, 10, 0.3, seed);
+        let map = flowed(CanonicalDomain::Sphere, &mesh, &vertices, &places);
         assert_eq!(folded(&map, &mesh.1), 0);
         assert!(gap(&map, &vertices, &places) < 1e-8);
     }
@@ -193,7 +195,7 @@ fn ten_landmarks_that_move_far_arrive_on_a_fine_mesh() {
 #[test]
 fn area_distortion_vanishes_under_refinement() {
     for (domain, coarse, fine) in
-        [(Domain::Sphere, octasphere(4), octasphere(5)), (Domain::Disk, disk(16), disk(32))]
+        [(CanonicalDomain::Sphere, octasphere(4), octasphere(5)), (CanonicalDomain::Disk, disk(16), disk(32))]
     {
         // landmarks of one mesh are vertices of the other
         let (vertices, places) = landmarks(domain, &coarse.0, 4, 0.2, 2);
@@ -213,8 +215,8 @@ fn area_distortion_vanishes_under_refinement() {
 #[test]
 fn the_circle_slides_along_itself() {
     let mesh = disk(24);
-    let (vertices, places) = landmarks(Domain::Disk, &mesh.0, 4, 0.2, 5);
-    let map = flowed(Domain::Disk, &mesh, &vertices, &places);
+    let (vertices, places) = landmarks(CanonicalDomain::Disk, &mesh.0, 4, 0.2, 5);
+    let map = flowed(CanonicalDomain::Disk, &mesh, &vertices, &places);
     let rim = &map[map.len() - 6 * 24..];
     let turn = |i: usize| {
         let ([u, v, _], [s, t, _]) = (rim[i], rim[(i + 1) % rim.len()]);
@@ -229,10 +231,10 @@ fn the_circle_slides_along_itself() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let mesh = octasphere(5);
-    let (vertices, places) = landmarks(Domain::Sphere, &mesh.0, 6, 0.2, 4);
+    let (vertices, places) = landmarks(CanonicalDomain::Sphere, &mesh.0, 6, 0.2, 4);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| flowed(Domain::Sphere, &mesh, &vertices, &places))
+        pool.install(|| flowed(CanonicalDomain::Sphere, &mesh, &vertices, &places))
     };
     let bits = |map: Vec<Vector>| map.into_iter().map(|x| x.map(f64::to_bits)).collect::<Vec<_>>();
     assert_eq!(bits(on(1)), bits(on(2)));
@@ -240,7 +242,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn landmarks_in_place_leave_the_very_same_map() {
-    for domain in [Domain::Sphere, Domain::Disk] {
+    for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         let mesh = small(domain);
         let places = [3, 9, 14].map(|v| mesh.0[v]);
         assert_eq!(flowed(domain, &mesh, &[3, 9, 14], &places), mesh.0);
@@ -250,7 +252,7 @@ fn landmarks_in_place_leave_the_very_same_map() {
 
 #[test]
 fn what_cannot_be_followed_ends_at_an_accepted_map() {
-    for domain in [Domain::Sphere, Domain::Disk] {
+    for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         // two landmarks that change places meet halfway
         let mesh = small(domain);
         let map = flowed(domain, &mesh, &[1, 4], &[4, 1].map(|v: usize| mesh.0[v]));
@@ -258,7 +260,7 @@ fn what_cannot_be_followed_ends_at_an_accepted_map() {
         assert!(map.as_flattened().iter().all(|x| x.is_finite()));
     }
     let mesh = octasphere(3);
-    let map = flowed(Domain::Sphere, &mesh, &[7], &[scaled(mesh.0[7], -1.0)]);
+    let map = flowed(CanonicalDomain::Sphere, &mesh, &[7], &[scaled(mesh.0[7], -1.0)]);
     assert!(distance(map[7], scaled(mesh.0[7], -1.0)) < 1e-8, "antipodes can be reached");
 }
 
@@ -268,6 +270,6 @@ fn cancelling_returns_the_map_so_far() {
     let mut observer = |_: f64, _: &str| false;
     let watch = Watch::new(&mut observer, 0.0, "");
     while watch.goes_on() {}
-    let map = flow(Domain::Sphere, mesh.0.clone(), &[0], &[mesh.0[5]], &Some, &watch);
+    let map = flow(CanonicalDomain::Sphere, mesh.0.clone(), &[0], &[mesh.0[5]], &Some, &watch);
     assert_eq!(map, mesh.0);
 }

@@ -8,8 +8,9 @@
 use super::{interpolated, rows};
 use crate::location::{Location, Locator, determinant};
 use crate::mesh::VertexCorners;
-use crate::mesh::geometry::{Vector, add, scaled, triangle};
+use crate::mesh::geometry::triangle;
 use crate::parallel;
+use crate::vector::{Vector, add, scaled};
 
 /// Values that differ by less than this, of themselves or of 1, are the same on both sides of an edge.
 const ROUNDING: f64 = 1e-6;

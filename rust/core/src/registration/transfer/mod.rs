@@ -10,8 +10,9 @@
 mod corners;
 
 use crate::location::{Location, Locator};
-use crate::mesh::geometry::{Vector, add, distance, scaled, sub, triangle};
+use crate::mesh::geometry::triangle;
 use crate::parallel;
+use crate::vector::{Vector, add, distance, scaled, sub};
 
 pub use corners::pull_corners;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::location::tests::{Map, number, octasphere, rings};
-use crate::mesh::geometry::norm;
+use crate::vector::norm;
 
 fn located(target: &Map, points: &[Vector]) -> Vec<Location> {
     let locator = Locator::new(&target.0, &target.1);

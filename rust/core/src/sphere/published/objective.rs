@@ -13,11 +13,12 @@ use crate::energy::SpatialStretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{Vector, cross, determinant_rounding, dot, norm, scaled, sub, triangle};
+use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::optimize::published::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
 use crate::sphere::Map;
+use crate::vector::{Vector, cross, dot, norm, scaled, sub};
 
 /// Part of the mean diagonal that is added to L_S(f⁰), which takes constants to zero.
 const SHIFT: f64 = 1e-6;

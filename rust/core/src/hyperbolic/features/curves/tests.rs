@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
-use crate::mesh::geometry::Vector;
+use crate::vector::Vector;
 
 const X: Vector = [1.0, 0.0, 0.0];
 const Y: Vector = [0.0, 1.0, 0.0];

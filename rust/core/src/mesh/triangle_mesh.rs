@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The validated triangle mesh.
+
+use super::corners::{EdgeTable, NO_CORNER, VertexCorners};
+use super::orientation::Orientation;
+use super::topology::Topology;
+use super::{geometry, validate};
+use crate::error::{Elements, Error};
+use crate::vector::Vector;
+
+/// A validated triangle mesh: an oriented manifold surface without degenerate faces.
+///
+/// Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
+///
+/// ```
+/// use authalic::mesh::TriangleMesh;
+///
+/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]])?;
+/// assert_eq!(mesh.boundary_loops(), [vec![0, 1, 2, 3]]);
+/// assert!(mesh.require_disk().is_ok());
+/// # Ok::<(), authalic::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct TriangleMesh {
+    pub(super) points: Vec<Vector>,
+    pub(super) scale: f64,
+    pub(super) faces: Vec<[u32; 3]>,
+    pub(super) flipped: Vec<u32>,
+    pub(super) areas: Vec<f64>,
+    pub(super) opposite: Vec<u32>,
+    pub(super) corners: VertexCorners,
+    pub(super) on_boundary: Vec<bool>,
+    pub(super) topology: Topology,
+    /// Whether a factorisation may eliminate the vertices as they come.
+    pub(super) in_elimination_order: bool,
+}
+
+impl TriangleMesh {
+    /// Validates `vertices` (n, 3) and `faces` (m, 3).
+    ///
+    /// Faces that are turned against their component are flipped: the first vertex stays, the other two
+    /// change places.
+    ///
+    /// # Errors
+    /// Each with the elements at fault, and the first cause first: empty arrays, coordinates that are not
+    /// finite, indices out of range, faces that repeat a vertex, duplicate faces, faces without area,
+    /// edges of three or more faces, surfaces that cannot be oriented, vertices in which parts only touch,
+    /// and vertices without a face.
+    pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
+        // 1. The arrays and each face by itself.
+        validate::arrays(vertices, faces)?;
+        let (points, scale) = geometry::normalized(vertices);
+        let table = EdgeTable::new(points.len(), faces);
+        validate::no_duplicates(faces, &table)?;
+        let areas = validate::positive_areas(vertices, &points, scale, faces)?;
+        // 2. A manifold in its edges, with one orientation.
+        validate::manifold_edges(&table)?;
+        let mut opposite = table.opposites();
+        drop(table);
+        let mut faces = faces.to_vec();
+        let orientation = Orientation::propagate(&faces, &opposite);
+        validate::refuse(Elements::edges(orientation.conflict), |edges| Error::NotOrientable { edges })?;
+        orientation.apply(&mut faces, &mut opposite);
+        // 3. A manifold in its vertices.
+        let corners = VertexCorners::new(points.len(), &faces);
+        validate::manifold_vertices(&corners, points.len(), &opposite)?;
+        // 4. What kind of surface it is.
+        let flipped = flipped_indices(&orientation);
+        let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
+        let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
+        Ok(Self {
+            points,
+            scale,
+            faces,
+            flipped,
+            areas,
+            opposite,
+            corners,
+            on_boundary,
+            topology,
+            in_elimination_order: false,
+        })
+    }
+
+    /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay
+    /// those of the surface.
+    pub(crate) fn at_points(&self, points: Vec<Vector>) -> Self {
+        Self { points, ..self.clone() }
+    }
+
+    /// The same surface seen from its other side: corners 1 and 2 of every face change places.
+    pub(crate) fn turned_over(&self) -> Self {
+        let corner = |corner: u32| match (corner, corner % 3) {
+            (NO_CORNER, _) | (_, 0) => corner,
+            (_, k) => corner - k + 3 - k,
+        };
+        let faces: Vec<[u32; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let mut opposite = vec![NO_CORNER; self.opposite.len()];
+        for (old, &across) in self.opposite.iter().enumerate() {
+            opposite[corner(old as u32) as usize] = corner(across);
+        }
+        let mut topology = self.topology.clone();
+        topology.boundary_loops.iter_mut().for_each(|vertices| vertices[1..].reverse());
+        let corners = VertexCorners::new(self.points.len(), &faces);
+        Self { faces, opposite, corners, topology, ..self.clone() }
+    }
+
+    /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
+    ///
+    /// All geometry is computed on these, so that huge and tiny coordinates neither over- nor underflow.
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// The diagonal of the bounding box: a length in the input is a length of [`Self::points`] times this.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The faces, consistently oriented, (m, 3).
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The faces that were flipped to orient the mesh, in ascending order.
+    pub fn flipped_faces(&self) -> &[u32] {
+        &self.flipped
+    }
+
+    /// How many vertices the mesh has.
+    pub fn n_vertices(&self) -> usize {
+        self.points.len()
+    }
+
+    /// How many faces the mesh has.
+    pub fn n_faces(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The areas of the faces of [`Self::points`], (m,), all positive.
+    pub fn face_areas(&self) -> &[f64] {
+        &self.areas
+    }
+
+    /// The corner across the edge opposite to a corner, or `None` on the boundary.
+    pub fn opposite(&self, corner: u32) -> Option<u32> {
+        let across = self.opposite[corner as usize];
+        (across != NO_CORNER).then_some(across)
+    }
+
+    /// The corners at a vertex, in ascending order.
+    pub fn vertex_corners(&self, vertex: usize) -> &[u32] {
+        self.corners.of(vertex)
+    }
+
+    /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest
+    /// vertex.
+    pub fn boundary_loops(&self) -> &[Vec<u32>] {
+        &self.topology.boundary_loops
+    }
+
+    /// Whether a vertex lies on the boundary.
+    pub fn is_boundary(&self, vertex: usize) -> bool {
+        self.on_boundary[vertex]
+    }
+
+    /// Vertices − edges + faces.
+    pub fn euler_characteristic(&self) -> i64 {
+        self.topology.euler_characteristic
+    }
+
+    /// How many connected components the mesh has.
+    pub fn n_components(&self) -> usize {
+        self.topology.n_components()
+    }
+
+    /// The number of handles, summed over the components.
+    pub fn genus(&self) -> usize {
+        self.topology.genus.unwrap_or(0)
+    }
+
+    /// Whether the vertices come in an order that keeps factors sparse.
+    pub(crate) fn in_elimination_order(&self) -> bool {
+        self.in_elimination_order
+    }
+
+    /// What kind of surface the mesh is.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Refuses anything but a topological disk.
+    ///
+    /// # Errors
+    /// Several components, a closed surface, handles, or several boundary loops; each with its own message.
+    pub fn require_disk(&self) -> Result<(), Error> {
+        self.require_one_component()?;
+        let (loops, genus) = (&self.topology.boundary_loops, self.genus());
+        match (loops.len(), genus) {
+            (0, _) => Err(Error::ClosedSurface { genus }),
+            (1, 0) => Ok(()),
+            (_, 0) => {
+                let (vertices, sizes) = described(loops);
+                validate::refuse(vertices, |vertices| Error::SeveralBoundaries { vertices, sizes })
+            }
+            _ => Err(Error::HasHandles { genus }),
+        }
+    }
+
+    /// Refuses anything but a topological sphere.
+    ///
+    /// # Errors
+    /// Several components, boundaries, or handles; each with its own message.
+    pub fn require_sphere(&self) -> Result<(), Error> {
+        self.require_one_component()?;
+        let (vertices, sizes) = described(&self.topology.boundary_loops);
+        validate::refuse(vertices, |vertices| Error::OpenSurface { vertices, sizes })?;
+        match self.genus() {
+            0 => Ok(()),
+            genus => Err(Error::SphereHasHandles { genus }),
+        }
+    }
+
+    /// Refuses anything but one component of genus 0, with or without a boundary.
+    ///
+    /// # Errors
+    /// Several components, or handles; each with its own message.
+    pub fn require_genus_zero(&self) -> Result<(), Error> {
+        self.require_one_component()?;
+        match self.genus() {
+            0 => Ok(()),
+            genus => Err(Error::GenusNotZero { genus }),
+        }
+    }
+
+    fn require_one_component(&self) -> Result<(), Error> {
+        let first_faces = &self.topology.first_faces;
+        let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
+        let several = faces.filter(|_| first_faces.len() > 1);
+        validate::refuse(several, |faces| Error::SeveralComponents { faces })
+    }
+}
+
+/// A vertex of each loop, and the edge counts of the loops.
+fn described(loops: &[Vec<u32>]) -> (Option<Elements>, Vec<usize>) {
+    let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0] as usize));
+    (vertices, loops.iter().map(Vec::len).collect())
+}
+
+fn flipped_indices(orientation: &Orientation) -> Vec<u32> {
+    let flipped = orientation.flipped.iter().enumerate().filter(|(_, flipped)| **flipped);
+    flipped.map(|(face, _)| face as u32).collect()
+}
+
+pub(super) fn mark_boundary(n_vertices: usize, loops: &[Vec<u32>]) -> Vec<bool> {
+    let mut on_boundary = vec![false; n_vertices];
+    for &vertex in loops.iter().flatten() {
+        on_boundary[vertex as usize] = true;
+    }
+    on_boundary
+}

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The iterations: weights, direction, step, and when they end.
+
+use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
+use super::problem::{GaussNewtonOptions, Map, Problem, State};
+use super::system::{LARGE, Linearised, NEAR, Newton};
+use super::trial::{Trial, shrinkage};
+use crate::control::{History, Observer, Status, Watch};
+use crate::energy::authalic::{Hessian, Sums, Weights};
+use crate::energy::stretch::Profile;
+use crate::parallel;
+use crate::sparse::Failure;
+
+/// μ, the damping of a face that is wholly off its target.
+const DAMPING: f64 = 0.05;
+
+/// What it is multiplied by after a short step, and divided by after a long one: it had better not forget too soon.
+const STRAIN: f64 = 3.0;
+
+const RELIEF: f64 = 1.3;
+
+/// What every face is damped by at the most, in units of the deviation of its area ratio.
+const LEAST_DEVIATION: f64 = 1e-3;
+
+/// And at the least; on more than [`LARGE`] vertices, where the factor is one in single precision, at least
+/// [`SINGLE_PRECISION`], or there is no factor.
+const LEAST_DAMPING: f64 = 3e-4;
+
+const SINGLE_PRECISION: f64 = 2e-3;
+
+/// No vertex moves farther than this in one step.
+const LONGEST_MOVE: f64 = 0.5;
+
+/// Steps tried along one direction.
+const MOST_TRIALS: usize = 30;
+
+/// The slope's share that a step must gain.
+const SUFFICIENT: f64 = 1e-4;
+
+/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this: on
+/// surfaces of fewer than [`MANY`] vertices, on others, and after stages, which few surfaces need.
+const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
+
+/// And it is good enough for a descent that has become slow when it is below this.
+const GOOD_ENOUGH: f64 = 0.005;
+
+/// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
+const EVEN: f64 = 7e-4;
+
+/// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
+const PATIENCE: usize = 5;
+
+const LEAST_GAIN: f64 = 0.05;
+
+/// An energy below this part of the area is as good as none.
+const NOTHING: f64 = 1e-12;
+
+/// The more even of two results, each with how uneven it is; a second run that was cancelled says so.
+pub(crate) fn more_even(first: (f64, Map, Status), second: (f64, Map, Status)) -> (Map, Status) {
+    let ((unevenness, map, status), (other_unevenness, other, ended)) = (first, second);
+    match other_unevenness < unevenness {
+        true => (other, ended),
+        false if ended == Status::Cancelled => (map, ended),
+        false => (map, status),
+    }
+}
+
+/// Lowers the energy from `start` and returns the last map with the status, or where the weight of angles is 0 behind
+/// the barrier the one with the lowest E_A.
+pub(crate) fn minimize(
+    problem: &Problem,
+    start: Map,
+    options: &GaussNewtonOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Map, Status) {
+    let mut descent = Descent::new(problem, *options);
+    let mut state = State::new(problem, start);
+    let mut sums = problem.sums(&state);
+    let mut trend = Trend::default();
+    let mut best = (f64::INFINITY, Map::new());
+    for done in 0.. {
+        // 1. Targets on the scale of the image, λ on its way
+        trend.energies.push(sums.total());
+        let was_staged = descent.schedule.is_staged();
+        let weights = descent.balance(&sums, &trend);
+        if was_staged && !descent.schedule.is_staged() {
+            trend = Trend { energies: vec![sums.total()], norms: Vec::new() };
+        }
+        if sums.total() < best.0 && descent.keeps_the_best() {
+            best = (sums.total(), state.map.clone());
+        }
+        if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
+            history.push_start(sums.authalic_energy, 0.0);
+            return (descent.best_of(best, &sums, state.map, history), status);
+        }
+        // 2. One factorisation, the direction
+        let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
+        let damping = descent.damping_of(&sums);
+        let is_near = descent.is_near();
+        let newton =
+            match descent.linearised.direction(problem, &state.map, &weights, damping, is_near, &watch) {
+                Ok(newton) => newton,
+                Err(failure) => {
+                    history.push_start(sums.authalic_energy, 0.0);
+                    let is_cancelled = failure == Failure::Cancelled;
+                    let status = if is_cancelled { Status::Cancelled } else { Status::Stalled };
+                    return (descent.best_of(best, &sums, state.map, history), status);
+                }
+            };
+        let norm = (-newton.slope).max(0.0).sqrt();
+        history.push_start(sums.authalic_energy, norm);
+        trend.norms.push(norm);
+        // 3. A step along it that lowers the energy and folds nothing
+        let Some((next, step)) = descent.step(&state, &newton, &weights) else {
+            let status = if descent.flat { Status::Converged } else { Status::Stalled };
+            return (descent.best_of(best, &sums, state.map, history), status);
+        };
+        state = next;
+        sums = problem.sums(&state);
+        descent.adapt(step);
+        history.push(sums.authalic_energy, step, norm);
+    }
+    unreachable!("the verdict ends the loop")
+}
+
+const MESSAGE: &str = "Evening out areas";
+
+/// The energies and gradient norms of the iterations so far.
+#[derive(Default)]
+struct Trend {
+    energies: Vec<f64>,
+    norms: Vec<f64>,
+}
+
+impl Trend {
+    /// Whether the last iterations gained next to nothing, and were not about to leave a saddle.
+    fn is_slow(&self) -> bool {
+        let Some(before) = self.norms.len().checked_sub(PATIENCE) else { return false };
+        let [then, now] = [before, self.norms.len()].map(|k| self.energies[k]);
+        let is_leaving = self.norms[self.norms.len() - 1] > self.norms[before];
+        now > (1.0 - LEAST_GAIN) * then && !is_leaving
+    }
+}
+
+/// What the iterations hand on.
+struct Descent<'a> {
+    problem: &'a Problem,
+    options: GaussNewtonOptions,
+    linearised: Linearised,
+    schedule: AngleSchedule,
+    /// The deviation to end with after the usual iterations.
+    even_enough: f64,
+    /// Whether iterations cost.
+    is_large: bool,
+    /// Whether the last second-order correction was of no use.
+    is_straight: bool,
+    /// What targets are multiplied by; NaN before the first iteration.
+    scale: f64,
+    /// μ.
+    damping: f64,
+    last_step: f64,
+    /// Σ targets.
+    total_target: f64,
+    /// The part of the energy that the last slope promised.
+    promise: f64,
+    /// Whether it was next to nothing.
+    flat: bool,
+}
+
+impl<'a> Descent<'a> {
+    fn new(problem: &'a Problem, options: GaussNewtonOptions) -> Self {
+        let targets = problem.energy.targets();
+        let is_large = problem.motions.len() >= MANY;
+        let has_landmarks = !problem.penalty.vertices().is_empty();
+        Self {
+            problem,
+            options,
+            linearised: Linearised::new(problem.motions.len() >= LARGE),
+            schedule: AngleSchedule::new(
+                options.path,
+                options.angle_weight,
+                problem.motions.len(),
+                has_landmarks,
+            ),
+            even_enough: match options.path {
+                AnglePath::Staged => EVEN_ENOUGH[2],
+                AnglePath::Balanced | AnglePath::Held => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
+            },
+            // landmarks have to meet, however even areas are
+            is_large: is_large && !has_landmarks && options.profile == Profile::Barrier,
+            is_straight: false,
+            scale: f64::NAN,
+            damping: DAMPING,
+            last_step: 1.0,
+            total_target: parallel::sum(targets.len(), |face| targets[face]),
+            promise: f64::INFINITY,
+            flat: false,
+        }
+    }
+
+    /// Whether E_A alone decides which map is the best: it may rise where a barrier or angles count on the way.
+    fn keeps_the_best(&self) -> bool {
+        self.options.angle_weight == 0.0 && self.options.profile == Profile::Barrier
+    }
+
+    /// The map with the lowest E_A met, where that decides, else the last.
+    fn best_of(&self, best: (f64, Map), sums: &Sums, last: Map, history: &mut History) -> Map {
+        if !self.keeps_the_best() || best.0 >= sums.total() {
+            return last;
+        }
+        // the history ends with the map that is returned
+        history.push(self.problem.energy.sums(&self.problem.energy.costs(&best.1)).authalic_energy, 0.0, 0.0);
+        best.1
+    }
+
+    /// The weights of the next iteration.
+    fn balance(&mut self, sums: &Sums, trend: &Trend) -> Weights {
+        let balance = sums.total() / sums.angle_energy.max(1e-3);
+        let deviation = (sums.total() / sums.area).sqrt();
+        // on the way to a weight that was asked for, a descent that is slow has to go on
+        let is_on_its_way = self.options.angle_weight > 0.0 && !self.schedule.is_staged();
+        let is_flat = self.flat || (is_on_its_way && trend.is_slow());
+        let progress = Progress { balance, deviation, step: self.last_step, is_flat };
+        let before = self.schedule.weight();
+        let angle = self.schedule.advance(&progress);
+        // what was flat need not be with another λ
+        self.flat &= angle == before;
+        self.scale = sums.area / self.total_target;
+        Weights { scale: self.scale, angle, profile: self.options.profile }
+    }
+
+    /// The status with which to end, if any.
+    fn verdict(
+        &self,
+        done: usize,
+        sums: &Sums,
+        trend: &Trend,
+        observer: &mut dyn Observer,
+    ) -> Option<Status> {
+        let options = &self.options;
+        let (is_held, is_staged) = (self.schedule.is_held(), self.schedule.is_staged());
+        let is_slow = options.angle_weight == 0.0 && !is_staged && trend.is_slow();
+        let deviation = (sums.total() / sums.area).sqrt();
+        let is_asked = options.usual_iterations == usize::MAX;
+        let is_even = deviation <= options.tolerance
+            || (!is_staged && deviation <= self.even_enough && trend.norms.len() >= options.usual_iterations)
+            || (!is_staged && !is_asked && self.is_large && deviation <= EVEN);
+        let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
+        if (is_even && !is_held) || is_open || (is_held && self.flat) {
+            Some(Status::Converged)
+        } else if is_slow {
+            // a minimum that is not 0, as coarse surfaces have, is stationary
+            let is_at_rest = self.flat || (!is_asked && deviation <= GOOD_ENOUGH);
+            Some(if is_at_rest { Status::Converged } else { Status::Stalled })
+        } else if done >= options.most_iterations {
+            Some(Status::MaxIterations)
+        } else if observer.progress(self.fraction(done), MESSAGE) {
+            None
+        } else {
+            Some(Status::Cancelled)
+        }
+    }
+
+    /// The part done after `done` iterations.
+    fn fraction(&self, done: usize) -> f64 {
+        // nearly all runs end after the usual iterations, and none may seem to go back
+        let usual = self.options.usual_iterations.min(self.options.most_iterations).max(1);
+        1.0 - 0.1f64.powf(done as f64 / usual as f64)
+    }
+
+    /// The next map, with the step's length; `None` where no step lowers the energy.
+    fn step(&mut self, state: &State, newton: &Newton, weights: &Weights) -> Option<(State, f64)> {
+        let problem = self.problem;
+        let value = problem.value(state, weights);
+        self.promise = -newton.slope / value;
+        self.flat =
+            self.promise <= self.schedule.least_slope() || value <= NOTHING * self.scale * self.total_target;
+        // 1. The longest step allowed, straight and corrected to second order
+        let squares = newton.direction.iter().map(|d| d[0] * d[0] + d[1] * d[1]);
+        let longest = squares.fold(0.0, f64::max).sqrt();
+        let mut step = (LONGEST_MOVE / longest).min(1.0);
+        let mut bend = None;
+        let mut trial = Trial::new(problem, self.path(&state.map, newton, None, step), weights);
+        // a correction that was of no use seldom is in the next iteration
+        if step == 1.0 && !std::mem::take(&mut self.is_straight) {
+            let correction =
+                self.linearised.correction(problem, &state.map, &trial.state.map, newton, weights);
+            let corrected =
+                Trial::new(problem, self.path(&state.map, newton, Some(&correction), step), weights);
+            self.is_straight = corrected.value >= trial.value;
+            if !self.is_straight {
+                (trial, bend) = (corrected, Some(correction));
+            }
+        }
+        // 2. Shorter steps until the energy falls
+        for _ in 0..MOST_TRIALS {
+            if trial.value.is_finite() && trial.value <= value + SUFFICIENT * step * newton.slope {
+                return Some((trial.state, step));
+            }
+            step *= shrinkage(trial.value - value, step * newton.slope);
+            trial = Trial::new(problem, self.path(&state.map, newton, bend.as_deref(), step), weights);
+        }
+        None
+    }
+
+    /// The map at `step` along the direction, bent by the correction.
+    fn path(&self, map: &Map, newton: &Newton, bend: Option<&[[f64; 2]]>, step: f64) -> Map {
+        let along = |v: usize| match bend {
+            None => newton.direction[v].map(|d| step * d),
+            Some(bend) => [0, 1].map(|k| step * (newton.direction[v][k] + step * bend[v][k])),
+        };
+        let direction = parallel::map(map.len(), along);
+        self.problem.moved(map, &newton.frames, &direction)
+    }
+
+    /// Whether λ stays until the map is stationary, which is not far.
+    fn is_near(&self) -> bool {
+        self.schedule.is_thorough() && self.promise < NEAR
+    }
+
+    /// The damping at a map.
+    fn damping_of(&self, sums: &Sums) -> Hessian {
+        // in proportion to the residual near the minimum, so that the damping does not decide how fast it is reached
+        let deviation = (sums.total() / sums.area).sqrt();
+        let least = deviation.clamp(LEAST_DAMPING, LEAST_DEVIATION);
+        let is_large = self.problem.motions.len() >= LARGE;
+        let least = if is_large { least.max(SINGLE_PRECISION) } else { least };
+        Hessian { damping: self.damping, least, curvature: 0.0 }
+    }
+
+    /// A short step asks for more damping, a long one for less.
+    fn adapt(&mut self, step: f64) {
+        self.last_step = step;
+        self.damping =
+            if step < SHORT { STRAIN * self.damping } else { (self.damping / RELIEF).max(DAMPING) };
+    }
+}

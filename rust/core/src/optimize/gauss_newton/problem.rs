@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What the descent works on: a surface, how its vertices may move, the energy of its maps, and when to end.
+
+use super::angle_schedule::AnglePath;
+use crate::codomain::motion::{Frame, Motion};
+use crate::energy::authalic::{AuthalicEnergy, Sums, Weights};
+use crate::energy::landmark_penalty::LandmarkPenalty;
+use crate::energy::stretch::Profile;
+use crate::error::Error;
+use crate::parallel;
+use crate::sparse::{Analysis, Order};
+use crate::vector::Vector;
+
+/// A map of the vertices, in space.
+pub(crate) type Map = Vec<Vector>;
+
+/// A surface, how its vertices may move, and the energy of its maps.
+pub(crate) struct Problem {
+    pub energy: AuthalicEnergy,
+    pub motions: Vec<Motion>,
+    /// Landmarks that are wanted at places; none elsewhere.
+    pub penalty: LandmarkPenalty,
+    pub analysis: Analysis,
+}
+
+/// When and how to descend.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GaussNewtonOptions {
+    /// The barrier, or none.
+    pub profile: Profile,
+    /// λ never falls below this.
+    pub angle_weight: f64,
+    /// Which way it falls.
+    pub path: AnglePath,
+    /// Iterations after which a deviation below [`EVEN_ENOUGH`] is good enough; `usize::MAX` where a limit or a tolerance
+    /// was asked for.
+    pub usual_iterations: usize,
+    /// Iterations at the most.
+    pub most_iterations: usize,
+    /// Converged when the deviation of the area ratio, √(E_A/A), is below this.
+    pub tolerance: f64,
+    /// Whether to end as soon as no face is folded, after so many iterations.
+    pub until_open: Option<usize>,
+}
+
+impl Problem {
+    /// The same with another energy of the same surface.
+    pub(crate) fn with_energy(self, energy: AuthalicEnergy) -> Self {
+        Self { energy, ..self }
+    }
+
+    /// Analyses the system of the energy, its vertices in an order to be found or as they come.
+    pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>, order: Order) -> Result<Self, Error> {
+        let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
+        let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns, order)?;
+        Ok(Self { energy, motions, penalty: LandmarkPenalty::default(), analysis })
+    }
+
+    /// The same with landmarks that are wanted at places.
+    pub(crate) fn with_landmarks(self, penalty: LandmarkPenalty) -> Self {
+        Self { penalty, ..self }
+    }
+
+    /// The energy of a map, that of landmarks included.
+    pub(super) fn value(&self, state: &State, weights: &Weights) -> f64 {
+        self.energy.value(&state.costs, weights) + state.penalty
+    }
+
+    /// The sums of a map, that of landmarks included.
+    pub(super) fn sums(&self, state: &State) -> Sums {
+        Sums { penalty: state.penalty, ..self.energy.sums(&state.costs) }
+    }
+
+    /// The gradient by the unknowns of every vertex, (n, 2).
+    pub(super) fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
+        let mut gradient = self.energy.gradient(map, frames, weights);
+        self.penalty.add_gradient(map, frames, &mut gradient);
+        gradient
+    }
+
+    /// E_A of a map over the area of its image.
+    pub(crate) fn unevenness(&self, map: &[Vector]) -> f64 {
+        let sums = self.energy.sums(&self.energy.costs(map));
+        sums.authalic_energy / sums.area
+    }
+
+    /// The map reached from `map` by `direction` along the frames.
+    pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> Map {
+        parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
+    }
+
+    /// The unknowns of values at the vertices.
+    pub(super) fn packed(&self, values: &[[f64; 2]]) -> Vec<f64> {
+        let mut unknowns = vec![0.0; self.analysis.n_unknowns()];
+        for (vertex, value) in values.iter().enumerate() {
+            let (first, n) = (self.analysis.first_unknown(vertex), self.motions[vertex].n_unknowns());
+            unknowns[first..first + usize::from(n)].copy_from_slice(&value[..usize::from(n)]);
+        }
+        unknowns
+    }
+
+    /// The values at the vertices of unknowns.
+    pub(super) fn unpacked(&self, unknowns: &[f64]) -> Vec<[f64; 2]> {
+        parallel::map(self.motions.len(), |vertex| {
+            let first = self.analysis.first_unknown(vertex);
+            let n = usize::from(self.motions[vertex].n_unknowns());
+            std::array::from_fn(|k| if k < n { unknowns[first + k] } else { 0.0 })
+        })
+    }
+}
+
+/// A map with what its energy is made of for any weights.
+pub(super) struct State {
+    pub map: Map,
+    costs: Vec<[f64; 2]>,
+    /// The penalty on landmarks.
+    penalty: f64,
+}
+
+impl State {
+    pub(super) fn new(problem: &Problem, map: Map) -> Self {
+        let costs = problem.energy.costs(&map);
+        let penalty = problem.penalty.value(&map);
+        Self { map, costs, penalty }
+    }
+}

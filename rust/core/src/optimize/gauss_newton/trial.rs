@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A trial of the line search: a map with its energy, and the next step length.
+
+use super::problem::{Map, Problem, State};
+use crate::energy::authalic::Weights;
+
+pub(super) struct Trial {
+    pub state: State,
+    pub value: f64,
+}
+
+impl Trial {
+    pub(super) fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
+        let state = State::new(problem, map);
+        Self { value: problem.value(&state, weights), state }
+    }
+}
+
+/// By what to shorten a step that changed the energy by `change` where its slope promised `promised`: to the minimum of
+/// the parabola through them, within limits.
+pub(super) fn shrinkage(change: f64, promised: f64) -> f64 {
+    match change.is_finite() {
+        true => (-0.5 * promised / (change - promised)).clamp(0.1, 0.6),
+        false => 0.5,
+    }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! How good a registration is: area ratios, and the agreement of data on both surfaces.
+
+use crate::mesh::geometry::{face_areas, normalized};
+use crate::parallel;
+use crate::vector::Vector;
+
+/// The area of each face's image over its own, (m,), rescaled so that the whole image is as large as the surface: 1
+/// everywhere where g keeps areas.
+///
+/// `points` (n, 3) and `faces` (m, 3) are the source, each face with an area; `positions` (n, 3) are g. All are 0 where
+/// the image has no area.
+pub fn area_ratios(points: &[Vector], faces: &[[u32; 3]], positions: &[Vector]) -> Vec<f64> {
+    let [areas, images] = [points, positions].map(|corners| face_areas(&normalized(corners).0, faces));
+    let total = |areas: &[f64]| parallel::sum(areas.len(), |face| areas[face]);
+    let (whole, image) = (total(&areas), total(&images));
+    parallel::map(faces.len(), |face| match image > 0.0 {
+        true => (images[face] / image) / (areas[face] / whole),
+        false => 0.0,
+    })
+}
+
+/// How well data on the source agree with those `pulled` from the target: Pearson's correlation and the mean of the
+/// absolute difference, both weighted, each (n,).
+///
+/// The correlation is NaN where one side is constant: it is not defined.
+///
+/// # Panics
+/// Where the lengths differ.
+pub fn compare(source: &[f64], pulled: &[f64], weights: &[f64]) -> (f64, f64) {
+    assert!(source.len() == pulled.len() && source.len() == weights.len(), "as many values as weights");
+    let [total, x, y, difference] = parallel::sums(source.len(), |v| {
+        let weight = weights[v];
+        [weight, weight * source[v], weight * pulled[v], weight * (source[v] - pulled[v]).abs()]
+    });
+    let (x, y) = (x / total, y / total);
+    let [xx, yy, xy] = parallel::sums(source.len(), |v| {
+        let (dx, dy) = (source[v] - x, pulled[v] - y);
+        [weights[v] * dx * dx, weights[v] * dy * dy, weights[v] * dx * dy]
+    });
+    // what rounding leaves of a constant does not count as its variance
+    let varies = |square: f64, mean: f64| square > total * (1e-14 * mean).powi(2);
+    let correlation = match varies(xx, x) && varies(yy, y) {
+        true => (xy / (xx.sqrt() * yy.sqrt())).clamp(-1.0, 1.0),
+        false => f64::NAN,
+    };
+    (correlation, difference / total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_are_relative_to_the_whole() {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let faces = [[0, 1, 2], [0, 2, 3]];
+        let huge = square.map(|[x, y, _]| [1e200, 3e200 * x, -2e200 * y]);
+        area_ratios(&square, &faces, &huge).iter().for_each(|ratio| assert!((ratio - 1.0).abs() < 1e-14));
+        // a kite of which one half is three times the other
+        let kite = [square[0], [1.5, -0.5, 0.0], square[2], [0.25, 0.75, 0.0]];
+        let ratios = area_ratios(&square, &faces, &kite);
+        assert!((ratios[0] - 1.6).abs() < 1e-14 && (ratios[1] - 0.4).abs() < 1e-14);
+        assert_eq!(area_ratios(&square, &faces, &[[4.0; 3]; 4]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn agreement_is_that_of_the_textbook() {
+        // weights count like repeated values
+        let (x, y, w) = ([1.0, 2.0, 4.0], [2.0, 1.0, 5.0], [1.0, 2.0, 1.0]);
+        let (long_x, long_y) = ([1.0, 2.0, 2.0, 4.0], [2.0, 1.0, 1.0, 5.0]);
+        let (correlation, difference) = compare(&x, &y, &w);
+        let (n, sum) = (4.0, |values: &[f64]| values.iter().sum::<f64>());
+        let product: f64 = (0..4).map(|i| long_x[i] * long_y[i]).sum();
+        let square = |v: &[f64]| n * v.iter().map(|a| a * a).sum::<f64>() - sum(v).powi(2);
+        let expected =
+            (n * product - sum(&long_x) * sum(&long_y)) / (square(&long_x) * square(&long_y)).sqrt();
+        assert!((correlation - expected).abs() < 1e-14);
+        assert_eq!(difference, 1.0);
+        assert!((compare(&x, &x.map(|a| 7.0 - 3.0 * a), &w).0 + 1.0).abs() < 1e-14);
+        assert!(compare(&[0.1; 3], &y, &w).0.is_nan());
+    }
+}

@@ -8,7 +8,7 @@
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError};
 use crate::mesh::geometry::{area, triangle};
 use crate::parallel;
 use crate::vector::{Vector, distance, dot, sub};
@@ -67,7 +67,7 @@ impl<'a> Scaled<'a> {
         let not_finite =
             coordinates.chunks(width).enumerate().filter(|(_, row)| !row.iter().all(|x| x.is_finite()));
         if let Some(vertices) = Elements::collect(not_finite.map(|(vertex, _)| vertex)) {
-            return Err(Error::MapNonFinite { name: "image", vertices });
+            return Err(MapError::NonFinite { name: "image", vertices }.into());
         }
         let largest = coordinates.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0) } else { 0.0 };
@@ -116,7 +116,7 @@ pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
 /// [`TriangleMesh`](crate::mesh::TriangleMesh), or validate first.
 ///
 /// # Errors
-/// [`Error::MapNonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
+/// [`MapError::NonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
 /// has no area.
 pub fn distortion(
     points: &[Vector],
@@ -229,7 +229,7 @@ pub(crate) fn distortion_of_wholes(
 /// Checks one target measure per face and scales the largest to 1, so that sums neither over- nor underflow.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] for another length, [`Error::Density`] for values that are not positive and
+/// [`Error::InvalidArray`] for another length, [`MapError::Density`] for values that are not positive and
 /// finite.
 pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
     if density.len() != n_faces {
@@ -242,7 +242,7 @@ pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, E
     // a target far below the others leaves no digits for the energy
     let good = |value: f64| value.is_finite() && value > 0.0 && value >= SMALLEST_DENSITY * largest;
     if let Some(faces) = Elements::collect((0..n_faces).filter(|&face| !good(density[face]))) {
-        return Err(Error::Density { value: density[faces.first[0]], faces });
+        return Err(MapError::Density { value: density[faces.first[0]], faces }.into());
     }
     Ok(density.iter().map(|value| value / largest).collect())
 }

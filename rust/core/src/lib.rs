@@ -42,6 +42,8 @@ mod vector;
 pub use control::{History, Observer, Record, Silent, Status};
 pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};
 pub use distortion::{Distortion, Image, distortion, folded_in_plane, folded_on_sphere, normalized_density};
-pub use error::{Elements, Error};
+pub use error::{
+    CurveError, Elements, Error, ErrorKind, LandmarkError, MapError, MeshError, NumericsError, Side,
+};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, UntangledImage, untangle};

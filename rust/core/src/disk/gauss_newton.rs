@@ -18,7 +18,7 @@ use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::embedding::{Stop, progressive_disk};
 use crate::energy::stretch::Profile;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
@@ -83,22 +83,16 @@ impl Run<'_> {
         let initial = self.options.initial.map(|map| by_order.of_vertices(map));
         let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
         let run = Run { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
-        let (map, status) =
-            run.gauss_newton(is_cancelled, history, observer).map_err(|error| match error {
-                Error::NoEmbedding { folded } => {
-                    let folded = by_order.given_faces(folded);
-                    let first = folded.first.iter().map(|&face| self.given_face(face)).collect();
-                    Error::NoEmbedding { folded: Elements { first, ..folded } }
-                }
-                error => error,
-            })?;
+        let given_face = |face| self.given_face(by_order.given_face(face));
+        let solved = run.gauss_newton(is_cancelled, history, observer);
+        let (map, status) = solved.map_err(|error| error.with_faces(given_face))?;
         Ok((by_order.given(&map), status))
     }
 
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
     /// there was a map without folds.
     fn gauss_newton(
         &self,
@@ -249,7 +243,7 @@ impl Run<'_> {
         let folded = certificate::folded(self.mesh, &flat(&tutte));
         match Elements::collect(folded) {
             None => Ok(tutte),
-            Some(folded) => Err(Error::NoEmbedding { folded }),
+            Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
         }
     }
 

@@ -24,7 +24,7 @@ use std::borrow::Cow;
 
 use crate::control::{History, Observer, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError, MeshError};
 use crate::mesh::TriangleMesh;
 use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
@@ -126,7 +126,7 @@ pub struct DiskMap {
 /// Maps a disk to the unit disk so that areas are kept.
 ///
 /// # Errors
-/// Input that is no disk, and options out of range, are refused before any work. [`Error::NoEmbedding`] where
+/// Input that is no disk, and options out of range, are refused before any work. [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where
 /// every start folds in double precision.
 ///
 /// ```
@@ -207,7 +207,7 @@ fn turned(mesh: &TriangleMesh, map: Map) -> Map {
 impl DiskMapOptions<'_> {
     fn check(&self, mesh: &TriangleMesh) -> Result<(), Error> {
         match mesh.require_disk() {
-            Err(Error::SeveralBoundaries { .. }) if self.fill_holes => {}
+            Err(Error::Mesh(MeshError::SeveralBoundaries { .. })) if self.fill_holes => {}
             verdict => verdict?,
         }
         if let Some(initial) = self.initial {
@@ -256,7 +256,7 @@ fn check_initial(
     }
     let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
-        return Err(Error::MapNonFinite { name: "initial", vertices });
+        return Err(MapError::NonFinite { name: "initial", vertices }.into());
     }
     if options.boundary == Boundary::Rectangle {
         return rectangle::check_initial(mesh, options, initial);
@@ -267,14 +267,16 @@ fn check_initial(
     let boundary = &mesh.boundary_loops()[0];
     let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
     if let Some(vertices) = Elements::collect(boundary.iter().map(|&v| v as usize).filter(off_circle)) {
-        return Err(Error::InitialBoundary { vertices, reason: "it must lie on the unit circle".into() });
+        return Err(
+            MapError::InitialBoundary { vertices, reason: "it must lie on the unit circle".into() }.into()
+        );
     }
     if !boundary::runs_once_around(boundary, initial) {
         let vertices = Elements::collect(boundary.iter().map(|&v| v as usize)).expect("a loop has vertices");
-        return Err(Error::InitialBoundary {
+        return Err(MapError::InitialBoundary {
             vertices,
             reason: "it must run once around the unit circle, counter-clockwise (mirror the map if it runs clockwise)".into(),
-        });
+        }.into());
     }
     Ok(())
 }

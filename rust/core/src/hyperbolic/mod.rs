@@ -13,7 +13,7 @@
 //! 3. `metric`: the hyperbolic metrics, by Newton or by the paper's Ricci flow (`ricci_flow`);
 //! 4. `atlas`, `layout`, `initial`: local charts and a first homeomorphism;
 //! 5. `delaunay`, `harmonic`: the harmonic map by Newton, or by the paper's heat diffusion (`heat`);
-//! 6. `certificates`: the proof that it is one-to-one; `advice`: signs that it is not what was meant.
+//! 6. `certificates`: the proof that it is one-to-one; `warnings`: signs that it is not what was meant.
 //!
 //! Pieces with one or two features are `flat`. [`hyperbolic_structure`] gives the paper's other objects: the
 //! Fuchsian group (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
@@ -45,6 +45,7 @@ pub use register::{CurveRegistration, register_hyperbolic};
 pub use structure::fuchsian::CoverCopy;
 pub use structure::pants::Pants;
 pub use structure::{HyperbolicStructure, hyperbolic_structure};
+pub use warnings::{Warning, WarningKind};
 
 /// How the harmonic energy is minimised.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

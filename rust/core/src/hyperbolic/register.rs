@@ -11,11 +11,11 @@ use super::harmonic::piece_map::{PieceMap, map_piece};
 use super::metric::Metric;
 use super::slice::isotopy::Isotopy;
 use super::slice::{Sliced, SlicedPair, slice_pair};
-use super::warnings::warnings;
+use super::warnings::{Warning, warnings};
 use super::{Curves, HyperbolicOptions, Solver};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
-use crate::error::{Elements, Error};
+use crate::error::{CurveError, Elements, Error, NumericsError, Side};
 use crate::location::{Location, Locator};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
@@ -44,7 +44,7 @@ pub struct CurveRegistration {
     /// The descents of the same pieces.
     pub descents: Vec<Descent>,
     /// What the caller should look at.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl CurveRegistration {
@@ -63,7 +63,7 @@ impl CurveRegistration {
 ///
 /// # Errors
 /// Surfaces of another topology, curves that are no simple edge paths or touch each other, and features that
-/// do not pair up are refused before any work. [`Error::NoEmbedding`] and [`Error::NoHyperbolicMetric`] where
+/// do not pair up are refused before any work. [`NumericsError::NoEmbedding`] and [`NumericsError::NoHyperbolicMetric`] where
 /// double precision does not suffice; [`Error::CancelledEarly`].
 pub fn register_hyperbolic(
     source: &TriangleMesh,
@@ -89,7 +89,7 @@ pub fn register_hyperbolic(
     let watch = Watch::new(observer, 0.0, "Laying the surfaces over each other");
     let placement = placed([source, target], &divided, options.spheres, &watch)?;
     if placement.mirrored {
-        return Err(Error::Mirrored);
+        return Err(CurveError::Mirrored.into());
     }
     let pieces = pieces(source, target, &divided, &placement);
     // 3. Piece by piece onto the target
@@ -103,19 +103,26 @@ pub fn register_hyperbolic(
             let carry = |polyline: &[Vector]| isotopy.as_ref().map(|isotopy| isotopy.carry(polyline));
             slice_pair(ours, theirs, &carry, &watch)?
         };
-        let map = map_piece([ours, theirs], &sliced, options, &mut phase)?;
+        let map = map_piece(&sliced, options, &mut phase);
+        let map = map.map_err(|error| of_whole_surface(error, ours, theirs))?;
         found.take(ours, theirs, &sliced, map, target);
     }
     // 4. A map without folds or none; the paper's diffusion may end before it has unfolded all
     if options.solver == Solver::Newton
         && let Some(folded) = Elements::collect(found.folded.iter().copied())
     {
-        return Err(Error::NoEmbedding { folded }.of_surface("source"));
+        return Err(Error::from(NumericsError::NoEmbedding { folded }).of_surface(Side::Source));
     }
     // 5. Figures
     let result = found.finish([source, target], curves, &placement, &history)?;
     observer.progress(1.0, "Done");
     Ok(result)
+}
+
+/// An error about faces of a piece as one about faces of its surface.
+fn of_whole_surface(error: Error, source: &Piece, target: &Piece) -> Error {
+    let piece = if error.side() == Some(Side::Target) { target } else { source };
+    error.with_faces(|face| piece.face_of[face] as usize)
 }
 
 fn is_closed(mesh: &TriangleMesh) -> bool {

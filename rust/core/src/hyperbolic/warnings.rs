@@ -3,9 +3,12 @@
 //!
 //! Cost: linear.
 
+use thiserror::Error;
+
 use super::features::placement::Placement;
 use super::harmonic::certificates::Certificates;
 use crate::distortion::Distortion;
+use crate::error::{Elements, Side, kinds};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::vector::{Vector, add, dot, norm};
@@ -19,46 +22,127 @@ const TOO_MUCH: f64 = 0.05;
 /// Surfaces look to opposite sides for sure where their area vectors are longer than this part of their areas.
 const FACING: f64 = 0.2;
 
-/// One sentence for each doubt, the most likely cause first.
+kinds! {
+    /// What a warning is about; each says what the indices of its elements are of.
+    WarningKind {
+        /// Open surfaces look to opposite sides, so that the map mirrors one.
+        OppositeNormals = "opposite_normals",
+        /// A curve fits far better when one of the two is run through the other way.
+        BackwardCurve = "backward_curve",
+        /// The curves move too much to tell how the surface between them goes along.
+        UncertainWinding = "uncertain_winding",
+        /// The energy of the map is far above that of the surface itself.
+        Strained = "strained",
+        /// Much of the surface is stretched or squeezed: faces of the source.
+        Distorted = "distorted",
+    }
+}
+
+/// A sign that the curves do not say what was meant.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Warning {
+    /// Open surfaces look to opposite sides.
+    #[error("the surfaces look to opposite sides, so the map mirrors one: flip the faces of one of them")]
+    OppositeNormals,
+
+    /// A curve seems to run the other way on one of the surfaces.
+    #[error("curve {curve} fits far better the other way round: reverse its path on one of the surfaces")]
+    BackwardCurve {
+        /// The curve.
+        curve: usize,
+    },
+
+    /// The map may wind around the curves.
+    #[error(
+        "the curves move too much to tell how the surface between them goes along: it may wind around them \
+         more than meant"
+    )]
+    UncertainWinding,
+
+    /// The curves hardly fit.
+    #[error(
+        "the map is strained, its energy is {energy_ratio:.1} times that of the surface itself (1.0 to 1.2 is usual): \
+         check that curves with the same number belong together and run the same way"
+    )]
+    Strained {
+        /// The harmonic energy of the map over that of the identity.
+        energy_ratio: f64,
+    },
+
+    /// Much of the surface is stretched or squeezed more than tenfold.
+    #[error(
+        "{:.0} % of the surface is stretched or squeezed more than tenfold: limbs far from all curves \
+         are loosely held, give them curves or closed rings of their own",
+        100.0 * share
+    )]
+    Distorted {
+        /// The faces of the source that are.
+        faces: Elements,
+        /// Their share of the source's area.
+        share: f64,
+    },
+}
+
+impl Warning {
+    /// What the warning is about, whatever its message says.
+    pub fn kind(&self) -> WarningKind {
+        match self {
+            Self::OppositeNormals => WarningKind::OppositeNormals,
+            Self::BackwardCurve { .. } => WarningKind::BackwardCurve,
+            Self::UncertainWinding => WarningKind::UncertainWinding,
+            Self::Strained { .. } => WarningKind::Strained,
+            Self::Distorted { .. } => WarningKind::Distorted,
+        }
+    }
+
+    /// The surface whose elements are meant.
+    pub fn side(&self) -> Option<Side> {
+        matches!(self, Self::Distorted { .. }).then_some(Side::Source)
+    }
+
+    /// The curve that is meant.
+    pub fn curve(&self) -> Option<usize> {
+        match self {
+            Self::BackwardCurve { curve } => Some(*curve),
+            _ => None,
+        }
+    }
+
+    /// The elements that are meant.
+    pub fn elements(&self) -> Option<&Elements> {
+        match self {
+            Self::Distorted { faces, .. } => Some(faces),
+            _ => None,
+        }
+    }
+
+    /// The figure that is too large: the energy ratio, or the share of the area.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Self::Strained { energy_ratio } => Some(*energy_ratio),
+            Self::Distorted { share, .. } => Some(*share),
+            _ => None,
+        }
+    }
+}
+
+/// One warning for each doubt, the most likely cause first.
 pub(super) fn warnings(
     meshes: [&TriangleMesh; 2],
     placement: &Placement,
     is_sure: bool,
     certificates: &Certificates,
     figures: &Distortion,
-) -> Vec<String> {
+) -> Vec<Warning> {
+    let backward = placement.backwards.iter().map(|&curve| Warning::BackwardCurve { curve });
+    let energy_ratio = certificates.energy_ratio;
     let mut warnings = Vec::new();
-    if face_apart(meshes) {
-        warnings.push(
-            "the surfaces look to opposite sides, so the map mirrors one: flip the faces of one of them"
-                .into(),
-        );
-    }
-    let backwards = placement.backwards.iter();
-    warnings.extend(backwards.map(|curve| {
-        format!("curve {curve} fits far better the other way round: reverse its path on one of the surfaces")
-    }));
-    if !is_sure {
-        warnings.push(
-            "the curves move too much to tell how the surface between them goes along: it may wind around them \
-             more than meant"
-                .into(),
-        );
-    }
-    let ratio = certificates.energy_ratio;
-    if ratio > STRAINED {
-        warnings.push(format!(
-            "the map is strained, its energy is {ratio:.1} times that of the surface itself (1.0 to 1.2 is usual): \
-             check that curves with the same number belong together and run the same way"
-        ));
-    }
-    let distorted = 100.0 * distorted_share(meshes[0], figures);
-    if distorted > 100.0 * TOO_MUCH {
-        warnings.push(format!(
-            "{distorted:.0} % of the surface is stretched or squeezed more than tenfold: limbs far from all curves \
-             are loosely held, give them curves or closed rings of their own"
-        ));
-    }
+    warnings.extend(face_apart(meshes).then_some(Warning::OppositeNormals));
+    warnings.extend(backward);
+    warnings.extend((!is_sure).then_some(Warning::UncertainWinding));
+    warnings.extend((energy_ratio > STRAINED).then_some(Warning::Strained { energy_ratio }));
+    warnings.extend(distorted(meshes[0], figures));
     warnings
 }
 
@@ -73,10 +157,12 @@ fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
     norm(facing[0]) > FACING && norm(facing[1]) > FACING && dot(facing[0], facing[1]) < -least
 }
 
-/// The share of the surface in faces whose share of area changes more than tenfold.
-fn distorted_share(mesh: &TriangleMesh, figures: &Distortion) -> f64 {
-    let is_distorted = |face: &usize| figures.log2_area_ratio[*face].abs() > TENFOLD.log2();
+/// The faces whose share of area changes more than tenfold, where they are too much of the surface.
+fn distorted(mesh: &TriangleMesh, figures: &Distortion) -> Option<Warning> {
     let areas = mesh.face_areas();
-    let distorted: f64 = (0..areas.len()).filter(is_distorted).map(|face| areas[face]).sum();
-    distorted / areas.iter().sum::<f64>()
+    let is_distorted = |face: &usize| figures.log2_area_ratio[*face].abs() > TENFOLD.log2();
+    let faces = || (0..areas.len()).filter(is_distorted);
+    let share = faces().map(|face| areas[face]).sum::<f64>() / areas.iter().sum::<f64>();
+    let faces = Elements::collect(faces())?;
+    (share > TOO_MUCH).then_some(Warning::Distorted { faces, share })
 }

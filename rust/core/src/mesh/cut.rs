@@ -16,7 +16,7 @@ use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{geometry, validate};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MeshError};
 use crate::vector::Vector;
 
 /// One piece of a cut mesh.
@@ -106,13 +106,13 @@ impl Patch {
     }
 }
 
-fn check_range(n_vertices: usize, seams: &[[u32; 2]]) -> Result<(), Error> {
+fn check_range(n_vertices: usize, seams: &[[u32; 2]]) -> Result<(), MeshError> {
     let outside = seams.iter().copied().filter(|seam| seam.iter().any(|&v| v as usize >= n_vertices));
-    validate::refuse(Elements::edges(outside), |seams| Error::SeamOutOfRange { seams, n_vertices })
+    validate::refuse(Elements::edges(outside), |seams| MeshError::SeamOutOfRange { seams, n_vertices })
 }
 
 /// Makes the faces along the seams strangers to each other.
-fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Result<(), Error> {
+fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Result<(), MeshError> {
     let mut unknown = Vec::new();
     for &seam in seams {
         let mut corners = table.corners(seam).peekable();
@@ -121,7 +121,7 @@ fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Re
         }
         corners.for_each(|corner| opposite[corner as usize] = NO_CORNER);
     }
-    validate::refuse(Elements::edges(unknown), |seams| Error::SeamNotEdge { seams })
+    validate::refuse(Elements::edges(unknown), |seams| MeshError::SeamNotEdge { seams })
 }
 
 /// Joins the corners at both ends of every edge between neighbours.

@@ -7,7 +7,6 @@
 use super::TriangleMesh;
 use super::corners::{NO_CORNER, VertexCorners};
 use super::triangle_mesh::mark_boundary;
-use crate::error::Elements;
 use crate::parallel;
 
 /// A renumbered mesh with the way back.
@@ -47,9 +46,8 @@ impl Renumbered {
     }
 
     /// Renumbered faces by their given indices.
-    pub(crate) fn given_faces(&self, faces: Elements) -> Elements {
-        let first = faces.first.iter().map(|&face| self.faces[face] as usize).collect();
-        Elements { first, ..faces }
+    pub(crate) fn given_face(&self, face: usize) -> usize {
+        self.faces[face] as usize
     }
 
     /// Values of the renumbered faces, from values of the given ones.

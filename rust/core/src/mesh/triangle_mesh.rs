@@ -5,7 +5,7 @@ use super::corners::{EdgeTable, NO_CORNER, VertexCorners};
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{geometry, validate};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MeshError};
 use crate::vector::Vector;
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
@@ -60,7 +60,7 @@ impl TriangleMesh {
         drop(table);
         let mut faces = faces.to_vec();
         let orientation = Orientation::propagate(&faces, &opposite);
-        validate::refuse(Elements::edges(orientation.conflict), |edges| Error::NotOrientable { edges })?;
+        validate::refuse(Elements::edges(orientation.conflict), |edges| MeshError::NotOrientable { edges })?;
         orientation.apply(&mut faces, &mut opposite);
         // 3. A manifold in its vertices.
         let corners = VertexCorners::new(points.len(), &faces);
@@ -198,13 +198,13 @@ impl TriangleMesh {
         self.require_one_component()?;
         let (loops, genus) = (&self.topology.boundary_loops, self.genus());
         match (loops.len(), genus) {
-            (0, _) => Err(Error::ClosedSurface { genus }),
+            (0, _) => Err(MeshError::ClosedSurface { genus }.into()),
             (1, 0) => Ok(()),
             (_, 0) => {
                 let (vertices, sizes) = described(loops);
-                validate::refuse(vertices, |vertices| Error::SeveralBoundaries { vertices, sizes })
+                Ok(validate::refuse(vertices, |vertices| MeshError::SeveralBoundaries { vertices, sizes })?)
             }
-            _ => Err(Error::HasHandles { genus }),
+            _ => Err(MeshError::HasHandles { genus }.into()),
         }
     }
 
@@ -215,10 +215,10 @@ impl TriangleMesh {
     pub fn require_sphere(&self) -> Result<(), Error> {
         self.require_one_component()?;
         let (vertices, sizes) = described(&self.topology.boundary_loops);
-        validate::refuse(vertices, |vertices| Error::OpenSurface { vertices, sizes })?;
+        validate::refuse(vertices, |vertices| MeshError::OpenSurface { vertices, sizes })?;
         match self.genus() {
             0 => Ok(()),
-            genus => Err(Error::SphereHasHandles { genus }),
+            genus => Err(MeshError::SphereHasHandles { genus }.into()),
         }
     }
 
@@ -230,15 +230,15 @@ impl TriangleMesh {
         self.require_one_component()?;
         match self.genus() {
             0 => Ok(()),
-            genus => Err(Error::GenusNotZero { genus }),
+            genus => Err(MeshError::GenusNotZero { genus }.into()),
         }
     }
 
-    fn require_one_component(&self) -> Result<(), Error> {
+    fn require_one_component(&self) -> Result<(), MeshError> {
         let first_faces = &self.topology.first_faces;
         let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
         let several = faces.filter(|_| first_faces.len() > 1);
-        validate::refuse(several, |faces| Error::SeveralComponents { faces })
+        validate::refuse(several, |faces| MeshError::SeveralComponents { faces })
     }
 }
 

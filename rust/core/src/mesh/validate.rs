@@ -4,7 +4,7 @@
 use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
 use super::geometry;
 use super::geometry::triangle;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, MeshError};
 use crate::vector::Vector;
 
 /// Corner indices must fit into 32 bits with one value to spare.
@@ -17,43 +17,43 @@ const ROUNDINGS: f64 = 4.0;
 const SMALLEST_HEIGHT: f64 = 1e-60;
 
 /// Checks the arrays alone: sizes, finite coordinates, index range, three different vertices per face.
-pub(super) fn arrays(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), Error> {
+pub(super) fn arrays(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), MeshError> {
     sizes(vertices.len(), faces.len())?;
     finite(vertices)?;
     in_range(vertices.len(), faces)?;
     distinct_corners(faces)
 }
 
-fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), Error> {
+fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
     match (n_vertices, n_faces) {
-        (0, _) => Err(Error::NoVertices),
-        (_, 0) => Err(Error::NoFaces),
-        (_, found) if found > MOST_FACES => Err(Error::TooManyFaces { found, limit: MOST_FACES }),
+        (0, _) => Err(MeshError::NoVertices),
+        (_, 0) => Err(MeshError::NoFaces),
+        (_, found) if found > MOST_FACES => Err(MeshError::TooManyFaces { found, limit: MOST_FACES }),
         _ => Ok(()),
     }
 }
 
-fn finite(vertices: &[Vector]) -> Result<(), Error> {
+fn finite(vertices: &[Vector]) -> Result<(), MeshError> {
     let bad = which(vertices, |vertex| !vertex.iter().all(|x| x.is_finite()));
-    refuse(bad, |vertices| Error::NonFinite { vertices })
+    refuse(bad, |vertices| MeshError::NonFinite { vertices })
 }
 
-fn in_range(n_vertices: usize, faces: &[[u32; 3]]) -> Result<(), Error> {
+fn in_range(n_vertices: usize, faces: &[[u32; 3]]) -> Result<(), MeshError> {
     let outside = |v: &u32| *v as usize >= n_vertices;
     let bad = which(faces, |face| face.iter().any(outside));
     refuse(bad, |bad| {
         let value = faces[bad.first[0]].into_iter().find(outside).map_or(0, i64::from);
-        Error::IndexOutOfRange { faces: bad, value, n_vertices }
+        MeshError::IndexOutOfRange { faces: bad, value, n_vertices }
     })
 }
 
-fn distinct_corners(faces: &[[u32; 3]]) -> Result<(), Error> {
+fn distinct_corners(faces: &[[u32; 3]]) -> Result<(), MeshError> {
     let bad = which(faces, |[a, b, c]| a == b || b == c || c == a);
-    refuse(bad, |faces| Error::RepeatedVertex { faces })
+    refuse(bad, |faces| MeshError::RepeatedVertex { faces })
 }
 
 /// Refuses faces with the same vertices as an earlier one.
-pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(), Error> {
+pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(), MeshError> {
     let mut repeated = Vec::new();
     let mut apexes = Vec::new();
     for ([_, high], entries) in table.edges().filter(|(_, entries)| entries.len() > 1) {
@@ -65,7 +65,7 @@ pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(),
         repeated.extend(same.filter(|pair| pair[1].0 > high).map(|pair| pair[1].1 as usize));
     }
     repeated.sort_unstable();
-    refuse(Elements::collect(repeated), |faces| Error::DuplicateFaces { faces })
+    refuse(Elements::collect(repeated), |faces| MeshError::DuplicateFaces { faces })
 }
 
 /// Computes the areas of the faces of `points`, which are `vertices` centred and divided by `scale`.
@@ -76,7 +76,7 @@ pub(super) fn positive_areas(
     points: &[Vector],
     scale: f64,
     faces: &[[u32; 3]],
-) -> Result<Vec<f64>, Error> {
+) -> Result<Vec<f64>, MeshError> {
     let areas = geometry::face_areas(points, faces);
     let bad = faces.iter().zip(&areas).enumerate().filter(|(_, (face, area))| {
         // What the coordinates were rounded to, here and where the mesh came from.
@@ -85,7 +85,7 @@ pub(super) fn positive_areas(
         is_flat(corners, **area, given.max(largest(corners)))
     });
     let bad = Elements::collect(bad.map(|(face, _)| face));
-    refuse(bad, |faces| Error::ZeroArea { faces })?;
+    refuse(bad, |faces| MeshError::ZeroArea { faces })?;
     Ok(areas)
 }
 
@@ -103,17 +103,21 @@ fn largest(corners: [Vector; 3]) -> f64 {
 }
 
 /// Refuses edges of three or more faces.
-pub(super) fn manifold_edges(table: &EdgeTable) -> Result<(), Error> {
+pub(super) fn manifold_edges(table: &EdgeTable) -> Result<(), MeshError> {
     let bad = table.edges().filter(|(_, entries)| entries.len() > 2).map(|(edge, _)| edge);
-    refuse(Elements::edges(bad), |edges| Error::NonManifoldEdges { edges })
+    refuse(Elements::edges(bad), |edges| MeshError::NonManifoldEdges { edges })
 }
 
 /// Refuses vertices with several fans, then vertices without a face.
-pub(super) fn manifold_vertices(corners: &VertexCorners, n: usize, opposite: &[u32]) -> Result<(), Error> {
+pub(super) fn manifold_vertices(
+    corners: &VertexCorners,
+    n: usize,
+    opposite: &[u32],
+) -> Result<(), MeshError> {
     let pinched = Elements::collect((0..n).filter(|&v| !corners.is_one_fan(v, opposite)));
-    refuse(pinched, |vertices| Error::NonManifoldVertices { vertices })?;
+    refuse(pinched, |vertices| MeshError::NonManifoldVertices { vertices })?;
     let loose = Elements::collect((0..n).filter(|&v| corners.of(v).is_empty()));
-    refuse(loose, |vertices| Error::UnreferencedVertices { vertices })
+    refuse(loose, |vertices| MeshError::UnreferencedVertices { vertices })
 }
 
 /// The indices of the items that are bad.
@@ -122,6 +126,9 @@ fn which<T>(items: &[T], bad: impl Fn(&T) -> bool) -> Option<Elements> {
 }
 
 /// An error where there are elements at fault.
-pub(super) fn refuse(bad: Option<Elements>, error: impl FnOnce(Elements) -> Error) -> Result<(), Error> {
+pub(super) fn refuse(
+    bad: Option<Elements>,
+    error: impl FnOnce(Elements) -> MeshError,
+) -> Result<(), MeshError> {
     bad.map_or(Ok(()), |elements| Err(error(elements)))
 }

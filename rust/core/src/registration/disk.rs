@@ -14,7 +14,7 @@ use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, disk_map};
 use crate::distortion::{Image, distortion, folded_in_plane};
-use crate::error::Error;
+use crate::error::{Error, Side};
 use crate::location::Locator;
 use crate::mesh::TriangleMesh;
 use crate::vector::{Vector, distance};
@@ -45,17 +45,17 @@ pub fn register_disks(
 ) -> Result<DiskRegistration, Error> {
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
-    source.require_disk().map_err(|error| error.of_surface("source"))?;
-    target.require_disk().map_err(|error| error.of_surface("target"))?;
+    source.require_disk().map_err(|error| error.of_surface(Side::Source))?;
+    target.require_disk().map_err(|error| error.of_surface(Side::Target))?;
     landmarks.check(source, target, CanonicalDomain::Disk)?;
     options.check()?;
     // 2. Both surfaces to the disk
     let alone = DiskMapOptions { angle_weight: options.angle_weight, ..Default::default() };
-    let map = |mesh: &TriangleMesh, surface, observer: &mut dyn Observer| {
-        disk_map(mesh, &alone, observer).map_err(|error| error.of_surface(surface))
+    let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
+        disk_map(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
-    let f = map(source, "source", &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
-    let g = map(target, "target", &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));

@@ -3,7 +3,7 @@
 
 use super::RegistrationOptions;
 use crate::codomain::CanonicalDomain;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, LandmarkError, Side};
 use crate::mesh::TriangleMesh;
 use crate::options::check_angle_weight;
 use crate::vector::Vector;
@@ -27,33 +27,34 @@ impl Landmarks<'_> {
     ) -> Result<(), Error> {
         let (ours, theirs) = (self.source.len(), self.target.len());
         if ours != theirs {
-            return Err(Error::LandmarkCounts { source_count: ours, target_count: theirs });
+            return Err(LandmarkError::Counts { source_count: ours, target_count: theirs }.into());
         }
         if ours < fewest(domain) {
-            return Err(Error::TooFewLandmarks { found: ours, needed: fewest(domain) });
+            return Err(LandmarkError::TooFew { found: ours, needed: fewest(domain) }.into());
         }
-        check_side("source_landmarks", self.source, source)?;
-        check_side("target_landmarks", self.target, target)
+        check_side(Side::Source, self.source, source)?;
+        check_side(Side::Target, self.target, target)?;
+        Ok(())
     }
 }
 
-fn check_side(name: &'static str, landmarks: &[usize], mesh: &TriangleMesh) -> Result<(), Error> {
+fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<(), LandmarkError> {
     let n_vertices = mesh.n_vertices();
     let pairs =
         |is_bad: &dyn Fn(usize) -> bool| Elements::collect((0..landmarks.len()).filter(|&pair| is_bad(pair)));
     if let Some(pairs) = pairs(&|pair| landmarks[pair] >= n_vertices) {
         let value = landmarks[pairs.first[0]];
-        return Err(Error::LandmarkOutOfRange { name, pairs, value, n_vertices });
+        return Err(LandmarkError::OutOfRange { side, pairs, value, n_vertices });
     }
     let mut first = vec![usize::MAX; n_vertices];
     (0..landmarks.len()).rev().for_each(|pair| first[landmarks[pair]] = pair);
     if let Some(pairs) = pairs(&|pair| first[landmarks[pair]] != pair) {
         let vertex = landmarks[pairs.first[0]];
-        return Err(Error::RepeatedLandmark { name, first: first[vertex], pairs, vertex });
+        return Err(LandmarkError::Repeated { side, first: first[vertex], pairs, vertex });
     }
     if let Some(pairs) = pairs(&|pair| mesh.is_boundary(landmarks[pair])) {
         let vertex = landmarks[pairs.first[0]];
-        return Err(Error::LandmarkOnBoundary { name, pairs, vertex });
+        return Err(LandmarkError::OnBoundary { side, pairs, vertex });
     }
     Ok(())
 }
@@ -122,7 +123,7 @@ mod tests {
         let pair = Landmarks { source: &[4], target: &[5] };
         assert!(matches!(
             pair.check(&mesh, &mesh, CanonicalDomain::Sphere),
-            Err(Error::TooFewLandmarks { found: 1, needed: 2 })
+            Err(Error::Landmarks(LandmarkError::TooFew { found: 1, needed: 2 }))
         ));
     }
 

@@ -14,7 +14,7 @@ use crate::alignment::rotation::{best_rotation, rotate};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Image, distortion, folded_on_sphere};
-use crate::error::Error;
+use crate::error::{Error, Side};
 use crate::location::Locator;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
@@ -57,8 +57,8 @@ pub fn register_spheres(
 ) -> Result<SphereRegistration, Error> {
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
-    source.require_sphere().map_err(|error| error.of_surface("source"))?;
-    target.require_sphere().map_err(|error| error.of_surface("target"))?;
+    source.require_sphere().map_err(|error| error.of_surface(Side::Source))?;
+    target.require_sphere().map_err(|error| error.of_surface(Side::Target))?;
     landmarks.check(source, target, CanonicalDomain::Sphere)?;
     options.check()?;
     let same_side;
@@ -71,11 +71,11 @@ pub fn register_spheres(
     };
     // 2. Both surfaces to the sphere
     let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
-    let map = |mesh: &TriangleMesh, surface, observer: &mut dyn Observer| {
-        sphere_map(mesh, &alone, observer).map_err(|error| error.of_surface(surface))
+    let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
+        sphere_map(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
-    let f0 = map(source, "source", &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
-    let f1 = map(target, "target", &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
+    let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks, and the middle of each pair
     let turned = turned(source, &f0, landmarks, &f1);
     let ours: Vec<Vector> = landmarks.source.iter().map(|&p| turned[p]).collect();

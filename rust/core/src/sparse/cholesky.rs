@@ -8,8 +8,8 @@
 use sprs::CsMat;
 
 use super::multifrontal::{Element, Factor, Failure, NONE, Order, Place, Symbolic};
-use crate::Error;
 use crate::control::{Silent, Watch};
+use crate::error::{Error, NumericsError};
 use crate::mesh::TriangleMesh;
 
 /// A Cholesky factorisation `P A Pᵀ = L Lᵀ` with a fill-reducing ordering P.
@@ -24,7 +24,7 @@ impl Cholesky {
     /// factored yet.
     ///
     /// # Errors
-    /// [`Error::FactorizationFailed`] where the matrix is too large for 32-bit indices.
+    /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
     pub fn analyse(upper: &CsMat<f64>) -> Result<Self, Error> {
         Self::analyse_in(Order::Sparse, upper)
     }
@@ -53,7 +53,7 @@ impl Cholesky {
     /// Factors a matrix of the analysed pattern, given by its upper triangle.
     ///
     /// # Errors
-    /// [`Error::FactorizationFailed`] where the matrix is not positive definite to working precision.
+    /// [`NumericsError::FactorizationFailed`] where the matrix is not positive definite to working precision.
     pub fn refactor(&mut self, upper: &CsMat<f64>) -> Result<(), Error> {
         let mut silent = Silent;
         self.refactor_while(upper, &Watch::new(&mut silent, 0.0, ""))
@@ -71,9 +71,10 @@ impl Cholesky {
         };
         self.factor.refactor_by(&self.symbolic, &assemble, watch).map_err(|failure| match failure {
             Failure::Cancelled => Error::CancelledEarly,
-            Failure::NotPositiveDefinite => Error::FactorizationFailed {
+            Failure::NotPositiveDefinite => NumericsError::FactorizationFailed {
                 what: format!("a system of {} unknowns is not positive definite", upper.cols()),
-            },
+            }
+            .into(),
         })
     }
 

@@ -10,7 +10,7 @@ use crate::mesh::TriangleMesh;
 /// `factor` must have analysed its pattern.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where L_II is not positive definite to working precision, [`Error::CancelledEarly`]
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where L_II is not positive definite to working precision, [`Error::CancelledEarly`]
 /// by the watch.
 pub(crate) fn solve_dirichlet(
     mesh: &TriangleMesh,

@@ -17,13 +17,13 @@ use faer::traits::RealField;
 use faer::{Accum, Conj, Mat, MatMut, MatRef, Par, Spec};
 use sprs::CsMat;
 
-use crate::Error;
+use crate::error::{Error, NumericsError};
 
 /// Solves `A x = b` in place for a general square matrix by LU with column ordering; `rhs` as in
 /// [`Cholesky::solve`](super::Cholesky::solve).
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where the matrix is singular to working precision.
+/// [`NumericsError::FactorizationFailed`] where the matrix is singular to working precision.
 pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> {
     let n = matrix.cols();
     let columns = rhs.len().checked_div(n).unwrap_or(0);
@@ -167,7 +167,7 @@ pub(super) fn subtract_product<T: Scalar>(
 /// Davis and Duff 1996); the neighbours of node v are those from `starts[v]` to `starts[v + 1]`.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where there are too many edges for 32-bit indices.
+/// [`NumericsError::FactorizationFailed`] where there are too many edges for 32-bit indices.
 pub(super) fn minimum_degree(starts: &[u32], neighbours: &[u32]) -> Result<Vec<u32>, Error> {
     let n = starts.len() - 1;
     let graph = SymbolicSparseColMatRef::new_checked(n, n, starts, None, neighbours);
@@ -185,7 +185,7 @@ fn pattern(matrix: &CsMat<f64>) -> SymbolicSparseColMatRef<'_, usize> {
 }
 
 fn failed(what: String) -> Error {
-    Error::FactorizationFailed { what }
+    NumericsError::FactorizationFailed { what }.into()
 }
 
 #[cfg(test)]

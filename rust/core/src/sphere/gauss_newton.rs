@@ -20,7 +20,7 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::stretch::Profile;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::geometry::triangle;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
@@ -78,17 +78,15 @@ impl Run<'_> {
         let initial = self.options.initial.map(|map| by_order.of_vertices(map));
         let options = SphereMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
         let run = Run { mesh: &by_order.mesh, targets: &targets, weights: &weights, options: &options };
-        let (map, status) = run.gauss_newton(history, observer).map_err(|error| match error {
-            Error::NoEmbedding { folded } => Error::NoEmbedding { folded: by_order.given_faces(folded) },
-            error => error,
-        })?;
+        let solved = run.gauss_newton(history, observer);
+        let (map, status) = solved.map_err(|error| error.with_faces(|face| by_order.given_face(face)))?;
         Ok((by_order.given(&map), status))
     }
 
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
     /// there was a map without folds.
     fn gauss_newton(
         &self,
@@ -172,7 +170,7 @@ impl Run<'_> {
         let start = start::start(self.mesh, self.targets, self.weights, &mut phase)?;
         match Elements::collect(folded_on_sphere(self.mesh.faces(), &start)) {
             None => Ok(start),
-            Some(folded) => Err(Error::NoEmbedding { folded }),
+            Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
         }
     }
 

@@ -22,7 +22,7 @@ use std::borrow::Cow;
 
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::optimize::published::gradient_descent::LineSearch;
@@ -133,7 +133,7 @@ pub struct SphereMap {
 ///
 /// # Errors
 /// Input that is no sphere, and options out of range, are refused before any work.
-/// [`Error::NoEmbedding`] where every start folds in double precision; never with
+/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds in double precision; never with
 /// [`SphereMapOptions::unfold`] off.
 ///
 /// ```
@@ -258,12 +258,12 @@ fn check_initial(mesh: &TriangleMesh, initial: &[Vector]) -> Result<(), Error> {
     }
     let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
-        return Err(Error::MapNonFinite { name: "initial", vertices });
+        return Err(MapError::NonFinite { name: "initial", vertices }.into());
     }
     let no_direction = |v: &usize| normalized(initial[*v]).is_none();
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(no_direction)) {
         let reason = "it lies at the origin, and no direction leads from there to the sphere";
-        return Err(Error::InitialSphere { vertices, reason });
+        return Err(MapError::InitialSphere { vertices, reason }.into());
     }
     let map: Map = initial.iter().filter_map(|&x| normalized(x)).collect();
     let volume = |face: usize| {
@@ -273,7 +273,7 @@ fn check_initial(mesh: &TriangleMesh, initial: &[Vector]) -> Result<(), Error> {
     if parallel::sum(mesh.n_faces(), volume) <= 0.0 {
         let vertices = Elements::collect(0..initial.len()).expect("a mesh has vertices");
         let reason = "its faces look inward; mirror it, for instance by negating one coordinate";
-        return Err(Error::InitialSphere { vertices, reason });
+        return Err(MapError::InitialSphere { vertices, reason }.into());
     }
     Ok(())
 }

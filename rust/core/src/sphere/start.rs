@@ -20,7 +20,7 @@ use crate::control::{Observer, Watch};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::SpatialStretchEnergy;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{corner_cotangents, triangle};
 use crate::mesh::ties::tie_breakers;
@@ -50,7 +50,7 @@ const MESSAGE: &str = "Start map";
 /// the progressive one where parts of that have collapsed; on a sphere the surface itself.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where both fold in double precision, [`Error::CancelledEarly`] by the observer.
+/// [`NumericsError::NoEmbedding`] where both fold in double precision, [`Error::CancelledEarly`] by the observer.
 pub(super) fn start(
     mesh: &TriangleMesh,
     targets: &[f64],
@@ -78,9 +78,10 @@ pub(super) fn start(
     }
     // 3. If all else fails any map without folds
     map.or(mended).ok_or_else(|| match conformal {
-        Ok(map) => Error::NoEmbedding {
+        Ok(map) => NumericsError::NoEmbedding {
             folded: Elements::collect(folded_on_sphere(mesh.faces(), &map)).expect("it could not be mended"),
-        },
+        }
+        .into(),
         Err(error) => error,
     })
 }
@@ -109,7 +110,7 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
 /// The spherical conformal map, centred; it may fold where cotangents are negative.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where slivers make the cotangents too large.
+/// [`NumericsError::FactorizationFailed`] where slivers make the cotangents too large.
 fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
     conformal_within(f64::INFINITY, mesh, weights, watch)
 }

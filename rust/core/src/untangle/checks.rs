@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::UntangleOptions;
 use super::positions::Positions;
 use crate::distortion::Image;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 
 /// Refuses arguments that do not fit the mesh.
@@ -26,12 +26,12 @@ pub(super) fn arguments(
     }
     let not_finite = |v: &usize| !flat[width * v..width * (v + 1)].iter().all(|x| x.is_finite());
     if let Some(vertices) = Elements::collect((0..n).filter(not_finite)) {
-        return Err(Error::MapNonFinite { name: "image", vertices });
+        return Err(MapError::NonFinite { name: "image", vertices }.into());
     }
     if let Image::Sphere(map) = image
         && let Some(vertices) = Elements::collect((0..n).filter(|&v| map[v] == [0.0; 3]))
     {
-        return Err(Error::NoDirection { name: "image", vertices });
+        return Err(MapError::NoDirection { name: "image", vertices }.into());
     }
     if let Some(&vertex) = options.fixed.iter().find(|&&vertex| vertex >= n) {
         let (found, expected) = (format!("{vertex}"), format!("indices of the {n} vertices"));
@@ -91,7 +91,7 @@ pub(super) fn feasible(
         vertices.sort_unstable();
         vertices.dedup();
         let vertices = Elements::collect(vertices).expect("such a face has vertices that stay");
-        return Err(Error::HeldFolded { faces, vertices });
+        return Err(MapError::HeldFolded { faces, vertices }.into());
     }
     // 2. Outlines in the plane that turn too little
     let Positions::Plane(map) = given else { return Ok(()) };
@@ -110,7 +110,7 @@ pub(super) fn feasible(
         let most: i64 = loops.iter().map(|ring| most_turns(ring, map)).sum();
         let needed = euler_characteristic(mesh, components, component as u32, &loops);
         if most < needed {
-            return Err(Error::OutlineFolds { faces, turns: most, needed });
+            return Err(MapError::OutlineFolds { faces, turns: most, needed }.into());
         }
     }
     Ok(())

@@ -26,7 +26,7 @@ use std::collections::BTreeSet;
 
 use crate::control::{Observer, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
 use patch::{Effort, Outcome, Patch};
 use positions::Positions;
@@ -79,8 +79,8 @@ pub enum UntangledImage {
 /// The orientation that most of a component's area has is kept. A map without folds comes back as it is.
 ///
 /// # Errors
-/// Arrays that do not fit. [`Error::HeldFolded`] where the outline or the fixed vertices make folds inevitable,
-/// [`Error::StillFolded`] where no map without folds was found, [`Error::CancelledEarly`] where the observer ended the
+/// Arrays that do not fit. [`MapError::HeldFolded`](crate::MapError::HeldFolded) where the outline or the fixed vertices make folds inevitable,
+/// [`NumericsError::StillFolded`] where no map without folds was found, [`Error::CancelledEarly`] where the observer ended the
 /// run before there was one.
 ///
 /// ```
@@ -159,7 +159,7 @@ impl Run<'_> {
             None => Ok(()),
             Some(faces) => {
                 let pins = checks::pins_near(self.mesh, self.options.fixed, &folded);
-                Err(Error::StillFolded { folded: faces, fixed: pins })
+                Err(NumericsError::StillFolded { folded: faces, fixed: pins }.into())
             }
         }
     }

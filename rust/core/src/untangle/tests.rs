@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::Silent;
+use crate::error::MapError;
 
 /// A square grid of n × n vertices, one unit apart, and its places in the plane.
 fn grid(n: u32) -> (TriangleMesh, Vec<[f64; 2]>) {
@@ -76,12 +77,15 @@ fn what_cannot_be_unfolded_is_refused_with_its_faces() {
     // the only corner of a face, drawn over its opposite edge
     let mut image = places.clone();
     image[5] = [3.5, 1.5];
-    assert!(matches!(solved(&mesh, &image, &[]), Err(Error::HeldFolded { .. } | Error::OutlineFolds { .. })));
+    assert!(matches!(
+        solved(&mesh, &image, &[]),
+        Err(Error::Map(MapError::HeldFolded { .. } | MapError::OutlineFolds { .. }))
+    ));
     // three pins of one face in the wrong order
     let mut image = places.clone();
     image.swap(14, 15);
     match solved(&mesh, &image, &[14, 15, 21]) {
-        Err(Error::HeldFolded { faces, vertices }) => {
+        Err(Error::Map(MapError::HeldFolded { faces, vertices })) => {
             assert_eq!(vertices.first, [14, 15, 21]);
             assert_eq!(faces.count, 1);
         }
@@ -90,5 +94,8 @@ fn what_cannot_be_unfolded_is_refused_with_its_faces() {
     // an outline like an eight
     let mut image = places;
     image.iter_mut().for_each(|x| x[1] = (x[1] - 2.5) * (x[0] - 2.4));
-    assert!(matches!(solved(&mesh, &image, &[]), Err(Error::OutlineFolds { .. } | Error::HeldFolded { .. })));
+    assert!(matches!(
+        solved(&mesh, &image, &[]),
+        Err(Error::Map(MapError::OutlineFolds { .. } | MapError::HeldFolded { .. }))
+    ));
 }

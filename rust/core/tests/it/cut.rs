@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use crate::common::{self, TestMesh};
 use authalic::mesh::{Patch, TriangleMesh, cut};
-use authalic::{Elements, Error};
+use authalic::{Elements, Error, MeshError};
 use proptest::prelude::*;
 
 /// Every corner of the input lies in exactly one patch, at its own vertex and position.
@@ -203,23 +203,26 @@ fn refusals_name_the_seams() {
     let TestMesh { vertices, faces, .. } = common::grid(2, 2);
     let seams = |first: &[usize], count| Elements { first: first.to_vec(), count, arity: 2 };
     let error = cut(&vertices, &faces, &[[0, 1], [0, 8], [3, 3]]).unwrap_err();
-    assert_eq!(error, Error::SeamNotEdge { seams: seams(&[0, 8, 3, 3], 2) });
+    assert_eq!(error, MeshError::SeamNotEdge { seams: seams(&[0, 8, 3, 3], 2) }.into());
     assert!(error.to_string().starts_with("2 seams ((0, 8), (3, 3))"), "{error}");
     let error = cut(&vertices, &faces, &[[0, 1], [9, 1]]).unwrap_err();
-    assert_eq!(error, Error::SeamOutOfRange { seams: seams(&[9, 1], 1), n_vertices: 9 });
+    assert_eq!(error, MeshError::SeamOutOfRange { seams: seams(&[9, 1], 1), n_vertices: 9 }.into());
 }
 
 #[test]
 fn broken_arrays_are_refused() {
     let TestMesh { mut vertices, mut faces, .. } = common::grid(2, 2);
-    assert_eq!(cut(&[], &[], &[]), Err(Error::NoVertices));
-    assert_eq!(cut(&vertices, &[], &[]), Err(Error::NoFaces));
+    assert_eq!(cut(&[], &[], &[]), Err(MeshError::NoVertices.into()));
+    assert_eq!(cut(&vertices, &[], &[]), Err(MeshError::NoFaces.into()));
     faces[3] = [4, 1, 4];
-    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::RepeatedVertex { .. })));
+    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::Mesh(MeshError::RepeatedVertex { .. }))));
     faces[3] = [4, 1, 9];
-    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::IndexOutOfRange { value: 9, .. })));
+    assert!(matches!(
+        cut(&vertices, &faces, &[]),
+        Err(Error::Mesh(MeshError::IndexOutOfRange { value: 9, .. }))
+    ));
     vertices[2][1] = f64::INFINITY;
-    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::NonFinite { .. })));
+    assert!(matches!(cut(&vertices, &faces, &[]), Err(Error::Mesh(MeshError::NonFinite { .. }))));
 }
 
 proptest! {
@@ -276,7 +279,7 @@ proptest! {
             prop_assert_eq!(patch.topology.n_components(), 1);
             match TriangleMesh::new(&patch.vertices, &patch.faces) {
                 Ok(mesh) => prop_assert_eq!(mesh.topology(), &patch.topology),
-                Err(Error::DuplicateFaces { .. } | Error::NotOrientable { .. }) => {}
+                Err(Error::Mesh(MeshError::DuplicateFaces { .. } | MeshError::NotOrientable { .. })) => {}
                 // Copies of one vertex coincide, but never within a face.
                 Err(error) => prop_assert!(false, "{}", error),
             }

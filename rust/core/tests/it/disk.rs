@@ -5,7 +5,10 @@ use std::f64::consts::TAU;
 
 use crate::common;
 use authalic::mesh::TriangleMesh;
-use authalic::{Boundary, DiskMap, DiskMapOptions, Error, Method, Silent, Status, disk_map, folded_in_plane};
+use authalic::{
+    Boundary, DiskMap, DiskMapOptions, Error, MapError, MeshError, Method, Silent, Status, disk_map,
+    folded_in_plane,
+};
 use proptest::prelude::*;
 
 const METHODS: [Method; 3] = [Method::FixedPoint, Method::ConjugateGradient, Method::GaussNewton];
@@ -116,7 +119,7 @@ fn a_density_is_honoured() {
 fn holes_are_refused_or_filled() {
     for mesh in [common::annulus(24, 6).mesh(), common::holed_grid().mesh()] {
         let refused = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent);
-        assert!(matches!(refused, Err(Error::SeveralBoundaries { .. })));
+        assert!(matches!(refused, Err(Error::Mesh(MeshError::SeveralBoundaries { .. }))));
         let map = mapped(&mesh, DiskMapOptions { fill_holes: true, ..Default::default() });
         assert_eq!(map.uv.len(), mesh.n_vertices());
         assert!(folded_in_plane(mesh.faces(), &map.uv).is_empty());
@@ -172,12 +175,15 @@ fn a_start_map_off_the_circle_is_refused() {
             .unwrap_err()
     };
     let on_boundary = mesh.boundary_loops()[0][0] as usize;
-    assert!(matches!(refusal(&|map| map[on_boundary][0] *= 1.5), Error::InitialBoundary { .. }));
+    assert!(matches!(
+        refusal(&|map| map[on_boundary][0] *= 1.5),
+        Error::Map(MapError::InitialBoundary { .. })
+    ));
     assert!(matches!(
         refusal(&|map| map.iter_mut().for_each(|uv| uv[0] = -uv[0])),
-        Error::InitialBoundary { .. }
+        Error::Map(MapError::InitialBoundary { .. })
     ));
-    assert!(matches!(refusal(&|map| map[0][0] = f64::NAN), Error::MapNonFinite { .. }));
+    assert!(matches!(refusal(&|map| map[0][0] = f64::NAN), Error::Map(MapError::NonFinite { .. })));
     assert!(matches!(refusal(&|map| map.truncate(3)), Error::InvalidArray { .. }));
 }
 
@@ -233,7 +239,7 @@ fn options_out_of_range_are_refused() {
     ));
     assert!(matches!(
         refused(DiskMapOptions { density: Some(&[0.0]), ..Default::default() }),
-        Error::Density { .. }
+        Error::Map(MapError::Density { .. })
     ));
     assert!(matches!(
         refused(DiskMapOptions { density: Some(&[]), ..Default::default() }),

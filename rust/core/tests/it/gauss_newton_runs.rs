@@ -10,7 +10,7 @@ use crate::common::random::{Random, rough_disk, without_vertex};
 use crate::common::{self, TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
 use authalic::mesh::TriangleMesh;
 use authalic::{
-    Boundary, DiskMap, DiskMapOptions, Distortion, Error, History, Method, Silent, SphereMap,
+    Boundary, DiskMap, DiskMapOptions, Distortion, Error, History, MapError, Method, Silent, SphereMap,
     SphereMapOptions, SphereMethod, Status, disk_map, sphere_map,
 };
 
@@ -302,7 +302,9 @@ fn start_maps_of_spheres_are_improved_and_folded_ones_unfolded() {
                     &mut Silent,
                 ) {
                     Ok(map) => assert_bijective(&mesh, &map.positions, "from a folded start map"),
-                    Err(error) => assert!(matches!(error, Error::InitialSphere { .. }), "{error}"),
+                    Err(error) => {
+                        assert!(matches!(error, Error::Map(MapError::InitialSphere { .. })), "{error}")
+                    }
                 }
             }
         }

@@ -6,7 +6,7 @@ use crate::common::random::Random;
 use crate::common::{TestMesh, distance, icosphere};
 use authalic::hyperbolic::{CurveRegistration, Curves, HyperbolicOptions, register_hyperbolic};
 use authalic::mesh::TriangleMesh;
-use authalic::{Error, Silent, Status};
+use authalic::{CurveError, Error, Side, Silent, Status};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -131,16 +131,22 @@ fn curves_that_cannot_be_cut_along_are_refused_before_any_work() {
     };
     assert!(matches!(
         refused(&good, &good[..1]),
-        Error::CurveCounts { source_count: 2, target_count: 1, .. }
+        Error::Curves(CurveError::Counts { source_count: 2, target_count: 1, .. })
     ));
-    assert_eq!(refused(&[], &[]), Error::NoCurves);
+    assert_eq!(refused(&[], &[]), CurveError::NoCurves.into());
     let with = |path: Vec<usize>| vec![good[0].clone(), path];
     let short = refused(&good, &with(good[1][..2].to_vec()));
-    assert!(matches!(short, Error::ShortCurve { name: "target_curves", curve: 1, edges: 1 }));
+    assert!(matches!(
+        short,
+        Error::Curves(CurveError::Short { side: Some(Side::Target), curve: 1, edges: 1 })
+    ));
     let meeting = refused(&with(good[0].iter().rev().copied().collect()), &good);
-    assert!(matches!(meeting, Error::CurvesMeet { name: "source_curves", curves: [0, 1], .. }));
+    assert!(matches!(
+        meeting,
+        Error::Curves(CurveError::Meet { side: Some(Side::Source), curves: [0, 1], .. })
+    ));
     let outside = refused(&with(vec![good[1][0], good[1][1], 162]), &good);
-    assert!(matches!(outside, Error::CurveOutOfRange { curve: 1, place: 2, value: 162, .. }));
+    assert!(matches!(outside, Error::Curves(CurveError::OutOfRange { curve: 1, place: 2, value: 162, .. })));
 }
 
 proptest! {
@@ -167,7 +173,7 @@ proptest! {
         let (meshes, pairs) = ([&source, &target], [&ours[..], &theirs[..]]);
         match register(meshes, pairs) {
             Ok(found) => assert_sound(&found, meshes, pairs)?,
-            Err(error) => prop_assert!(!error.is_mesh_error() || error == Error::Mirrored, "{}", error),
+            Err(error) => prop_assert!(!error.is_mesh_error() || error == CurveError::Mirrored.into(), "{}", error),
         }
     }
 

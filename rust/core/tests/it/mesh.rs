@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::{self, TestMesh, distance};
 use authalic::mesh::{TriangleMesh, consistent, geometry};
-use authalic::{Elements, Error};
+use authalic::{Elements, Error, MeshError};
 use proptest::prelude::*;
 
 fn refusal(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Error {
@@ -169,8 +169,8 @@ fn areas_and_cotangents_agree_with_heron_and_the_law_of_cosines() {
 
 #[test]
 fn empty_arrays_are_refused() {
-    assert_eq!(refusal(&[], &[]), Error::NoVertices);
-    assert_eq!(refusal(&TETRAHEDRON, &[]), Error::NoFaces);
+    assert_eq!(refusal(&[], &[]), MeshError::NoVertices.into());
+    assert_eq!(refusal(&TETRAHEDRON, &[]), MeshError::NoFaces.into());
 }
 
 #[test]
@@ -178,26 +178,32 @@ fn coordinates_that_are_not_finite_are_refused() {
     let mut vertices = TETRAHEDRON;
     vertices[1][2] = f64::NAN;
     vertices[3][0] = f64::NEG_INFINITY;
-    assert_eq!(refusal(&vertices, &[[0, 1, 2]]), Error::NonFinite { vertices: elements(&[1, 3], 2) });
+    assert_eq!(
+        refusal(&vertices, &[[0, 1, 2]]),
+        MeshError::NonFinite { vertices: elements(&[1, 3], 2) }.into()
+    );
 }
 
 #[test]
 fn indices_out_of_range_are_refused() {
     let error = refusal(&TETRAHEDRON, &[[0, 1, 2], [0, 4, 1], [u32::MAX, 0, 1]]);
-    let expected = Error::IndexOutOfRange { faces: elements(&[1, 2], 2), value: 4, n_vertices: 4 };
+    let expected = MeshError::IndexOutOfRange { faces: elements(&[1, 2], 2), value: 4, n_vertices: 4 }.into();
     assert_eq!(error, expected);
 }
 
 #[test]
 fn repeated_vertices_are_refused() {
     let error = refusal(&TETRAHEDRON, &[[0, 1, 2], [0, 3, 3], [1, 2, 1]]);
-    assert_eq!(error, Error::RepeatedVertex { faces: elements(&[1, 2], 2) });
+    assert_eq!(error, MeshError::RepeatedVertex { faces: elements(&[1, 2], 2) }.into());
 }
 
 #[test]
 fn duplicate_faces_are_refused() {
     let faces = [[0, 1, 2], [0, 1, 3], [2, 1, 0], [1, 2, 0], [3, 0, 1], [0, 2, 3]];
-    assert_eq!(refusal(&TETRAHEDRON, &faces), Error::DuplicateFaces { faces: elements(&[2, 3, 4], 3) });
+    assert_eq!(
+        refusal(&TETRAHEDRON, &faces),
+        MeshError::DuplicateFaces { faces: elements(&[2, 3, 4], 3) }.into()
+    );
 }
 
 #[test]
@@ -208,17 +214,17 @@ fn faces_without_area_are_refused_at_any_scale() {
         let points = [line(0.), line(1.), line(2.7), [1., 1., 0.5]];
         let moved = points.map(|p| p.map(|x| factor * (x + shift)));
         let error = refusal(&moved, &[[0, 2, 3], [0, 1, 2]]);
-        assert_eq!(error, Error::ZeroArea { faces: elements(&[1], 1) });
+        assert_eq!(error, MeshError::ZeroArea { faces: elements(&[1], 1) }.into());
     }
     let coinciding = [[0.5; 3]; 3];
-    assert_eq!(refusal(&coinciding, &[[0, 1, 2]]), Error::ZeroArea { faces: elements(&[0], 1) });
+    assert_eq!(refusal(&coinciding, &[[0, 1, 2]]), MeshError::ZeroArea { faces: elements(&[0], 1) }.into());
 }
 
 #[test]
 fn edges_of_three_faces_are_refused() {
     let vertices = [[0., 0., 0.], [0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., -1., 0.]];
     let error = refusal(&vertices, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]);
-    assert_eq!(error, Error::NonManifoldEdges { edges: edge(0, 1) });
+    assert_eq!(error, MeshError::NonManifoldEdges { edges: edge(0, 1) }.into());
     assert!(error.to_string().contains("edge (0, 1)"), "{error}");
 }
 
@@ -226,7 +232,7 @@ fn edges_of_three_faces_are_refused() {
 fn one_sided_surfaces_are_refused() {
     for test in common::all().iter().filter(|m| m.genus.is_none()) {
         let error = refusal(&test.vertices, &test.faces);
-        assert!(matches!(error, Error::NotOrientable { .. }), "{}: {error}", test.name);
+        assert!(matches!(error, Error::Mesh(MeshError::NotOrientable { .. })), "{}: {error}", test.name);
         let named: BTreeSet<usize> = error.elements().unwrap().first.iter().copied().collect();
         let is_corner = |v: &usize| named.contains(v);
         let on_edge = |face: &[u32; 3]| face.map(|v| v as usize).iter().filter(|v| is_corner(v)).count() == 2;
@@ -238,13 +244,13 @@ fn one_sided_surfaces_are_refused() {
 fn vertices_in_which_parts_only_touch_are_refused() {
     let vertices = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
     let error = refusal(&vertices, &[[0, 1, 2], [0, 3, 4]]);
-    assert_eq!(error, Error::NonManifoldVertices { vertices: elements(&[0], 1) });
+    assert_eq!(error, MeshError::NonManifoldVertices { vertices: elements(&[0], 1) }.into());
 }
 
 #[test]
 fn loose_vertices_are_refused() {
     let error = refusal(&TETRAHEDRON, &[[0, 1, 3]]);
-    assert_eq!(error, Error::UnreferencedVertices { vertices: elements(&[2], 1) });
+    assert_eq!(error, MeshError::UnreferencedVertices { vertices: elements(&[2], 1) }.into());
 }
 
 #[test]
@@ -260,14 +266,18 @@ fn long_lists_name_the_first_and_count_all() {
 #[test]
 fn what_is_no_disk_is_told_why() {
     let refused = |test: TestMesh| test.mesh().require_disk().unwrap_err();
-    assert_eq!(refused(common::icosphere(1)), Error::ClosedSurface { genus: 0 });
-    assert_eq!(refused(common::torus(5, 5)), Error::ClosedSurface { genus: 1 });
-    assert_eq!(refused(common::punctured_torus()), Error::HasHandles { genus: 1 });
+    assert_eq!(refused(common::icosphere(1)), MeshError::ClosedSurface { genus: 0 }.into());
+    assert_eq!(refused(common::torus(5, 5)), MeshError::ClosedSurface { genus: 1 }.into());
+    assert_eq!(refused(common::punctured_torus()), MeshError::HasHandles { genus: 1 }.into());
     let first = common::cap(4, 1.).faces.len();
-    assert_eq!(refused(common::two_pieces()), Error::SeveralComponents { faces: elements(&[0, first], 2) });
+    assert_eq!(
+        refused(common::two_pieces()),
+        MeshError::SeveralComponents { faces: elements(&[0, first], 2) }.into()
+    );
     let mesh = common::holed_grid().mesh();
     let starts: Vec<usize> = mesh.boundary_loops().iter().map(|l| l[0] as usize).collect();
-    let expected = Error::SeveralBoundaries { vertices: elements(&starts, 3), sizes: vec![32, 10, 4] };
+    let expected =
+        MeshError::SeveralBoundaries { vertices: elements(&starts, 3), sizes: vec![32, 10, 4] }.into();
     let error = refused(common::holed_grid());
     assert_eq!(error, expected);
     assert!(error.to_string().contains("3 boundary loops of 32, 10, 4 edges"), "{error}");

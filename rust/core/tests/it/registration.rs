@@ -8,7 +8,7 @@ use authalic::mesh::TriangleMesh;
 use authalic::registration::{
     DiskRegistration, Landmarks, RegistrationOptions, SphereRegistration, register_disks, register_spheres,
 };
-use authalic::{Error, Silent, Status, folded_in_plane, folded_on_sphere};
+use authalic::{Error, LandmarkError, Silent, Status, folded_in_plane, folded_on_sphere};
 use proptest::prelude::*;
 
 fn disks(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> DiskRegistration {
@@ -116,12 +116,21 @@ fn bad_landmarks_are_refused_before_any_work() {
         let landmarks = Landmarks { source, target };
         register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut observer).unwrap_err()
     };
-    assert!(matches!(refused(&[1, 2], &[1]), Error::LandmarkCounts { source_count: 2, target_count: 1 }));
-    assert!(matches!(refused(&[], &[]), Error::TooFewLandmarks { found: 0, needed: 1 }));
-    assert!(matches!(refused(&[1, 10_000], &[1, 2]), Error::LandmarkOutOfRange { value: 10_000, .. }));
-    assert!(matches!(refused(&[1, 2], &[3, 3]), Error::RepeatedLandmark { first: 0, vertex: 3, .. }));
+    assert!(matches!(
+        refused(&[1, 2], &[1]),
+        Error::Landmarks(LandmarkError::Counts { source_count: 2, target_count: 1 })
+    ));
+    assert!(matches!(refused(&[], &[]), Error::Landmarks(LandmarkError::TooFew { found: 0, needed: 1 })));
+    assert!(matches!(
+        refused(&[1, 10_000], &[1, 2]),
+        Error::Landmarks(LandmarkError::OutOfRange { value: 10_000, .. })
+    ));
+    assert!(matches!(
+        refused(&[1, 2], &[3, 3]),
+        Error::Landmarks(LandmarkError::Repeated { first: 0, vertex: 3, .. })
+    ));
     assert!(
-        matches!(refused(&[1, edge], &[1, 2]), Error::LandmarkOnBoundary { vertex, .. } if vertex == edge)
+        matches!(refused(&[1, edge], &[1, 2]), Error::Landmarks(LandmarkError::OnBoundary { vertex, .. }) if vertex == edge)
     );
     let sphere = bumpy();
     let landmarks = Landmarks { source: &[1], target: &[1] };

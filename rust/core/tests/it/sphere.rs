@@ -7,7 +7,7 @@ use crate::common::closed::{
 };
 use crate::common::{self, TestMesh};
 use authalic::mesh::TriangleMesh;
-use authalic::{Error, SphereMapOptions, SphereMethod, folded_on_sphere};
+use authalic::{Error, MapError, MeshError, SphereMapOptions, SphereMethod, folded_on_sphere};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -287,7 +287,9 @@ fn bad_densities_are_refused() {
     assert!(matches!(refusal(&density[1..]), Error::InvalidArray { name: "density", .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-13] {
         density[7] = bad;
-        assert!(matches!(refusal(&density), Error::Density { faces, .. } if faces.first == [7]));
+        assert!(
+            matches!(refusal(&density), Error::Map(MapError::Density { faces, .. }) if faces.first == [7])
+        );
     }
 }
 
@@ -333,9 +335,15 @@ fn what_is_no_sphere_is_refused() {
         assert!(error.is_mesh_error(), "{}", shape.name);
         assert_eq!(error, mesh.require_sphere().unwrap_err());
         let is_right = match (shape.components, shape.n_loops) {
-            (1, 0) => matches!(error, Error::SphereHasHandles { genus } if Some(genus) == shape.genus),
-            (1, loops) => matches!(&error, Error::OpenSurface { sizes, .. } if sizes.len() == loops),
-            (pieces, _) => matches!(&error, Error::SeveralComponents { faces } if faces.count == pieces),
+            (1, 0) => {
+                matches!(error, Error::Mesh(MeshError::SphereHasHandles { genus }) if Some(genus) == shape.genus)
+            }
+            (1, loops) => {
+                matches!(&error, Error::Mesh(MeshError::OpenSurface { sizes, .. }) if sizes.len() == loops)
+            }
+            (pieces, _) => {
+                matches!(&error, Error::Mesh(MeshError::SeveralComponents { faces }) if faces.count == pieces)
+            }
         };
         assert!(is_right, "{}: {error}", shape.name);
     }
@@ -362,7 +370,7 @@ fn two_spheres_are_two_pieces() {
     let moved: Vec<[u32; 3]> = second.faces.iter().map(|face| face.map(|v| v + shift)).collect();
     let mesh = TriangleMesh::new(&vertices, &[first.faces, moved].concat()).unwrap();
     let error = refused(&mesh, SphereMapOptions::default());
-    assert!(matches!(error, Error::SeveralComponents { faces } if faces.first == [0, 80]));
+    assert!(matches!(error, Error::Mesh(MeshError::SeveralComponents { faces }) if faces.first == [0, 80]));
 }
 
 proptest! {

@@ -9,7 +9,7 @@ use crate::common::closed::{
     rotation, spiky_spheres, with,
 };
 use authalic::mesh::TriangleMesh;
-use authalic::{Error, SphereMap, SphereMapOptions, SphereMethod, Status, sphere_map};
+use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status, sphere_map};
 
 type Point = [f64; 3];
 
@@ -92,16 +92,18 @@ fn a_start_map_that_is_none_is_refused() {
     };
     all(
         refusal(&|map| map[7] = [0.0; 3]),
-        &|e| matches!(e, Error::InitialSphere { vertices, .. } if vertices.first == [7]),
+        &|e| matches!(e, Error::Map(MapError::InitialSphere { vertices, .. }) if vertices.first == [7]),
     );
     all(
         refusal(&|map| map[9][1] = f64::NAN),
-        &|e| matches!(e, Error::MapNonFinite { vertices, .. } if vertices.first == [9]),
+        &|e| matches!(e, Error::Map(MapError::NonFinite { vertices, .. }) if vertices.first == [9]),
     );
-    all(refusal(&|map| map[9][1] = f64::INFINITY), &|e| matches!(e, Error::MapNonFinite { .. }));
+    all(refusal(&|map| map[9][1] = f64::INFINITY), &|e| matches!(e, Error::Map(MapError::NonFinite { .. })));
     all(refusal(&|map| map.truncate(20)), &|e| matches!(e, Error::InvalidArray { name: "initial", .. }));
     let mirror = |map: &mut Vec<Point>| map.iter_mut().for_each(|x| x[0] = -x[0]);
-    all(refusal(&mirror), &|e| matches!(e, Error::InitialSphere { .. }) && e.to_string().contains("mirror"));
+    all(refusal(&mirror), &|e| {
+        matches!(e, Error::Map(MapError::InitialSphere { .. })) && e.to_string().contains("mirror")
+    });
 }
 
 // Progress, cancel, limits

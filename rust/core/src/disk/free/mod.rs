@@ -83,7 +83,7 @@ impl Free<'_> {
     /// The map within the unit disk.
     ///
     /// # Errors
-    /// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before there
+    /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds, [`Error::CancelledEarly`] where the observer ended the run before there
     /// was a map without folds.
     pub(super) fn map(
         &self,

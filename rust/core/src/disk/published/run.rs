@@ -8,7 +8,7 @@ use super::fixed_point::fixed_point;
 use super::objective::DiskDomain;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::disk::{DiskMapOptions, Map, Method, certificate, start, unfold};
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
 use crate::optimize::published::nonlinear_cg::{CgOptions, minimize};
 use crate::optimize::published::{Domain as _, Stopping};
@@ -74,7 +74,7 @@ impl Run<'_> {
         let tutte = start::tutte(self.mesh, domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let folded = certificate::folded(self.mesh, &tutte);
         match (Elements::collect(folded.into_iter().map(|face| self.given_face(face))), mended) {
-            (Some(folded), None) => Err(Error::NoEmbedding { folded }),
+            (Some(folded), None) => Err(NumericsError::NoEmbedding { folded }.into()),
             (Some(_), Some(mended)) => Ok(mended),
             (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
             (None, Some(mended)) => {

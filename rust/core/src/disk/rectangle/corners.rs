@@ -11,7 +11,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
@@ -62,11 +62,11 @@ impl<'a> Outline<'a> {
     /// The places of corners that are given as vertices.
     ///
     /// # Errors
-    /// [`Error::NoRectangle`] where they are not on the boundary or not in its order, or press a face flat.
+    /// [`MapError::NoRectangle`] where they are not on the boundary or not in its order, or press a face flat.
     pub(super) fn given(&self, corners: [usize; 4]) -> Result<Corners, Error> {
         let refuse = |reason: &str| {
             let vertices = Elements::collect(corners).expect("there are four");
-            Err(Error::NoRectangle { vertices, reason: reason.into() })
+            Err(MapError::NoRectangle { vertices, reason: reason.into() }.into())
         };
         let place = |vertex: usize| self.vertices.iter().position(|&v| v as usize == vertex);
         let [Some(a), Some(b), Some(c), Some(d)] = corners.map(place) else {
@@ -91,7 +91,7 @@ impl<'a> Outline<'a> {
     /// The places of the most likely corners, the first to go to the lower left.
     ///
     /// # Errors
-    /// [`Error::NoRectangle`] where any four would press a face flat.
+    /// [`MapError::NoRectangle`] where any four would press a face flat.
     pub(super) fn found(&self, aspect: Option<f64>) -> Result<Corners, Error> {
         let n = self.vertices.len();
         if n < 4 || self.cut_off.len() > 4 {
@@ -105,10 +105,11 @@ impl<'a> Outline<'a> {
                      boundary, but a rectangle has four: split these edges, or choose another boundary",
                 ),
             };
-            return Err(Error::NoRectangle {
+            return Err(MapError::NoRectangle {
                 vertices: vertices.expect("there are some"),
                 reason: reason.into(),
-            });
+            }
+            .into());
         }
         // 1. Sharp turns; for each part that needs a corner its sharpest one
         let (candidates, turns) = self.candidates();
@@ -142,12 +143,12 @@ impl<'a> Outline<'a> {
         let chords: Vec<[u32; 2]> = missed.map(|k| self.chords[k]).collect();
         match Elements::collect(chords.iter().flatten().map(|&v| v as usize)) {
             None => Ok(()),
-            Some(vertices) => Err(Error::NoRectangle {
+            Some(vertices) => Err(MapError::NoRectangle {
                 vertices,
                 reason: "an edge inside the surface joins them along one side, and the faces between would have no area: \
                          put a corner between them, or split the edge"
                     .into(),
-            }),
+            }.into()),
         }
     }
 

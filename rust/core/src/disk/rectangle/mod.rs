@@ -27,7 +27,7 @@ use crate::codomain::motion::Motion;
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::energy::authalic::AuthalicEnergy;
 use crate::energy::stretch::Profile;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError, NumericsError};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::corner_cotangents;
 use crate::mesh::renumbering::Renumbered;
@@ -153,7 +153,7 @@ pub(super) fn check_initial(
     let refuse =
         |vertices: &[u32], reason: &str| match Elements::collect(vertices.iter().map(|&v| v as usize)) {
             None => Ok(()),
-            Some(vertices) => Err(Error::InitialBoundary { vertices, reason: reason.into() }),
+            Some(vertices) => Err(MapError::InitialBoundary { vertices, reason: reason.into() }.into()),
         };
     if !(high[0] > low[0] && high[1] > low[1]) {
         return refuse(outline.vertices, "it must run around a rectangle");
@@ -192,7 +192,7 @@ fn sides(outline: &[u32], corners: &[usize; 4]) -> [Vec<u32>; 4] {
 /// Maps a surface onto a rectangle; the map as it is handed out.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
+/// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
 /// there was a map without folds.
 pub(super) fn solve(
     run: &Run<'_>,
@@ -223,14 +223,8 @@ pub(super) fn solve(
     let aspect = options.aspect.unwrap_or(likely.clamp(1.0 / MOST_ASPECT, MOST_ASPECT));
     // 2. The map
     let solved = rectangle.solve(aspect, &corners, &outline, is_cancelled, history, observer);
-    let (map, status) = solved.map_err(|error| match error {
-        Error::NoEmbedding { folded } => {
-            let folded = by_order.given_faces(folded);
-            let first = folded.first.iter().map(|&face| run.given_face(face)).collect();
-            Error::NoEmbedding { folded: Elements { first, ..folded } }
-        }
-        error => error,
-    })?;
+    let given_face = |face| run.given_face(by_order.given_face(face));
+    let (map, status) = solved.map_err(|error| error.with_faces(given_face))?;
     // 3. Lower left corner in (0, 0), longer side 1
     let (map, scale) = rectangle.laid_out(&map);
     history.rescale(scale * scale);
@@ -429,7 +423,7 @@ impl Rectangle<'_> {
         domain.solve_dirichlet(&vec![0.5; 3 * self.run.mesh.n_faces()], &mut map, &watch)?;
         match Elements::collect(certificate::folded(self.run.mesh, &map)) {
             None => Ok((lifted(map), status)),
-            Some(folded) => Err(Error::NoEmbedding { folded }),
+            Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
         }
     }
 

@@ -7,7 +7,7 @@
 //!
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
-use crate::error::{Elements, Error};
+use crate::error::{CurveError, Elements, Error, Side};
 use crate::mesh::TriangleMesh;
 
 /// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may
@@ -56,9 +56,9 @@ struct Path {
     can_close: bool,
 }
 
-/// One surface with its curves, and the name of the argument for messages.
-struct Side<'a> {
-    name: &'static str,
+/// The curves of a surface, which is one of two or alone.
+struct SurfaceCurves<'a> {
+    side: Option<Side>,
     mesh: &'a TriangleMesh,
     curves: &'a [Vec<usize>],
 }
@@ -78,12 +78,12 @@ impl Curves<'_> {
         target: &TriangleMesh,
     ) -> Result<Vec<CurvePair>, Error> {
         // 1. The surfaces and the counts
-        source.require_genus_zero().map_err(|error| error.of_surface("source"))?;
-        target.require_genus_zero().map_err(|error| error.of_surface("target"))?;
+        source.require_genus_zero().map_err(|error| error.of_surface(Side::Source))?;
+        target.require_genus_zero().map_err(|error| error.of_surface(Side::Target))?;
         self.check_counts(source, target)?;
         // 2. The curves
-        let ours = Side { name: "source_curves", mesh: source, curves: self.source };
-        let theirs = Side { name: "target_curves", mesh: target, curves: self.target };
+        let ours = SurfaceCurves { side: Some(Side::Source), mesh: source, curves: self.source };
+        let theirs = SurfaceCurves { side: Some(Side::Target), mesh: target, curves: self.target };
         checked(&ours, &theirs)
     }
 
@@ -91,18 +91,18 @@ impl Curves<'_> {
         let [source_count, target_count] = [self.source.len(), self.target.len()];
         let unpaired = source_count.min(target_count)..source_count.max(target_count);
         if let Some(unpaired) = Elements::collect(unpaired) {
-            return Err(Error::CurveCounts { source_count, target_count, unpaired });
+            return Err(CurveError::Counts { source_count, target_count, unpaired }.into());
         }
         let is_closed = |mesh: &TriangleMesh| mesh.boundary_loops().is_empty();
         match source_count == 0 && is_closed(source) && is_closed(target) {
-            true => Err(Error::NoCurves),
+            true => Err(CurveError::NoCurves.into()),
             false => Ok(()),
         }
     }
 }
 
 /// Checks curves by themselves, then pairs of them with what they meet.
-fn checked(ours: &Side<'_>, theirs: &Side<'_>) -> Result<Vec<CurvePair>, Error> {
+fn checked(ours: &SurfaceCurves<'_>, theirs: &SurfaceCurves<'_>) -> Result<Vec<CurvePair>, Error> {
     // 1. Each curve by itself
     let (source_paths, target_paths) = (ours.paths()?, theirs.paths()?);
     // 2. Pairs, and what they meet
@@ -117,8 +117,8 @@ fn checked(ours: &Side<'_>, theirs: &Side<'_>) -> Result<Vec<CurvePair>, Error> 
         let bounds = ours.bounds(curve, &pair.source, pair.closed)?;
         pair.on_boundary = theirs.bounds(curve, &pair.target, pair.closed)?;
         if bounds != pair.on_boundary {
-            let name = if bounds { ours.name } else { theirs.name };
-            return Err(Error::CurveBoundsOneSide { name, curve });
+            let side = if bounds { ours.side } else { theirs.side };
+            return Err(CurveError::BoundsOneSide { side, curve }.into());
         }
     }
     check_loops(ours.mesh, theirs.mesh, &pairs)?;
@@ -135,26 +135,26 @@ fn checked(ours: &Side<'_>, theirs: &Side<'_>) -> Result<Vec<CurvePair>, Error> 
 /// The same for curves of one surface, each its own partner.
 pub(crate) fn check_alone(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
     mesh.require_genus_zero()?;
-    let side = Side { name: "curves", mesh, curves };
-    checked(&side, &side)
+    let alone = SurfaceCurves { side: None, mesh, curves };
+    checked(&alone, &alone)
 }
 
-impl Side<'_> {
+impl SurfaceCurves<'_> {
     fn paths(&self) -> Result<Vec<Path>, Error> {
         (0..self.curves.len()).map(|curve| self.path(curve)).collect()
     }
 
     /// One curve, checked by itself.
     fn path(&self, curve: usize) -> Result<Path, Error> {
-        let (name, given) = (self.name, &self.curves[curve]);
+        let (side, given) = (self.side, &self.curves[curve]);
         let repeats_first = given.len() > 1 && given.first() == given.last();
         let edges = given.len().saturating_sub(1);
         if edges < if repeats_first { 3 } else { 2 } {
-            return Err(Error::ShortCurve { name, curve, edges });
+            return Err(CurveError::Short { side, curve, edges }.into());
         }
         let n_vertices = self.mesh.n_vertices();
         if let Some(place) = given.iter().position(|&vertex| vertex >= n_vertices) {
-            return Err(Error::CurveOutOfRange { name, curve, place, value: given[place], n_vertices });
+            return Err(CurveError::OutOfRange { side, curve, place, value: given[place], n_vertices }.into());
         }
         let vertices: Vec<u32> =
             given[..given.len() - usize::from(repeats_first)].iter().map(|&v| v as u32).collect();
@@ -162,7 +162,7 @@ impl Side<'_> {
         let is_off = |ends: &[usize]| !is_edge(self.mesh, ends[0] as u32, ends[1] as u32);
         if let Some(place) = given.windows(2).position(is_off) {
             let vertices = Elements::collect([given[place], given[place + 1]]).expect("there are two");
-            return Err(Error::CurveOffEdges { name, curve, place, vertices });
+            return Err(CurveError::OffEdges { side, curve, place, vertices }.into());
         }
         let ends_meet = || is_edge(self.mesh, vertices[vertices.len() - 1], vertices[0]);
         let can_close = repeats_first || (vertices.len() >= LEAST_RING && ends_meet());
@@ -175,12 +175,13 @@ impl Side<'_> {
         let twice = places.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         match twice.map(|pair| (pair[1].1, pair[0].1, pair[0].0)).min() {
             None => Ok(()),
-            Some((second, first, vertex)) => Err(Error::CurveMeetsItself {
-                name: self.name,
+            Some((second, first, vertex)) => Err(CurveError::MeetsItself {
+                side: self.side,
                 curve,
                 places: [first, second],
                 vertices: Elements::collect([vertex as usize]).expect("there is one"),
-            }),
+            }
+            .into()),
         }
     }
 
@@ -193,7 +194,7 @@ impl Side<'_> {
             if let Some(other) = other {
                 let shared = vertices.iter().map(|&v| v as usize).filter(|&v| owner[v] == other);
                 let vertices = Elements::collect(shared).expect("one was found");
-                return Err(Error::CurvesMeet { name: self.name, curves: [other, curve], vertices });
+                return Err(CurveError::Meet { side: self.side, curves: [other, curve], vertices }.into());
             }
             vertices.iter().for_each(|&v| owner[v as usize] = curve);
         }
@@ -206,7 +207,7 @@ impl Side<'_> {
         match Elements::collect(met) {
             None => Ok(false),
             Some(_) if closed && loop_along(self.mesh, vertices).is_some() => Ok(true),
-            Some(vertices) => Err(Error::CurveOnBoundary { name: self.name, curve, vertices }),
+            Some(vertices) => Err(CurveError::OnBoundary { side: self.side, curve, vertices }.into()),
         }
     }
 }
@@ -215,8 +216,8 @@ impl Side<'_> {
 fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Error> {
     let closed = source.can_close && target.can_close;
     if !closed && (source.repeats_first || target.repeats_first) {
-        let name = if source.repeats_first { "target_curves" } else { "source_curves" };
-        return Err(Error::CurveNotClosed { name, curve });
+        let side = if source.repeats_first { Side::Target } else { Side::Source };
+        return Err(CurveError::NotClosed { side: Some(side), curve }.into());
     }
     let gap = (closed && !target.repeats_first).then_some(Gap::AtEnd);
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
@@ -239,7 +240,7 @@ fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]
     let [source_count, target_count] = [source, target].map(|mesh| mesh.boundary_loops().len() - named);
     match source_count == target_count {
         true => Ok(()),
-        false => Err(Error::LoopCounts { source_count, target_count }),
+        false => Err(CurveError::LoopCounts { source_count, target_count }.into()),
     }
 }
 

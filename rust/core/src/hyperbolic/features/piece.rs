@@ -22,12 +22,14 @@ pub(crate) struct Feature {
     pub right: Bank,
     /// Whether it is a boundary loop of the piece.
     pub is_loop: bool,
+    /// The landmark curve that it lies along, `None` for a boundary loop that is none.
+    pub curve: Option<usize>,
 }
 
 impl Feature {
     /// The same feature from its end to its start.
     pub(crate) fn reversed(&self) -> Self {
-        Self { left: self.right.reversed(), right: self.left.reversed(), is_loop: self.is_loop }
+        Self { left: self.right.reversed(), right: self.left.reversed(), ..*self }
     }
 
     /// The first vertex.

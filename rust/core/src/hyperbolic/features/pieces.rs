@@ -25,9 +25,13 @@ pub(crate) fn pieces(
 ) -> Vec<(Piece, Piece)> {
     // 1. Curves and other loops with their features on either surface
     let pairs: Vec<&CurvePair> = divided.pairs.iter().chain(&placement.loops).collect();
-    let features = pairs.iter().zip(&placement.shifts).map(|(pair, &shift)| match pair.closed {
-        true => loop_features(pair, [source.points(), target.points()], shift),
-        false => [slit(&pair.source, source.points()), slit(&pair.target, target.points())],
+    let features = pairs.iter().zip(&placement.shifts).enumerate().map(|(number, (pair, &shift))| {
+        let features = match pair.closed {
+            true => loop_features(pair, [source.points(), target.points()], shift),
+            false => [slit(&pair.source, source.points()), slit(&pair.target, target.points())],
+        };
+        let curve = (number < divided.pairs.len()).then_some(number);
+        features.map(|feature| Feature { curve, ..feature })
     });
     let (ours, theirs): (Vec<Feature>, Vec<Feature>) = features.map(|[ours, theirs]| (ours, theirs)).unzip();
     // 2. The pieces, each with the features at it
@@ -80,7 +84,7 @@ impl Surface<'_> {
         match (left == region, right == region) {
             (true, _) => Some(feature.clone()),
             (false, true) => {
-                Some(Feature { left: feature.right.clone(), right: feature.left.clone(), is_loop: true })
+                Some(Feature { left: feature.right.clone(), right: feature.left.clone(), ..*feature })
             }
             (false, false) => None,
         }
@@ -111,7 +115,7 @@ fn slit(vertices: &[u32], points: &[Vector]) -> Feature {
         vertices: vertices.to_vec(),
         parameters: shares(vertices.iter().map(|&vertex| points[vertex as usize])),
     };
-    Feature { left: bank.clone(), right: bank, is_loop: false }
+    Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
 
 /// A pair of closed curves as loops around what lies on their left.
@@ -192,6 +196,7 @@ impl Around {
             left: bank(&self.vertices[..=middle], &self.parameters[..=middle]),
             right: bank(&self.vertices[middle..], &self.parameters[middle..]).reversed(),
             is_loop: true,
+            curve: None,
         }
     }
 }

@@ -15,7 +15,7 @@ use super::regions::Divided;
 use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::control::Watch;
 use crate::disk::closed;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 use crate::sphere::{rough_conformal, vertex_weights};
@@ -77,8 +77,8 @@ struct Samples {
 /// Places two surfaces on the sphere, by `spheres` (source, target) where given.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] and [`Error::NoDirection`] where `spheres` are no positions,
-/// [`Error::FactorizationFailed`] where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
+/// [`Error::InvalidArray`] and [`MapError::NoDirection`] where `spheres` are no positions,
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
 /// watch.
 pub(crate) fn placed(
     meshes: [&TriangleMesh; 2],
@@ -125,7 +125,7 @@ fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector]) -> Resu
     let is_bad = |vertex: &usize| !(norm(given[*vertex]) > 0.0 && norm(given[*vertex]).is_finite());
     match Elements::collect((0..given.len()).filter(is_bad)) {
         None => Ok(given.iter().map(|&x| unit(x)).collect()),
-        Some(vertices) => Err(Error::NoDirection { name, vertices }),
+        Some(vertices) => Err(MapError::NoDirection { name, vertices }.into()),
     }
 }
 

@@ -8,7 +8,7 @@
 //! Input: checked pairs of curves. Cost: linear in the faces, k² for k curves.
 
 use super::curves::{CurvePair, Gap, face_on_left, loop_along};
-use crate::error::Error;
+use crate::error::{CurveError, Error, Side};
 use crate::mesh::TriangleMesh;
 use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
 use crate::mesh::geometry::triangle;
@@ -57,7 +57,7 @@ pub(crate) struct Divided {
 /// Divides both surfaces along closed curves and pairs their regions.
 ///
 /// # Errors
-/// [`Error::CurveSides`] and [`Error::LoopSides`] where sides of a closed curve cannot belong together.
+/// [`CurveError::Sides`] and [`CurveError::LoopSides`] where sides of a closed curve cannot belong together.
 pub(crate) fn divided(
     source: &TriangleMesh,
     target: &TriangleMesh,
@@ -131,8 +131,8 @@ fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Er
     for curve in (0..ours.sides.len()).filter(|&curve| curve != closed) {
         let [on_left, their_side] = [left[ours.region(curve)], their_left[theirs.region(curve)]];
         if on_left != their_side {
-            let surface = if on_left == left_is_inside { "source" } else { "target" };
-            return Err(Error::CurveSides { curve, closed, surface });
+            let side = if on_left == left_is_inside { Side::Source } else { Side::Target };
+            return Err(CurveError::Sides { curve, closed, side }.into());
         }
     }
     let [on_left, their_loops] = [ours.loops_in(&left), theirs.loops_in(&their_left)];
@@ -141,7 +141,7 @@ fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Er
         true => Ok(()),
         false => {
             let [source_count, target_count] = [inside(on_left), inside(their_loops)];
-            Err(Error::LoopSides { closed, source_count, target_count })
+            Err(CurveError::LoopSides { closed, source_count, target_count }.into())
         }
     }
 }

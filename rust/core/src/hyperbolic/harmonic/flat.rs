@@ -16,7 +16,7 @@ use super::initial::{boundary_corners, segment};
 use super::layout::{Laplace, Planar, clamped_weights, lifted, planar_layout};
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError, Side};
 use crate::hyperbolic::slice::{NONE, Sliced};
 use crate::location::{Location, Locator};
 
@@ -44,18 +44,21 @@ struct Laid<'a> {
 /// Maps a piece with one or two features.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where a layout folds in double precision, [`Error::CancelledEarly`].
+/// [`NumericsError::NoEmbedding`], with faces of the pieces, where a layout folds in double precision;
+/// [`Error::CancelledEarly`].
 pub(super) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
     // 1. Both surfaces on the same domain
     let is_cylinder = source.sides.len() > 2;
     let theirs = match is_cylinder {
-        true => on_cylinder(target, watch)?,
-        false => planar_layout(target, &on_circle(target), watch)?,
+        true => on_cylinder(target, watch),
+        false => planar_layout(target, &on_circle(target), watch),
     };
+    let theirs = theirs.map_err(|error| error.of_surface(Side::Target))?;
     let ours = match is_cylinder {
-        true => on_cylinder(source, watch)?,
-        false => planar_layout(source, &on_polygon(source, target, &theirs), watch)?,
+        true => on_cylinder(source, watch),
+        false => planar_layout(source, &on_polygon(source, target, &theirs), watch),
     };
+    let ours = ours.map_err(|error| error.of_surface(Side::Source))?;
     let [ours, theirs] = [(source, ours), (target, theirs)].map(|(sliced, layout)| Laid { sliced, layout });
     // 2. Where the vertices of each are on the other
     let locations = ours.places_on(&theirs, watch)?;
@@ -187,7 +190,7 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
             let folded = folded_in_plane(&disk.faces, &laid).into_iter();
             match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
                 None => Ok(laid),
-                Some(folded) => Err(Error::NoEmbedding { folded }),
+                Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
             }
         }
     }

@@ -20,7 +20,7 @@ use super::atlas::{Atlas, Random};
 use super::delaunay::Net;
 use super::layout::{Planar, lifted, planar_layout};
 use crate::control::Watch;
-use crate::error::Error;
+use crate::error::{Error, Side};
 use crate::hyperbolic::moebius::{Complex, Moebius};
 use crate::hyperbolic::slice::{NONE, Opened, Sliced};
 use crate::location::{Location, Locator};
@@ -43,7 +43,8 @@ pub(crate) struct Places {
 /// The initial map between two surfaces sliced alike, with the transitions of the source's edges.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where a disk has no planar layout in double precision, [`Error::CancelledEarly`].
+/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding), with faces of the pieces, where a disk has no
+/// planar layout in double precision; [`Error::CancelledEarly`].
 pub(crate) fn initial_map(
     source: &Sliced,
     target: &Sliced,
@@ -51,7 +52,11 @@ pub(crate) fn initial_map(
     watch: &Watch<'_>,
 ) -> Result<(Places, Net), Error> {
     // 1. Both disks on the same polygon
-    let layouts = [layout_on_polygon(source, watch)?, layout_on_polygon(target, watch)?];
+    let of = |side| move |error: Error| error.of_surface(side);
+    let layouts = [
+        layout_on_polygon(source, watch).map_err(of(Side::Source))?,
+        layout_on_polygon(target, watch).map_err(of(Side::Target))?,
+    ];
     // 2. Where each vertex of the source's disk is on the target
     let copies = places_of_copies(source, target, &layouts, watch)?;
     // 3. One of the copies of each vertex stands for it

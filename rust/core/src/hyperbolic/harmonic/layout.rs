@@ -8,7 +8,7 @@
 
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::hyperbolic::slice::{NONE, Opened, Sliced};
 use crate::mesh::geometry::corner_cotangents;
 use crate::parallel;
@@ -24,7 +24,8 @@ pub(super) type Planar = [f64; 2];
 /// One position for each vertex of the disk, `held` where given; no face is folded.
 ///
 /// # Errors
-/// [`Error::NoEmbedding`] where faces fold in double precision, [`Error::CancelledEarly`].
+/// [`NumericsError::NoEmbedding`], with faces of the piece, where some fold in double precision;
+/// [`Error::CancelledEarly`].
 pub(super) fn planar_layout(
     sliced: &Sliced,
     held: &[Option<Planar>],
@@ -39,7 +40,7 @@ pub(super) fn planar_layout(
     let folded = folded_in_plane(&disk.faces, &uniform).into_iter();
     match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
         None => Ok(uniform),
-        Some(folded) => Err(Error::NoEmbedding { folded }),
+        Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
     }
 }
 
@@ -110,7 +111,7 @@ impl Laplace {
         factor.refactor(&self.analysis, &element, watch).map_err(|failure| match failure {
             Failure::Cancelled => Error::CancelledEarly,
             Failure::NotPositiveDefinite => {
-                Error::FactorizationFailed { what: "the Laplacian of a cut surface".into() }
+                NumericsError::FactorizationFailed { what: "the Laplacian of a cut surface".into() }.into()
             }
         })?;
         // the solution is what is held, and what Newton's step from there adds

@@ -17,7 +17,7 @@ use super::atlas::{Atlas, Walk};
 use super::delaunay::{Net, Weighted, delaunay};
 use super::initial::Places;
 use crate::control::{Observer, Status, Watch};
-use crate::error::Error;
+use crate::error::{Error, NumericsError};
 use crate::hyperbolic::moebius::{Complex, Moebius, exponential, seen_from};
 use crate::hyperbolic::slice::NONE;
 use crate::parallel;
@@ -81,7 +81,7 @@ struct Pull {
 /// Minimises E in place.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where the weights make the system singular in double precision;
+/// [`NumericsError::FactorizationFailed`] where the weights make the system singular in double precision;
 /// [`Error::CancelledEarly`].
 pub(crate) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Result<Descent, Error> {
     let analysis = map.analysis()?;
@@ -128,7 +128,7 @@ fn refused(failure: Failure) -> Error {
     match failure {
         Failure::Cancelled => Error::CancelledEarly,
         Failure::NotPositiveDefinite => {
-            Error::FactorizationFailed { what: "the Hessian of the harmonic energy".into() }
+            NumericsError::FactorizationFailed { what: "the Hessian of the harmonic energy".into() }.into()
         }
     }
 }

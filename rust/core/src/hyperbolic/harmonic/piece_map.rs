@@ -12,8 +12,7 @@ use super::initial::initial_map;
 use super::inverse::inverse;
 use super::newton::{ChartMap, Descent, newton};
 use crate::control::{Observer, Phase, Watch};
-use crate::error::Error;
-use crate::hyperbolic::features::piece::Piece;
+use crate::error::{Error, Side};
 use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
 use crate::hyperbolic::slice::{Sliced, SlicedPair};
 use crate::hyperbolic::{HyperbolicOptions, Solver};
@@ -36,9 +35,8 @@ pub(crate) struct PieceMap {
 /// Maps a piece.
 ///
 /// # Errors
-/// What metric, layout and harmonic map fail with, and [`Error::CancelledEarly`].
+/// What metric, layout and harmonic map fail with, of the faces of the pieces, and [`Error::CancelledEarly`].
 pub(crate) fn map_piece(
-    pieces: [&Piece; 2],
     sliced: &SlicedPair,
     options: &HyperbolicOptions<'_>,
     observer: &mut dyn Observer,
@@ -58,8 +56,9 @@ pub(crate) fn map_piece(
         let sliced = [source, target][surface];
         let points = sliced_points(sliced);
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
-        hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch)
-            .map_err(|error| on_surface(error, pieces[surface], sliced, ["source", "target"][surface]))
+        let metric = hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch);
+        let side = [Side::Source, Side::Target][surface];
+        metric.map_err(|error| error.with_faces(|face| sliced.places[face].face as usize).of_surface(side))
     };
     let ours = metric(0, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
     let theirs = metric(1, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
@@ -85,20 +84,6 @@ pub(crate) fn map_piece(
     let certificates = certify(&map, chi);
     let (locations, inverse) = (locations(&map), inverse(&map, source, target));
     Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
-}
-
-/// An error about faces of a slice as one about faces of the surface.
-fn on_surface(error: Error, piece: &Piece, sliced: &Sliced, surface: &'static str) -> Error {
-    match error {
-        Error::NoHyperbolicMetric { mut faces } => {
-            let face_of =
-                |face: &mut usize| *face = piece.face_of[sliced.places[*face].face as usize] as usize;
-            faces.first.iter_mut().for_each(face_of);
-            Error::NoHyperbolicMetric { faces }.of_surface(surface)
-        }
-        Error::CancelledEarly => Error::CancelledEarly,
-        error => error.of_surface(surface),
-    }
 }
 
 /// Rounds of unfolding, each keeping faces within one more ring; the last keeps all.

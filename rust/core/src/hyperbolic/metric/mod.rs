@@ -24,7 +24,7 @@ mod triangle;
 use std::f64::consts::TAU;
 
 use crate::control::Watch;
-use crate::error::{Elements, Error};
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::geometry::face_areas;
 use crate::vector::Vector;
 use edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
@@ -67,7 +67,7 @@ pub struct Metric {
 /// of edges with one face are on its boundary, and no interior edge may join two of those.
 ///
 /// # Errors
-/// [`Error::NoHyperbolicMetric`] where numerics allow none, [`Error::FactorizationFailed`] where the mesh is
+/// [`NumericsError::NoHyperbolicMetric`] where numerics allow none, [`NumericsError::FactorizationFailed`] where the mesh is
 /// too large, [`Error::CancelledEarly`] by the watch.
 pub(super) fn hyperbolic_metric(
     points: &[Vector],
@@ -131,7 +131,7 @@ fn by_flow(
 fn of_relaxed(surface: &Surface<'_>, relaxed: Relaxed) -> Result<Metric, Error> {
     let Relaxed { state, iterations, edges } = relaxed;
     match Elements::collect(bad_faces(surface, &state)) {
-        Some(faces) if !state.is_solved() => Err(Error::NoHyperbolicMetric { faces }),
+        Some(faces) if !state.is_solved() => Err(NumericsError::NoHyperbolicMetric { faces }.into()),
         _ => Ok(Metric { iterations, relaxed_edges: edges, ..metric(surface, &state) }),
     }
 }

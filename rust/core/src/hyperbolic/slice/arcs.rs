@@ -15,7 +15,7 @@ use super::cutting::{Cutting, Seam};
 use super::paths::{cheapest_path, lower_distances};
 use super::polyline::{Polyline, resampled};
 use crate::control::Watch;
-use crate::error::Error;
+use crate::error::{CurveError, Error};
 use crate::vector::{Vector, distance};
 
 /// The angle between the points of a carried polyline.
@@ -41,7 +41,7 @@ pub(super) struct Guide {
 /// Cuts the source along an arc for each link; returns their vertices.
 ///
 /// # Errors
-/// [`Error::NoArc`], [`Error::CancelledEarly`].
+/// [`CurveError::NoArc`], [`Error::CancelledEarly`].
 pub(super) fn source_arcs(
     surface: &mut Cutting,
     links: &[Link],
@@ -82,7 +82,7 @@ pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> V
 /// polylines.
 ///
 /// # Errors
-/// [`Error::NoArc`], [`Error::CancelledEarly`].
+/// [`CurveError::NoArc`], [`Error::CancelledEarly`].
 pub(super) fn target_arcs(
     surface: &mut Cutting,
     links: &[Link],
@@ -147,8 +147,8 @@ fn cut(surface: &mut Cutting, arc: &[u32]) {
     surface.split_chords(arc);
 }
 
-fn no_arc(link: &Link) -> Error {
-    Error::NoArc { feature: link.feature }
+fn no_arc(link: &Link) -> CurveError {
+    CurveError::NoArc { curve: link.curve }
 }
 
 fn goes_on(watch: &Watch<'_>) -> Result<(), Error> {

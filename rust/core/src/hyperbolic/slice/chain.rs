@@ -16,8 +16,8 @@ use crate::vector::{Vector, distance};
 /// A link from the end of a feature to the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Link {
-    /// The feature of the piece from which it comes.
-    pub feature: usize,
+    /// The landmark curve from which it comes, `None` for a boundary loop that is none.
+    pub curve: Option<usize>,
     /// The end of that one.
     pub from: u32,
     /// The start of the next.
@@ -47,9 +47,9 @@ pub(super) fn features(piece: &Piece, chain: &[(usize, bool)]) -> Vec<Feature> {
 }
 
 /// What the arcs of a chain have to join, for its features in order.
-pub(super) fn links(chain: &[(usize, bool)], features: &[Feature]) -> Vec<Link> {
-    let pairs = features.windows(2).zip(chain);
-    pairs.map(|(pair, &(feature, _))| Link { feature, from: pair[0].end(), to: pair[1].start() }).collect()
+pub(super) fn links(features: &[Feature]) -> Vec<Link> {
+    let link = |pair: &[Feature]| Link { curve: pair[0].curve, from: pair[0].end(), to: pair[1].start() };
+    features.windows(2).map(link).collect()
 }
 
 /// On either sphere, start and end of a feature.
@@ -96,7 +96,7 @@ mod tests {
     fn piece(angles: &[[f64; 2]]) -> Piece {
         let bank =
             |k: usize| Bank { vertices: vec![2 * k as u32, 2 * k as u32 + 1], parameters: vec![0.0, 1.0] };
-        let feature = |k: usize| Feature { left: bank(k), right: bank(k), is_loop: false };
+        let feature = |k: usize| Feature { left: bank(k), right: bank(k), is_loop: false, curve: Some(k) };
         let on_sphere: Vec<Vector> = angles.as_flattened().iter().map(|a| [a.cos(), a.sin(), 0.0]).collect();
         Piece {
             points: on_sphere.clone(),
@@ -114,8 +114,8 @@ mod tests {
         let chain = order(&piece, &piece);
         assert_eq!(chain, [(0, false), (2, false), (1, true)]);
         let features = features(&piece, &chain);
-        let links = links(&chain, &features);
-        let expected = [Link { feature: 0, from: 1, to: 4 }, Link { feature: 2, from: 5, to: 3 }];
+        let links = links(&features);
+        let expected = [Link { curve: Some(0), from: 1, to: 4 }, Link { curve: Some(2), from: 5, to: 3 }];
         assert_eq!(links, expected);
     }
 
@@ -123,7 +123,7 @@ mod tests {
     fn one_feature_or_none_needs_no_link() {
         let one = piece(&[[0.0, 0.2]]);
         assert_eq!(order(&one, &one), [(0, false)]);
-        assert!(links(&[(0, false)], &features(&one, &[(0, false)])).is_empty());
+        assert!(links(&features(&one, &[(0, false)])).is_empty());
         assert!(order(&piece(&[]), &piece(&[])).is_empty());
     }
 

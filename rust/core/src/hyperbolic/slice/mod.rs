@@ -28,7 +28,7 @@ mod tests;
 
 use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
-use crate::error::Error;
+use crate::error::{self, CurveError, Error};
 use crate::vector::Vector;
 use arcs::Carry;
 use cutting::{Cutting, Seam};
@@ -111,7 +111,7 @@ pub(super) struct SlicedPair {
 /// cannot.
 ///
 /// # Errors
-/// [`Error::Uncuttable`] for features that are no paths of edges or touch each other and [`Error::NoArc`]
+/// [`CurveError::Uncuttable`] for features that are no paths of edges or touch each other and [`CurveError::NoArc`]
 /// where two cannot be joined, both of either surface; [`Error::CancelledEarly`].
 pub(super) fn slice_pair(
     source: &Piece,
@@ -119,8 +119,10 @@ pub(super) fn slice_pair(
     carry: Carry<'_>,
     watch: &Watch<'_>,
 ) -> Result<SlicedPair, Error> {
-    let (of_source, of_target) =
-        (|error: Error| error.of_surface("source"), |error: Error| error.of_surface("target"));
+    let (of_source, of_target) = (
+        |error: Error| error.of_surface(error::Side::Source),
+        |error: Error| error.of_surface(error::Side::Target),
+    );
     // 1. Order and directions.
     let chain = chain::order(source, target);
     let [source_features, target_features] = [source, target].map(|piece| chain::features(piece, &chain));
@@ -128,14 +130,14 @@ pub(super) fn slice_pair(
     let mut source = cut_features(source).map_err(of_source)?;
     let mut target = cut_features(target).map_err(of_target)?;
     // 3. Cut along arcs.
-    let links = chain::links(&chain, &source_features);
+    let links = chain::links(&source_features);
     let source_arcs = arcs::source_arcs(&mut source, &links, watch).map_err(of_source)?;
     let guides = arcs::guides(&source, &source_arcs, carry);
-    let links = chain::links(&chain, &target_features);
+    let links = chain::links(&target_features);
     let (target_arcs, followed) = arcs::target_arcs(&mut target, &links, guides, watch).map_err(of_target)?;
     // 4. Open both.
-    let source = open(source, &chain, &source_features, &source_arcs).map_err(of_source)?;
-    let target = open(target, &chain, &target_features, &target_arcs).map_err(of_target)?;
+    let source = open(source, &source_features, &source_arcs).map_err(of_source)?;
+    let target = open(target, &target_features, &target_arcs).map_err(of_target)?;
     Ok(SlicedPair { source, target, followed })
 }
 
@@ -147,19 +149,19 @@ pub(super) fn slice_alone(piece: &Piece, watch: &Watch<'_>) -> Result<(Sliced, V
     let chain = chain::order(piece, piece);
     let features = chain::features(piece, &chain);
     let mut cutting = cut_features(piece)?;
-    let arcs = arcs::source_arcs(&mut cutting, &chain::links(&chain, &features), watch)?;
-    Ok((open(cutting, &chain, &features, &arcs)?, chain))
+    let arcs = arcs::source_arcs(&mut cutting, &chain::links(&features), watch)?;
+    Ok((open(cutting, &features, &arcs)?, chain))
 }
 
 /// Marks the features of a piece for cutting and splits the chords between them.
 fn cut_features(piece: &Piece) -> Result<Cutting, Error> {
     let mut cutting = Cutting::new(piece);
-    for (index, feature) in piece.features.iter().enumerate() {
+    for feature in &piece.features {
         let is_free = outline(feature).iter().all(|&vertex| !cutting.is_cut(vertex));
         let banks = if feature.is_loop { vec![&feature.left, &feature.right] } else { vec![&feature.left] };
         let are_paths = banks.iter().all(|bank| cutting.mark(&bank.vertices, Seam::Feature));
         if !is_free || !are_paths {
-            return Err(Error::Uncuttable { feature: index });
+            return Err(CurveError::Uncuttable { curve: feature.curve }.into());
         }
     }
     let vertices = cutting.cut_vertices();
@@ -176,12 +178,7 @@ fn outline(feature: &Feature) -> Vec<u32> {
 }
 
 /// Opens a surface along its features, and along its arcs besides.
-fn open(
-    cutting: Cutting,
-    chain: &[(usize, bool)],
-    features: &[Feature],
-    arcs: &[Vec<u32>],
-) -> Result<Sliced, Error> {
+fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sliced, Error> {
     let opposite_unless = |is_open: fn(Seam) -> bool| {
         let pairs = cutting.opposite.iter().zip(&cutting.seams);
         pairs.map(|(&across, &seam)| if is_open(seam) { NONE } else { across }).collect()
@@ -191,12 +188,12 @@ fn open(
     let boundary = match features.first() {
         Some(first) => {
             let edge = cutting.half_edge(first.left.vertices[0], first.left.vertices[1]);
-            disk.boundary_from(edge.ok_or(Error::Uncuttable { feature: chain[0].0 })?)
+            disk.boundary_from(edge.ok_or(CurveError::Uncuttable { curve: first.curve })?)
         }
         None => Vec::new(),
     };
     let sides = match_sides(expected_sides(&cutting, features, arcs), &boundary, &disk.vertex_of)
-        .map_err(|index| Error::Uncuttable { feature: chain[index].0 })?;
+        .map_err(|index| CurveError::Uncuttable { curve: features[index].curve })?;
     let Cutting { points, faces, places, .. } = cutting;
     Ok(Sliced { points, faces, places, surface, disk, sides })
 }

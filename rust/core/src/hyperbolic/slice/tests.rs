@@ -84,13 +84,16 @@ fn piece(points: Vec<Vector>, faces: Vec<[u32; 3]>) -> Piece {
 }
 
 fn with_slits(mut piece: Piece, paths: &[Vec<u32>]) -> Piece {
-    piece.features.extend(paths.iter().map(|path| slit(&piece.points, path)));
+    for path in paths {
+        let curve = Some(piece.features.len());
+        piece.features.push(Feature { curve, ..slit(&piece.points, path) });
+    }
     piece
 }
 
 fn slit(points: &[Vector], path: &[u32]) -> Feature {
     let bank = bank(points, path.to_vec());
-    Feature { left: bank.clone(), right: bank, is_loop: false }
+    Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
 
 fn bank(points: &[Vector], vertices: Vec<u32>) -> Bank {
@@ -131,7 +134,7 @@ fn with_holes(whole: &Piece, centres: &[u32]) -> Piece {
         rest_of_rim.reverse();
         let [left, right] =
             [rim[..=middle].to_vec(), rest_of_rim].map(|vertices| bank(&rest.points, vertices));
-        rest.features.push(Feature { left, right, is_loop: true });
+        rest.features.push(Feature { left, right, is_loop: true, curve: None });
     }
     rest
 }
@@ -525,7 +528,10 @@ fn features_that_touch_or_are_no_paths_are_refused() {
         let result = slice_pair(&piece, &piece, &identity, &watch);
         match is_fine {
             true => assert!(result.is_ok()),
-            false => assert_eq!(result.unwrap_err(), Error::Uncuttable { feature: 1 }.of_surface("source")),
+            false => {
+                let error = Error::from(CurveError::Uncuttable { curve: Some(1) });
+                assert_eq!(result.unwrap_err(), error.of_surface(crate::Side::Source))
+            }
         }
     }
 }

@@ -30,7 +30,7 @@ use super::moebius::{Complex, Moebius};
 use super::register::{on_surface, surface_vertex};
 use super::slice::{Side, Sliced, slice_alone};
 use crate::control::{Observer, Watch};
-use crate::error::Error;
+use crate::error::{CurveError, Error, NumericsError};
 use crate::location::Location;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
@@ -108,9 +108,9 @@ impl HyperbolicStructure {
 /// of the boundary, all of which are features whether they are named or not.
 ///
 /// # Errors
-/// Surfaces of another topology, curves that are no simple edge paths or touch, [`Error::CurveDivides`] for
-/// closed ones inside and [`Error::TooFewFeatures`] for fewer than three features are refused before any
-/// work. [`Error::NoHyperbolicMetric`] where double precision does not suffice; [`Error::CancelledEarly`].
+/// Surfaces of another topology, curves that are no simple edge paths or touch, [`CurveError::Divides`] for
+/// closed ones inside and [`CurveError::TooFewFeatures`] for fewer than three features are refused before any
+/// work. [`NumericsError::NoHyperbolicMetric`] where double precision does not suffice; [`Error::CancelledEarly`].
 pub fn hyperbolic_structure(
     mesh: &TriangleMesh,
     curves: &[Vec<usize>],
@@ -125,7 +125,9 @@ pub fn hyperbolic_structure(
     // 3. Its metric
     let chi = 2 - chain.len() as i64;
     let watch = Watch::new(observer, 0.15, "Hyperbolic metric");
-    let metric = hyperbolic_metric(&sliced_points(&sliced), &sliced.surface.faces, chi, metric, &watch)?;
+    let metric = hyperbolic_metric(&sliced_points(&sliced), &sliced.surface.faces, chi, metric, &watch);
+    let face_of = |face: usize| piece.face_of[sliced.places[face].face as usize] as usize;
+    let metric = metric.map_err(|error| error.with_faces(face_of))?;
     // 4. The fundamental domain and the group
     let atlas = Atlas::new(&sliced.surface, &metric);
     let domain = Development::centred(&sliced, &atlas);
@@ -164,11 +166,11 @@ pub fn hyperbolic_structure(
 fn checked(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
     let pairs = check_alone(mesh, curves)?;
     if let Some(curve) = pairs.iter().position(|pair| pair.closed && !pair.on_boundary) {
-        return Err(Error::CurveDivides { curve });
+        return Err(CurveError::Divides { curve }.into());
     }
     let slits = pairs.iter().filter(|pair| !pair.on_boundary).count();
     match slits + mesh.boundary_loops().len() {
-        found if found < 3 => Err(Error::TooFewFeatures { found }),
+        found if found < 3 => Err(CurveError::TooFewFeatures { found }.into()),
         _ => Ok(pairs),
     }
 }
@@ -217,7 +219,7 @@ fn pants_curves(
         let line = generator.fixed_points();
         closed_geodesic(atlas, &sliced.surface, face, line, generator.translation_length())
     });
-    let lost = || Error::FactorizationFailed { what: "the pants curves".into() };
+    let lost = || NumericsError::FactorizationFailed { what: "the pants curves".into() };
     let traced = traced.collect::<Option<Vec<_>>>().ok_or_else(lost)?;
     let on_given = |place: &Location| on_surface(piece, sliced, place);
     Ok(traced.iter().map(|curve| (curve.places.iter().map(on_given).collect(), curve.length)).unzip())

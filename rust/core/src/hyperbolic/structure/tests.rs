@@ -269,7 +269,7 @@ fn boundary_loops_are_features_named_or_not() {
     let around: Vec<usize> = surface.boundary_loops()[0].iter().map(|&v| v as usize).collect();
     let named = found(&[&slits[..], std::slice::from_ref(&around)].concat()).unwrap();
     assert!((named.boundary_lengths[2] - unnamed.boundary_lengths[2]).abs() < 1e-9);
-    assert_eq!(found(&[around]).unwrap_err(), Error::TooFewFeatures { found: 1 });
+    assert_eq!(found(&[around]).unwrap_err(), CurveError::TooFewFeatures { found: 1 }.into());
 }
 
 #[test]
@@ -282,10 +282,10 @@ fn what_is_not_hyperbolic_is_refused() {
         error
     };
     let three = slits(&ball, 3);
-    assert_eq!(refused(&[]), Error::TooFewFeatures { found: 0 });
-    assert_eq!(refused(&three[..2]), Error::TooFewFeatures { found: 2 });
+    assert_eq!(refused(&[]), CurveError::TooFewFeatures { found: 0 }.into());
+    assert_eq!(refused(&three[..2]), CurveError::TooFewFeatures { found: 2 }.into());
     let mut ring = circle(&ball, [1.0, 1.0, 0.3], 0.5);
     ring.push(ring[0]);
-    assert_eq!(refused(&[ring]), Error::CurveDivides { curve: 0 });
+    assert_eq!(refused(&[ring]), CurveError::Divides { curve: 0 }.into());
     assert!(refused(&[three[0].clone(), vec![0, 1]]).to_string().starts_with("curves: curve 1"));
 }

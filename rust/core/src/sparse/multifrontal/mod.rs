@@ -54,7 +54,7 @@ pub(crate) enum Order {
 /// The vertices of a mesh in an order that keeps factors sparse, every subtree of the elimination tree contiguous.
 ///
 /// # Errors
-/// [`Error::FactorizationFailed`] where the mesh is too large for 32-bit indices.
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for 32-bit indices.
 pub(crate) fn elimination_order(n_vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<u32>, Error> {
     let graph = Graph::of_cliques(n_vertices, faces);
     let order = fill_reducing_order(&graph)?;
@@ -75,7 +75,7 @@ impl Analysis {
     /// The unknowns are numbered by ascending vertex.
     ///
     /// # Errors
-    /// [`Error::FactorizationFailed`] where the mesh is too large for 32-bit indices.
+    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for 32-bit indices.
     pub(crate) fn new(
         n_vertices: usize,
         faces: &[[u32; 3]],

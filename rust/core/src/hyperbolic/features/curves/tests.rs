@@ -57,8 +57,14 @@ fn curves_are_closed_where_both_partners_can_be() {
     assert_eq!(pair(&repeated, &ring), Ok((true, Some(Gap::AtEnd), n)));
     assert_eq!(pair(&ring, &ring), Ok((true, Some(Gap::AtEnd), n)));
     assert_eq!(pair(&ring, &arc), Ok((false, None, arc.len())));
-    assert_eq!(pair(&arc, &repeated), Err(Error::CurveNotClosed { name: "source_curves", curve: 0 }));
-    assert_eq!(pair(&repeated, &arc), Err(Error::CurveNotClosed { name: "target_curves", curve: 0 }));
+    assert_eq!(
+        pair(&arc, &repeated),
+        Err(CurveError::NotClosed { side: Some(Side::Source), curve: 0 }.into())
+    );
+    assert_eq!(
+        pair(&repeated, &arc),
+        Err(CurveError::NotClosed { side: Some(Side::Target), curve: 0 }.into())
+    );
 }
 
 #[test]
@@ -70,7 +76,7 @@ fn counts_must_agree() {
     assert!(check([&whole, &whole], &[], &[]).unwrap_err().to_string().contains("use register_spheres"));
     assert!(check([&open, &open], &[], &[]).unwrap().is_empty());
     let error = check([&open, &whole], &[], &[]).unwrap_err();
-    assert_eq!(error, Error::LoopCounts { source_count: 1, target_count: 0 });
+    assert_eq!(error, CurveError::LoopCounts { source_count: 1, target_count: 0 }.into());
 }
 
 #[test]
@@ -111,7 +117,7 @@ fn the_boundary_is_met_by_whole_loops_only() {
     let ring = circle(&without(&sphere(3), |x| x[2] > 0.8), [0.0, 0.0, -1.0], 0.5);
     let ring = [&ring[..], &ring[..1]].concat();
     let error = check([&open, &open], &[backwards], &[ring]).unwrap_err();
-    assert_eq!(error, Error::CurveBoundsOneSide { name: "source_curves", curve: 0 });
+    assert_eq!(error, CurveError::BoundsOneSide { side: Some(Side::Source), curve: 0 }.into());
 }
 
 #[test]

@@ -89,11 +89,8 @@ fn nested_and_disjoint_circles_bound_pieces_with_the_same_parameters_on_both_sid
         loops.extend(on_surface.filter(|feature| feature.is_loop));
     }
     assert_eq!(loops.len(), 6);
-    let other_side = |feature: &Feature| Feature {
-        left: feature.right.clone(),
-        right: feature.left.clone(),
-        is_loop: true,
-    };
+    let other_side =
+        |feature: &Feature| Feature { left: feature.right.clone(), right: feature.left.clone(), ..*feature };
     assert!(loops.iter().all(|feature| loops.contains(&other_side(feature))));
     let counts: Vec<[usize; 2]> = found
         .iter()

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What an error is, as a word that programs can rely on while messages are reworded.
+
+/// Defines a closed list of kinds, each with the word for it.
+macro_rules! kinds {
+    ($(#[$doc:meta])* $name:ident { $($(#[$of:meta])* $kind:ident = $word:literal,)+ }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum $name { $($(#[$of])* $kind,)+ }
+
+        impl $name {
+            /// All kinds, in the order of their definition.
+            pub const ALL: &'static [Self] = &[$(Self::$kind),+];
+
+            /// The word for the kind, in snake case.
+            pub const fn as_str(self) -> &'static str {
+                match self { $(Self::$kind => $word,)+ }
+            }
+        }
+    };
+}
+pub(crate) use kinds;
+
+kinds! {
+    /// What an error is, by what has to be done about it; each says what the indices of its elements are of.
+    ErrorKind {
+        /// The vertex array is empty.
+        NoVertices = "no_vertices",
+        /// The face array is empty.
+        NoFaces = "no_faces",
+        /// More faces than can be numbered.
+        TooManyFaces = "too_many_faces",
+        /// A coordinate is NaN or infinite: vertices.
+        NotFinite = "not_finite",
+        /// A face names a vertex that does not exist: faces.
+        IndexOutOfRange = "index_out_of_range",
+        /// A face has a vertex twice: faces.
+        RepeatedVertex = "repeated_vertex",
+        /// A face has the vertices of an earlier one: faces.
+        DuplicateFace = "duplicate_face",
+        /// A face has no area: faces.
+        ZeroArea = "zero_area",
+        /// An edge has three faces or more: edges.
+        NonManifoldEdge = "non_manifold_edge",
+        /// Parts of the surface touch only in a vertex: vertices.
+        NonManifoldVertex = "non_manifold_vertex",
+        /// The surface is one-sided: an edge.
+        NotOrientable = "not_orientable",
+        /// A vertex has no face: vertices.
+        LooseVertex = "loose_vertex",
+        /// The mesh falls into several pieces: their first faces.
+        SeveralComponents = "several_components",
+        /// A disk was asked for, but the surface has no boundary.
+        ClosedSurface = "closed_surface",
+        /// A sphere was asked for, but the surface has a boundary: a vertex of each loop.
+        OpenSurface = "open_surface",
+        /// The surface has handles, like a torus.
+        Handles = "handles",
+        /// A disk was asked for, but the surface has several boundary loops: a vertex of each.
+        SeveralBoundaries = "several_boundaries",
+        /// A seam names a vertex that does not exist: pairs of vertices.
+        SeamOutOfRange = "seam_out_of_range",
+        /// A seam is no edge: pairs of vertices.
+        SeamNotEdge = "seam_not_edge",
+        /// An array has the wrong shape or content: rows, if some are at fault.
+        InvalidArray = "invalid_array",
+        /// An option has a value outside its range.
+        InvalidOption = "invalid_option",
+        /// A density is not positive: faces.
+        InvalidDensity = "invalid_density",
+        /// A map given has a coordinate that is NaN or infinite: vertices.
+        MapNotFinite = "map_not_finite",
+        /// An initial map has its boundary elsewhere than asked for: vertices.
+        InitialBoundary = "initial_boundary",
+        /// An initial map is no map onto the sphere: vertices.
+        InitialSphere = "initial_sphere",
+        /// A position on a sphere is its center or not finite: vertices.
+        NoDirection = "no_direction",
+        /// A boundary fits onto no rectangle: vertices.
+        NoRectangle = "no_rectangle",
+        /// Vertices that stay make folds inevitable: faces.
+        FixedFold = "fixed_fold",
+        /// An outline makes folds inevitable: faces.
+        OutlineFold = "outline_fold",
+        /// Source and target have different numbers of landmarks.
+        LandmarkCounts = "landmark_counts",
+        /// There are too few landmarks.
+        TooFewLandmarks = "too_few_landmarks",
+        /// A landmark is no vertex: pairs of landmarks.
+        LandmarkOutOfRange = "landmark_out_of_range",
+        /// A vertex is a landmark twice: pairs of landmarks.
+        RepeatedLandmark = "repeated_landmark",
+        /// A landmark is on the boundary: pairs of landmarks.
+        LandmarkOnBoundary = "landmark_on_boundary",
+        /// Source and target have different numbers of curves: the curves without a partner.
+        CurveCounts = "curve_counts",
+        /// Closed surfaces without a curve.
+        NoCurves = "no_curves",
+        /// A curve has too few edges.
+        ShortCurve = "short_curve",
+        /// A curve names a vertex that does not exist: places in the curve.
+        CurveOutOfRange = "curve_out_of_range",
+        /// A curve leaves the edges of the mesh: the two vertices that no edge joins.
+        CurveOffEdges = "curve_off_edges",
+        /// A curve meets itself: vertices.
+        CurveMeetsItself = "curve_meets_itself",
+        /// Two curves meet: vertices.
+        CurvesMeet = "curves_meet",
+        /// A curve meets the boundary without being a whole loop of it: vertices.
+        CurveOnBoundary = "curve_on_boundary",
+        /// A curve is open, but its partner is closed.
+        CurveNotClosed = "curve_not_closed",
+        /// A curve is a boundary loop, but its partner is not.
+        CurveBoundsOneSide = "curve_bounds_one_side",
+        /// A curve lies inside a closed curve on one surface only.
+        CurveSides = "curve_sides",
+        /// A closed curve divides a surface that has to stay in one piece.
+        CurveDivides = "curve_divides",
+        /// Source and target have different numbers of boundary loops.
+        LoopCounts = "loop_counts",
+        /// Source and target have different numbers of boundary loops inside a closed curve.
+        LoopSides = "loop_sides",
+        /// Too few curves and boundary loops for a hyperbolic metric.
+        TooFewFeatures = "too_few_features",
+        /// The curves of one surface are a mirror image of those of the other.
+        Mirrored = "mirrored",
+        /// The surface cannot be cut open along a curve, or along a boundary loop.
+        UncuttableCurve = "uncuttable_curve",
+        /// No path of edges leads from a curve, or from a boundary loop, to the next.
+        NoArc = "no_arc",
+        /// A linear system could not be solved.
+        FactorizationFailed = "factorization_failed",
+        /// No hyperbolic metric was found: faces.
+        NoHyperbolicMetric = "no_hyperbolic_metric",
+        /// No map without folds was found: faces.
+        NoEmbedding = "no_embedding",
+        /// Folds could not be removed: faces.
+        StillFolded = "still_folded",
+        /// The run was cancelled before there was a map.
+        Cancelled = "cancelled",
+        /// A fault of the library itself.
+        Internal = "internal",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ErrorKind;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn words_are_distinct_and_in_snake_case() {
+        let words: BTreeSet<&str> = ErrorKind::ALL.iter().map(|kind| kind.as_str()).collect();
+        assert_eq!(words.len(), ErrorKind::ALL.len());
+        let is_snake = |word: &&str| word.bytes().all(|b| b.is_ascii_lowercase() || b == b'_');
+        assert!(words.iter().all(is_snake));
+    }
+}

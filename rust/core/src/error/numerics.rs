@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What can go wrong on good input, in double precision.
+
+use thiserror::Error;
+
+use super::elements::Elements;
+use super::kind::ErrorKind;
+
+/// Why a computation failed.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NumericsError {
+    /// A linear system could not be factored.
+    #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
+    FactorizationFailed {
+        /// The matrix.
+        what: String,
+    },
+
+    /// No hyperbolic metric with geodesic boundary was found.
+    #[error(
+        "no hyperbolic metric with these boundaries was found in double precision, left over: {}; remove the slivers there",
+        .faces.named("face")
+    )]
+    NoHyperbolicMetric {
+        /// The faces that stayed without area, or whose angles do not fit together.
+        faces: Elements,
+    },
+
+    /// A tangle could not be resolved.
+    #[error(
+        "no map without folds was found that keeps the outline{}, left over: {}; {}",
+        fixed.as_ref().map_or(String::new(), |pins| format!(" and the fixed vertices ({})", pins.named("vertex"))),
+        .folded.named("face"),
+        if fixed.is_some() { "leave these vertices out of fixed, or move them" }
+        else { "smooth the outline there, or refine the mesh; on a sphere, tangles must lie within a hemisphere" }
+    )]
+    StillFolded {
+        /// The faces that stayed folded.
+        folded: Elements,
+        /// Fixed vertices that may be in the way.
+        fixed: Option<Elements>,
+    },
+
+    /// No map without folded faces was found.
+    #[error(
+        "no map without folds was found in double precision, left over: {}; cut the long thin parts there open by seams",
+        .folded.named("face")
+    )]
+    NoEmbedding {
+        /// The faces that stayed folded.
+        folded: Elements,
+    },
+}
+
+impl NumericsError {
+    /// What the error is.
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::FactorizationFailed { .. } => ErrorKind::FactorizationFailed,
+            Self::NoHyperbolicMetric { .. } => ErrorKind::NoHyperbolicMetric,
+            Self::StillFolded { .. } => ErrorKind::StillFolded,
+            Self::NoEmbedding { .. } => ErrorKind::NoEmbedding,
+        }
+    }
+
+    /// The error with other numbers for the faces at fault, as where they are faces of a part of the mesh.
+    pub(crate) fn with_faces(mut self, face_of: impl Fn(usize) -> usize) -> Self {
+        match &mut self {
+            Self::FactorizationFailed { .. } => {}
+            Self::NoHyperbolicMetric { faces }
+            | Self::StillFolded { folded: faces, .. }
+            | Self::NoEmbedding { folded: faces } => {
+                faces.first.iter_mut().for_each(|face| *face = face_of(*face));
+            }
+        }
+        self
+    }
+
+    /// The faces at fault, where the error has any.
+    pub fn elements(&self) -> Option<&Elements> {
+        match self {
+            Self::FactorizationFailed { .. } => None,
+            Self::NoHyperbolicMetric { faces } => Some(faces),
+            Self::StillFolded { folded, .. } | Self::NoEmbedding { folded } => Some(folded),
+        }
+    }
+}

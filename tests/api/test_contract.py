@@ -14,6 +14,8 @@ import authalic
 from . import meshes
 
 NAMES = {
+    "ERROR_KINDS",
+    "WARNING_KINDS",
     "Certificates",
     "DiskMap",
     "Distortion",
@@ -23,6 +25,7 @@ NAMES = {
     "Patch",
     "Refinement",
     "Registration",
+    "RegistrationWarning",
     "SolverError",
     "SphereMap",
     "Untangled",

@@ -9,6 +9,8 @@
 """
 
 from ._native import (
+    ERROR_KINDS,
+    WARNING_KINDS,
     Certificates,
     DiskMap,
     Distortion,
@@ -34,8 +36,11 @@ from ._native import (
     stretch_hessian,
     untangle,
 )
+from ._warnings import RegistrationWarning
 
 __all__ = [
+    "ERROR_KINDS",
+    "WARNING_KINDS",
     "Certificates",
     "DiskMap",
     "Distortion",
@@ -45,6 +50,7 @@ __all__ = [
     "Patch",
     "Refinement",
     "Registration",
+    "RegistrationWarning",
     "SolverError",
     "SphereMap",
     "Untangled",

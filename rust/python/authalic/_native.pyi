@@ -7,7 +7,11 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._warnings import RegistrationWarning
+
 __all__ = [
+    "ERROR_KINDS",
+    "WARNING_KINDS",
     "Certificates",
     "DiskMap",
     "Distortion",
@@ -39,15 +43,26 @@ _Indices: TypeAlias = NDArray[np.int64]
 _Complex: TypeAlias = NDArray[np.complex128]
 _Progress: TypeAlias = Callable[[float, str], bool | None]
 _Surface: TypeAlias = tuple[ArrayLike, ArrayLike]
+_Side: TypeAlias = Literal["source", "target"] | None
 _Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
 
 __version__: str
+ERROR_KINDS: dict[str, str]
+WARNING_KINDS: dict[str, str]
 
 class MeshError(ValueError):
+    kind: str
+    side: _Side
+    curve: int | None
+    second_curve: int | None
     indices: tuple[int, ...] | tuple[tuple[int, ...], ...]
     count: int
 
 class SolverError(RuntimeError):
+    kind: str
+    side: _Side
+    curve: int | None
+    second_curve: int | None
     indices: tuple[int, ...] | tuple[tuple[int, ...], ...]
     count: int
 
@@ -200,7 +215,7 @@ class Registration:
     @property
     def certificates(self) -> Certificates | None: ...
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[RegistrationWarning]: ...
     @property
     def energies(self) -> list[_Reals]: ...
     @property

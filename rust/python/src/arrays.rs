@@ -9,7 +9,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::errors::bad_array;
+use crate::errors::{bad_array, bad_indices};
 
 /// An (n, 2) array for Python.
 pub type Pairs = Py<PyArray2<f64>>;
@@ -35,7 +35,7 @@ pub fn indices<const N: usize>(
 /// Vertices: integers of shape (k,) that fit a vertex index; `noun` names an entry.
 pub fn index_list(
     object: &Bound<'_, PyAny>,
-    name: &'static str,
+    name: &str,
     noun: &str,
     n_vertices: usize,
 ) -> PyResult<Vec<usize>> {
@@ -135,7 +135,7 @@ pub fn from_index_list(py: Python<'_>, list: impl ExactSizeIterator<Item = usize
     PyArray1::from_iter(py, list.map(|i| i as i64)).unbind()
 }
 
-fn as_array<'py>(object: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Bound<'py, PyUntypedArray>> {
+fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = object.py();
     let made = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (object,));
     let failed =
@@ -151,7 +151,7 @@ fn kind(array: &Bound<'_, PyUntypedArray>) -> PyResult<String> {
 /// A C-contiguous array of `dtype` made from an object whose dtype is of one of `kinds`.
 fn converted<'py, T: numpy::Element>(
     object: &Bound<'py, PyAny>,
-    name: &'static str,
+    name: &str,
     dtype: &str,
     kinds: &str,
     expected: &str,
@@ -169,7 +169,7 @@ fn converted<'py, T: numpy::Element>(
 
 fn rows<T: numpy::Element + Copy, const N: usize>(
     object: &Bound<'_, PyAny>,
-    name: &'static str,
+    name: &str,
     dtype: &str,
     kinds: &str,
     expected: &str,
@@ -185,7 +185,7 @@ fn rows<T: numpy::Element + Copy, const N: usize>(
 }
 
 /// Reals that are whole numbers, as integers.
-fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<[i64; N]>> {
+fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[i64; N]>> {
     let reals: Vec<[f64; N]> = rows(object, name, "float64", "f", "integers")?;
     match reals.as_flattened().iter().find(|x| x.fract() != 0.0 || x.abs() > 2f64.powi(53)) {
         Some(x) => Err(bad_array(object.py(), name, format!("not whole: {x}"), "integers".into())),
@@ -197,7 +197,7 @@ fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyRes
 /// others.
 fn narrow<const N: usize>(
     py: Python<'_>,
-    name: &'static str,
+    name: &str,
     noun: &str,
     rows: &[[i64; N]],
     n_vertices: usize,
@@ -212,14 +212,11 @@ fn narrow<const N: usize>(
         1 => format!("{value} in {noun} {bad}"),
         count => format!("{value} and others in {count} {noun}s ({bad})"),
     };
-    let expected = match n_vertices {
+    let expected: String = match n_vertices {
         0 => "empty where there are no vertices".into(),
         n => format!("indices of the {n} vertices, 0 to {}", n - 1),
     };
-    let raised = bad_array(py, name, found, expected);
-    raised.value(py).setattr("indices", PyTuple::new(py, &bad.first)?)?;
-    raised.value(py).setattr("count", bad.count)?;
-    Err(raised)
+    Err(bad_indices(py, name, &found, &expected, &bad))
 }
 
 fn shape_words(shape: &[usize]) -> String {

@@ -4,12 +4,11 @@
 use authalic::mesh::TriangleMesh;
 use authalic::{Boundary, DiskMapOptions, Method};
 use numpy::PyArray2;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{from_indices, from_points, index_list, indices, points, values};
 use crate::distortion::Distortion;
-use crate::errors::bad_array;
+use crate::errors::{bad_array, bad_option};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 
@@ -207,7 +206,7 @@ fn parse_method(method: &str) -> PyResult<Method> {
         "fixed_point" => Ok(Method::FixedPoint),
         "conjugate_gradient" => Ok(Method::ConjugateGradient),
         "gauss_newton" => Ok(Method::GaussNewton),
-        other => Err(PyValueError::new_err(format!(
+        other => Err(bad_option(format!(
             "method must be \"gauss_newton\", \"conjugate_gradient\" or \"fixed_point\", but is {other:?}"
         ))),
     }
@@ -219,7 +218,7 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
         "sliding" => Ok(Boundary::Sliding),
         "free" => Ok(Boundary::Free),
         "rectangle" => Ok(Boundary::Rectangle),
-        other => Err(PyValueError::new_err(format!(
+        other => Err(bad_option(format!(
             "boundary must be \"sliding\", \"arc_length\", \"free\" or \"rectangle\", but is {other:?}"
         ))),
     }

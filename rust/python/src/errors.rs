@@ -1,58 +1,206 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The two exceptions of the package, and what becomes which.
+//! The two exceptions of the package, what becomes which, and the facts that exceptions and warnings carry.
 
-use authalic::Error;
+use authalic::hyperbolic::{Warning, WarningKind};
+use authalic::{Elements, Error, ErrorKind, Side};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
-use pyo3::{create_exception, types::PyAnyMethods};
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyAnyMethods, PyDict, PyTuple, PyType};
+use pyo3::{create_exception, intern};
 
 create_exception!(
     authalic,
     MeshError,
     PyValueError,
-    "Bad input: says what is wrong, where and what to do.\n\n`indices` holds the first few elements at fault (an edge as a pair of vertices), `count` how many there are."
+    "Bad input: says what is wrong, where and what to do.
+
+The same as data, so that a program need not read the message, which may be reworded.
+
+Attributes
+----------
+kind : str
+    One of the kinds below and in `ERROR_KINDS`, each with what the indices are of.
+side : \"source\", \"target\" or None
+    The surface at fault, where it is one of two.
+curve : int or None
+    The landmark curve at fault, the first of two.
+second_curve : int or None
+    The second of two curves at fault.
+indices : tuple of int, or of pairs of int
+    The first few elements at fault, an edge as a pair of vertices.
+count : int
+    How many elements are at fault.
+
+A ValueError about an option carries the same, with the kind \"invalid_option\"."
 );
 create_exception!(
     authalic,
     SolverError,
     PyRuntimeError,
-    "The numerics failed on good input.\n\n`indices` and `count` as for MeshError."
+    "The numerics failed on good input, or a run was cancelled before there was a map.
+
+It carries `kind`, `side`, `curve`, `second_curve`, `indices` and `count` as MeshError does."
 );
+
+/// Adds the exceptions and the closed lists of kinds to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    let of_errors = ErrorKind::ALL.iter().map(|kind| (kind.as_str(), kind.meaning()));
+    let of_warnings = WarningKind::ALL.iter().map(|kind| (kind.as_str(), kind.meaning()));
+    module.add("ERROR_KINDS", dictionary(py, of_errors)?)?;
+    module.add("WARNING_KINDS", dictionary(py, of_warnings)?)?;
+    let mesh_error = py.get_type::<MeshError>();
+    list_kinds(&mesh_error)?;
+    module.add("MeshError", mesh_error)?;
+    module.add("SolverError", py.get_type::<SolverError>())
+}
+
+/// Appends the closed list of kinds to the documentation of a class.
+fn list_kinds(class: &Bound<'_, PyType>) -> PyResult<()> {
+    let name = intern!(class.py(), "__doc__");
+    let mut text: String = class.getattr(name)?.extract()?;
+    text.push_str("\n\nKinds\n-----\n");
+    for kind in ErrorKind::ALL {
+        text.push_str(&format!("{}\n    {}\n", kind.as_str(), kind.meaning()));
+    }
+    class.setattr(name, text)
+}
+
+fn dictionary<'py>(
+    py: Python<'py>,
+    meanings: impl Iterator<Item = (&'static str, &'static str)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dictionary = PyDict::new(py);
+    meanings.into_iter().try_for_each(|(word, meaning)| dictionary.set_item(word, meaning))?;
+    Ok(dictionary)
+}
 
 /// Bad meshes and arrays are `MeshError`, bad options plain `ValueError`, failed numerics `SolverError`.
 pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
-    let message = error.to_string();
+    let message = in_python_words(error);
     let raised = match error {
-        Error::InvalidOption { .. } => return PyValueError::new_err(message),
+        Error::InvalidOption { .. } => PyValueError::new_err(message),
         error if error.is_mesh_error() => MeshError::new_err(message),
         _ => SolverError::new_err(message),
     };
-    match name_elements(py, &raised, error) {
-        Ok(()) => raised,
-        Err(failure) => failure,
+    let facts = Facts {
+        kind: error.kind().as_str(),
+        side: error.side(),
+        curve: error.curve(),
+        second_curve: error.second_curve(),
+        elements: error.elements(),
+    };
+    with_facts(py, raised, &facts)
+}
+
+/// The message of an error, with what only Python's arguments can do about it.
+fn in_python_words(error: &Error) -> String {
+    match error {
+        Error::Mesh(authalic::MeshError::SeveralBoundaries { .. }) => {
+            format!("{error} (fill_holes=True fills them)")
+        }
+        error => error.to_string(),
     }
 }
 
-/// Sets `indices` and `count` on the exception.
-fn name_elements(py: Python<'_>, raised: &PyErr, error: &Error) -> PyResult<()> {
-    let value = raised.value(py);
-    let Some(elements) = error.elements() else {
-        value.setattr("indices", PyTuple::empty(py))?;
-        return value.setattr("count", 0);
-    };
-    let indices = match elements.arity {
-        1 => PyTuple::new(py, &elements.first)?,
-        arity => PyTuple::new(
-            py,
-            elements.first.chunks(arity).map(|e| PyTuple::new(py, e)).collect::<PyResult<Vec<_>>>()?,
-        )?,
-    };
-    value.setattr("indices", indices)?;
-    value.setattr("count", elements.count)
+/// A `MeshError` about an argument, without elements.
+pub fn bad_array(py: Python<'_>, name: &str, found: String, expected: String) -> PyErr {
+    about_argument(py, ErrorKind::InvalidArray, name, &found, &expected, None)
 }
 
-/// A `MeshError` about an argument, without elements.
-pub fn bad_array(py: Python<'_>, name: &'static str, found: String, expected: String) -> PyErr {
-    to_python(py, &Error::InvalidArray { name, found, expected })
+/// A `MeshError` about the rows of an argument that are no indices of vertices.
+pub fn bad_indices(py: Python<'_>, name: &str, found: &str, expected: &str, rows: &Elements) -> PyErr {
+    about_argument(py, ErrorKind::IndexOutOfRange, name, found, expected, Some(rows))
+}
+
+fn about_argument(
+    py: Python<'_>,
+    kind: ErrorKind,
+    name: &str,
+    found: &str,
+    expected: &str,
+    elements: Option<&Elements>,
+) -> PyErr {
+    let raised = MeshError::new_err(format!("{name} must be {expected}, but is {found}"));
+    let facts = Facts { side: Side::of_argument(name), elements, ..Facts::new(kind.as_str()) };
+    with_facts(py, raised, &facts)
+}
+
+/// A `ValueError` about an option.
+pub fn bad_option(message: String) -> PyErr {
+    Python::attach(|py| {
+        with_facts(py, PyValueError::new_err(message), &Facts::new(ErrorKind::InvalidOption.as_str()))
+    })
+}
+
+/// A `SolverError` about a fault of the library itself.
+pub fn internal(py: Python<'_>, text: &str) -> PyErr {
+    let message = format!("internal error, please report it with the mesh: {text}");
+    with_facts(py, SolverError::new_err(message), &Facts::new(ErrorKind::Internal.as_str()))
+}
+
+/// A warning as a string with the facts.
+pub fn warning(py: Python<'_>, warning: &Warning) -> PyResult<Py<PyAny>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let facts = Facts {
+        side: warning.side(),
+        curve: warning.curve(),
+        elements: warning.elements(),
+        ..Facts::new(warning.kind().as_str())
+    };
+    let facts = facts.dictionary(py)?;
+    facts.set_item(intern!(py, "value"), warning.value())?;
+    let class = CLASS.import(py, "authalic._warnings", "RegistrationWarning")?;
+    Ok(class.call((warning.to_string(),), Some(&facts))?.unbind())
+}
+
+/// What an exception or a warning carries beside its message.
+struct Facts<'a> {
+    kind: &'static str,
+    side: Option<Side>,
+    curve: Option<usize>,
+    second_curve: Option<usize>,
+    elements: Option<&'a Elements>,
+}
+
+impl Facts<'_> {
+    /// A kind alone.
+    fn new(kind: &'static str) -> Self {
+        Self { kind, side: None, curve: None, second_curve: None, elements: None }
+    }
+
+    fn dictionary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dictionary = PyDict::new(py);
+        dictionary.set_item(intern!(py, "kind"), self.kind)?;
+        dictionary.set_item(intern!(py, "side"), self.side.map(Side::as_str))?;
+        dictionary.set_item(intern!(py, "curve"), self.curve)?;
+        dictionary.set_item(intern!(py, "second_curve"), self.second_curve)?;
+        dictionary.set_item(intern!(py, "indices"), indices(py, self.elements)?)?;
+        dictionary.set_item(intern!(py, "count"), self.elements.map_or(0, |elements| elements.count))?;
+        Ok(dictionary)
+    }
+}
+
+fn indices<'py>(py: Python<'py>, elements: Option<&Elements>) -> PyResult<Bound<'py, PyTuple>> {
+    match elements {
+        None => Ok(PyTuple::empty(py)),
+        Some(elements) if elements.arity == 1 => PyTuple::new(py, &elements.first),
+        Some(elements) => {
+            let each = elements.first.chunks(elements.arity).map(|element| PyTuple::new(py, element));
+            PyTuple::new(py, each.collect::<PyResult<Vec<_>>>()?)
+        }
+    }
+}
+
+/// The exception with the facts as attributes.
+fn with_facts(py: Python<'_>, raised: PyErr, facts: &Facts<'_>) -> PyErr {
+    let set = |dictionary: Bound<'_, PyDict>| {
+        let value = raised.value(py);
+        dictionary.iter().try_for_each(|(name, fact)| value.setattr(name.cast_into()?, fact))
+    };
+    match facts.dictionary(py).and_then(set) {
+        Ok(()) => raised,
+        Err(failure) => failure,
+    }
 }

@@ -3,7 +3,7 @@
 
 use authalic::energy::SpatialStretchEnergy;
 use authalic::mesh::TriangleMesh;
-use authalic::{Elements, Error, normalized_density};
+use authalic::{Elements, Error, MapError, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -70,7 +70,7 @@ pub fn stretch_hessian(
         let mesh = TriangleMesh::new(&vertices, &faces)?;
         let not_finite = |v: &usize| !image[*v].iter().all(|x| x.is_finite());
         if let Some(vertices) = Elements::collect((0..image.len()).filter(not_finite)) {
-            return Err(MapError::NonFinite { name: "image", vertices });
+            return Err(MapError::NonFinite { name: "image", vertices }.into());
         }
         let targets = match density {
             Some(density) => normalized_density(&density, mesh.n_faces())?,

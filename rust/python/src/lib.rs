@@ -20,8 +20,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("MeshError", module.py().get_type::<errors::MeshError>())?;
-    module.add("SolverError", module.py().get_type::<errors::SolverError>())?;
+    errors::register(module)?;
     module.add_class::<mesh::Patch>()?;
     module.add_class::<distortion::Distortion>()?;
     module.add_class::<disk::DiskMap>()?;

@@ -3,14 +3,15 @@
 
 use authalic::Record;
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
+
+use crate::errors::bad_option;
 
 /// A number of iterations.
 pub fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
     usize::try_from(max_iterations)
-        .map_err(|_| PyValueError::new_err(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
+        .map_err(|_| bad_option(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
 }
 
 /// The history as a numpy structured array.

@@ -14,7 +14,7 @@ use authalic::{Error, Observer};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::errors::{SolverError, to_python};
+use crate::errors::{internal, to_python};
 
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
@@ -88,14 +88,14 @@ fn wait<T: Send>(
     loop {
         match py.detach(|| messages.lock().expect("only this thread locks").recv_timeout(SIGNAL_INTERVAL)) {
             Ok(Message::Done(result)) => return result.map_err(|error| to_python(py, &error)),
-            Ok(Message::Panicked(text)) => return Err(internal(&text)),
+            Ok(Message::Panicked(text)) => return Err(internal(py, &text)),
             Ok(Message::Progress(fraction, text)) => {
                 // a worker that has gone meanwhile needs no answer
                 let _ = answer.send(go_on(progress, fraction, &text)?);
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(internal("the worker thread ended without a result"));
+                return Err(internal(py, "the worker thread ended without a result"));
             }
         }
         py.check_signals()?;
@@ -114,8 +114,4 @@ fn go_on(progress: Option<&Bound<'_, PyAny>>, fraction: f64, text: &str) -> PyRe
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "unknown".into())
-}
-
-fn internal(text: &str) -> PyErr {
-    SolverError::new_err(format!("internal error, please report it with the mesh: {text}"))
 }

@@ -5,11 +5,11 @@ use authalic::mesh::TriangleMesh;
 use authalic::optimize::published::gradient_descent::LineSearch;
 use authalic::{SphereMapOptions, SphereMethod};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{from_index_list, from_indices, from_points, indices, points, values};
 use crate::distortion::Distortion;
+use crate::errors::bad_option;
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 
@@ -255,7 +255,7 @@ fn parse_method(method: &str) -> PyResult<SphereMethod> {
         "fixed_point" => Ok(SphereMethod::FixedPoint),
         "gradient_descent" => Ok(SphereMethod::GradientDescent),
         "gauss_newton" => Ok(SphereMethod::GaussNewton),
-        other => Err(PyValueError::new_err(format!(
+        other => Err(bad_option(format!(
             "method must be \"gauss_newton\", \"gradient_descent\" or \"fixed_point\", but is {other:?}"
         ))),
     }
@@ -265,8 +265,8 @@ fn parse_line_search(line_search: &str) -> PyResult<LineSearch> {
     match line_search {
         "interpolation" => Ok(LineSearch::Interpolation),
         "bounded" => Ok(LineSearch::Bounded),
-        other => Err(PyValueError::new_err(format!(
-            "line_search must be \"interpolation\" or \"bounded\", but is {other:?}"
-        ))),
+        other => {
+            Err(bad_option(format!("line_search must be \"interpolation\" or \"bounded\", but is {other:?}")))
+        }
     }
 }

@@ -5,10 +5,10 @@ use authalic::hyperbolic as core;
 use authalic::hyperbolic::moebius::{Complex, Moebius};
 use authalic::mesh::TriangleMesh;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Pairs, from_index_list, from_indices, from_points, indices, points};
+use crate::errors::bad_option;
 use crate::registration::{choice, metrics, vertex_paths};
 use crate::run::run;
 
@@ -183,8 +183,7 @@ impl HyperbolicStructure {
     ///     `copies` below 1.
     fn cover(&self, py: Python<'_>, copies: i64) -> PyResult<(Vec<Py<PyAny>>, Isometries)> {
         let count = usize::try_from(copies).ok().filter(|&count| count > 0);
-        let count =
-            count.ok_or_else(|| PyValueError::new_err(format!("copies must be ≥ 1, but is {copies}")))?;
+        let count = count.ok_or_else(|| bad_option(format!("copies must be ≥ 1, but is {copies}")))?;
         let cover = self.found.cover(count);
         let word =
             |copy: &core::CoverCopy| Ok(pyo3::types::PyTuple::new(py, &copy.word)?.into_any().unbind());

@@ -250,7 +250,7 @@ impl CurveError {
             Self::Counts { .. } => ErrorKind::CurveCounts,
             Self::NoCurves => ErrorKind::NoCurves,
             Self::Short { .. } => ErrorKind::ShortCurve,
-            Self::OutOfRange { .. } => ErrorKind::CurveOutOfRange,
+            Self::OutOfRange { .. } => ErrorKind::IndexOutOfRange,
             Self::OffEdges { .. } => ErrorKind::CurveOffEdges,
             Self::MeetsItself { .. } => ErrorKind::CurveMeetsItself,
             Self::Meet { .. } => ErrorKind::CurvesMeet,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What an error is, as a word that programs can rely on while messages are reworded.
 
-/// Defines a closed list of kinds, each with the word for it.
+/// Defines a closed list of kinds, each with the word for it and, as its documentation, what it means.
 macro_rules! kinds {
-    ($(#[$doc:meta])* $name:ident { $($(#[$of:meta])* $kind:ident = $word:literal,)+ }) => {
+    ($(#[$doc:meta])* $name:ident { $(#[doc = $meaning:literal] $kind:ident = $word:literal,)+ }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
-        pub enum $name { $($(#[$of])* $kind,)+ }
+        pub enum $name { $(#[doc = $meaning] $kind,)+ }
 
         impl $name {
             /// All kinds, in the order of their definition.
@@ -16,6 +16,11 @@ macro_rules! kinds {
             /// The word for the kind, in snake case.
             pub const fn as_str(self) -> &'static str {
                 match self { $(Self::$kind => $word,)+ }
+            }
+
+            /// What the kind means, as a sentence.
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Self::$kind => $meaning.trim_ascii_start(),)+ }
             }
         }
     };
@@ -33,7 +38,7 @@ kinds! {
         TooManyFaces = "too_many_faces",
         /// A coordinate is NaN or infinite: vertices.
         NotFinite = "not_finite",
-        /// A face names a vertex that does not exist: faces.
+        /// An index is not one of a vertex: rows of the array, as of the faces, or places in the curve.
         IndexOutOfRange = "index_out_of_range",
         /// A face has a vertex twice: faces.
         RepeatedVertex = "repeated_vertex",
@@ -59,11 +64,9 @@ kinds! {
         Handles = "handles",
         /// A disk was asked for, but the surface has several boundary loops: a vertex of each.
         SeveralBoundaries = "several_boundaries",
-        /// A seam names a vertex that does not exist: pairs of vertices.
-        SeamOutOfRange = "seam_out_of_range",
         /// A seam is no edge: pairs of vertices.
         SeamNotEdge = "seam_not_edge",
-        /// An array has the wrong shape or content: rows, if some are at fault.
+        /// An array has the wrong shape or content.
         InvalidArray = "invalid_array",
         /// An option has a value outside its range.
         InvalidOption = "invalid_option",
@@ -87,8 +90,6 @@ kinds! {
         LandmarkCounts = "landmark_counts",
         /// There are too few landmarks.
         TooFewLandmarks = "too_few_landmarks",
-        /// A landmark is no vertex: pairs of landmarks.
-        LandmarkOutOfRange = "landmark_out_of_range",
         /// A vertex is a landmark twice: pairs of landmarks.
         RepeatedLandmark = "repeated_landmark",
         /// A landmark is on the boundary: pairs of landmarks.
@@ -99,8 +100,6 @@ kinds! {
         NoCurves = "no_curves",
         /// A curve has too few edges.
         ShortCurve = "short_curve",
-        /// A curve names a vertex that does not exist: places in the curve.
-        CurveOutOfRange = "curve_out_of_range",
         /// A curve leaves the edges of the mesh: the two vertices that no edge joins.
         CurveOffEdges = "curve_off_edges",
         /// A curve meets itself: vertices.

@@ -86,7 +86,7 @@ impl LandmarkError {
         match self {
             Self::Counts { .. } => ErrorKind::LandmarkCounts,
             Self::TooFew { .. } => ErrorKind::TooFewLandmarks,
-            Self::OutOfRange { .. } => ErrorKind::LandmarkOutOfRange,
+            Self::OutOfRange { .. } => ErrorKind::IndexOutOfRange,
             Self::Repeated { .. } => ErrorKind::RepeatedLandmark,
             Self::OnBoundary { .. } => ErrorKind::LandmarkOnBoundary,
         }

@@ -223,7 +223,7 @@ impl MeshError {
                 ErrorKind::Handles
             }
             Self::SeveralBoundaries { .. } => ErrorKind::SeveralBoundaries,
-            Self::SeamOutOfRange { .. } => ErrorKind::SeamOutOfRange,
+            Self::SeamOutOfRange { .. } => ErrorKind::IndexOutOfRange,
             Self::SeamNotEdge { .. } => ErrorKind::SeamNotEdge,
         }
     }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::hyperbolic`'s registration.
 
+use authalic::Side;
 use authalic::hyperbolic::{self as core, Curves, FlowOptions, HyperbolicOptions, MetricMethod, Solver};
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::found::Outcome;
 use super::result::Registration;
 use super::{found, mesh, surface};
 use crate::arrays::{from_index_list, index_list, points};
-use crate::errors::{MeshError, bad_array};
+use crate::errors::{bad_array, bad_option};
 use crate::options::parse_iterations;
 use crate::run::run;
 
@@ -181,13 +181,13 @@ pub fn register_hyperbolic(
             Some([points::<3>(ours, "source_sphere")?, points::<3>(theirs, "target_sphere")?])
         }
         _ => {
-            return Err(PyValueError::new_err(
-                "source_sphere and target_sphere go together: give both or neither",
+            return Err(bad_option(
+                "source_sphere and target_sphere go together: give both or neither".into(),
             ));
         }
     };
     let outcome = run(py, progress, move |observer| {
-        let meshes = (mesh(&source, "source")?, mesh(&target, "target")?);
+        let meshes = (mesh(&source, Side::Source)?, mesh(&target, Side::Target)?);
         let curves = Curves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
         let options = HyperbolicOptions { spheres, ..options };
@@ -208,7 +208,7 @@ pub(crate) fn metrics() -> [(&'static str, MetricMethod); 2] {
 pub(crate) fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
     choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
         let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-        PyValueError::new_err(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
+        bad_option(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
     })
 }
 
@@ -224,25 +224,16 @@ pub(crate) fn vertex_paths(
     };
     let path = |(curve, part): (usize, PyResult<Bound<'_, PyAny>>)| {
         let part = part?;
-        index_list(&part, name, "place", n_vertices).map_err(|error| of_curve(part.py(), name, curve, &error))
+        index_list(&part, &format!("{name}: curve {curve}"), "place", n_vertices)
+            .map_err(|error| of_curve(part.py(), error, curve))
     };
     parts.enumerate().map(path).collect()
 }
 
-/// The same error, of a curve.
-fn of_curve(py: Python<'_>, name: &str, curve: usize, error: &PyErr) -> PyErr {
-    if !error.is_instance_of::<MeshError>(py) {
-        return error.clone_ref(py);
+/// The error with the curve that it is about.
+fn of_curve(py: Python<'_>, error: PyErr, curve: usize) -> PyErr {
+    match error.value(py).setattr("curve", curve) {
+        Ok(()) => error,
+        Err(failure) => failure,
     }
-    let message = error.value(py).to_string();
-    let rest = message.strip_prefix(name).unwrap_or(&message);
-    let named = MeshError::new_err(format!("{name}: curve {curve} {}", rest.trim_start()));
-    for attribute in ["indices", "count"] {
-        let copied =
-            error.value(py).getattr(attribute).and_then(|value| named.value(py).setattr(attribute, value));
-        if let Err(failure) = copied {
-            return failure;
-        }
-    }
-    named
 }

@@ -7,12 +7,11 @@ mod result;
 
 use authalic::mesh::TriangleMesh;
 use authalic::registration::{Landmarks, RegistrationOptions};
-use authalic::{Error, registration};
-use pyo3::exceptions::PyValueError;
+use authalic::{Error, Side, registration};
 use pyo3::prelude::*;
 
 use crate::arrays::{Pairs, from_points, index_list, indices, points};
-use crate::errors::bad_array;
+use crate::errors::{bad_array, bad_option};
 use crate::run::run;
 pub use curves::{Certificates, register_hyperbolic};
 pub(crate) use curves::{choice, metrics, vertex_paths};
@@ -223,7 +222,7 @@ pub fn homotopy(
         return Err(bad_array(py, "vertices", shape, expected));
     }
     if !t.is_finite() {
-        return Err(PyValueError::new_err(format!("t must be a finite number, but is {t}")));
+        return Err(bad_option(format!("t must be a finite number, but is {t}")));
     }
     let morphed = run(py, None, move |_| Ok(found.morphed(&vertices, t, align)))?;
     Ok(from_points(py, &morphed))
@@ -263,7 +262,7 @@ impl Arguments {
             &RegistrationOptions,
         ) -> Result<Outcome, Error>,
     ) -> Result<Found, Error> {
-        let (source, target) = (mesh(&self.source, "source")?, mesh(&self.target, "target")?);
+        let (source, target) = (mesh(&self.source, Side::Source)?, mesh(&self.target, Side::Target)?);
         let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
         let outcome = register(&source, &target, &landmarks, &self.options)?;
         Ok(found(self.source, self.target, &source, outcome))
@@ -271,8 +270,8 @@ impl Arguments {
 }
 
 /// A checked surface.
-fn mesh((vertices, faces): &Arrays, surface: &'static str) -> Result<TriangleMesh, Error> {
-    TriangleMesh::new(vertices, faces).map_err(|error| error.of_surface(surface))
+fn mesh((vertices, faces): &Arrays, side: Side) -> Result<TriangleMesh, Error> {
+    TriangleMesh::new(vertices, faces).map_err(|error| error.of_surface(side))
 }
 
 /// An outcome with the surfaces as given and as oriented.

@@ -6,14 +6,13 @@ use std::sync::Arc;
 use authalic::registration;
 use authalic::{DiskMap, SphereMap};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::curves::Certificates;
 use super::found::{Found, Outcome, Per, either};
 use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
 use crate::distortion::Distortion;
-use crate::errors::bad_array;
+use crate::errors::{bad_array, bad_option, warning};
 use crate::run::run;
 use crate::{disk, sphere};
 
@@ -80,9 +79,9 @@ pub struct Registration {
     /// Certificates or None: what proves that a map by curves is one-to-one; None of a map by points.
     #[pyo3(get)]
     certificates: Option<Py<Certificates>>,
-    /// list of str: what should be looked at in a map by curves; empty of one by points.
+    /// list of RegistrationWarning: what should be looked at in a map by curves; empty of one by points.
     #[pyo3(get)]
-    warnings: Vec<String>,
+    warnings: Vec<Py<PyAny>>,
     /// list of (k,) float64: the harmonic energy before and after each step, for each piece with a hyperbolic
     /// metric; empty of a map by points.
     #[pyo3(get)]
@@ -122,7 +121,7 @@ impl Registration {
         let (certificates, warnings, energies) = match &found.outcome {
             Outcome::Curves(curves) => (
                 Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
-                curves.warnings.clone(),
+                curves.warnings.iter().map(|doubt| warning(py, doubt)).collect::<PyResult<_>>()?,
                 curves.descents.iter().map(|d| PyArray1::from_slice(py, &d.energies).unbind()).collect(),
             ),
             _ => (None, Vec::new(), Vec::new()),
@@ -208,7 +207,7 @@ impl Registration {
             Some("corner") => Some(Per::Corner),
             Some(found) => {
                 let message = format!("per must be \"vertex\", \"corner\" or None, but is \"{found}\"");
-                return Err(PyValueError::new_err(message));
+                return Err(bad_option(message));
             }
         };
         let (source, target) = (&self.found.source, &self.found.target);

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Meshes of known topology built in code, and the real ones where a data folder is there."""
+"""Meshes of known topology, built in code."""
 
-import os
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-DATA = Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
 
 
 class Mesh(NamedTuple):
@@ -238,13 +236,3 @@ SPHERES = {
     "hedgehog": rough_ball(noise=0.8),
     "capsule": capsule(),
 }
-
-
-def real_files(folder):
-    """The .npz files of a folder of the data, none without it."""
-    return sorted((DATA / folder).glob("*.npz"))
-
-
-def load(path):
-    with np.load(path) as file:
-        return Mesh(file["V"].astype(np.float64), file["F"].astype(np.int64))

@@ -9,7 +9,7 @@ import pytest
 
 import authalic
 
-from . import meshes, oracle
+from . import meshes, oracle, real_meshes
 
 SLITS = {
     "max_planck": (1.27, 1.27),
@@ -267,10 +267,8 @@ def test_noise_and_rotations_move_nothing(weight):
 @pytest.mark.parametrize("name", SLITS)
 @pytest.mark.parametrize("overlap", [False, True])
 def test_slit_surfaces(name, overlap):
-    path = meshes.DATA / "seams" / "slit" / f"{name}.npz" if meshes.DATA else None
-    if path is None or not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    mesh = meshes.load(path)
+    path = real_meshes.file(f"seams/slit/{name}.npz")
+    mesh = real_meshes.load(path)
     result = authalic.disk_map(*mesh, boundary="free", angle_weight=1e-3, overlap=overlap)
     deviation, shear, _ = figures(np.asarray(mesh.vertices), result)
     assert result.status == "converged" and oracle.folded(result.uv, result.faces) == []

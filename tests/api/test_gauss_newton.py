@@ -9,7 +9,7 @@ import pytest
 
 import authalic
 
-from . import meshes, oracle, random_checks, random_meshes
+from . import meshes, oracle, random_checks, random_meshes, real_meshes
 from .test_runs import bumpy_square
 
 DISK_FACTOR, SPHERE_FACTOR = 30, 100
@@ -320,23 +320,16 @@ def test_the_number_of_threads_changes_no_bit(run_python):
     assert one == two == five
 
 
-# Real meshes, where a data folder is there
-
-
-def real(folder):
-    """A parameter per file; one skipped test where there are none."""
-    skip = pytest.mark.skip(reason=f"no data folder with {folder} (AUTHALIC_DATA)")
-    files = [pytest.param(path, id=path.stem) for path in meshes.real_files(folder)]
-    return pytest.mark.parametrize("path", files or [pytest.param(None, marks=skip, id="no data")])
+# Real meshes
 
 
 MISSED_DISKS = {"hand_53054": 10}
 """Where the factor is not reached: the one that is."""
 
 
-@real("disk")
+@real_meshes.each("disk")
 def test_real_disks_are_far_more_exact_than_by_conjugate_gradients(path):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     ours = authalic.disk_map(*mesh)
     oracle.assert_disk_embedding(ours)
     theirs = authalic.disk_map(*mesh, method="conjugate_gradient", boundary="arc_length")
@@ -345,9 +338,9 @@ def test_real_disks_are_far_more_exact_than_by_conjugate_gradients(path):
     assert factor >= MISSED_DISKS.get(path.stem, DISK_FACTOR)
 
 
-@real("sphere")
+@real_meshes.each("sphere")
 def test_real_spheres_are_far_more_exact_than_by_gradient_descent(path):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     ours = authalic.sphere_map(*mesh)
     oracle.assert_sphere_embedding(ours)
     theirs = authalic.sphere_map(*mesh, method="gradient_descent", unfold=False)
@@ -360,12 +353,12 @@ def test_real_spheres_are_far_more_exact_than_by_gradient_descent(path):
 
 def closed_and_valid(path):
     """The patch of a mesh that is a single closed surface without handles, else None."""
-    patches = authalic.cut(*meshes.load(path))
+    patches = authalic.cut(*real_meshes.load(path))
     is_sphere = len(patches) == 1 and patches[0].is_closed and patches[0].genus == 0
     return patches[0] if is_sphere else None
 
 
-@real("hard")
+@real_meshes.each("hard")
 def test_hard_spheres_are_mapped_without_a_fold(path):
     patch = closed_and_valid(path)
     if patch is None:
@@ -376,10 +369,8 @@ def test_hard_spheres_are_mapped_without_a_fold(path):
 @pytest.mark.parametrize("boundary", ["sliding", "arc_length"])
 @pytest.mark.parametrize("name", ["mannequindevil_12977", "maze_6120", "inverted_12577"])
 def test_hard_disks_are_mapped_without_a_fold(name, boundary):
-    path = meshes.DATA / "hard" / f"{name}.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    result = authalic.disk_map(*meshes.load(path), boundary=boundary, fill_holes=True)
+    path = real_meshes.file(f"hard/{name}.npz")
+    result = authalic.disk_map(*real_meshes.load(path), boundary=boundary, fill_holes=True)
     assert oracle.folded(result.uv, result.faces) == []
     assert len(result.distortion.folded) == 0
 

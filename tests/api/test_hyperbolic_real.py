@@ -8,8 +8,8 @@ import pytest
 
 import authalic
 
-from . import curves, meshes
-from .test_registration_real import data, surface
+from . import curves, meshes, real_meshes
+from .test_registration_real import surface
 
 HCP_CURVES = (
     "lm_central_sulcus_4|3a",
@@ -24,7 +24,7 @@ OTHER_WAY_ROUND = (0, 4)
 
 def sulci(side):
     """The twelve curves of the left or the mirrored right cortex."""
-    found = json.loads(data("brain/fsaverage5_curves.json").read_text())
+    found = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
     return [np.array(path) for path in found[side]]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import authalic
 
-from . import meshes
+from . import meshes, real_meshes
 
 
 def meridian_slits(count, stacks=36, slices=48):
@@ -186,9 +186,7 @@ def test_it_can_be_cancelled():
 
 
 def test_a_brain():
-    path = meshes.DATA / "brain" / "fsaverage5_left_10242.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
+    path = real_meshes.file("brain/fsaverage5_left_10242.npz")
     curves = json.loads((path.parent / "fsaverage5_curves.json").read_text())["left"]
     with np.load(path) as file:
         vertices, faces = file["V_pial"].astype(float), file["F"].astype(np.int64)

@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 import authalic
 
-from . import meshes
+from . import meshes, real_meshes
 
 NOISE = 1e-12
 """Of the size of the surface; far below what any scanner sees, far above rounding."""
@@ -76,23 +76,16 @@ def test_noise_rotation_and_numbering_do_not_move_the_map(name, angle_weight, re
     assert_one_map({**OPEN, **CLOSED}[name], angle_weight=angle_weight)
 
 
-def real(*folders):
-    files = [path for folder in folders for path in meshes.real_files(folder)]
-    skip = pytest.mark.skip(reason=f"no data folder with {folders} (AUTHALIC_DATA)")
-    parameters = [pytest.param(path, id=path.stem) for path in files]
-    return pytest.mark.parametrize("path", parameters or [pytest.param(None, marks=skip, id="no data")])
-
-
 UNSTABLE = {"bull_6200": (0.0, 1e-3), "cowboyhat_2327": (0.0,)}
 """Known misses: the horns of the bull move by up to 6e-2, the hat by 2e-6 where areas alone count."""
 
 
 @weights
-@real("disk", "sphere")
+@real_meshes.each("disk", "sphere")
 def test_noise_does_not_move_real_maps(path, angle_weight, request):
     if angle_weight in UNSTABLE.get(path.stem, ()):
         request.applymarker(pytest.mark.xfail(reason="known: noise moves this map by more than 1e-6"))
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     if len(mesh[0]) > 20_000:
         pytest.skip("takes long; the smaller ones suffice here")
     plain = image_of(mesh, angle_weight=angle_weight)

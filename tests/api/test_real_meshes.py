@@ -1,27 +1,20 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Real meshes, where a data folder is there: AUTHALIC_DATA, or ../shared/data beside the repository."""
+"""Real meshes: those of tests/data, and those of a data folder, AUTHALIC_DATA or ../shared/data."""
 
 import numpy as np
 import pytest
 
 import authalic
 
-from . import meshes, oracle
+from . import oracle, real_meshes
 
 PUBLISHED = {"chineselion_17334": 4.7e-4, "hand_53054": 3.2e-3}
 """Bounds of E_A after 50 conjugate gradients on a fixed boundary; Liu & Yueh have 4.29e-4 and 2.88e-3."""
 
 
-def real(folder):
-    """A parameter per file; one skipped test where there are none."""
-    skip = pytest.mark.skip(reason=f"no data folder with {folder} (AUTHALIC_DATA)")
-    files = [pytest.param(path, id=path.stem) for path in meshes.real_files(folder)]
-    return pytest.mark.parametrize("path", files or [pytest.param(None, marks=skip, id="no data")])
-
-
-@real("disk")
+@real_meshes.each("disk")
 def test_real_disks_have_no_fold(path):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     result = authalic.disk_map(*mesh)
     oracle.assert_disk_embedding(result)
     targets = oracle.face_areas(mesh.vertices, result.faces)
@@ -32,18 +25,16 @@ def test_real_disks_have_no_fold(path):
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_paper_is_reproduced(name):
-    path = meshes.DATA / "disk" / f"{name}.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    result = authalic.disk_map(*meshes.load(path), boundary="arc_length", max_iterations=50)
+    path = real_meshes.file(f"disk/{name}.npz")
+    result = authalic.disk_map(*real_meshes.load(path), boundary="arc_length", max_iterations=50)
     oracle.assert_disk_embedding(result)
     assert result.distortion.authalic_energy <= PUBLISHED[name]
 
 
-@real("hard")
+@real_meshes.each("hard")
 @pytest.mark.parametrize("fill_holes", [False, True])
 def test_hard_meshes_are_refused_or_mapped_without_a_fold(path, fill_holes):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     try:
         result = authalic.disk_map(*mesh, fill_holes=fill_holes)
     except authalic.MeshError as error:
@@ -55,23 +46,21 @@ def test_hard_meshes_are_refused_or_mapped_without_a_fold(path, fill_holes):
 
 @pytest.mark.parametrize("name", ["mannequindevil_12977", "maze_6120"])
 def test_hard_disks_are_mapped(name):
-    path = meshes.DATA / "hard" / f"{name}.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    oracle.assert_disk_embedding(authalic.disk_map(*meshes.load(path)))
+    path = real_meshes.file(f"hard/{name}.npz")
+    oracle.assert_disk_embedding(authalic.disk_map(*real_meshes.load(path)))
 
 
-@real("hard")
+@real_meshes.each("hard")
 def test_hard_meshes_are_cut_into_their_patches(path):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     patches = authalic.cut(*mesh)
     corners = np.concatenate([patch.corner_of.ravel() for patch in patches])
     assert np.array_equal(np.sort(corners), np.arange(mesh.faces.size))
 
 
-@real("hard")
+@real_meshes.each("hard")
 def test_every_patch_of_a_hard_mesh_is_refused_or_mapped_without_a_fold(path):
-    for patch in authalic.cut(*meshes.load(path)):
+    for patch in authalic.cut(*real_meshes.load(path)):
         try:
             result = authalic.disk_map(patch.vertices, patch.faces, fill_holes=True)
         except authalic.MeshError:
@@ -83,16 +72,16 @@ SPHERE_BOUNDS = {"david_10671": 3.3e-3, "bulldog_49797": 1.4e-2}
 """Bounds of E_A after 100 steps of gradient descent; Sutti & Yueh have 3.04e-3 and 1.27e-2."""
 
 
-@real("sphere")
+@real_meshes.each("sphere")
 def test_the_start_map_of_a_real_closed_surface_has_no_fold(path):
-    result = authalic.sphere_map(*meshes.load(path), method="fixed_point", max_iterations=0)
+    result = authalic.sphere_map(*real_meshes.load(path), method="fixed_point", max_iterations=0)
     assert result.iterations == 0
     oracle.assert_sphere_embedding(result)
 
 
-@real("sphere")
+@real_meshes.each("sphere")
 def test_real_closed_surfaces_have_no_fold(path):
-    mesh = meshes.load(path)
+    mesh = real_meshes.load(path)
     result = authalic.sphere_map(*mesh)
     oracle.assert_sphere_embedding(result)
     targets = oracle.face_areas(mesh.vertices, result.faces)
@@ -106,9 +95,7 @@ def test_real_closed_surfaces_have_no_fold(path):
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("surface", ["V_white", "V_pial"])
 def test_the_cortex_is_mapped_better_than_by_freesurfer(side, surface):
-    path = meshes.DATA / "brain" / f"fsaverage5_{side}_10242.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
+    path = real_meshes.file(f"brain/fsaverage5_{side}_10242.npz")
     with np.load(path) as file:
         vertices, faces, sphere = (file[name].astype(float) for name in (surface, "F", "V_sphere"))
     result = authalic.sphere_map(vertices, faces)
@@ -119,19 +106,17 @@ def test_the_cortex_is_mapped_better_than_by_freesurfer(side, surface):
 
 
 def test_slivers_are_mapped_soundly_or_given_up():
-    path = meshes.DATA / "hard" / "triceratops_2832.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
+    path = real_meshes.file("hard/triceratops_2832.npz")
     try:
-        oracle.assert_sphere_embedding(authalic.sphere_map(*meshes.load(path)))
+        oracle.assert_sphere_embedding(authalic.sphere_map(*real_meshes.load(path)))
     except authalic.SolverError as error:
         assert "no map without folds" in str(error)
 
 
-@real("hard")
+@real_meshes.each("hard")
 def test_hard_closed_surfaces_are_refused_or_mapped_without_a_fold(path):
     try:
-        result = authalic.sphere_map(*meshes.load(path), max_iterations=20)
+        result = authalic.sphere_map(*real_meshes.load(path), max_iterations=20)
     except (authalic.MeshError, authalic.SolverError) as error:
         assert len(str(error)) > 30
         assert "internal error" not in str(error)
@@ -140,14 +125,12 @@ def test_hard_closed_surfaces_are_refused_or_mapped_without_a_fold(path):
 
 
 def test_a_cheese_is_no_sphere():
-    path = meshes.DATA / "hard" / "cheese_8629.npz"
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
+    path = real_meshes.file("hard/cheese_8629.npz")
     with pytest.raises(authalic.MeshError, match=r"genus 133 .*seams"):
-        authalic.sphere_map(*meshes.load(path))
+        authalic.sphere_map(*real_meshes.load(path))
 
 
-@real("sphere")
+@real_meshes.each("sphere")
 def test_real_closed_surfaces_are_told_to_mark_seams(path):
     with pytest.raises(authalic.MeshError, match="seams"):
-        authalic.disk_map(*meshes.load(path))
+        authalic.disk_map(*real_meshes.load(path))

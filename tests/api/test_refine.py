@@ -6,7 +6,7 @@ import pytest
 
 import authalic
 
-from . import meshes, oracle
+from . import meshes, oracle, real_meshes
 
 LIMBED = meshes.limbed_ball(3)
 
@@ -155,10 +155,8 @@ def test_only_the_default_method_refines():
 
 @pytest.mark.parametrize("name", ["cat0", "victoria0", "centaur0"])
 def test_bodies(name):
-    path = meshes.DATA / "bench" / "tosca" / f"{name}.npz" if meshes.DATA else None
-    if path is None or not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    result = authalic.sphere_map(*meshes.load(path), refine=True)
+    path = real_meshes.file(f"bench/tosca/{name}.npz")
+    result = authalic.sphere_map(*real_meshes.load(path), refine=True)
     assert result.status == "converged"
     assert len(result.distortion.folded) == len(result.refinement.distortion.folded) == 0
     assert result.refinement.distortion.area_ratio_std < 0.01

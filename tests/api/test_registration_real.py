@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from . import meshes, pairs
+from . import meshes, pairs, real_meshes
 
 FACES = {
     # landmark: (vertex of face_17157, vertex of nefertiti_cut), picked by eye; left and right as seen
@@ -28,16 +28,9 @@ FACES = {
 HCP_CURVES = ("lm_central_sulcus_4|3a", "lm_STS_STSda+STSdp|STSva+STSvp", "lm_insula_Ig+PoI1..|OP")
 
 
-def data(name):
-    path = meshes.DATA / name
-    if not path.exists():
-        pytest.skip("no data folder (AUTHALIC_DATA)")
-    return path
-
-
 def surface(name, field="V", mirror=False):
     """A surface of a file and its other arrays; mirrored in x with its faces turned."""
-    with np.load(data(name)) as file:
+    with np.load(real_meshes.file(name)) as file:
         arrays = {key: file[key] for key in file}
     vertices, faces = arrays[field].astype(float), arrays["F"].astype(np.int64)
     mesh = meshes.Mesh(vertices * [-1, 1, 1], faces[:, ::-1]) if mirror else meshes.Mesh(vertices, faces)
@@ -46,7 +39,7 @@ def surface(name, field="V", mirror=False):
 
 def fsaverage5(field, points):
     """Left onto mirrored right, with the named points of the twelve curves."""
-    curves = json.loads(data("brain/fsaverage5_curves.json").read_text())
+    curves = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
     (left, ours), (right, theirs) = (
         surface(f"brain/fsaverage5_{side}_10242.npz", field, mirror)
         for side, mirror in (("left", False), ("right", True))
@@ -152,7 +145,9 @@ MISSES_TWO = pytest.mark.xfail(
 @pytest.mark.parametrize("name", [pytest.param(None, marks=MISSES_TWO), "eyes"])
 def test_a_face_onto_a_bust(name):
     """Nefertiti's nose and mouth are cut away, so the landmarks lie around her boundary: inside out."""
-    source, target = (meshes.load(data(f"disk/{file}.npz")) for file in ("face_17157", "nefertiti_cut"))
+    source, target = (
+        real_meshes.load(real_meshes.file(f"disk/{file}.npz")) for file in ("face_17157", "nefertiti_cut")
+    )
     marks = [marks for landmark, marks in FACES.items() if name is None or "eye_corner" in landmark]
     pair = pairs.Pair(source, target, *np.array(marks).T)
     assert_what_the_papers_reach(pairs.register(pair), pair)
@@ -161,6 +156,7 @@ def test_a_face_onto_a_bust(name):
 @pytest.mark.parametrize(
     ("folder", "name"),
     [
+        ("disk", "spot_upper_1421"),
         ("disk", "chineselion_17334"),
         ("disk", "face_17157"),
         ("sphere", "david_10671"),
@@ -168,7 +164,7 @@ def test_a_face_onto_a_bust(name):
     ],
 )
 def test_a_real_surface_onto_itself_is_the_identity(folder, name):
-    mesh = meshes.load(data(f"{folder}/{name}.npz"))
+    mesh = real_meshes.load(real_meshes.file(f"{folder}/{name}.npz"))
     inside = np.setdiff1d(np.arange(len(mesh.vertices)), pairs.boundary_vertices(mesh.faces))
     marks = inside[:: len(inside) // 7]
     pair = pairs.Pair(mesh, mesh, marks, marks)
@@ -179,7 +175,9 @@ def test_a_real_surface_onto_itself_is_the_identity(folder, name):
 
 def test_a_head_onto_a_head():
     """Landmarks by the extremes of the two heads, which both look along the same axis."""
-    source, target = (meshes.load(data(f"sphere/{file}.npz")) for file in ("david_10671", "maxplanck_9002"))
+    source, target = (
+        real_meshes.load(real_meshes.file(f"sphere/{file}.npz")) for file in ("david_10671", "maxplanck_9002")
+    )
     marks = [
         np.array([pick(mesh.vertices[:, axis]) for axis in range(3) for pick in (np.argmin, np.argmax)])
         for mesh in (source, target)

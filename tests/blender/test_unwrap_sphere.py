@@ -13,7 +13,8 @@ import spheres
 from installed import part
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
-DATA = Path(os.environ.get("AUTHALIC_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
+ROOT = Path(__file__).resolve().parents[2]
+DATA = ROOT / "tests" / "data", Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
 CLOSED = {
     "icosphere": lambda: meshes.icosphere(4),
     "bumpy icosphere": lambda: meshes.bumpy(meshes.icosphere(5)),
@@ -283,13 +284,14 @@ def test_cancelling():
 
 
 def real_meshes():
-    names = sorted(path.stem for path in (DATA / "sphere").glob("*.npz"))
-    return names or [pytest.param("", marks=pytest.mark.skip(reason="no folder of real meshes"))]
+    """A parameter for each closed mesh of the data folders."""
+    paths = {path.stem: path for folder in reversed(DATA) for path in (folder / "sphere").glob("*.npz")}
+    return [pytest.param(paths[name], id=name) for name in sorted(paths)]
 
 
-@pytest.mark.parametrize("name", real_meshes())
-def test_real_meshes(name, monkeypatch):
-    with np.load(DATA / "sphere" / f"{name}.npz") as file:
+@pytest.mark.parametrize("path", real_meshes())
+def test_real_meshes(path, monkeypatch):
+    with np.load(path) as file:
         vertices, faces = file["V"], file["F"]
     names = "bridge", "bridge.islands", "blender.meshes"
     bridge, islands, mesh_io = (part(name) for name in names)
@@ -304,7 +306,7 @@ def test_real_meshes(name, monkeypatch):
     monkeypatch.setattr(islands, "sphere_map", remembered)
     for layout in LAYOUTS:
         found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
-        if name == "bull_6200" and found.refusals:
+        if path.stem == "bull_6200" and found.refusals:
             pytest.xfail(f"limbs one face wide: {found.refusals[0]}")
         assert not found.refusals
         (island,) = found.islands

@@ -2,8 +2,14 @@
 //! Where a map goes, the disk, the sphere or the plane, and how a vertex may move there.
 
 pub(crate) mod motion;
+pub(crate) mod planar;
+pub(crate) mod spherical;
 
+use crate::vector::Vector;
 use motion::Motion;
+
+/// A map of the vertices in space, (n, 3): onto the unit sphere, or into the plane z = 1.
+pub(crate) type SpatialMap = Vec<Vector>;
 
 /// Where a map goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

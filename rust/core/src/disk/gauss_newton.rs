@@ -9,12 +9,14 @@
 //!
 //! Cost: about five factorisations of the interior vertices with one unknown each, about fifteen with two.
 
+use super::options::{Boundary, DiskMapOptions};
 use super::published::fixed_point::fixed_point;
 use super::published::objective::DiskDomain;
-use super::published::run::Run;
-use super::{Boundary, DiskMapOptions, certificate, start, unfold};
-use crate::codomain::Codomain;
+use super::run::Run;
+use super::{certificate, start, unfold};
 use crate::codomain::motion::Motion;
+use crate::codomain::planar::{PlanarMap, flat, lifted};
+use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::embedding::{Stop, progressive_disk};
 use crate::energy::stretch::Profile;
@@ -25,7 +27,6 @@ use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_even, target_floors};
 use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
-use crate::vector::Vector;
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;
@@ -61,7 +62,6 @@ const QUICK: usize = 50_000;
 const MESSAGE: &str = "Start map";
 
 /// A map in the plane z = 1.
-type Map = Vec<Vector>;
 
 impl Run<'_> {
     /// An area-preserving map without folds, computed on the mesh in elimination order.
@@ -72,7 +72,7 @@ impl Run<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(super::Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         let is_cancelled = !observer.progress(0.0, "Ordering");
         if is_cancelled && self.mesh.n_vertices() > QUICK {
             return Err(Error::CancelledEarly);
@@ -99,7 +99,7 @@ impl Run<'_> {
         is_cancelled: bool,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(super::Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         // 1. Targets of slivers raised to a floor
         let floor = target_floors::floors(self.targets)[0];
         let energy = target_floors::energy(self.mesh, self.targets, Codomain::Disk, floor);
@@ -140,7 +140,7 @@ impl Run<'_> {
         problem: &Problem,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Option<Map>, Status) {
+    ) -> (Option<SpatialMap>, Status) {
         // 1. Fixed-point steps, or the map given
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.5 };
         let (stepped, status) = match self.fixed_point_steps(problem, history, &mut phase) {
@@ -178,8 +178,9 @@ impl Run<'_> {
         }
         let unfolded =
             if status == Status::Cancelled { None } else { unfold::unfold(self.mesh, &flat(&open)) };
-        let is_good = |map: &Map| problem.energy.is_embedding(map) && self.has_not_collapsed(problem, map);
-        (unfolded.map(lifted).filter(is_good), status)
+        let is_good =
+            |map: &SpatialMap| problem.energy.is_embedding(map) && self.has_not_collapsed(problem, map);
+        (unfolded.map(|map| lifted(&map)).filter(is_good), status)
     }
 
     /// The harmonic map and fixed-point steps from it, or the map given.
@@ -188,15 +189,15 @@ impl Run<'_> {
         problem: &Problem,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         if let Some(initial) = self.options.initial {
-            return Ok((lifted(initial.to_vec()), Status::MaxIterations));
+            return Ok((lifted(initial), Status::MaxIterations));
         }
         let mut domain = DiskDomain::new(self.mesh, problem.energy.targets(), self.options.boundary)?;
         let start = start::start(self.mesh, &mut domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let stopping = Stopping { max_iterations: FIXED_POINT_STEPS, tolerance: NEAR };
         let (map, status) = fixed_point(&mut domain, start, &stopping, history, observer);
-        Ok((lifted(map), status))
+        Ok((lifted(&map), status))
     }
 
     /// Tutte's embedding, or the progressive one where that collapses.
@@ -205,7 +206,7 @@ impl Run<'_> {
         problem: &Problem,
         status: Status,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         if status == Status::Cancelled && self.mesh.n_vertices() > QUICK {
             return Err(Error::CancelledEarly);
         }
@@ -216,11 +217,11 @@ impl Run<'_> {
             Status::Cancelled => Watch::new(&mut silent, 0.0, MESSAGE),
             _ => Watch::new(observer, 0.0, MESSAGE),
         };
-        let tutte = start::tutte(self.mesh, &mut domain, &watch).map(lifted);
-        let holds = |map: &Map| problem.energy.is_embedding(map);
-        let last_resort = |tutte: Result<Map, Error>| tutte.and_then(|tutte| self.last_resort(tutte));
+        let tutte = start::tutte(self.mesh, &mut domain, &watch).map(|map| lifted(&map));
+        let holds = |map: &SpatialMap| problem.energy.is_embedding(map);
+        let last_resort = |tutte: Result<SpatialMap, Error>| tutte.and_then(|tutte| self.last_resort(tutte));
         let is_held = self.options.boundary == Boundary::ArcLength;
-        let is_good = |map: &&Map| holds(map) && (is_held || self.has_not_collapsed(problem, map));
+        let is_good = |map: &&SpatialMap| holds(map) && (is_held || self.has_not_collapsed(problem, map));
         if let Some(tutte) = tutte.iter().find(is_good) {
             return Ok((tutte.clone(), status));
         }
@@ -228,7 +229,7 @@ impl Run<'_> {
             // the progressive embedding has a boundary of its own
             return Ok((last_resort(tutte)?, status));
         }
-        match progressive_disk(self.mesh, problem.energy.targets(), observer).map(lifted) {
+        match progressive_disk(self.mesh, problem.energy.targets(), observer).map(|map| lifted(&map)) {
             Ok(map) if holds(&map) => Ok((map, status)),
             Err(Stop::Cancelled) => {
                 let map = last_resort(tutte).map_err(|_| Error::CancelledEarly)?;
@@ -239,7 +240,7 @@ impl Run<'_> {
     }
 
     /// Any map without folds, however small its faces.
-    fn last_resort(&self, tutte: Map) -> Result<Map, Error> {
+    fn last_resort(&self, tutte: SpatialMap) -> Result<SpatialMap, Error> {
         let folded = certificate::folded(self.mesh, &flat(&tutte));
         match Elements::collect(folded) {
             None => Ok(tutte),
@@ -251,12 +252,12 @@ impl Run<'_> {
     fn guarded_descent(
         &self,
         problem: Problem,
-        map: Map,
+        map: SpatialMap,
         path: AnglePath,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Problem, Map, Status) {
+    ) -> (Problem, SpatialMap, Status) {
         if status == Status::Cancelled {
             return (problem, map, status);
         }
@@ -281,11 +282,11 @@ impl Run<'_> {
     fn second_try(
         &self,
         problem: Problem,
-        map: Map,
+        map: SpatialMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         let first = problem.unevenness(&map);
         // the progressive embedding has a boundary of its own
         let is_held = self.options.boundary == Boundary::ArcLength;
@@ -299,7 +300,7 @@ impl Run<'_> {
         }
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let other = match progressive_disk(self.mesh, problem.energy.targets(), &mut phase) {
-            Ok(other) => lifted(other),
+            Ok(other) => lifted(&other),
             Err(Stop::Cancelled) => return (map, Status::Cancelled),
             Err(Stop::NoRoom) => return (map, status),
         };
@@ -313,7 +314,7 @@ impl Run<'_> {
         more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
-    fn has_not_collapsed(&self, problem: &Problem, map: &Map) -> bool {
+    fn has_not_collapsed(&self, problem: &Problem, map: &SpatialMap) -> bool {
         let (areas, targets) = (problem.energy.areas(map), problem.energy.targets());
         let least = COLLAPSED * areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
         areas.iter().zip(targets).all(|(area, target)| *area > least * target)
@@ -341,14 +342,6 @@ impl Run<'_> {
             until_open: None,
         }
     }
-}
-
-fn lifted(map: super::Map) -> Map {
-    map.into_iter().map(|[u, v]| [u, v, 1.0]).collect()
-}
-
-fn flat(map: &Map) -> super::Map {
-    map.iter().map(|&[u, v, _]| [u, v]).collect()
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@
 //! L_S(id)) or with uniform ones. Tutte's map to a convex boundary is an embedding for every disk (Tutte
 //! 1963; Floater 2003).
 
+use super::boundary;
 use super::published::objective::DiskDomain;
-use super::{Map, boundary};
+use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
@@ -17,7 +18,7 @@ pub(super) fn start(
     mesh: &TriangleMesh,
     domain: &mut DiskDomain<'_>,
     watch: &Watch<'_>,
-) -> Result<Map, Error> {
+) -> Result<PlanarMap, Error> {
     harmonic(mesh, domain, watch).or_else(|error| match error {
         Error::CancelledEarly => Err(error),
         _ => tutte(mesh, domain, watch),
@@ -25,7 +26,7 @@ pub(super) fn start(
 }
 
 /// The harmonic map with an arc-length boundary.
-fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>, watch: &Watch<'_>) -> Result<Map, Error> {
+fn harmonic(mesh: &TriangleMesh, domain: &mut DiskDomain<'_>, watch: &Watch<'_>) -> Result<PlanarMap, Error> {
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let weights: Vec<f64> = by_face.iter().flatten().map(|cotangent| 0.5 * cotangent).collect();
     solve(mesh, domain, &weights, watch)
@@ -36,7 +37,7 @@ pub(super) fn tutte(
     mesh: &TriangleMesh,
     domain: &mut DiskDomain<'_>,
     watch: &Watch<'_>,
-) -> Result<Map, Error> {
+) -> Result<PlanarMap, Error> {
     // half an edge's weight per face, so that every interior edge has weight 1
     solve(mesh, domain, &vec![0.5; 3 * mesh.n_faces()], watch)
 }
@@ -46,7 +47,7 @@ fn solve(
     domain: &mut DiskDomain<'_>,
     weights: &[f64],
     watch: &Watch<'_>,
-) -> Result<Map, Error> {
+) -> Result<PlanarMap, Error> {
     let mut map = boundary::arc_length(mesh);
     domain.solve_dirichlet(weights, &mut map, watch)?;
     Ok(map)

@@ -6,6 +6,7 @@ use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{geometry, validate};
 use crate::error::{Elements, Error, MeshError};
+use crate::parallel;
 use crate::vector::Vector;
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
@@ -147,6 +148,13 @@ impl TriangleMesh {
     pub fn opposite(&self, corner: u32) -> Option<u32> {
         let across = self.opposite[corner as usize];
         (across != NO_CORNER).then_some(across)
+    }
+
+    /// What each vertex gets of a measure (m,) of the faces, each of which gives a third to each of its vertices, (n,).
+    pub(crate) fn vertex_shares(&self, measure: &[f64]) -> Vec<f64> {
+        parallel::map(self.n_vertices(), |vertex| {
+            self.vertex_corners(vertex).iter().map(|&corner| measure[corner as usize / 3] / 3.0).sum()
+        })
     }
 
     /// The corners at a vertex, in ascending order.

@@ -11,6 +11,7 @@ use super::{
     DiskRegistration, Landmarks, MISSED, Registration, RegistrationOptions, located, missed, verdict,
 };
 use crate::codomain::CanonicalDomain;
+use crate::codomain::planar::{flat, lifted};
 use crate::control::{History, Observer, Phase, Status};
 use crate::disk::{DiskMap, DiskMapOptions, disk_map};
 use crate::distortion::{Image, distortion, folded_in_plane};
@@ -140,14 +141,4 @@ fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector> {
 /// The images of some vertices.
 fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector> {
     lifted(&vertices.iter().map(|&vertex| map.uv[vertex]).collect::<Vec<_>>())
-}
-
-/// Points of the disk in the plane z = 1.
-fn lifted(points: &[[f64; 2]]) -> Vec<Vector> {
-    points.iter().map(|&[u, v]| [u, v, 1.0]).collect()
-}
-
-/// Points of the plane z = 1 as points of the disk.
-fn flat(points: &[Vector]) -> Vec<[f64; 2]> {
-    points.iter().map(|x| [x[0], x[1]]).collect()
 }

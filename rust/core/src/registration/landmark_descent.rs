@@ -12,7 +12,8 @@
 
 use super::RegistrationOptions;
 use super::flow::flow;
-use crate::codomain::CanonicalDomain;
+use crate::codomain::planar::{flat, lifted};
+use crate::codomain::{CanonicalDomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::stretch::Profile;
@@ -20,7 +21,7 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
-use crate::optimize::gauss_newton::{GaussNewtonOptions, Map, Problem, minimize, target_floors};
+use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
 use crate::sparse::{Order, elimination_order};
 use crate::vector::{Vector, distance};
 use crate::{disk, sphere};
@@ -97,10 +98,10 @@ impl Carrying<'_> {
     /// Where the system cannot be ordered.
     pub(super) fn carry(
         &self,
-        map: Map,
+        map: SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         if self.farthest(&map) <= THERE {
             return Ok((map, Status::Converged));
         }
@@ -151,13 +152,13 @@ impl Carrying<'_> {
         problem: &mut Problem,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Goals) {
+    ) -> (SpatialMap, Goals) {
         let given = Goals { weight: self.options.weight, angle_weight: self.options.angle_weight };
         let mut pulling = self.stiff();
         let mut map = mesh.points().to_vec();
         for round in 0..ROUNDS {
             let watch = Watch::new(observer, 0.1 * round as f64, MESSAGE);
-            let mended = |map: Map| self.mended(mesh, problem, map);
+            let mended = |map: SpatialMap| self.mended(mesh, problem, map);
             if self.landmarks.len() <= MOST_IN_FLOW {
                 map = flow(self.domain, map, problem.penalty.vertices(), self.places, &mended, &watch);
             }
@@ -188,23 +189,21 @@ impl Carrying<'_> {
     }
 
     /// A map with the few faces unfolded that were too thin or too coarse to follow the flow; `None` where some stay.
-    fn mended(&self, mesh: &TriangleMesh, problem: &Problem, map: Map) -> Option<Map> {
+    fn mended(&self, mesh: &TriangleMesh, problem: &Problem, map: SpatialMap) -> Option<SpatialMap> {
         if problem.energy.is_embedding(&map) {
             return self.is_sound(problem, &map).then_some(map);
         }
         let mended = match self.domain {
             CanonicalDomain::Sphere => sphere::unfold::unfold_within(mesh, &map, RINGS),
             CanonicalDomain::Disk => {
-                let flat: Vec<[f64; 2]> = map.iter().map(|x| [x[0], x[1]]).collect();
-                let mended = disk::unfold::unfold_within(mesh, &flat, RINGS);
-                mended.map(|flat| flat.iter().map(|&[u, v]| [u, v, 1.0]).collect())
+                disk::unfold::unfold_within(mesh, &flat(&map), RINGS).map(|map| lifted(&map))
             }
         };
-        mended.filter(|map: &Map| problem.energy.is_embedding(map) && self.is_sound(problem, map))
+        mended.filter(|map: &SpatialMap| problem.energy.is_embedding(map) && self.is_sound(problem, map))
     }
 
     /// Whether no part of a map is sheared so much that going on would only make it worse.
-    fn is_sound(&self, problem: &Problem, map: &Map) -> bool {
+    fn is_sound(&self, problem: &Problem, map: &SpatialMap) -> bool {
         let sums = problem.energy.sums(&problem.energy.costs(map));
         sums.angle_energy <= SHEARED * sums.area
     }
@@ -214,11 +213,11 @@ impl Carrying<'_> {
         &self,
         mesh: &TriangleMesh,
         mut problem: Problem,
-        mut map: Map,
+        mut map: SpatialMap,
         goals: Goals,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Problem, Map, Status) {
+    ) -> (Problem, SpatialMap, Status) {
         problem.penalty.weight = goals.weight;
         let surface =
             target_floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.domain.into() };
@@ -243,7 +242,7 @@ impl Carrying<'_> {
     }
 
     /// The map with its landmarks at their very places, where they are within reach and that folds nothing.
-    fn set_down(&self, problem: &Problem, map: Map) -> Map {
+    fn set_down(&self, problem: &Problem, map: SpatialMap) -> SpatialMap {
         let mut there = map.clone();
         for (k, gap) in problem.penalty.gaps(&map).into_iter().enumerate() {
             if gap <= WITHIN_REACH {

@@ -5,8 +5,8 @@
 //! one that lies over the surface best is returned: it maximises Σ w_i (R f_i)·(v_i − c), c the centroid of
 //! the surface's measure w.
 
-use super::Map;
 use crate::alignment::rotation::{best_rotation, centroid, rotate};
+use crate::codomain::SpatialMap;
 use crate::distortion::folded_on_sphere;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
@@ -14,7 +14,7 @@ use crate::vector::{norm, scaled, sub};
 
 /// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
 /// folds a sliver.
-pub(super) fn aligned(mesh: &TriangleMesh, map: Map, weights: &[f64]) -> Map {
+pub(super) fn aligned(mesh: &TriangleMesh, map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let (points, centre) = (mesh.points(), centroid(mesh.points(), weights));
     let centred = parallel::map(points.len(), |vertex| sub(points[vertex], centre));
     let rotation = best_rotation(&map, &centred, weights);
@@ -22,6 +22,6 @@ pub(super) fn aligned(mesh: &TriangleMesh, map: Map, weights: &[f64]) -> Map {
         let turned = rotate(rotation, map[vertex]);
         scaled(turned, 1.0 / norm(turned))
     });
-    let folds = |map: &Map| folded_on_sphere(mesh.faces(), map).len();
+    let folds = |map: &SpatialMap| folded_on_sphere(mesh.faces(), map).len();
     if folds(&turned) > folds(&map) { map } else { turned }
 }

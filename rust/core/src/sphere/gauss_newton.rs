@@ -10,12 +10,14 @@
 
 use std::f64::consts::PI;
 
+use super::options::SphereMapOptions;
 use super::published::fixed_point::{FixedPointStopping, fixed_point};
 use super::published::objective::SphereDomain;
-use super::published::run::Run;
-use super::{Map, SphereMapOptions, normalized, start, unfold};
-use crate::codomain::Codomain;
+use super::run::Run;
+use super::{start, unfold};
 use crate::codomain::motion::Motion;
+use crate::codomain::spherical::onto_sphere;
+use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
@@ -68,7 +70,7 @@ impl Run<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         if !observer.progress(0.0, "Ordering") && self.mesh.n_vertices() > QUICK {
             return Err(Error::CancelledEarly);
         }
@@ -92,7 +94,7 @@ impl Run<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         // 1. Targets of slivers raised to a floor
         let floor = target_floors::floors(self.targets)[0];
         let energy = target_floors::energy(self.mesh, self.targets, Codomain::Sphere, floor);
@@ -130,11 +132,11 @@ impl Run<'_> {
         problem: &Problem,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Option<Map>, Status), Error> {
-        let holds = |map: &Map| problem.energy.is_embedding(map);
+    ) -> Result<(Option<SpatialMap>, Status), Error> {
+        let holds = |map: &SpatialMap| problem.energy.is_embedding(map);
         // 1. A map that was given only needs to be unfolded
         if let Some(initial) = self.options.initial {
-            let map: Map = initial.iter().filter_map(|&x| normalized(x)).collect();
+            let map: SpatialMap = initial.iter().filter_map(|&x| onto_sphere(x)).collect();
             let map = if holds(&map) { Some(map) } else { unfold::unfold(self.mesh, &map).filter(holds) };
             // a map that covers the sphere twice folds nowhere either
             return Ok((map.filter(|map| self.is_bijective(map)), Status::MaxIterations));
@@ -156,11 +158,11 @@ impl Run<'_> {
         // 3. Either of them, where it is not far off
         let candidates = [stepped, start].into_iter().filter(holds);
         let best = candidates.min_by(|a, b| problem.unevenness(a).total_cmp(&problem.unevenness(b)));
-        let is_good = |map: &Map| status == Status::Cancelled || problem.unevenness(map) <= BAD_START;
+        let is_good = |map: &SpatialMap| status == Status::Cancelled || problem.unevenness(map) <= BAD_START;
         Ok((best.filter(is_good), status))
     }
 
-    fn progressive_start(&self, problem: &Problem, observer: &mut dyn Observer) -> Result<Map, Error> {
+    fn progressive_start(&self, problem: &Problem, observer: &mut dyn Observer) -> Result<SpatialMap, Error> {
         match progressive_sphere(self.mesh, problem.energy.targets(), observer) {
             Ok(map) if problem.energy.is_embedding(&map) => return Ok(map),
             Err(Stop::Cancelled) => return Err(Error::CancelledEarly),
@@ -178,12 +180,12 @@ impl Run<'_> {
     fn descend(
         &self,
         problem: Problem,
-        map: Map,
+        map: SpatialMap,
         path: AnglePath,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Problem, Map, Status) {
+    ) -> (Problem, SpatialMap, Status) {
         if status == Status::Cancelled {
             return (problem, map, status);
         }
@@ -224,11 +226,11 @@ impl Run<'_> {
     fn second_try(
         &self,
         problem: Problem,
-        map: Map,
+        map: SpatialMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         let first = problem.unevenness(&map);
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let other = match self.progressive_start(&problem, &mut phase) {
@@ -243,7 +245,7 @@ impl Run<'_> {
     }
 
     /// Whether no face is folded and the faces cover the sphere once.
-    fn is_bijective(&self, map: &Map) -> bool {
+    fn is_bijective(&self, map: &SpatialMap) -> bool {
         let covered = parallel::sum(self.mesh.n_faces(), |face| {
             let [a, b, c] = triangle(map, self.mesh.faces()[face]);
             2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))

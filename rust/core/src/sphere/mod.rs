@@ -12,8 +12,10 @@
 
 mod alignment;
 mod gauss_newton;
+mod options;
 mod published;
 mod refinement;
+mod run;
 mod start;
 mod stereographic;
 pub(crate) mod unfold;
@@ -22,92 +24,19 @@ use std::borrow::Cow;
 
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
-use crate::error::{Elements, Error, MapError};
+use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::mesh::geometry::{area_vector, triangle};
-use crate::optimize::published::gradient_descent::LineSearch;
-use crate::options::{check_angle_weight, check_area_tolerance};
-use crate::parallel;
-use crate::vector::{Vector, dot, norm, scaled};
+use crate::vector::Vector;
 
-use published::run::Run;
+use crate::codomain::SpatialMap;
+pub use options::{SphereMapOptions, SphereMethod};
 pub use refinement::Refinement;
 use refinement::refine;
+use run::Run;
 pub(crate) use start::rough_conformal;
 
 /// The part of the whole that the map takes before faces are split.
 const UNREFINED: f64 = 0.4;
-
-/// A map of the vertices onto the unit sphere.
-type Map = Vec<Vector>;
-
-/// How a sphere map is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum SphereMethod {
-    /// Fixed-point iteration of the stretch energy (Sutti & Yueh 2024, Algorithm 2).
-    FixedPoint,
-    /// Riemannian gradient descent (Sutti & Yueh 2024, Algorithm 1) after a few fixed-point steps.
-    GradientDescent,
-    /// Guarded Gauss–Newton, our own: more exact by orders of magnitude, and never a folded face on the way.
-    #[default]
-    GaussNewton,
-}
-
-/// Options of [`sphere_map`].
-#[derive(Debug, Clone)]
-pub struct SphereMapOptions<'a> {
-    /// The method; guarded Gauss–Newton.
-    pub method: SphereMethod,
-    /// The line search of the gradient descent; interpolation, which the paper found faster and no less
-    /// exact.
-    pub line_search: LineSearch,
-    /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
-    pub density: Option<&'a [f64]>,
-    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
-    /// alone.
-    pub angle_weight: f64,
-    /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
-    /// where `None`, `angle_weight` decides.
-    pub area_tolerance: Option<f64>,
-    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the
-    /// fixed point itself fixed-point steps from it.
-    pub initial: Option<&'a [Vector]>,
-    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
-    /// takes, with a weight of 0 17 (20 below 20,000 vertices, 40 below 10,000) where those leave the area ratio
-    /// a deviation of .5 % (.2 % below 10,000 vertices); the papers' methods: 100, as in the paper's tables. The
-    /// fixed-point steps before the descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the start
-    /// map itself.
-    pub max_iterations: Option<usize>,
-    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
-    /// where `None`. Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For
-    /// the fixed point it is ε of Algorithm 2: the iteration ends when E_S falls by no more than this; 10⁻⁶
-    /// where `None`, as in the paper. −∞ asks the fixed point for all iterations, through rises, and for the
-    /// last map instead of the best.
-    pub tolerance: Option<f64>,
-    /// Split faces that keep areas from being even, as those of long limbs do, for Gauss–Newton only; off. Iterations are
-    /// counted, and limited, for each of up to four descents.
-    pub refine: bool,
-    /// Unfold what the papers' methods fold; on. The paper's tables count folds before that too.
-    pub unfold: bool,
-}
-
-impl Default for SphereMapOptions<'_> {
-    fn default() -> Self {
-        Self {
-            method: SphereMethod::default(),
-            line_search: LineSearch::default(),
-            density: None,
-            angle_weight: 0.0,
-            area_tolerance: None,
-            initial: None,
-            max_iterations: None,
-            tolerance: None,
-            refine: false,
-            unfold: true,
-        }
-    }
-}
 
 /// A one-to-one map of a closed surface to the unit sphere.
 #[derive(Debug, Clone)]
@@ -159,7 +88,7 @@ pub fn sphere_map(
         Some(density) => normalized_density(density, mesh.n_faces())?.into(),
         None => mesh.face_areas().into(),
     };
-    let weights = vertex_weights(mesh, &targets);
+    let weights = mesh.vertex_shares(&targets);
     // 3. Minimise the energy, unfold what folded
     let run = Run { mesh, targets: &targets, weights: &weights, options };
     let to = if options.refine { UNREFINED } else { 1.0 };
@@ -188,7 +117,7 @@ pub fn sphere_map(
             (positions, figures, None)
         }
         Some(refined) => {
-            let weights = vertex_weights(&refined.mesh, &refined.targets);
+            let weights = refined.mesh.vertex_shares(&refined.targets);
             let mut positions = over_the_surface(&refined.mesh, map, &weights, options);
             let (of_parts, of_faces) = refined.figures(&positions)?;
             let of_split_points = positions.split_off(mesh.n_vertices());
@@ -199,92 +128,14 @@ pub fn sphere_map(
 }
 
 /// The map rotated over its surface, or as it is where a start was given.
-fn over_the_surface(mesh: &TriangleMesh, map: Map, weights: &[f64], options: &SphereMapOptions<'_>) -> Map {
+fn over_the_surface(
+    mesh: &TriangleMesh,
+    map: SpatialMap,
+    weights: &[f64],
+    options: &SphereMapOptions<'_>,
+) -> SpatialMap {
     match options.initial {
         None => alignment::aligned(mesh, map, weights),
         Some(_) => map,
     }
-}
-
-/// A third of the targets of the faces at each vertex.
-pub(crate) fn vertex_weights(mesh: &TriangleMesh, targets: &[f64]) -> Vec<f64> {
-    parallel::map(mesh.n_vertices(), |vertex| {
-        mesh.vertex_corners(vertex).iter().map(|&corner| targets[corner as usize / 3] / 3.0).sum()
-    })
-}
-
-impl SphereMapOptions<'_> {
-    fn check(&self, mesh: &TriangleMesh) -> Result<(), Error> {
-        mesh.require_sphere()?;
-        if let Some(initial) = self.initial {
-            check_initial(mesh, initial)?;
-        }
-        check_angle_weight(self.angle_weight, self.method == SphereMethod::GaussNewton)?;
-        check_area_tolerance(
-            self.area_tolerance,
-            self.angle_weight,
-            self.method == SphereMethod::GaussNewton,
-        )?;
-        if self.refine && self.method != SphereMethod::GaussNewton {
-            return Err(Error::InvalidOption {
-                name: "refine",
-                found: "on".into(),
-                expected: "off for the papers' methods; only gauss_newton splits faces".into(),
-            });
-        }
-        let fixed_point = self.method == SphereMethod::FixedPoint;
-        let in_range = |tolerance: f64| match fixed_point {
-            true => tolerance < f64::INFINITY,
-            false => tolerance >= 0.0 && tolerance.is_finite(),
-        };
-        match self.tolerance {
-            Some(tolerance) if !in_range(tolerance) => Err(Error::InvalidOption {
-                name: "tolerance",
-                found: tolerance.to_string(),
-                expected: if fixed_point { "below infinity" } else { "a finite number ≥ 0" }.into(),
-            }),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// A start map must be finite, away from the origin and outward oriented on the whole; its folds are mended
-/// like any others.
-fn check_initial(mesh: &TriangleMesh, initial: &[Vector]) -> Result<(), Error> {
-    if initial.len() != mesh.n_vertices() {
-        let (found, expected) =
-            (format!("of shape ({}, 3)", initial.len()), format!("of shape ({}, 3)", mesh.n_vertices()));
-        return Err(Error::InvalidArray { name: "initial", found, expected });
-    }
-    let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
-    if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
-        return Err(MapError::NonFinite { name: "initial", vertices }.into());
-    }
-    let no_direction = |v: &usize| normalized(initial[*v]).is_none();
-    if let Some(vertices) = Elements::collect((0..initial.len()).filter(no_direction)) {
-        let reason = "it lies at the origin, and no direction leads from there to the sphere";
-        return Err(MapError::InitialSphere { vertices, reason }.into());
-    }
-    let map: Map = initial.iter().filter_map(|&x| normalized(x)).collect();
-    let volume = |face: usize| {
-        let corners = triangle(&map, mesh.faces()[face]);
-        dot(corners[0], area_vector(corners))
-    };
-    if parallel::sum(mesh.n_faces(), volume) <= 0.0 {
-        let vertices = Elements::collect(0..initial.len()).expect("a mesh has vertices");
-        let reason = "its faces look inward; mirror it, for instance by negating one coordinate";
-        return Err(MapError::InitialSphere { vertices, reason }.into());
-    }
-    Ok(())
-}
-
-/// The point of the sphere in the direction of `x`, `None` at the origin.
-fn normalized(x: Vector) -> Option<Vector> {
-    // by the largest coordinate first, so that squares neither over- nor underflow
-    let largest = x.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    if (dot(x, x) - 1.0).abs() <= 4.0 * f64::EPSILON {
-        return Some(x);
-    }
-    let x = scaled(x, 1.0 / largest);
-    (largest > 0.0 && x.iter().all(|c| c.is_finite())).then(|| scaled(x, 1.0 / norm(x)))
 }

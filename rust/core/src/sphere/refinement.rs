@@ -12,11 +12,14 @@
 //! Cost: that of a descent with an initial map, three times at the most, on a mesh of one and a half to four times as many
 //! faces.
 
+use super::Run;
 use std::f64::consts::PI;
 
+use super::options::SphereMapOptions;
 use super::published::objective::SphereDomain;
-use super::published::run::{Run, energy_share};
-use super::{Map, SphereMapOptions, normalized, vertex_weights};
+use super::published::run::energy_share;
+use crate::codomain::SpatialMap;
+use crate::codomain::spherical::onto_sphere;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
 use crate::error::Error;
@@ -72,11 +75,11 @@ pub(super) struct Refined {
 pub(super) fn refine(
     mesh: &TriangleMesh,
     targets: &[f64],
-    (mut map, mut status): (Map, Status),
+    (mut map, mut status): (SpatialMap, Status),
     options: &SphereMapOptions<'_>,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Refined, Map, Status) {
+) -> (Refined, SpatialMap, Status) {
     let even = options.area_tolerance.or(options.tolerance).unwrap_or(EVEN);
     let mut refined = Refined::new(mesh, targets);
     let mut best = (refined.unevenness(&map), refined.clone(), map.clone(), status);
@@ -118,7 +121,7 @@ impl Refined {
     }
 
     /// E_A over the area of the image.
-    fn unevenness(&self, map: &Map) -> f64 {
+    fn unevenness(&self, map: &SpatialMap) -> f64 {
         energy_share(&SphereDomain::new(&self.mesh, &self.targets), map)
     }
 
@@ -133,7 +136,7 @@ impl Refined {
     }
 
     /// The surface with blocked faces split, and the map with the new midpoints; `None` where no face is blocked.
-    fn split(&self, map: &[Vector]) -> Option<(Self, Map)> {
+    fn split(&self, map: &[Vector]) -> Option<(Self, SpatialMap)> {
         let blocked = self.blocked(map);
         if !blocked.contains(&true) {
             return None;
@@ -150,8 +153,8 @@ impl Refined {
         let middle = |of: &[Vector], [a, b]: [u32; 2]| scaled(add(of[a as usize], of[b as usize]), 0.5);
         let on_surface = parents.iter().map(|&ends| middle(points, ends));
         let points: Vec<Vector> = points.iter().copied().chain(on_surface).collect();
-        let on_sphere = parents.iter().map(|&ends| normalized(middle(map, ends)));
-        let map: Map = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
+        let on_sphere = parents.iter().map(|&ends| onto_sphere(middle(map, ends)));
+        let map: SpatialMap = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
         // 3. Targets
         let part = |k: usize| self.targets[face_of[k] as usize] / f64::from(parts[k]);
         let split = Self {
@@ -166,13 +169,13 @@ impl Refined {
     /// A descent from a map.
     fn evened_out(
         &self,
-        start: &Map,
+        start: &SpatialMap,
         options: &SphereMapOptions<'_>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         let options = SphereMapOptions { initial: Some(start), density: None, ..*options };
-        let weights = vertex_weights(&self.mesh, &self.targets);
+        let weights = self.mesh.vertex_shares(&self.targets);
         let run = Run { mesh: &self.mesh, targets: &self.targets, weights: &weights, options: &options };
         run.renumbered(history, observer)
     }
@@ -186,7 +189,7 @@ impl Refined {
     }
 
     /// What is given to the caller, with the images of the split points.
-    pub(super) fn into_refinement(self, positions: Map, distortion: Distortion) -> Refinement {
+    pub(super) fn into_refinement(self, positions: SpatialMap, distortion: Distortion) -> Refinement {
         let faces = self.mesh.faces().to_vec();
         Refinement { parents: self.parents, positions, faces, face_of: self.face_of, distortion }
     }

@@ -15,7 +15,8 @@
 use std::f64::consts::PI;
 
 use super::stereographic::{Chart, weighted_median};
-use super::{Map, unfold};
+use super::unfold;
+use crate::codomain::SpatialMap;
 use crate::control::{Observer, Watch};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
@@ -56,7 +57,7 @@ pub(super) fn start(
     targets: &[f64],
     weights: &[f64],
     observer: &mut dyn Observer,
-) -> Result<Map, Error> {
+) -> Result<SpatialMap, Error> {
     // 1. The conformal map where it is of use, else the progressive one
     let conformal = conformal(mesh, weights, &Watch::new(observer, 0.0, MESSAGE));
     if matches!(conformal, Err(Error::CancelledEarly)) {
@@ -71,8 +72,8 @@ pub(super) fn start(
         },
     };
     // 2. On a sphere the surface itself
-    let energy = |map: &Map| SpatialStretchEnergy::new(mesh, targets).value(map).authalic_energy;
-    let is_round = |radial: &Map| map.as_ref().is_none_or(|map| energy(radial) < part * energy(map));
+    let energy = |map: &SpatialMap| SpatialStretchEnergy::new(mesh, targets).value(map).authalic_energy;
+    let is_round = |radial: &SpatialMap| map.as_ref().is_none_or(|map| energy(radial) < part * energy(map));
     if let Some(radial) = radial(mesh, weights).filter(is_round) {
         return Ok(radial);
     }
@@ -87,7 +88,7 @@ pub(super) fn start(
 }
 
 /// The surface seen from its centroid, where no face is folded there.
-fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<Map> {
+fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<SpatialMap> {
     let total: f64 = weights.iter().sum();
     let centroid: Vector = std::array::from_fn(|axis| {
         parallel::sum(mesh.n_vertices(), |v| weights[v] / total * mesh.points()[v][axis])
@@ -111,7 +112,7 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
 ///
 /// # Errors
 /// [`NumericsError::FactorizationFailed`] where slivers make the cotangents too large.
-fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
+fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<SpatialMap, Error> {
     conformal_within(f64::INFINITY, mesh, weights, watch)
 }
 
@@ -120,7 +121,11 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
-pub(crate) fn rough_conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<Map, Error> {
+pub(crate) fn rough_conformal(
+    mesh: &TriangleMesh,
+    weights: &[f64],
+    watch: &Watch<'_>,
+) -> Result<SpatialMap, Error> {
     conformal_within(LARGEST_COTANGENT, mesh, weights, watch)
 }
 
@@ -130,7 +135,7 @@ fn conformal_within(
     mesh: &TriangleMesh,
     weights: &[f64],
     watch: &Watch<'_>,
-) -> Result<Map, Error> {
+) -> Result<SpatialMap, Error> {
     let least = if largest.is_finite() { 1.0 / largest } else { f64::NEG_INFINITY };
     let by_face = corner_cotangents(mesh.points(), mesh.faces());
     let half = |cotangent: &f64| 0.5 * cotangent.clamp(least, largest);
@@ -143,7 +148,7 @@ fn conformal_within(
 }
 
 /// The map rotated so that the removed face lies at the south pole, whichever way the plane was turned.
-fn upright(map: Map, removed: [u32; 3]) -> Map {
+fn upright(map: SpatialMap, removed: [u32; 3]) -> SpatialMap {
     let [a, b, c] = triangle(&map, removed);
     let face = add(a, add(b, c));
     // a half turn about the axis between the face and the pole
@@ -221,7 +226,7 @@ fn normalise(plane: &mut [[f64; 2]], weights: &[f64]) {
 ///
 /// Newton's method: the boost towards −b moves x by −(b − (b·x) x) to first order, so the b that brings the
 /// centroid c to the centre solves (I − Σ w x xᵀ) b = c.
-fn centred(mut map: Map, weights: &[f64]) -> Map {
+fn centred(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let total: f64 = weights.iter().sum();
     for _ in 0..CENTRING_STEPS {
         let moment = |value: &(dyn Fn(Vector) -> f64 + Sync)| {

@@ -5,7 +5,7 @@
 //! from the north pole is the projection from the south pole, (x + iy)/(1 + z), so a method that inverts
 //! before every step changes charts here, and the map on the sphere keeps its orientation.
 
-use super::Map;
+use crate::codomain::SpatialMap;
 use crate::parallel;
 use crate::vector::Vector;
 
@@ -46,7 +46,7 @@ impl Chart {
     }
 
     /// The points over all points of the plane.
-    pub(super) fn lift_all(self, plane: &[[f64; 2]]) -> Map {
+    pub(super) fn lift_all(self, plane: &[[f64; 2]]) -> SpatialMap {
         parallel::map(plane.len(), |vertex| self.lift(plane[vertex]))
     }
 

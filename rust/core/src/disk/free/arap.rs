@@ -5,7 +5,8 @@
 //! local step turns each rest triangle as its image is turned, the global one solves a Poisson equation for the map. Cost:
 //! one factorisation of one unknown per vertex, [`STEPS`] solves for both coordinates. Faces may fold.
 
-use super::energy::{Energy, Map};
+use super::energy::Energy;
+use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
@@ -19,9 +20,9 @@ const SHIFTS: [f64; 3] = [1e-10, 1e-8, 1e-6];
 /// The map after [`STEPS`] local and global steps from `map`.
 pub(super) fn as_rigid_as_possible(
     energy: &Energy<'_>,
-    mut map: Map,
+    mut map: PlanarMap,
     watch: &Watch<'_>,
-) -> Result<Map, Failure> {
+) -> Result<PlanarMap, Failure> {
     let (mesh, n) = (energy.mesh, energy.mesh.n_vertices());
     let analysis = Analysis::new(n, mesh.faces(), &vec![1; n], Order::AsGiven)
         .map_err(|_| Failure::NotPositiveDefinite)?;

@@ -8,7 +8,8 @@
 //! itself is not changed. Pairs are found by a sweep over boxes. Cost: O(n log n) and one comparison for every two boxes that
 //! overlap in x.
 
-use super::energy::{Energy, Map};
+use super::energy::Energy;
+use crate::codomain::planar::PlanarMap;
 use crate::mesh::polygon::is_simple_outline;
 
 /// The outlines of a map: all boundary loops of its surface.
@@ -185,7 +186,7 @@ impl Outline {
 
     /// Whether no outline crosses or touches itself or another one, decided exactly.
     pub(super) fn is_simple(&self, map: &[[f64; 2]]) -> bool {
-        let corners: Map = self.vertices.iter().map(|&v| map[v as usize]).collect();
+        let corners: PlanarMap = self.vertices.iter().map(|&v| map[v as usize]).collect();
         is_simple_outline(&corners, &self.next)
     }
 }
@@ -324,7 +325,7 @@ mod tests {
     }
 
     /// The strip around a ring whose ends are `gap` of a turn apart.
-    fn ring(gap: f64) -> Map {
+    fn ring(gap: f64) -> PlanarMap {
         (0..14)
             .map(|k| {
                 let angle = -std::f64::consts::TAU * (1.0 - gap) * f64::from(k / 2) / 6.0;
@@ -339,10 +340,10 @@ mod tests {
         with_outline(|outline| {
             let map = ring(0.03);
             let stiffness = outline.stiffness(0.7);
-            let along: Map = (0..14)
+            let along: PlanarMap = (0..14)
                 .map(|v| [(0.4 + 3.0 * f64::from(v)).sin(), (2.0 + 5.0 * f64::from(v)).cos()])
                 .collect();
-            let moved = |step: f64| -> Map {
+            let moved = |step: f64| -> PlanarMap {
                 (0..14).map(|v| [0, 1].map(|k| map[v][k] + step * along[v][k])).collect()
             };
             let contacts = outline.contacts(&map, 0.5);
@@ -372,14 +373,14 @@ mod tests {
         with_outline(|outline| {
             let (map, beyond) = (ring(0.1), ring(-0.1));
             assert!(outline.is_simple(&map) && !outline.is_simple(&beyond));
-            let along: Map = (0..14).map(|v| [0, 1].map(|k| beyond[v][k] - map[v][k])).collect();
+            let along: PlanarMap = (0..14).map(|v| [0, 1].map(|k| beyond[v][k] - map[v][k])).collect();
             let step = outline.longest_step(&map, &along, 1.0);
-            let moved = |step: f64| -> Map {
+            let moved = |step: f64| -> PlanarMap {
                 (0..14).map(|v| [0, 1].map(|k| map[v][k] + step * along[v][k])).collect()
             };
             assert!(step > 0.1 && step < 0.9, "{step}");
             assert!(outline.is_simple(&moved(step - 1e-9)) && !outline.is_simple(&moved(step + 1e-9)));
-            let back: Map = along.iter().map(|x| x.map(|c| -c)).collect();
+            let back: PlanarMap = along.iter().map(|x| x.map(|c| -c)).collect();
             assert_eq!(outline.longest_step(&map, &back, 0.5), 0.5);
         });
     }

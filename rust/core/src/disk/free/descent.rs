@@ -11,7 +11,8 @@
 //! unknowns per vertex, and some ten solves where contacts act.
 
 use super::contact::{Contact, Outline, Stiffness, roots};
-use super::energy::{Element, Energy, Hessian, Map};
+use super::energy::{Element, Energy, Hessian};
+use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Status, Watch};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure};
@@ -87,13 +88,13 @@ pub(super) struct Goal {
 
 /// What there is to know of a map.
 struct Place {
-    map: Map,
+    map: PlanarMap,
     value: f64,
     contacts: Vec<Contact>,
 }
 
 struct Direction {
-    along: Map,
+    along: PlanarMap,
     /// −gᵀd.
     decrement: f64,
 }
@@ -120,11 +121,11 @@ impl<'a> Descent<'a> {
     /// Lowers the energy from `map`, which must be allowed, to a stationary point.
     pub(super) fn run(
         &mut self,
-        map: Map,
+        map: PlanarMap,
         goal: &Goal,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (PlanarMap, Status) {
         let weight = goal.weight;
         let mut place = self.place(map, goal);
         history.push_start(self.problem.energy.unevenness(&place.map), 0.0);
@@ -194,7 +195,7 @@ impl<'a> Descent<'a> {
     }
 
     /// What there is to know of a map; its value is infinite where it is not allowed.
-    fn place(&self, map: Map, goal: &Goal) -> Place {
+    fn place(&self, map: PlanarMap, goal: &Goal) -> Place {
         let mut value = self.problem.energy.value(&map, goal.weight);
         let mut contacts = Vec::new();
         if let Some(outline) = self.problem.outline
@@ -308,14 +309,20 @@ impl<'a> Descent<'a> {
     }
 
     /// Solves with the factor.
-    fn preconditioned(&self, rhs: &[[f64; 2]]) -> Map {
+    fn preconditioned(&self, rhs: &[[f64; 2]]) -> PlanarMap {
         let mut unknowns: Vec<f64> = rhs.iter().flatten().copied().collect();
         self.factor.solve(self.problem.analysis, &mut unknowns);
         unknowns.chunks_exact(2).map(|x| [x[0], x[1]]).collect()
     }
 
     /// The product with the Hessian of faces and contacts.
-    fn product(&self, contacts: &[Contact], springs: &[[f64; 2]], curvature: f64, x: &[[f64; 2]]) -> Map {
+    fn product(
+        &self,
+        contacts: &[Contact],
+        springs: &[[f64; 2]],
+        curvature: f64,
+        x: &[[f64; 2]],
+    ) -> PlanarMap {
         let energy = self.problem.energy;
         let by_face: Vec<[f64; 6]> = parallel::map(energy.mesh.n_faces(), |face| {
             let at = energy.mesh.faces()[face].map(|v| x[v as usize]);
@@ -345,7 +352,7 @@ impl<'a> Descent<'a> {
         curvature: f64,
         rhs: &[[f64; 2]],
         watch: &Watch<'_>,
-    ) -> Result<Map, Failure> {
+    ) -> Result<PlanarMap, Failure> {
         let mut x = vec![[0.0; 2]; rhs.len()];
         let mut residual = rhs.to_vec();
         let mut z = self.preconditioned(&residual);

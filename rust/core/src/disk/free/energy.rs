@@ -9,6 +9,7 @@
 //! For the Hessian m − 1 is taken as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing;
 //! every term is positive semidefinite but that of the curvature of ρ, which is left out or added on demand.
 
+use crate::codomain::planar::PlanarMap;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
@@ -28,7 +29,6 @@ const ROUNDING: f64 = 3.330_669_073_875_471_6e-16;
 pub(super) type Element = [[f64; 6]; 6];
 
 /// A map of the vertices into the plane.
-pub(super) type Map = Vec<[f64; 2]>;
 
 /// The rest triangles of a surface.
 pub(super) struct Energy<'a> {
@@ -144,7 +144,7 @@ impl<'a> Energy<'a> {
     }
 
     /// The gradient of E by the vertices, (n, 2).
-    pub(super) fn gradient(&self, map: &[[f64; 2]], weight: f64) -> Map {
+    pub(super) fn gradient(&self, map: &[[f64; 2]], weight: f64) -> PlanarMap {
         let by_face = parallel::map(self.mesh.n_faces(), |face| self.slopes(map, face, weight));
         self.gathered(|corner| {
             let [a, b, c, d] = by_face[corner / 3];
@@ -154,7 +154,7 @@ impl<'a> Energy<'a> {
     }
 
     /// Sums over the corners of every vertex.
-    pub(super) fn gathered(&self, of_corner: impl Fn(usize) -> [f64; 2] + Sync + Send) -> Map {
+    pub(super) fn gathered(&self, of_corner: impl Fn(usize) -> [f64; 2] + Sync + Send) -> PlanarMap {
         parallel::map(self.mesh.n_vertices(), |v| {
             let corners = self.mesh.vertex_corners(v).iter();
             corners
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
 
     /// A pyramid without its base, with a map of it.
-    fn pyramid() -> (TriangleMesh, Map) {
+    fn pyramid() -> (TriangleMesh, PlanarMap) {
         let points = [[0., 0., 1.], [1.3, 0., 0.], [0., 1., 0.2], [-1., -0.5, 0.]];
         let mesh = TriangleMesh::new(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 1]]).unwrap();
         (mesh, vec![[0.05, -0.1], [0.9, 0.1], [-0.2, 0.8], [-0.6, -0.7]])
@@ -307,10 +307,10 @@ mod tests {
         let (mesh, map) = pyramid();
         let energy = Energy::new(&mesh, &[0.3, 0.5, 0.4]);
         let weight = 0.4;
-        let along: Map =
+        let along: PlanarMap =
             (0..4).map(|v| [(1.0 + 3.0 * v as f64).sin(), (2.0 + 5.0 * v as f64).cos()]).collect();
         let value = |step: f64| {
-            let moved: Map = (0..4).map(|v| [0, 1].map(|k| map[v][k] + step * along[v][k])).collect();
+            let moved: PlanarMap = (0..4).map(|v| [0, 1].map(|k| map[v][k] + step * along[v][k])).collect();
             energy.value(&moved, weight)
         };
         let (h, here) = (1e-4, value(0.0));
@@ -352,9 +352,9 @@ mod tests {
         let mesh = TriangleMesh::new(&points, &[[0, 1, 2], [0, 2, 3]]).unwrap();
         let energy = Energy::new(&mesh, mesh.face_areas());
         // turned by a right angle, of area one
-        let map: Map = points.iter().map(|x| [-x[1], x[0]].map(|c| c * 0.5f64.sqrt())).collect();
+        let map: PlanarMap = points.iter().map(|x| [-x[1], x[0]].map(|c| c * 0.5f64.sqrt())).collect();
         assert!(energy.value(&map, 1.0) < 1e-30);
-        let folded: Map = map.iter().map(|x| [-x[0], x[1]]).collect();
+        let folded: PlanarMap = map.iter().map(|x| [-x[0], x[1]]).collect();
         assert_eq!(energy.value(&folded, 1.0), f64::INFINITY);
         assert!(!energy.is_unfolded(&folded));
     }

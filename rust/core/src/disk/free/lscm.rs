@@ -8,7 +8,8 @@
 
 use std::f64::consts::TAU;
 
-use super::energy::{Element, Energy, Map};
+use super::energy::{Element, Energy};
+use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::sparse::{Analysis, Factor, Failure};
 use crate::vector::distance;
@@ -24,7 +25,7 @@ pub(super) fn spectral_conformal(
     energy: &Energy<'_>,
     analysis: &Analysis,
     watch: &Watch<'_>,
-) -> Result<Map, Failure> {
+) -> Result<PlanarMap, Failure> {
     // 1. The conformal energy of every face, factored
     let factor = factored(energy, analysis, watch)?;
     // 2. Inverse iteration from the outline laid around a circle
@@ -77,7 +78,7 @@ fn conformal_element(energy: &Energy<'_>, face: usize, shift: f64) -> Element {
 }
 
 /// The longest loop on a circle by its edge lengths, all else at the origin: it turns with the surface's numbering only.
-fn around_a_circle(energy: &Energy<'_>) -> Map {
+fn around_a_circle(energy: &Energy<'_>) -> PlanarMap {
     let (mesh, outline) = (energy.mesh, &energy.mesh.boundary_loops()[0]);
     let point = |k: usize| mesh.points()[outline[k % outline.len()] as usize];
     let lengths: Vec<f64> = (0..outline.len()).map(|k| distance(point(k + 1), point(k))).collect();
@@ -92,7 +93,7 @@ fn around_a_circle(energy: &Energy<'_>) -> Map {
 }
 
 /// The map scaled so that its signed area is one, mirrored where that is negative.
-pub(super) fn of_area_one(energy: &Energy<'_>, mut map: Map) -> Map {
+pub(super) fn of_area_one(energy: &Energy<'_>, mut map: PlanarMap) -> PlanarMap {
     let signed = |face: usize| {
         let [a, b, c, d] = energy.entries(&map, face);
         energy.targets[face] * (a * d - b * c)

@@ -17,8 +17,10 @@ mod energy;
 mod lscm;
 mod starts;
 
-use super::published::run::Run;
-use super::{Boundary, DiskMapOptions, Map, certificate, holes};
+use super::options::{Boundary, DiskMapOptions};
+use super::run::Run;
+use super::{certificate, holes};
+use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
@@ -89,7 +91,7 @@ impl Free<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let targets = by_order.of_faces(self.targets);
@@ -101,7 +103,11 @@ impl Free<'_> {
     }
 
     /// The map of a mesh in elimination order.
-    fn in_order(&self, history: &mut History, observer: &mut dyn Observer) -> Result<(Map, Status), Error> {
+    fn in_order(
+        &self,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<(PlanarMap, Status), Error> {
         let energy = Energy::new(self.mesh, self.targets);
         let n = self.mesh.n_vertices();
         let analysis = Analysis::new(n, self.mesh.faces(), &vec![2; n], Order::AsGiven)?;
@@ -129,10 +135,10 @@ impl Free<'_> {
     fn descend(
         &self,
         surface: &Surface<'_>,
-        start: Map,
+        start: PlanarMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (PlanarMap, Status) {
         let outline = (!self.options.overlap).then_some(surface.outline);
         let problem = Problem { energy: surface.energy, analysis: surface.analysis, outline };
         let mut descent = Descent::new(problem);
@@ -170,7 +176,7 @@ impl Free<'_> {
     }
 
     /// A map that is one-to-one to start from, and whether the observer ended the run.
-    fn start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(Map, bool), Error> {
+    fn start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(PlanarMap, bool), Error> {
         let outline = (!self.options.overlap).then_some(surface.outline);
         if let Some(initial) = self.options.initial {
             let initial = of_area_one(surface.energy, initial.to_vec());
@@ -194,7 +200,7 @@ impl Free<'_> {
         surface: &Surface<'_>,
         start: starts::Start,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, bool), Error> {
+    ) -> Result<(PlanarMap, bool), Error> {
         let (energy, map) = start;
         let weight = self.options.angle_weight.max(LEAST_WEIGHT);
         match self.disk_start(surface, observer) {
@@ -207,7 +213,11 @@ impl Free<'_> {
     }
 
     /// An area-preserving map to the disk with a sliding boundary, the holes filled on the way.
-    fn disk_start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(Map, bool), Error> {
+    fn disk_start(
+        &self,
+        surface: &Surface<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<(PlanarMap, bool), Error> {
         let filled = match self.mesh.boundary_loops().len() {
             1 => None,
             _ => Some(holes::fill_holes(self.mesh, self.targets)?),
@@ -231,8 +241,8 @@ impl Free<'_> {
 
     /// The map turned, moved and scaled into the unit disk; as much of that as rounding allows without folding a face that
     /// is next to nothing.
-    fn within_the_disk(&self, outline: &Outline, map: &[[f64; 2]]) -> Map {
-        let is_sound = |map: &Map| {
+    fn within_the_disk(&self, outline: &Outline, map: &[[f64; 2]]) -> PlanarMap {
+        let is_sound = |map: &PlanarMap| {
             (self.options.overlap || outline.is_simple(map)) && certificate::folded(self.mesh, map).is_empty()
         };
         // a start that was given keeps its rotation
@@ -258,12 +268,12 @@ fn centre(map: &[[f64; 2]]) -> [f64; 2] {
 /// is, to the heaviest λ at which it is, and leaves it in `goal`; converged where it is.
 fn least_shear(
     descent: &mut Descent<'_>,
-    mut map: Map,
+    mut map: PlanarMap,
     goal: &mut Goal,
     (tolerance, most): (f64, f64),
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Map, Status) {
+) -> (PlanarMap, Status) {
     // the last λ that was too heavy, with the deviation there
     let mut heavier: Option<[f64; 2]> = None;
     let mut was_within = false;
@@ -300,7 +310,7 @@ fn least_shear(
 
 /// The map turned around the mean of its vertices so that the first vertex of the longest boundary loop lies to the right
 /// of that.
-fn turned(mesh: &TriangleMesh, map: Map) -> Map {
+fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let mean = parallel::sums(map.len(), |v| map[v]).map(|sum| sum / map.len() as f64);
     let first = map[mesh.boundary_loops()[0][0] as usize];
     let [x, y] = [first[0] - mean[0], first[1] - mean[1]];
@@ -322,7 +332,7 @@ fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {
 
 /// The map around `centre`, scaled into the unit disk: to its rim, or by a power of two, which keeps the orientation of
 /// every face bit for bit.
-fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2], to_rim: bool) -> Map {
+fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2], to_rim: bool) -> PlanarMap {
     let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
     let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
     let scale =

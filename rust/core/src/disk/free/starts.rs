@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 
 use super::arap::as_rigid_as_possible;
 use super::contact::Outline;
-use super::energy::{Energy, Map};
+use super::energy::Energy;
 use super::lscm::{of_area_one, spectral_conformal};
+use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::sparse::{Analysis, Failure};
@@ -22,7 +23,7 @@ const STEEPEST: f64 = 0.05;
 const PULL: f64 = 1e-3;
 
 /// A start of free outline with its energy.
-pub(super) type Start = (f64, Map);
+pub(super) type Start = (f64, PlanarMap);
 
 /// The start of lowest energy; `None` where none is one-to-one.
 pub(super) fn best_start(
@@ -33,7 +34,7 @@ pub(super) fn best_start(
     watch: &Watch<'_>,
 ) -> Result<Option<Start>, Failure> {
     let mut best: Option<Start> = None;
-    let mut consider = |map: Map| {
+    let mut consider = |map: PlanarMap| {
         let verdict = allowed(energy, outline, map);
         let value = verdict.as_ref().map(|map| energy.value(map, weight));
         if let (Some(map), Some(value)) = (verdict, value)
@@ -60,7 +61,7 @@ pub(super) fn best_start(
 }
 
 /// The map, pulled in where its outline only touches itself; `None` where it is not one-to-one.
-pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: Map) -> Option<Map> {
+pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: PlanarMap) -> Option<PlanarMap> {
     let is_finite = map.iter().flatten().all(|x| x.is_finite());
     if !is_finite || !energy.is_unfolded(&map) || !turns_once_around_every_vertex(energy, &map) {
         return None;
@@ -89,7 +90,7 @@ fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool
 }
 
 /// The map with vertices that touch an edge of the outline moved a little towards their neighbors.
-fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Map {
+fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> PlanarMap {
     let mesh = energy.mesh;
     let mut pulled = map.to_vec();
     for contact in outline.contacts(map, PULL) {
@@ -111,7 +112,7 @@ fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Map {
 }
 
 /// The projection along the sum of the area vectors.
-fn plan_view(energy: &Energy<'_>) -> Option<Map> {
+fn plan_view(energy: &Energy<'_>) -> Option<PlanarMap> {
     let mesh = energy.mesh;
     let normal =
         mesh.faces().iter().fold([0.0; 3], |sum, &face| add(sum, area_vector(triangle(mesh.points(), face))));
@@ -184,7 +185,7 @@ mod tests {
             let outline = Outline::new(energy);
             let plan = plan_view(energy).unwrap();
             assert!(allowed(energy, Some(&outline), plan.clone()).is_some_and(|map| map == plan));
-            let mirrored: Map = plan.iter().map(|x| [-x[0], x[1]]).collect();
+            let mirrored: PlanarMap = plan.iter().map(|x| [-x[0], x[1]]).collect();
             assert!(allowed(energy, Some(&outline), mirrored).is_none());
         });
     }

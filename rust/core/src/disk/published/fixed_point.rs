@@ -10,8 +10,8 @@
 //! Cost of one iteration: one numeric Cholesky factorisation of the interior and two solves.
 
 use super::objective::DiskDomain;
+use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Status, Watch};
-use crate::disk::Map;
 use crate::error::Error;
 use crate::optimize::published::{Domain, Stopping};
 use crate::parallel;
@@ -24,11 +24,11 @@ const HALVINGS: i32 = 20;
 /// Iterates from `start` and returns the map of lowest energy.
 pub(crate) fn fixed_point(
     domain: &mut DiskDomain<'_>,
-    start: Map,
+    start: PlanarMap,
     stopping: &Stopping,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Map, Status) {
+) -> (PlanarMap, Status) {
     let mut step = 0.0;
     let (mut best, mut map) = ((f64::INFINITY, start.clone()), start);
     for done in 0.. {
@@ -63,7 +63,7 @@ pub(crate) fn fixed_point(
 }
 
 /// The unit step along −`correction`, halved while a sliding boundary would lose its order.
-fn allowed_step(domain: &DiskDomain<'_>, map: &Map, correction: &[f64]) -> Option<(f64, Map)> {
+fn allowed_step(domain: &DiskDomain<'_>, map: &PlanarMap, correction: &[f64]) -> Option<(f64, PlanarMap)> {
     let steps = (0..HALVINGS).map(|halving| 0.5f64.powi(halving));
     let mut tried = steps.map(|step| (step, domain.retract(map, correction, -step)));
     tried.find(|(_, moved)| domain.objective(moved).is_finite())

@@ -9,9 +9,11 @@
 
 use std::f64::consts::PI;
 
+use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::disk::boundary::ArcBarrier;
-use crate::disk::{Boundary, Map, boundary, certificate};
+use crate::disk::options::Boundary;
+use crate::disk::{boundary, certificate};
 use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
@@ -51,7 +53,7 @@ pub(crate) struct DiskDomain<'a> {
     /// Only where the boundary slides.
     boundary: Option<SlidingBoundary>,
     /// The map at which the preconditioner was set; empty where it was not.
-    preconditioned_at: Map,
+    preconditioned_at: PlanarMap,
     /// Maps with a folded face have an infinite objective.
     guarded: bool,
 }
@@ -68,7 +70,7 @@ impl<'a> DiskDomain<'a> {
             }
         };
         let energy = StretchEnergy::new(mesh, targets);
-        Ok(Self { mesh, energy, interior, boundary, preconditioned_at: Map::new(), guarded: false })
+        Ok(Self { mesh, energy, interior, boundary, preconditioned_at: PlanarMap::new(), guarded: false })
     }
 
     /// Solves L_II f_I = −L_IB f_B in place for one weight per corner, the boundary held.
@@ -154,7 +156,7 @@ impl<'a> DiskDomain<'a> {
 }
 
 impl Domain for DiskDomain<'_> {
-    type Map = Map;
+    type Map = PlanarMap;
 
     fn objective(&self, map: &Self::Map) -> f64 {
         self.full_objective(map, self.energy.value(map))
@@ -175,7 +177,7 @@ impl Domain for DiskDomain<'_> {
         (energies, reduced)
     }
 
-    fn precondition(&self, _map: &Map, gradient: &[f64]) -> Vec<f64> {
+    fn precondition(&self, _map: &PlanarMap, gradient: &[f64]) -> Vec<f64> {
         let mut h = gradient.to_vec();
         let (plane, angles) = h.split_at_mut(2 * self.free().len());
         self.interior.factor.solve(plane);

@@ -6,10 +6,12 @@
 
 use super::fixed_point::fixed_point;
 use super::objective::DiskDomain;
+use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Phase, Status, Watch};
-use crate::disk::{DiskMapOptions, Map, Method, certificate, start, unfold};
+use crate::disk::options::Method;
+use crate::disk::run::Run;
+use crate::disk::{certificate, start, unfold};
 use crate::error::{Elements, Error, NumericsError};
-use crate::mesh::TriangleMesh;
 use crate::optimize::published::nonlinear_cg::{CgOptions, minimize};
 use crate::optimize::published::{Domain as _, Stopping};
 
@@ -21,23 +23,13 @@ const ROUND: usize = 50;
 
 const MESSAGE: &str = "Minimising the stretch energy";
 
-/// One computation on a surface with one boundary loop.
-#[derive(Clone, Copy)]
-pub(crate) struct Run<'a> {
-    pub mesh: &'a TriangleMesh,
-    pub targets: &'a [f64],
-    pub options: &'a DiskMapOptions<'a>,
-    /// Faces from here on fill holes; no message may name them.
-    pub n_given_faces: usize,
-}
-
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.
     pub(crate) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
         let (map, status) = self.as_published(&mut domain, history, observer)?;
@@ -66,11 +58,11 @@ impl Run<'_> {
     fn descend_from_tutte(
         &self,
         domain: &mut DiskDomain<'_>,
-        mended: Option<(Map, Status)>,
+        mended: Option<(PlanarMap, Status)>,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         let tutte = start::tutte(self.mesh, domain, &Watch::new(observer, 0.0, MESSAGE))?;
         let folded = certificate::folded(self.mesh, &tutte);
         match (Elements::collect(folded.into_iter().map(|face| self.given_face(face))), mended) {
@@ -91,7 +83,7 @@ impl Run<'_> {
         domain: &mut DiskDomain<'_>,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(PlanarMap, Status), Error> {
         // 1. The start map, fixed-point steps from it
         let (map, status) = match (self.options.initial, self.options.method) {
             (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
@@ -120,10 +112,10 @@ impl Run<'_> {
     fn conjugate_gradients(
         &self,
         domain: &mut DiskDomain<'_>,
-        mut map: Map,
+        mut map: PlanarMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (PlanarMap, Status) {
         let whole = self.stopping();
         let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
         let (begun, mut done) = (history.iterations(), 0);
@@ -153,22 +145,15 @@ impl Run<'_> {
     fn descend(
         &self,
         domain: &mut DiskDomain<'_>,
-        map: Map,
+        map: PlanarMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (PlanarMap, Status) {
         if status == Status::Cancelled || !domain.objective(&map).is_finite() {
             return (map, if status == Status::Cancelled { status } else { Status::Stalled });
         }
         self.conjugate_gradients(domain, map, history, observer)
-    }
-
-    /// The face itself, or for one that fills a hole the given face at its edge of the hole.
-    pub(crate) fn given_face(&self, face: usize) -> usize {
-        // the third corner of a fan's face is its apex, which faces the edge
-        let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);
-        if face < self.n_given_faces { face } else { beside() }
     }
 
     fn stopping(&self) -> Stopping {

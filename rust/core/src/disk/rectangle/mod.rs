@@ -18,12 +18,14 @@ mod corners;
 
 use std::f64::consts::PI;
 
+use super::options::{Boundary, DiskMapOptions};
 use super::published::fixed_point::fixed_point;
 use super::published::objective::DiskDomain;
-use super::published::run::Run;
-use super::{Boundary, DiskMapOptions, certificate, unfold};
-use crate::codomain::Codomain;
+use super::run::Run;
+use super::{certificate, unfold};
 use crate::codomain::motion::Motion;
+use crate::codomain::planar::{PlanarMap, flat, lifted};
+use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Silent, Status, Watch};
 use crate::energy::authalic::AuthalicEnergy;
 use crate::energy::stretch::Profile;
@@ -69,7 +71,6 @@ const QUICK: usize = 50_000;
 const MESSAGE: &str = "Start map";
 
 /// A map in the plane z = 1.
-type Map = Vec<Vector>;
 
 /// A surface with its corners.
 struct Rectangle<'a> {
@@ -198,7 +199,7 @@ pub(super) fn solve(
     run: &Run<'_>,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> Result<(super::Map, Status), Error> {
+) -> Result<(PlanarMap, Status), Error> {
     // 1. The surface in elimination order
     let is_cancelled = !observer.progress(0.0, "Ordering");
     if is_cancelled && run.mesh.n_vertices() > QUICK {
@@ -241,7 +242,7 @@ impl Rectangle<'_> {
         is_cancelled: bool,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         let floor = target_floors::floors(self.run.targets)[0];
         let energy = target_floors::energy(self.run.mesh, self.run.targets, Codomain::Plane, floor);
         let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
@@ -278,12 +279,12 @@ impl Rectangle<'_> {
     fn settled(
         &self,
         problem: &Problem,
-        mut map: Map,
+        mut map: SpatialMap,
         mut status: Status,
         begun: usize,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         let mut options = self.options();
         for round in 0..MOST_CORRECTIONS {
             // 1. The best aspect; on the way a little more, as far down again on the other side of the minimum
@@ -311,7 +312,7 @@ impl Rectangle<'_> {
 
     /// The map stretched towards the aspect of least angle energy, and the logarithm by which it is off; as it is where the
     /// aspect is given.
-    fn with_best_aspect(&self, problem: &Problem, map: &Map, part: f64) -> (Map, f64) {
+    fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, part: f64) -> (SpatialMap, f64) {
         if self.aspect.is_some() {
             return (map.clone(), 0.0);
         }
@@ -320,7 +321,7 @@ impl Rectangle<'_> {
         let bound = MOST_ASPECT.ln();
         let change = (now + 2.0 * part * best_stretch(&problem.energy, map)).clamp(-bound, bound) - now;
         let factor = (0.5 * change).exp();
-        let stretched: Map = map.iter().map(|&[x, y, z]| [x * factor, y / factor, z]).collect();
+        let stretched: SpatialMap = map.iter().map(|&[x, y, z]| [x * factor, y / factor, z]).collect();
         if problem.energy.is_embedding(&stretched) { (stretched, change) } else { (map.clone(), 0.0) }
     }
 
@@ -328,11 +329,11 @@ impl Rectangle<'_> {
     fn start(
         &self,
         problem: &Problem,
-        boundary: super::Map,
+        boundary: PlanarMap,
         is_cancelled: bool,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         // 1. The map given, or some steps of the papers' fixed point from the harmonic map
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let (near, mut status) = match (is_cancelled, self.run.options.initial) {
@@ -369,7 +370,7 @@ impl Rectangle<'_> {
                 return Ok((open, status));
             }
             if status != Status::Cancelled
-                && let Some(unfolded) = unfold::unfold(self.run.mesh, &flat(&open)).map(lifted)
+                && let Some(unfolded) = unfold::unfold(self.run.mesh, &flat(&open)).map(|map| lifted(&map))
                 && problem.energy.is_embedding(&unfolded)
             {
                 return Ok((unfolded, status));
@@ -383,10 +384,10 @@ impl Rectangle<'_> {
     fn near(
         &self,
         problem: &Problem,
-        boundary: super::Map,
+        boundary: PlanarMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Option<Map>, Status) {
+    ) -> (Option<SpatialMap>, Status) {
         let Ok(mut domain) = DiskDomain::new(self.run.mesh, problem.energy.targets(), Boundary::ArcLength)
         else {
             return (None, Status::Stalled);
@@ -400,16 +401,16 @@ impl Rectangle<'_> {
             Err(_) => return (None, Status::Stalled),
         }
         let (map, status) = fixed_point(&mut domain, harmonic, &FIXED_POINT, history, observer);
-        (Some(lifted(map)), status)
+        (Some(lifted(&map)), status)
     }
 
     fn tutte(
         &self,
         problem: &Problem,
-        mut map: super::Map,
+        mut map: PlanarMap,
         status: Status,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         if status == Status::Cancelled && self.run.mesh.n_vertices() > QUICK {
             return Err(Error::CancelledEarly);
         }
@@ -422,7 +423,7 @@ impl Rectangle<'_> {
         let mut domain = DiskDomain::new(self.run.mesh, problem.energy.targets(), Boundary::ArcLength)?;
         domain.solve_dirichlet(&vec![0.5; 3 * self.run.mesh.n_faces()], &mut map, &watch)?;
         match Elements::collect(certificate::folded(self.run.mesh, &map)) {
-            None => Ok((lifted(map), status)),
+            None => Ok((lifted(&map), status)),
             Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
         }
     }
@@ -438,7 +439,7 @@ impl Rectangle<'_> {
     }
 
     /// The boundary on the sides of the rectangle, at distances in proportion to the lengths of the edges.
-    fn boundary(&self, aspect: f64, corners: &[usize; 4], outline: &Outline<'_>) -> super::Map {
+    fn boundary(&self, aspect: f64, corners: &[usize; 4], outline: &Outline<'_>) -> PlanarMap {
         let [x, y] = half_sides(aspect);
         let places = [[-x, -y], [x, -y], [x, y], [-x, y]];
         let mut map = vec![[0.0; 2]; self.run.mesh.n_vertices()];
@@ -459,13 +460,13 @@ impl Rectangle<'_> {
     }
 
     /// The start map given, on the rectangle of `boundary`.
-    fn given(&self, initial: &[[f64; 2]], boundary: &super::Map) -> Map {
+    fn given(&self, initial: &[[f64; 2]], boundary: &PlanarMap) -> SpatialMap {
         let outline = &self.run.mesh.boundary_loops()[0];
         let ([low, high], [to_low, to_high]) = (bounds(outline, initial), bounds(outline, boundary));
         let along = |x: [f64; 2], k: usize| {
             to_low[k] + (x[k] - low[k]) / (high[k] - low[k]) * (to_high[k] - to_low[k])
         };
-        let mut map: Map = initial.iter().map(|&x| [along(x, 0), along(x, 1), 1.0]).collect();
+        let mut map: SpatialMap = initial.iter().map(|&x| [along(x, 0), along(x, 1), 1.0]).collect();
         for (k, side) in self.sides.iter().enumerate() {
             let across = (k + 1) % 2;
             side.iter().for_each(|&v| map[v as usize][across] = boundary[side[0] as usize][across]);
@@ -476,13 +477,13 @@ impl Rectangle<'_> {
     }
 
     /// The map with its lower left corner in (0, 0) and a longer side of 1, and the factor.
-    fn laid_out(&self, map: &Map) -> (super::Map, f64) {
+    fn laid_out(&self, map: &SpatialMap) -> (PlanarMap, f64) {
         let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
         let sides = [high[0] - low[0], high[1] - low[1]];
         let longer = sides[0].max(sides[1]);
         // the farther sides exactly on one line, the longer one exactly 1
         let place = |x: &Vector, k: usize| if x[k] == high[k] { sides[k] } else { x[k] - low[k] } / longer;
-        let moved: super::Map = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
+        let moved: PlanarMap = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
         if certificate::folded(self.run.mesh, &moved).is_empty() {
             return (moved, 1.0 / longer);
         }
@@ -526,14 +527,6 @@ fn best_stretch(energy: &AuthalicEnergy, map: &[Vector]) -> f64 {
         }
     }
     t
-}
-
-fn lifted(map: super::Map) -> Map {
-    map.into_iter().map(|[u, v]| [u, v, 1.0]).collect()
-}
-
-fn flat(map: &Map) -> super::Map {
-    map.iter().map(|&[u, v, _]| [u, v]).collect()
 }
 
 #[cfg(test)]
@@ -588,11 +581,11 @@ mod tests {
     fn the_best_stretch_makes_the_angle_energy_stationary() {
         let mesh = grid(4, 4, [1.0, 1.0]);
         let energy = AuthalicEnergy::new(&mesh, mesh.face_areas().to_vec(), Codomain::Plane, 0.0);
-        let map: Map =
+        let map: SpatialMap =
             mesh.points().iter().map(|p| [2.0 * p[0] + 0.3 * p[1], p[1] - 0.1 * p[0] * p[1], 1.0]).collect();
         let t = best_stretch(&energy, &map);
         let angle = |t: f64| {
-            let stretched: Map = map.iter().map(|x| [x[0] * t.exp(), x[1] / t.exp(), 1.0]).collect();
+            let stretched: SpatialMap = map.iter().map(|x| [x[0] * t.exp(), x[1] / t.exp(), 1.0]).collect();
             energy.sums(&energy.costs(&stretched)).angle_energy
         };
         assert!(angle(t) < angle(t + 1e-3).min(angle(t - 1e-3)));

@@ -18,7 +18,7 @@ use crate::disk::closed;
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::parallel;
-use crate::sphere::{rough_conformal, vertex_weights};
+use crate::sphere::rough_conformal;
 use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
 
 /// The middle of a closed curve says where it is if it is farther than this from that of the sphere.
@@ -132,10 +132,10 @@ fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector]) -> Resu
 /// The nearly conformal map of a surface, holes filled, rotated over the surface.
 fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector>, Error> {
     let whole = closed(mesh)?;
-    let weights = vertex_weights(&whole, whole.face_areas());
+    let weights = whole.vertex_shares(whole.face_areas());
     let mut map = rough_conformal(&whole, &weights, watch)?;
     map.truncate(mesh.n_vertices());
-    let weights = vertex_weights(mesh, mesh.face_areas());
+    let weights = mesh.vertex_shares(mesh.face_areas());
     let centre = centroid(mesh.points(), &weights);
     let directions = parallel::map(map.len(), |vertex| sub(mesh.points()[vertex], centre));
     let rotation = best_rotation(&map, &directions, &weights);

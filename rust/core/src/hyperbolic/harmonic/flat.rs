@@ -13,7 +13,8 @@ use std::f64::consts::PI;
 
 use super::certificates::PieceCertificates;
 use super::initial::{boundary_corners, segment};
-use super::layout::{Laplace, Planar, clamped_weights, lifted, planar_layout};
+use super::layout::{Laplace, Planar, clamped_weights, planar_layout};
+use crate::codomain::planar::lifted;
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError, Side};

@@ -18,7 +18,8 @@ use robust::{Coord, orient2d};
 
 use super::atlas::{Atlas, Random};
 use super::delaunay::Net;
-use super::layout::{Planar, lifted, planar_layout};
+use super::layout::{Planar, planar_layout};
+use crate::codomain::planar::lifted;
 use crate::control::Watch;
 use crate::error::{Error, Side};
 use crate::hyperbolic::moebius::{Complex, Moebius};

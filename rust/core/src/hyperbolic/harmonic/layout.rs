@@ -13,7 +13,6 @@ use crate::hyperbolic::slice::{NONE, Opened, Sliced};
 use crate::mesh::geometry::corner_cotangents;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
-use crate::vector::Vector;
 
 /// Weights are kept within this range.
 const WEIGHTS: [f64; 2] = [1e-2, 1e2];
@@ -139,9 +138,4 @@ impl Laplace {
         }
         Ok(())
     }
-}
-
-/// Planar positions in the plane z = 1, where point location has them.
-pub(super) fn lifted(map: &[Planar]) -> Vec<Vector> {
-    map.iter().map(|&[u, v]| [u, v, 1.0]).collect()
 }

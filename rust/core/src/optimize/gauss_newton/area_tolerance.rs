@@ -8,7 +8,8 @@
 
 use super::angle_schedule::AnglePath;
 use super::target_floors::{Surface, descend};
-use super::{GaussNewtonOptions, Map, Problem, minimize};
+use super::{GaussNewtonOptions, Problem, minimize};
+use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Phase, Status};
 
 /// λ at first, what it is multiplied by until areas are within the tolerance, and divided by while they are.
@@ -34,7 +35,7 @@ struct Found {
     weight: f64,
     /// ln √(E_A/A).
     deviation: f64,
-    map: Map,
+    map: SpatialMap,
     status: Status,
 }
 
@@ -50,12 +51,12 @@ impl Found {
 pub(crate) fn within_tolerance(
     surface: &Surface<'_>,
     problem: Problem,
-    start: Map,
+    start: SpatialMap,
     tolerance: f64,
     options: &GaussNewtonOptions,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Problem, Map, Status) {
+) -> (Problem, SpatialMap, Status) {
     // 1. λ falls until areas are within the tolerance
     let begun = history.iterations();
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
@@ -112,7 +113,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn found(&self, weight: f64, map: Map, status: Status) -> Found {
+    fn found(&self, weight: f64, map: SpatialMap, status: Status) -> Found {
         let deviation = 0.5 * self.problem.unevenness(&map).max(f64::MIN_POSITIVE).ln();
         Found { weight: weight.ln(), deviation, map, status }
     }
@@ -125,14 +126,25 @@ impl Search<'_> {
     }
 
     /// The minimum for one λ.
-    fn minimum(&self, weight: f64, map: Map, history: &mut History, observer: &mut dyn Observer) -> Found {
+    fn minimum(
+        &self,
+        weight: f64,
+        map: SpatialMap,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Found {
         let options = GaussNewtonOptions { path: AnglePath::Held, ..self.options(weight, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);
         self.found(weight, map, status)
     }
 
     /// The most even map, where no λ leads to areas within the tolerance.
-    fn even(&self, map: Map, history: &mut History, observer: &mut dyn Observer) -> (Map, Status) {
+    fn even(
+        &self,
+        map: SpatialMap,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (SpatialMap, Status) {
         let tolerance = self.goal.exp();
         let options = GaussNewtonOptions { tolerance, ..self.options(0.0, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);

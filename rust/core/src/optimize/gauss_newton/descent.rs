@@ -2,9 +2,10 @@
 //! The iterations: weights, direction, step, and when they end.
 
 use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
-use super::problem::{GaussNewtonOptions, Map, Problem, State};
+use super::problem::{GaussNewtonOptions, Problem, State};
 use super::system::{LARGE, Linearised, NEAR, Newton};
 use super::trial::{Trial, shrinkage};
+use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Status, Watch};
 use crate::energy::authalic::{Hessian, Sums, Weights};
 use crate::energy::stretch::Profile;
@@ -56,7 +57,10 @@ const LEAST_GAIN: f64 = 0.05;
 const NOTHING: f64 = 1e-12;
 
 /// The more even of two results, each with how uneven it is; a second run that was cancelled says so.
-pub(crate) fn more_even(first: (f64, Map, Status), second: (f64, Map, Status)) -> (Map, Status) {
+pub(crate) fn more_even(
+    first: (f64, SpatialMap, Status),
+    second: (f64, SpatialMap, Status),
+) -> (SpatialMap, Status) {
     let ((unevenness, map, status), (other_unevenness, other, ended)) = (first, second);
     match other_unevenness < unevenness {
         true => (other, ended),
@@ -69,16 +73,16 @@ pub(crate) fn more_even(first: (f64, Map, Status), second: (f64, Map, Status)) -
 /// the barrier the one with the lowest E_A.
 pub(crate) fn minimize(
     problem: &Problem,
-    start: Map,
+    start: SpatialMap,
     options: &GaussNewtonOptions,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Map, Status) {
+) -> (SpatialMap, Status) {
     let mut descent = Descent::new(problem, *options);
     let mut state = State::new(problem, start);
     let mut sums = problem.sums(&state);
     let mut trend = Trend::default();
-    let mut best = (f64::INFINITY, Map::new());
+    let mut best = (f64::INFINITY, SpatialMap::new());
     for done in 0.. {
         // 1. Targets on the scale of the image, λ on its way
         trend.energies.push(sums.total());
@@ -205,7 +209,13 @@ impl<'a> Descent<'a> {
     }
 
     /// The map with the lowest E_A met, where that decides, else the last.
-    fn best_of(&self, best: (f64, Map), sums: &Sums, last: Map, history: &mut History) -> Map {
+    fn best_of(
+        &self,
+        best: (f64, SpatialMap),
+        sums: &Sums,
+        last: SpatialMap,
+        history: &mut History,
+    ) -> SpatialMap {
         if !self.keeps_the_best() || best.0 >= sums.total() {
             return last;
         }
@@ -305,7 +315,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The map at `step` along the direction, bent by the correction.
-    fn path(&self, map: &Map, newton: &Newton, bend: Option<&[[f64; 2]]>, step: f64) -> Map {
+    fn path(&self, map: &SpatialMap, newton: &Newton, bend: Option<&[[f64; 2]]>, step: f64) -> SpatialMap {
         let along = |v: usize| match bend {
             None => newton.direction[v].map(|d| step * d),
             Some(bend) => [0, 1].map(|k| step * (newton.direction[v][k] + step * bend[v][k])),

@@ -32,4 +32,4 @@ pub(crate) mod target_floors;
 mod trial;
 
 pub(crate) use descent::{minimize, more_even};
-pub(crate) use problem::{GaussNewtonOptions, Map, Problem};
+pub(crate) use problem::{GaussNewtonOptions, Problem};

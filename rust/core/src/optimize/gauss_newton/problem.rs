@@ -2,6 +2,7 @@
 //! What the descent works on: a surface, how its vertices may move, the energy of its maps, and when to end.
 
 use super::angle_schedule::AnglePath;
+use crate::codomain::SpatialMap;
 use crate::codomain::motion::{Frame, Motion};
 use crate::energy::authalic::{AuthalicEnergy, Sums, Weights};
 use crate::energy::landmark_penalty::LandmarkPenalty;
@@ -10,9 +11,6 @@ use crate::error::Error;
 use crate::parallel;
 use crate::sparse::{Analysis, Order};
 use crate::vector::Vector;
-
-/// A map of the vertices, in space.
-pub(crate) type Map = Vec<Vector>;
 
 /// A surface, how its vertices may move, and the energy of its maps.
 pub(crate) struct Problem {
@@ -85,7 +83,7 @@ impl Problem {
     }
 
     /// The map reached from `map` by `direction` along the frames.
-    pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> Map {
+    pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> SpatialMap {
         parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
     }
 
@@ -111,14 +109,14 @@ impl Problem {
 
 /// A map with what its energy is made of for any weights.
 pub(super) struct State {
-    pub map: Map,
+    pub map: SpatialMap,
     costs: Vec<[f64; 2]>,
     /// The penalty on landmarks.
     penalty: f64,
 }
 
 impl State {
-    pub(super) fn new(problem: &Problem, map: Map) -> Self {
+    pub(super) fn new(problem: &Problem, map: SpatialMap) -> Self {
         let costs = problem.energy.costs(&map);
         let penalty = problem.penalty.value(&map);
         Self { map, costs, penalty }

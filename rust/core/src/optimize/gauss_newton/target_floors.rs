@@ -9,8 +9,8 @@
 //! While a floor holds, the energies in the history are those for the raised targets.
 
 use super::angle_schedule::AnglePath;
-use super::{GaussNewtonOptions, Map, Problem, minimize};
-use crate::codomain::Codomain;
+use super::{GaussNewtonOptions, Problem, minimize};
+use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status};
 use crate::energy::authalic::AuthalicEnergy;
 use crate::energy::stretch::Profile;
@@ -61,11 +61,11 @@ pub(crate) struct Surface<'a> {
 pub(crate) fn descend(
     surface: &Surface<'_>,
     mut problem: Problem,
-    start: Map,
+    start: SpatialMap,
     options: &GaussNewtonOptions,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Problem, Map, Status) {
+) -> (Problem, SpatialMap, Status) {
     debug_assert!(options.profile == Profile::Barrier);
     let Surface { mesh, targets, codomain } = *surface;
     let floors = floors(targets);

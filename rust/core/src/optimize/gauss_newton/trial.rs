@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A trial of the line search: a map with its energy, and the next step length.
 
-use super::problem::{Map, Problem, State};
+use super::problem::{Problem, State};
+use crate::codomain::SpatialMap;
 use crate::energy::authalic::Weights;
 
 pub(super) struct Trial {
@@ -10,7 +11,7 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    pub(super) fn new(problem: &Problem, map: Map, weights: &Weights) -> Self {
+    pub(super) fn new(problem: &Problem, map: SpatialMap, weights: &Weights) -> Self {
         let state = State::new(problem, map);
         Self { value: problem.value(&state, weights), state }
     }

@@ -19,12 +19,12 @@
 //! Cost of one iteration: one Cholesky analysis and factorisation of about 0.6 n vertices.
 
 use super::objective::SphereDomain;
+use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Status, Watch};
 use crate::error::Error;
 use crate::optimize::published::Domain;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
-use crate::sphere::Map;
 use crate::sphere::stereographic::{Chart, weighted_median};
 
 /// r of the algorithm: modulus up to which a chart's vertices are solved for.
@@ -46,12 +46,12 @@ pub(crate) struct FixedPointStopping {
 pub(crate) fn fixed_point(
     domain: &SphereDomain<'_>,
     weights: &[f64],
-    start: Map,
+    start: SpatialMap,
     stopping: &FixedPointStopping,
     history: &mut History,
     observer: &mut dyn Observer,
-) -> (Map, Status) {
-    let stretch = |map: &Map| domain.energy().value(map).objective;
+) -> (SpatialMap, Status) {
+    let stretch = |map: &SpatialMap| domain.energy().value(map).objective;
     let (mut map, mut chart) = (start, Chart::North);
     let mut energy = stretch(&map);
     record(domain, &map, history, true);
@@ -90,10 +90,10 @@ pub(crate) fn fixed_point(
 fn iterate(
     domain: &SphereDomain<'_>,
     weights: &[f64],
-    map: &Map,
+    map: &SpatialMap,
     chart: Chart,
     watch: &Watch<'_>,
-) -> Result<Map, Error> {
+) -> Result<SpatialMap, Error> {
     let (mesh, by_corner) = (domain.mesh(), domain.energy().laplacian_weights(map));
     let mut plane = chart.project_all(map);
     let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
@@ -109,7 +109,7 @@ fn iterate(
     Ok(parallel::map(map.len(), |v| if lifted[v].iter().all(|x| x.is_finite()) { lifted[v] } else { map[v] }))
 }
 
-fn record(domain: &SphereDomain<'_>, map: &Map, history: &mut History, is_start: bool) {
+fn record(domain: &SphereDomain<'_>, map: &SpatialMap, history: &mut History, is_start: bool) {
     let (energies, gradient) = domain.gradient(map);
     let norm = parallel::dot(&gradient, &gradient).sqrt();
     match is_start {

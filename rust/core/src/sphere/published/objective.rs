@@ -8,6 +8,7 @@
 //! there. The paper's descent has no preconditioner; the guarded one has I₃ ⊗ L_S(f⁰), projected to the
 //! tangent planes.
 
+use crate::codomain::SpatialMap;
 use crate::control::Watch;
 use crate::energy::SpatialStretchEnergy;
 use crate::energy::stretch::{Profile, Value};
@@ -17,7 +18,6 @@ use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::optimize::published::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
-use crate::sphere::Map;
 use crate::vector::{Vector, cross, dot, norm, scaled, sub};
 
 /// Part of the mean diagonal that is added to L_S(f⁰), which takes constants to zero.
@@ -86,13 +86,13 @@ impl<'a> SphereDomain<'a> {
 }
 
 impl Domain for SphereDomain<'_> {
-    type Map = Map;
+    type Map = SpatialMap;
 
-    fn objective(&self, map: &Map) -> f64 {
+    fn objective(&self, map: &SpatialMap) -> f64 {
         self.full_objective(map, self.energy.value(map))
     }
 
-    fn gradient(&self, map: &Map) -> (Energies, Vec<f64>) {
+    fn gradient(&self, map: &SpatialMap) -> (Energies, Vec<f64>) {
         let (value, mut gradient) = self.energy.gradient(map);
         parallel::fill_with_old(&mut gradient, |vertex, g| tangent(map[vertex], g));
         let energies =
@@ -100,7 +100,7 @@ impl Domain for SphereDomain<'_> {
         (energies, gradient.into_flattened())
     }
 
-    fn precondition(&self, map: &Map, gradient: &[f64]) -> Vec<f64> {
+    fn precondition(&self, map: &SpatialMap, gradient: &[f64]) -> Vec<f64> {
         let Some((_, factor)) = &self.preconditioner else {
             return gradient.to_vec();
         };
@@ -111,7 +111,7 @@ impl Domain for SphereDomain<'_> {
         parallel::map(n, |vertex| tangent(map[vertex], column(vertex))).into_flattened()
     }
 
-    fn retract(&self, map: &Map, direction: &[f64], step: f64) -> Map {
+    fn retract(&self, map: &SpatialMap, direction: &[f64], step: f64) -> SpatialMap {
         parallel::map(map.len(), |vertex| {
             let moved: Vector =
                 std::array::from_fn(|axis| map[vertex][axis] + step * direction[3 * vertex + axis]);

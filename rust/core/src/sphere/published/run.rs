@@ -6,15 +6,18 @@
 
 use super::fixed_point::{FixedPointStopping, fixed_point};
 use super::objective::SphereDomain;
+use crate::codomain::SpatialMap;
+use crate::codomain::spherical::onto_sphere;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere, relaxed};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
 use crate::optimize::published::gradient_descent::{DescentOptions, minimize};
 use crate::optimize::published::{Domain as _, Stopping};
 use crate::parallel;
-use crate::sphere::{Map, SphereMapOptions, SphereMethod, normalized, start, unfold};
+use crate::sphere::options::SphereMethod;
+use crate::sphere::run::Run;
+use crate::sphere::{start, unfold};
 
 /// Iterations of either method, those of the paper's tables.
 const ITERATIONS: usize = 100;
@@ -31,23 +34,13 @@ const DEAREST_CORRECTION: f64 = 2.0;
 /// Iterations of a guarded descent with one preconditioner.
 const ROUND: usize = 10;
 
-/// One computation on a closed surface of genus 0.
-#[derive(Clone, Copy)]
-pub(crate) struct Run<'a> {
-    pub mesh: &'a TriangleMesh,
-    pub targets: &'a [f64],
-    /// The vertices' shares of the targets.
-    pub weights: &'a [f64],
-    pub options: &'a SphereMapOptions<'a>,
-}
-
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.
     pub(crate) fn solve(
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         let mut domain = SphereDomain::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
         let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.05 })?;
@@ -79,12 +72,12 @@ impl Run<'_> {
     fn mended(
         &self,
         domain: &mut SphereDomain<'_>,
-        map: Map,
-        start: &Map,
+        map: SpatialMap,
+        start: &SpatialMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         let corrected = self.corrected(domain, &map, history);
         if status == Status::Cancelled && (corrected.is_some() || self.folded(start).is_empty()) {
             return Ok((corrected.unwrap_or_else(|| start.clone()), status));
@@ -102,7 +95,12 @@ impl Run<'_> {
     }
 
     /// The map unfolded, where that does not cost more area than a descent can be expected to win back.
-    fn corrected(&self, domain: &SphereDomain<'_>, map: &Map, history: &mut History) -> Option<Map> {
+    fn corrected(
+        &self,
+        domain: &SphereDomain<'_>,
+        map: &SpatialMap,
+        history: &mut History,
+    ) -> Option<SpatialMap> {
         if !self.options.unfold || self.folded(map).is_empty() {
             return None;
         }
@@ -115,10 +113,10 @@ impl Run<'_> {
     fn rescued(
         &self,
         domain: &SphereDomain<'_>,
-        map: &Map,
+        map: &SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(Map, Status), Error> {
+    ) -> Result<(SpatialMap, Status), Error> {
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
         let progressive = progressive_sphere(self.mesh, self.targets, &mut phase);
         let is_cancelled = progressive.as_ref().is_err_and(|stop| *stop == Stop::Cancelled);
@@ -148,10 +146,10 @@ impl Run<'_> {
     fn fixed_point(
         &self,
         domain: &SphereDomain<'_>,
-        start: &Map,
+        start: &SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         match (self.options.method, self.options.initial) {
             (SphereMethod::GradientDescent, Some(_)) => (start.clone(), Status::MaxIterations),
             _ => {
@@ -165,11 +163,11 @@ impl Run<'_> {
     fn gradient_descent(
         &self,
         domain: &SphereDomain<'_>,
-        map: Map,
+        map: SpatialMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         if self.options.method == SphereMethod::FixedPoint || status == Status::Cancelled {
             return (map, status);
         }
@@ -183,11 +181,11 @@ impl Run<'_> {
     fn guarded_descent(
         &self,
         domain: &mut SphereDomain<'_>,
-        mut map: Map,
+        mut map: SpatialMap,
         mut status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (Map, Status) {
+    ) -> (SpatialMap, Status) {
         if status == Status::Cancelled || !domain.objective(&map).is_finite() {
             return (map, if status == Status::Cancelled { status } else { Status::Stalled });
         }
@@ -216,19 +214,19 @@ impl Run<'_> {
     }
 
     /// The start map given, or the conformal one.
-    fn start(&self, observer: &mut dyn Observer) -> Result<Map, Error> {
+    fn start(&self, observer: &mut dyn Observer) -> Result<SpatialMap, Error> {
         match self.options.initial {
-            Some(initial) => Ok(initial.iter().filter_map(|&x| normalized(x)).collect()),
+            Some(initial) => Ok(initial.iter().filter_map(|&x| onto_sphere(x)).collect()),
             None => self.conformal(observer),
         }
     }
 
     /// A start map without folds.
-    fn conformal(&self, observer: &mut dyn Observer) -> Result<Map, Error> {
+    fn conformal(&self, observer: &mut dyn Observer) -> Result<SpatialMap, Error> {
         start::start(self.mesh, self.targets, self.weights, observer)
     }
 
-    fn folded(&self, map: &Map) -> Vec<usize> {
+    fn folded(&self, map: &SpatialMap) -> Vec<usize> {
         folded_on_sphere(self.mesh.faces(), map)
     }
 
@@ -259,13 +257,13 @@ impl Run<'_> {
 }
 
 /// E_A/A: what is left when the size of the image does not count.
-pub(crate) fn energy_share(domain: &SphereDomain<'_>, map: &Map) -> f64 {
+pub(crate) fn energy_share(domain: &SphereDomain<'_>, map: &SpatialMap) -> f64 {
     let value = domain.energy().value(map);
     value.authalic_energy / value.area
 }
 
 /// The map, with a record of step 0 for it in the history.
-fn recorded(domain: &SphereDomain<'_>, map: Map, history: &mut History) -> Map {
+fn recorded(domain: &SphereDomain<'_>, map: SpatialMap, history: &mut History) -> SpatialMap {
     let (energies, gradient) = domain.gradient(&map);
     history.push(energies.authalic_energy, 0.0, parallel::dot(&gradient, &gradient).sqrt());
     map

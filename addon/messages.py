@@ -2,6 +2,13 @@
 """The native library's messages with the numbers of Blender's mesh. Plain logic, no bpy."""
 
 import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Integers = NDArray[np.integer[Any]]
 
 # "face 3", "12 vertices (0, 1, 2, …)", "edge (3, 4)", "2 edges ((0, 4), (4, 7))".
 _ELEMENTS = re.compile(r"\b(\d+ )?(faces?|vertex|vertices|edges?)( \((?:[\d, …]|\(\d+, \d+\))+\)| \d+\b)")
@@ -14,14 +21,14 @@ _ONE = {"faces": "face", "vertices": "vertex", "edges": "edge"}
 _MANY = {"face": "triangles of faces", "vertex": "vertices", "edge": "edges"}
 
 
-def in_mesh_terms(message, polygons, vertices):
+def in_mesh_terms(message: str, polygons: Integers, vertices: Integers) -> str:
     """The message with polygons (m,) and vertices (n,) of the mesh in place of a patch's faces and vertices.
 
     Numbers beyond the arrays, or that they answer with -1, are of filled holes and divided polygons, which
     the mesh does not have: they are left out.
     """
 
-    def translate(match):
+    def translate(match: re.Match[str]) -> str:
         count, noun, listing = match[1] or "", _ONE.get(match[2], match[2]), match[3]
         own = polygons if noun == "face" else vertices
         found = re.findall(r"\d+, \d+" if noun == "edge" else r"\d+", listing)
@@ -38,7 +45,7 @@ def in_mesh_terms(message, polygons, vertices):
     return _ELEMENTS.sub(translate, message)
 
 
-def _name(item, own):
+def _name(item: str, own: Integers) -> str:
     """The name of one element, "3" or "3, 4" for an edge; empty if the mesh does not have it."""
     numbers = [int(digits) for digits in item.split(", ")]
     if any(number >= len(own) or own[number] < 0 for number in numbers):
@@ -47,17 +54,17 @@ def _name(item, own):
     return f"({named})" if len(numbers) > 1 else named
 
 
-def count(number, noun):
+def count(number: int, noun: str) -> str:
     """ "1 island", "2 islands"."""
     return f"{number} {noun if number == 1 else _PLURALS.get(noun, noun + 's')}"
 
 
-def numbers(elements):
+def numbers(elements: Sequence[int] | Integers) -> str:
     """ "3, 4, 7, …": the first few of some elements (k,)."""
     return ", ".join(str(int(element)) for element in elements[:_NAMED]) + (", …" * (len(elements) > _NAMED))
 
 
-def listed(items):
+def listed(items: Sequence[object]) -> str:
     """The first few of some messages in one line, and how many there are."""
     named = "; ".join(str(item) for item in items[:_NAMED])
     more = len(items) - _NAMED

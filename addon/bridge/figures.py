@@ -21,7 +21,7 @@ def folds(island):
 def measure(surfaces):
     """Figures of the UVs of `surfaces`, all on one scale; None where no triangle has an area."""
     points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
-    image = np.concatenate([surface.uv[surface.corners] for surface in surfaces])
+    image = np.concatenate([surface.uvs[surface.corners] for surface in surfaces])
     good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
     points, image = points[good], image[good]
     if not triangulation.signed_areas(image.astype(float)).any():

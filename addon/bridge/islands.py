@@ -93,8 +93,8 @@ def _map(piece, settings, progress):
     """The UVs of one island, counter-clockwise as most of its faces are wound."""
     if piece.pinned:
         raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
-    to = _by_disk if suitability.choose(piece.patch, settings) == "DISK" else _by_sphere
-    return to(piece, settings, progress)
+    domain = suitability.choose(piece.patch, settings.domain, settings.fill_holes)
+    return (_by_disk if domain == "DISK" else _by_sphere)(piece, settings, progress)
 
 
 def _by_disk(piece, settings, progress):

@@ -1,15 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Islands as shapes in the plane: texel density and bounding boxes. Plain numpy, no bpy."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from . import triangulation
+from .arrays import Floats, Integers
 
 # Angles tried at a time, and directions in which the outermost points stand for an outline.
 _TURNS, _DIRECTIONS = 60, 120
 
 
-def scale_to_one_density(islands):
+@dataclass
+class PlanarIsland:
+    """A map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3)."""
+
+    points: Floats
+    faces: Integers
+    uv: Floats
+
+
+def scale_to_one_density(islands: Sequence[PlanarIsland]) -> None:
     """Scales islands so that the UV area of each is its share of the whole surface's area."""
     areas = [triangulation.areas(island.points[island.faces]).sum() for island in islands]
     for island, area in zip(islands, areas, strict=True):
@@ -17,13 +30,13 @@ def scale_to_one_density(islands):
         island.uv *= np.sqrt(area / sum(areas) / uv_area)
 
 
-def box(uv):
+def box(uv: Floats) -> Floats:
     """The corners (4, 2), counter-clockwise, of the bounding box of points (n, 2)."""
     (left, low), (right, high) = uv.min(axis=0), uv.max(axis=0)
     return np.array([[left, low], [right, low], [right, high], [left, high]])
 
 
-def upright(uv):
+def upright(uv: Floats) -> Floats:
     """Points (n, 2) turned so that their bounding box is as small as can be, its long side horizontal."""
     outline, angles = _outline(uv), np.linspace(0, np.pi / 2, _TURNS, endpoint=False)
     angle = _tightest(outline, angles)
@@ -32,18 +45,18 @@ def upright(uv):
     return _turned(uv, angle + np.pi / 2 if height > width else angle)
 
 
-def _tightest(points, angles):
+def _tightest(points: Floats, angles: Floats) -> float:
     """The one of the angles (k,) by which points are turned into the smallest bounding box."""
     sizes = [np.ptp(_turned(points, angle), axis=0).prod() for angle in angles]
     return angles[int(np.argmin(sizes))]
 
 
-def _turned(points, angle):
+def _turned(points: Floats, angle: float) -> Floats:
     cosine, sine = np.cos(angle), np.sin(angle)
     return points @ np.array([[cosine, sine], [-sine, cosine]])
 
 
-def _outline(uv):
+def _outline(uv: Floats) -> Floats:
     """The outermost of the points (n, 2) in a good many directions."""
     u, v = np.ascontiguousarray(uv.T)
     angles = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)

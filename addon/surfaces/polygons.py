@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of triangles as figures of the polygons they are parts of. Plain numpy, no bpy."""
 
+from collections.abc import Sequence
+
 import numpy as np
+
+from .arrays import Booleans, Floats
+from .surface import Surface
 
 # What face attributes show for a face that is folded over, and the limit for all others: shading
 # cannot deal with infinities.
 LOG2_LIMIT = 20.0
 
 
-def log2_area_ratios(surfaces, log2, areas, folded):
+def log2_area_ratios(
+    surfaces: Sequence[Surface], log2: Floats, areas: Floats, folded: Booleans
+) -> list[Floats]:
     """log2 of each polygon's own area ratio, for each surface (polygons,), from those of all triangles (t,).
 
     The mean over its triangles, weighted by their areas, which are 0 for triangles that do not count.
@@ -18,8 +25,8 @@ def log2_area_ratios(surfaces, log2, areas, folded):
     return [_of_surface(*part) for part in parts]
 
 
-def _of_surface(surface, ratios, weights, folded):
-    def total(values):
+def _of_surface(surface: Surface, ratios: Floats, weights: Floats, folded: Booleans) -> Floats:
+    def total(values: Floats) -> Floats:
         return np.bincount(surface.polygons, values, surface.polygon_count)
 
     area = total(weights)

@@ -4,29 +4,30 @@
 import numpy as np
 
 from . import triangulation
+from .arrays import Booleans, Floats, Integers
 
 # Blender keeps coordinates in single precision.
 _ROUNDING = 8 * float(np.finfo(np.float32).eps)
 
 
-def centroid(points, faces):
+def centroid(points: Floats, faces: Integers) -> Floats:
     """The centre (3,) of the area of a surface."""
     weights = triangulation.areas(points[faces])
     return weights @ points[faces].mean(axis=1) / weights.sum()
 
 
-def radius(points, faces):
+def radius(points: Floats, faces: Integers) -> float:
     """That of the sphere with a surface's area."""
     return np.sqrt(triangulation.areas(points[faces]).sum() / (4 * np.pi))
 
 
-def volume(points, faces):
+def volume(points: Floats, faces: Integers) -> float:
     """The signed volume inside a closed surface: negative where its faces look inwards."""
     a, b, c = (points[faces[:, corner]] for corner in range(3))
     return np.einsum("ij,ij", a, np.cross(b, c)) / 6
 
 
-def over_surface(points, faces, positions):
+def over_surface(points: Floats, faces: Integers, positions: Floats) -> Floats:
     """A map `positions` (n, 3), outward-oriented by a closed surface's `faces` (m, 3), laid over the surface.
 
     On a surface whose faces look inwards such a map is turned inside out: it is mirrored, so that faces look
@@ -43,14 +44,14 @@ def over_surface(points, faces, positions):
     return positions @ (u @ vt)
 
 
-def is_thin(positions, faces):
+def is_thin(positions: Floats, faces: Integers) -> bool:
     """Whether a face of a map (n, 3) lies so flat on a great circle that rounding might fold it over."""
     corners = positions[faces]
     sides = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2))
     return bool((np.linalg.det(corners) < _ROUNDING * sides).any())
 
 
-def turned(faces, oriented):
+def turned(faces: Integers, oriented: Integers) -> Booleans:
     """Which faces (m, 3) are turned over in `oriented` (m, 3), which is one orientation for all, (m,)."""
     turns = np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)
     return ~(oriented[:, None, :] == turns).all(axis=2).any(axis=1)

@@ -1,25 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which shape an island is mapped onto, or why none, in the words of an artist. Plain logic, no bpy."""
 
+from collections.abc import Sequence
+from typing import Protocol
+
 import numpy as np
 
 from .. import messages
+from .arrays import Integers
+
+
+class Patch(Protocol):
+    """What a piece of a surface says of its topology, as `authalic.Patch` does."""
+
+    @property
+    def genus(self) -> int | None: ...
+    @property
+    def is_closed(self) -> bool: ...
+    @property
+    def boundary_loops(self) -> Sequence[Integers]: ...
+    @property
+    def vertex_of(self) -> Integers: ...
 
 
 class Unsuitable(Exception):
     """A surface that no map of the wanted kind exists for, and what to do about it."""
 
 
-def choose(patch, settings):
-    """ "DISK" or "SPHERE", by the topology of an island (`authalic.Patch`) and the `UnwrapSettings`."""
+def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
+    """ "DISK" or "SPHERE", by the topology of an island and the wanted one, which may be "AUTO"."""
     if patch.genus is None:
         raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
-    if settings.domain == "SPHERE" and not patch.is_closed:
+    if domain == "SPHERE" and not patch.is_closed:
         raise Unsuitable(
             "has a boundary, which a sphere has not; clear its seams, fill its holes or set Domain to "
             "Automatic"
         )
-    if settings.domain == "DISK" and patch.is_closed:
+    if domain == "DISK" and patch.is_closed:
         other = ", or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
         raise Unsuitable(f"is closed; mark seams to cut it open{other}")
     if patch.genus > 0:
@@ -27,14 +44,14 @@ def choose(patch, settings):
         raise Unsuitable(f"{closed}has {handles(patch)}, like a torus; mark seams to cut it open")
     if patch.is_closed:
         return "SPHERE"
-    if len(patch.boundary_loops) > 1 and not settings.fill_holes:
+    if len(patch.boundary_loops) > 1 and not fill_holes:
         raise Unsuitable(
             f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them"
         )
     return "DISK"
 
 
-def check_flat(patch):
+def check_flat(patch: Patch) -> None:
     """Raises `Unsuitable` unless there can be UVs of an island without flipped faces."""
     if patch.genus is None:
         raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it and unwrap it")
@@ -43,11 +60,11 @@ def check_flat(patch):
         raise Unsuitable(f"is {kind} in its UV map, where faces must overlap; mark seams and unwrap it")
 
 
-def handles(patch):
+def handles(patch: Patch) -> str:
     return "a handle" if patch.genus == 1 else f"{patch.genus} handles"
 
 
-def check_closed_mesh(used, count, patches):
+def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> None:
     """Raises `Unsuitable` unless a mesh is one closed surface without handles.
 
     `used` (u,) are the vertices that have faces, of the mesh's `count` and of centres beyond these; `patches`
@@ -72,7 +89,7 @@ def check_closed_mesh(used, count, patches):
         )
 
 
-def _check_pieces(used, patches):
+def _check_pieces(used: int, patches: Sequence[Patch]) -> None:
     if sum(len(patch.vertex_of) for patch in patches) > used:
         raise Unsuitable(
             "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "

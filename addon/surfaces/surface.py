@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
+from .arrays import Booleans, Floats, Integers, Singles
 
 
 @dataclass
@@ -16,22 +16,28 @@ class Surface:
     """
 
     name: str
-    positions: np.ndarray
-    triangles: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
-    seams: np.ndarray
-    corner_vertex: np.ndarray
-    polygon_start: np.ndarray
-    polygon_size: np.ndarray
-    pinned: np.ndarray | None = None
-    uv: np.ndarray | None = None
+    positions: Floats
+    triangles: Integers
+    corners: Integers
+    polygons: Integers
+    seams: Integers
+    corner_vertex: Integers
+    polygon_start: Integers
+    polygon_size: Integers
+    pinned: Booleans | None = None
+    uv: Singles | None = None
 
     @property
-    def polygon_count(self):
+    def polygon_count(self) -> int:
         return len(self.polygon_start)
 
-    def restricted(self, triangles, uv):
+    @property
+    def uvs(self) -> Singles:
+        """The UVs (c, 2) of a surface that has a UV map."""
+        assert self.uv is not None, f"{self.name} has no UV map"
+        return self.uv
+
+    def restricted(self, triangles: Booleans, uv: Singles) -> "Surface":
         """The part of the surface given by a mask (t,) of its triangles, with other UVs."""
         part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
         return replace(self, uv=uv, **part)

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import Booleans, Floats, Integers, Reals
+from .surface import Surface
+
 # Blender keeps coordinates in single precision: a height below this part of the largest coordinate is
 # nothing but rounding.
 _FLAT = 2 * float(np.finfo(np.float32).eps)
@@ -14,45 +17,45 @@ _FLAT = 2 * float(np.finfo(np.float32).eps)
 class Triangles:
     """Triangles with the mesh corner of each of their corners, -1 at the centre of a divided polygon."""
 
-    positions: np.ndarray
-    triangles: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
+    positions: Floats
+    triangles: Integers
+    corners: Integers
+    polygons: Integers
 
 
-def areas(triangles):
+def areas(triangles: Floats) -> Floats:
     """Areas (t,) of triangles (t, 3, 3) in space."""
     a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     return np.linalg.norm(np.cross(a, b), axis=1) / 2
 
 
-def signed_areas(triangles):
+def signed_areas(triangles: Floats) -> Floats:
     """Signed areas (t,) of triangles (t, 3, 2) in the plane."""
     a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
-def welded(vertices, uv):
+def welded(vertices: Integers, uv: Reals) -> tuple[Integers, Integers]:
     """Triangles of vertices (t, 3) with float32 UVs (t, 3, 2), joined where both agree.
 
     Returns which corners, counted through, come first at each point (n,), and triangles (t, 3) of points.
     """
     # Adding 0 makes one of the two zeros.
     places = (np.ascontiguousarray(uv, np.float32) + np.float32(0)).view(np.uint64).ravel()
-    place = np.unique(places, return_inverse=True)[1].ravel()
-    key = vertices.ravel().astype(np.int64) * (place.max(initial=0) + 1) + place
+    distinct, place = np.unique(places, return_inverse=True)
+    key = vertices.ravel().astype(np.int64) * max(len(distinct), 1) + place.ravel()
     _, first, points = np.unique(key, return_index=True, return_inverse=True)
     return first, points.reshape(-1, 3)
 
 
-def has_area(triangles):
+def has_area(triangles: Floats) -> Booleans:
     """Which triangles (t, 3, 3) have an area beyond the rounding of their coordinates, (t,)."""
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
     rounding = _FLAT * np.abs(triangles).max(axis=(1, 2), initial=0)
     return 2 * areas(triangles) > sides * rounding
 
 
-def sound(surface):
+def sound(surface: Surface) -> Triangles:
     """The triangles of a surface, with polygons that triangles would harm divided from their centre.
 
     Harm is a diagonal that coincides with an edge or another polygon's diagonal, where the surface would
@@ -67,7 +70,7 @@ def sound(surface):
     return _divided(surface, np.flatnonzero(bad), kept) if bad.any() else kept
 
 
-def _branching(surface):
+def _branching(surface: Surface) -> Booleans:
     """Which polygons have a diagonal that is also an edge or a diagonal of another polygon, (p,)."""
     first, second = surface.corners.ravel(), np.roll(surface.corners, -1, axis=1).ravel()
     polygon = np.repeat(surface.polygons, 3)
@@ -90,7 +93,7 @@ def _branching(surface):
     return bad
 
 
-def _with_flat_triangle(surface):
+def _with_flat_triangle(surface: Surface) -> Booleans:
     bad = np.zeros(surface.polygon_count, bool)
     points = surface.positions[surface.triangles]
     with np.errstate(invalid="ignore"):
@@ -99,7 +102,7 @@ def _with_flat_triangle(surface):
     return bad
 
 
-def _divided(surface, polygons, kept):
+def _divided(surface: Surface, polygons: Integers, kept: Triangles) -> Triangles:
     """`kept` and, for each of `polygons`, a fan of triangles around the mean of its corners."""
     size, start = surface.polygon_size[polygons], surface.polygon_start[polygons]
     which = np.repeat(np.arange(len(polygons)), size)

@@ -4,8 +4,11 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import triangulation
+from .arrays import Booleans, Floats, Integers, Singles
+from .surface import Surface
 
 
 @dataclass
@@ -18,17 +21,17 @@ class UvMap:
     that are left out.
     """
 
-    points: np.ndarray
-    uv: np.ndarray
-    vertices: np.ndarray
-    faces: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
-    pinned: np.ndarray
-    shared: np.ndarray
+    points: Floats
+    uv: Singles
+    vertices: Integers
+    faces: Integers
+    corners: Integers
+    polygons: Integers
+    pinned: Booleans
+    shared: Booleans
 
 
-def joined(surface):
+def joined(surface: Surface) -> UvMap:
     """The UV map of a surface with UVs, its triangles joined."""
     mesh = triangulation.sound(surface)
     image = _corner_uvs(surface, mesh)
@@ -47,29 +50,29 @@ def joined(surface):
     )
 
 
-def may_be_flipped(faces, uv):
+def may_be_flipped(faces: Integers, uv: Singles) -> bool:
     """Whether triangles (m, 3) between UVs (n, 2) wind both ways, or have no area."""
     # Differences and their products are exact for UVs in single precision, so the signs are as well.
     areas = triangulation.signed_areas(uv[faces].astype(float))
     return not ((areas > 0).all() or (areas < 0).all())
 
 
-def _corner_uvs(surface, mesh):
+def _corner_uvs(surface: Surface, mesh: triangulation.Triangles) -> Singles:
     """UVs (m, 3, 2) in single precision; the center of a divided polygon is amid its corners."""
-    image = np.asarray(surface.uv, np.float32)[mesh.corners]
+    image = surface.uvs[mesh.corners]
     center = mesh.corners < 0
     if not center.any():
         return image
     polygons = mesh.polygons[center.any(axis=1)]
     owner = np.repeat(np.arange(surface.polygon_count), surface.polygon_size)
     corners = _corners_of(surface, np.arange(surface.polygon_count))
-    sums = [np.bincount(owner, surface.uv[corners, axis], surface.polygon_count) for axis in (0, 1)]
+    sums = [np.bincount(owner, surface.uvs[corners, axis], surface.polygon_count) for axis in (0, 1)]
     means = np.stack(sums, axis=1) / surface.polygon_size[:, None]
     image[center] = means[polygons]
     return image
 
 
-def _pinned(surface, mesh, faces, count):
+def _pinned(surface: Surface, mesh: triangulation.Triangles, faces: Integers, count: int) -> Booleans:
     """Which UV vertices (n,) have a pin at one of their corners."""
     found = np.zeros(count, bool)
     if surface.pinned is not None:
@@ -78,24 +81,24 @@ def _pinned(surface, mesh, faces, count):
     return found
 
 
-def _shared(surface, vertices, uv):
+def _shared(surface: Surface, vertices: Integers, uv: Singles) -> Booleans:
     """Which UV vertices (n,) are also those of faces that are left out."""
     others = np.ones(len(surface.corner_vertex), bool)
     others[_corners_of(surface, np.unique(surface.polygons))] = False
     if not others.any():
         return np.zeros(len(vertices), bool)
-    theirs = _keys(surface.corner_vertex[others], surface.uv[others])
+    theirs = _keys(surface.corner_vertex[others], surface.uvs[others])
     return np.isin(_keys(vertices, uv), theirs)
 
 
-def _corners_of(surface, polygons):
+def _corners_of(surface: Surface, polygons: Integers) -> Integers:
     """All corners of some polygons."""
     start, size = surface.polygon_start[polygons], surface.polygon_size[polygons]
     first = np.repeat(start - np.cumsum(size) + size, size)
     return first + np.arange(len(first))
 
 
-def _keys(vertices, uv):
+def _keys(vertices: Integers, uv: Singles) -> NDArray[np.void]:
     """A number or record for each vertex with UVs; equal ones agree in both."""
     places = (np.ascontiguousarray(uv, np.float32) + np.float32(0)).view(np.uint64).ravel()
     keys = np.empty(len(vertices), [("vertex", np.int64), ("place", np.uint64)])

@@ -43,11 +43,11 @@ _MODULES = (
 )
 
 
-def register():
+def register() -> None:
     for module in _MODULES:
         module.register()
 
 
-def unregister():
+def unregister() -> None:
     for module in reversed(_MODULES):
         module.unregister()

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Key frames of a shape key's value, in Blender's old and new layout of actions."""
 
+from typing import Any
+
 import bpy
 
+from .types import MeshObject
 
-def rise(obj, name, first, last):
+
+def rise(obj: MeshObject, name: str, first: int, last: int) -> None:
     """Key-frames a shape key's value from 0 at one frame to 1 at another, in place of what it had."""
     keys = obj.data.shape_keys
     key = keys.key_blocks[name]
@@ -21,9 +25,9 @@ def rise(obj, name, first, last):
     key.value = curve.evaluate(shown)
 
 
-def _curves(keys):
+def _curves(keys: bpy.types.Key) -> list[Any]:
     """The collections of F-curves that move shape keys."""
-    data = keys.animation_data
+    data: Any = keys.animation_data  # whose actions have had layers since 4.4
     if data is None or data.action is None:
         return []
     if not hasattr(data, "action_slot"):  # before 4.4

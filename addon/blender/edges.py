@@ -1,25 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The edges of meshes and the vertices at their ends, in object mode and in edit mode."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bmesh
+import bpy
 import numpy as np
+
+from ..landmarks.paths import Edge
+from ..surfaces.arrays import Integers
 
 
 class NoEdge(Exception):
     """No edge joins two vertices."""
 
 
-def ends_of_edges(mesh, edges):
+def ends_of_edges(mesh: bpy.types.Mesh, edges: Sequence[int]) -> list[Edge]:
     """The two vertices of each of some edges."""
     if not mesh.is_editmode:
-        return [tuple(mesh.edges[edge].vertices) for edge in edges]
+        ends: list[Any] = [mesh.edges[edge].vertices for edge in edges]
+        return [(first, second) for first, second in ends]
     edit = bmesh.from_edit_mesh(mesh)
     edit.verts.index_update()
     edit.edges.ensure_lookup_table()
     return [tuple(vertex.index for vertex in edit.edges[edge].verts) for edge in edges]
 
 
-def edges_between(mesh, pairs):
+def edges_between(mesh: bpy.types.Mesh, pairs: Sequence[Edge]) -> list[int]:
     """The edges that join pairs of vertices. Raises `NoEdge`."""
     if mesh.is_editmode:
         return _edited_between(bmesh.from_edit_mesh(mesh), pairs)
@@ -36,7 +44,7 @@ def edges_between(mesh, pairs):
     return order[places].tolist()
 
 
-def _edited_between(edit, pairs):
+def _edited_between(edit: bmesh.types.BMesh, pairs: Sequence[Edge]) -> list[int]:
     edit.verts.ensure_lookup_table()
     edit.edges.index_update()
     numbers = []
@@ -48,6 +56,6 @@ def _edited_between(edit, pairs):
     return numbers
 
 
-def _keys(pairs, count):
+def _keys(pairs: Integers, count: int) -> Integers:
     pairs = np.sort(pairs.astype(np.int64), axis=1)
     return pairs[:, 0] * count + pairs[:, 1]

@@ -6,19 +6,23 @@ another one, and no two meshes agree by chance.
 """
 
 import random
+from collections.abc import Sequence
+from typing import Any, Literal
 
 import bmesh
+import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 _random = random.SystemRandom()
 
 
-def new(bits=31):
+def new(bits: int = 31) -> int:
     """A mark that nothing has. One of 24 bits is exact in single precision, in which some edits mix marks."""
     return _random.randrange(1, 2**bits)
 
 
-def element_counts(mesh):
+def element_counts(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
     """The numbers of vertices, edges and faces of a mesh, in edit mode too."""
     if not mesh.is_editmode:
         return len(mesh.vertices), len(mesh.edges), len(mesh.polygons)
@@ -26,7 +30,7 @@ def element_counts(mesh):
     return len(edit.verts), len(edit.edges), len(edit.faces)
 
 
-def hold(mesh):
+def hold(mesh: bpy.types.Mesh) -> bmesh.types.BMesh | None:
     """What is to be kept while a mesh in edit mode is read piece by piece.
 
     With the last thing that Python knows of it, Blender gives up what it keeps for all its elements, and
@@ -38,14 +42,14 @@ def hold(mesh):
 class Marks:
     """The marks in the attribute of a name, on the vertices ("POINT") or the edges ("EDGE") of meshes."""
 
-    def __init__(self, name, domain):
+    def __init__(self, name: str, domain: Literal["POINT", "EDGE"]) -> None:
         self.name, self.domain = name, domain
 
-    def is_on(self, mesh):
+    def is_on(self, mesh: bpy.types.Mesh) -> bool:
         """Whether a mesh has an attribute of the name."""
         return self.name in mesh.attributes
 
-    def all(self, mesh):
+    def all(self, mesh: bpy.types.Mesh) -> dict[int, int]:
         """{element: mark} of all elements that have one, in the order of the elements."""
         if mesh.is_editmode:
             elements, layer = self._edited(mesh)
@@ -59,7 +63,7 @@ class Marks:
         marked = np.flatnonzero(values)
         return dict(zip(marked.tolist(), values[marked].tolist(), strict=True))
 
-    def of(self, mesh, elements):
+    def of(self, mesh: bpy.types.Mesh, elements: Sequence[int]) -> list[int]:
         """What some elements have for a mark, 0 for none."""
         if not mesh.is_editmode:
             attribute = self._attribute(mesh)
@@ -68,7 +72,7 @@ class Marks:
         edited.ensure_lookup_table()
         return [edited[element][layer] if layer else 0 for element in elements]
 
-    def write(self, mesh, elements, mark):
+    def write(self, mesh: bpy.types.Mesh, elements: Sequence[int], mark: int) -> None:
         """Gives some elements a mark, or with 0 takes it off."""
         if not len(elements):
             return
@@ -89,7 +93,7 @@ class Marks:
             edited[element][layer] = mark
         bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
-    def drop(self, mesh):
+    def drop(self, mesh: bpy.types.Mesh) -> None:
         """Takes the attribute off a mesh."""
         if mesh.is_editmode:
             elements, layer = self._edited(mesh)
@@ -98,24 +102,24 @@ class Marks:
         elif self._attribute(mesh) is not None:
             mesh.attributes.remove(self._attribute(mesh))
 
-    def _edited(self, mesh):
+    def _edited(self, mesh: bpy.types.Mesh) -> tuple[Any, Any]:
         """The elements of a mesh in edit mode, and their layer or None."""
         edit = bmesh.from_edit_mesh(mesh)
         elements = edit.verts if self.domain == "POINT" else edit.edges
         return elements, elements.layers.int.get(self.name)
 
-    def _attribute(self, mesh):
-        attribute = mesh.attributes.get(self.name)
+    def _attribute(self, mesh: bpy.types.Mesh) -> Any:
+        attribute: Any = mesh.attributes.get(self.name)
         kind = (attribute.domain, attribute.data_type) if attribute is not None else None
         return attribute if kind == (self.domain, "INT") else None
 
-    def _new_attribute(self, mesh):
+    def _new_attribute(self, mesh: bpy.types.Mesh) -> Any:
         if self.name in mesh.attributes:  # of another kind, which marks nothing
             mesh.attributes.remove(mesh.attributes[self.name])
         return mesh.attributes.new(self.name, "INT", self.domain)
 
 
-def _values(attribute):
+def _values(attribute: Any) -> NDArray[np.int32]:
     values = np.empty(len(attribute.data), np.int32)
     attribute.data.foreach_get("value", values)
     return values

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is transferred between meshes: UV maps, vertex groups, color attributes, shape keys as arrays."""
 
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
+import bpy
 import numpy as np
 
+from ..surfaces.arrays import Floats, Integers, Reals
 from . import shape_keys, uv_maps
+from .types import MeshObject
 
 UV_MAP, GROUP, COLOR, KEY = "UV map", "vertex group", "colour attribute", "shape key"
 _NO_WEIGHT = 1e-6
@@ -22,19 +27,19 @@ class Layer:
 
     kind: str
     name: str
-    values: np.ndarray
+    values: Reals
     of_corners: bool = False
-    detail: tuple = ()
+    detail: tuple[Any, ...] = ()
 
 
-def read_uv_maps(obj, active_only):
+def read_uv_maps(obj: MeshObject, active_only: bool) -> list[Layer]:
     """All of an object's mesh, or the active one."""
     maps = obj.data.uv_layers
     names = [uv_map.name for uv_map in maps if not active_only or uv_map == maps.active]
     return [Layer(UV_MAP, name, uv_maps.read(obj.data, name), True) for name in names]
 
 
-def read_vertex_groups(obj):
+def read_vertex_groups(obj: MeshObject) -> list[Layer]:
     """All of an object, 0 for vertices that are not in them."""
     weights = np.zeros((len(obj.vertex_groups), len(obj.data.vertices), 1), np.float32)
     for vertex in obj.data.vertices if len(weights) else ():
@@ -44,9 +49,10 @@ def read_vertex_groups(obj):
     return [Layer(GROUP, group.name, weights[group.index]) for group in obj.vertex_groups]
 
 
-def read_color_attributes(obj):
+def read_color_attributes(obj: MeshObject) -> list[Layer]:
     """Those of a mesh's vertices and of its corners, linear; `detail` is the type and the domain."""
     found = []
+    attribute: Any
     for attribute in obj.data.color_attributes:
         if attribute.domain in ("POINT", "CORNER"):
             values = np.empty(4 * len(attribute.data), np.float32)
@@ -57,7 +63,7 @@ def read_color_attributes(obj):
     return found
 
 
-def read_shape_keys(obj, but):
+def read_shape_keys(obj: MeshObject, but: Collection[str]) -> list[Layer]:
     """An object's shape keys, but those named, as displacements; `detail` is the slider's range."""
     blocks = obj.data.shape_keys
     if blocks is None or not blocks.use_relative:
@@ -74,9 +80,11 @@ def read_shape_keys(obj, but):
     ]
 
 
-def writable(obj, layers):
+def writable(obj: MeshObject, layers: Sequence[Layer]) -> tuple[list[Layer], list[str]]:
     """The layers that an object can have, and for each of the others a line that says why not."""
-    good, problems, taken = [], [], {}
+    good: list[Layer] = []
+    problems: list[str] = []
+    taken: dict[str, str] = {}
     room = uv_maps.MAX_UV_LAYERS - len(obj.data.uv_layers)
     for layer in layers:
         problem = _why_not(obj, layer, taken)
@@ -92,7 +100,7 @@ def writable(obj, layers):
     return good, problems
 
 
-def write(obj, layer, elements, values):
+def write(obj: MeshObject, layer: Layer, elements: Integers, values: Floats) -> str | None:
     """Writes values (k, d) of vertices or corners (k,) into the layer of an layer; others keep theirs.
 
     Returns None, or a line that says why nothing of the layer was written.
@@ -102,11 +110,11 @@ def write(obj, layer, elements, values):
     return _line(layer, f"Blender adds no layer of this name to {obj.name}; rename it on either object")
 
 
-def _line(layer, problem):
+def _line(layer: Layer, problem: str) -> str:
     return f"{layer.kind} {layer.name}: {problem}"
 
 
-def _why_not(obj, layer, taken):
+def _why_not(obj: MeshObject, layer: Layer, taken: dict[str, str]) -> str | None:
     """The name conflict that prevents adding this layer, or None. `taken` {name: kind} is added before it."""
     mesh = obj.data
     if layer.kind == KEY:
@@ -123,11 +131,11 @@ def _why_not(obj, layer, taken):
     return None
 
 
-def _is_alike(attribute, layer):
+def _is_alike(attribute: bpy.types.Attribute, layer: Layer) -> bool:
     return (attribute.data_type, attribute.domain) == layer.detail
 
 
-def _added(collection, layer, **kind):
+def _added(collection: Any, layer: Layer, **kind: str) -> Any:
     """A new layer of the same name in a collection of Blender's, or None, and then none was added."""
     made = None
     with suppress(RuntimeError):  # how bpy passes on an error report
@@ -138,7 +146,7 @@ def _added(collection, layer, **kind):
     return made
 
 
-def _write_uv_map(obj, layer, corners, uv):
+def _write_uv_map(obj: MeshObject, layer: Layer, corners: Integers, uv: Floats) -> bool:
     mesh = obj.data
     with uv_maps.active_stays(mesh, layer.name):
         if layer.name not in mesh.uv_layers and _added(mesh.uv_layers, layer) is None:
@@ -147,7 +155,7 @@ def _write_uv_map(obj, layer, corners, uv):
     return True
 
 
-def _write_group(obj, layer, vertices, weights):
+def _write_group(obj: MeshObject, layer: Layer, vertices: Integers, weights: Floats) -> bool:
     group = obj.vertex_groups.get(layer.name) or _added(obj.vertex_groups, layer)
     if group is None:
         return False
@@ -159,9 +167,9 @@ def _write_group(obj, layer, vertices, weights):
     return True
 
 
-def _write_color(obj, layer, elements, colors):
+def _write_color(obj: MeshObject, layer: Layer, elements: Integers, colors: Floats) -> bool:
     attributes = obj.data.color_attributes
-    found = attributes.get(layer.name)
+    found: Any = attributes.get(layer.name)
     if found is None or not _is_alike(found, layer):
         found = _added_color(attributes, layer)
     if found is None:
@@ -174,9 +182,10 @@ def _write_color(obj, layer, elements, colors):
     return True
 
 
-def _added_color(attributes, layer):
+def _added_color(attributes: Any, layer: Layer) -> Any:
     """A new color attribute in place of one of another type, or None, and then that one stays."""
-    aside, old = None, attributes.get(layer.name)
+    aside: str | None = None
+    old: Any = attributes.get(layer.name)
     if old is not None:
         old.name = _ASIDE
         aside = old.name
@@ -189,7 +198,7 @@ def _added_color(attributes, layer):
     return attributes[layer.name] if is_added else None
 
 
-def _write_key(obj, layer, vertices, displacements):
+def _write_key(obj: MeshObject, layer: Layer, vertices: Integers, displacements: Floats) -> bool:
     shown = obj.active_shape_key_index
     positions = shape_keys.read(obj).positions
     positions[vertices] += displacements

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Between Blender's meshes and numpy arrays, in object mode and, without leaving it, in edit mode."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import DTypeLike, NDArray
 
+from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.surface import Surface
 from . import uv_maps
+from .types import MeshObject
 
 
-def read(obj, *, selected_only=False, uv_layer=None):
+def read(obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None = None) -> Surface:
     """The surface of an object; with `selected_only` that of its selected, visible faces."""
     with _readable(obj.data) as mesh:
         polygons = _polygons(mesh)
@@ -39,12 +44,12 @@ def read(obj, *, selected_only=False, uv_layer=None):
     return surface
 
 
-def has_faces(obj):
+def has_faces(obj: MeshObject) -> bool:
     """Whether an object's mesh has faces, but for those that edit mode has added."""
     return len(obj.data.polygons) > 0
 
 
-def has_corners(obj, count):
+def has_corners(obj: MeshObject, count: int) -> bool:
     """Whether an object is there still and its mesh has so many corners."""
     try:
         mesh = obj.data
@@ -55,9 +60,9 @@ def has_corners(obj, count):
     return len(mesh.loops) == count
 
 
-def write_face_attribute(mesh, name, values):
+def write_face_attribute(mesh: bpy.types.Mesh, name: str, values: Floats) -> None:
     """Writes a float (p,) for each polygon into the face attribute `name`, replacing one of another kind."""
-    attribute = mesh.attributes.get(name)
+    attribute: Any = mesh.attributes.get(name)
     if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
         mesh.attributes.remove(attribute)
         attribute = None
@@ -73,14 +78,14 @@ def write_face_attribute(mesh, name, values):
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
-def has_uniform_scale(obj):
+def has_uniform_scale(obj: MeshObject) -> bool:
     """Whether the object's scale is the same, up to mirroring, in all directions."""
-    scale = np.abs(obj.matrix_world.to_scale())
+    scale = np.abs(np.array(obj.matrix_world.to_scale()))
     return bool(scale.max() - scale.min() <= 1e-4 * scale.max())
 
 
 @contextmanager
-def _readable(mesh):
+def _readable(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
     """The mesh; in edit mode, where its arrays are empty, a passing copy of what is being edited."""
     if not mesh.is_editmode:
         yield mesh
@@ -93,9 +98,9 @@ def _readable(mesh):
         bpy.data.meshes.remove(copy)
 
 
-def _attribute(mesh, name, dtype, width=1):
+def _attribute(mesh: bpy.types.Mesh, name: str, dtype: DTypeLike, width: int = 1) -> NDArray[Any]:
     """The values of an attribute, (n,) or (n, width); none where the mesh has no such attribute."""
-    attribute = mesh.attributes.get(name)
+    attribute: Any = mesh.attributes.get(name)
     if attribute is None:  # an empty mesh lacks even its positions
         return np.empty((0, width) if width > 1 else 0, dtype)
     values = np.empty(len(attribute.data) * width, dtype)
@@ -103,7 +108,7 @@ def _attribute(mesh, name, dtype, width=1):
     return values if width == 1 else values.reshape(-1, width)
 
 
-def _polygons(mesh):
+def _polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The first corner and the number of corners of each polygon."""
     start, size = np.empty((2, len(mesh.polygons)), np.int32)
     mesh.polygons.foreach_get("loop_start", start)
@@ -111,27 +116,30 @@ def _polygons(mesh):
     return start, size
 
 
-def _selected(mesh):
+def _selected(mesh: bpy.types.Mesh) -> Booleans:
     selected, hidden = np.empty((2, len(mesh.polygons)), bool)
     mesh.polygons.foreach_get("select", selected)
     mesh.polygons.foreach_get("hide", hidden)
     return selected & ~hidden
 
 
-def _loop_triangles(mesh, polygons):
+def _loop_triangles(
+    mesh: bpy.types.Mesh, polygons: tuple[NDArray[np.int32], NDArray[np.int32]]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The corners (t, 3) and the polygon (t,) of each triangle, as Blender itself divides its polygons."""
     start, size = polygons
     if (size == 3).all():
-        return start[:, None] + np.arange(3, dtype=np.int32), np.arange(len(start), dtype=np.int32)
+        corners = np.add(start[:, None], np.arange(3), dtype=np.int32)
+        return corners, np.arange(len(start), dtype=np.int32)
     mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    values = np.empty(3 * len(mesh.loop_triangles), np.int32)
     owner = np.empty(len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
+    mesh.loop_triangles.foreach_get("loops", values)
     mesh.loop_triangles.foreach_get("polygon_index", owner)
-    return corners.reshape(-1, 3), owner
+    return values.reshape(-1, 3), owner
 
 
-def _seams(mesh, corner_chosen):
+def _seams(mesh: bpy.types.Mesh, corner_chosen: Booleans) -> Integers:
     """The seams, as pairs of vertices, among the edges of the chosen corners' faces."""
     seam = np.empty(len(mesh.edges), bool)
     mesh.edges.foreach_get("use_seam", seam)
@@ -143,7 +151,7 @@ def _seams(mesh, corner_chosen):
     return ends.reshape(-1, 2)[seam & used]
 
 
-def _world_size(obj, surface):
+def _world_size(obj: MeshObject, surface: Surface) -> float:
     """How much larger than its mesh an object is in the world, as the root of the ratio of the areas."""
     points = surface.positions[surface.triangles]
     matrix = np.array(obj.matrix_world)[:3, :3]
@@ -152,6 +160,6 @@ def _world_size(obj, surface):
     return ratio if np.isfinite(ratio) and ratio > 0 else 1.0
 
 
-def _total_area(triangles):
+def _total_area(triangles: Floats) -> float:
     a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     return np.nansum(np.linalg.norm(np.cross(a, b), axis=1))

@@ -6,24 +6,27 @@ million faces packs as fast as one of ten. Islands are disks, rectangles and squ
 would gain next to nothing, turning them little, and either takes Blender's packer seconds for a few islands.
 """
 
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import bpy
 import numpy as np
 
-from ..surfaces.islands import box
+from ..surfaces.arrays import Floats
+from ..surfaces.islands import PlanarIsland, box
 
 
 @dataclass
 class PackSettings:
     """The options of Blender's Pack Islands that matter here."""
 
-    margin_method: str = "SCALED"
+    margin_method: Literal["SCALED", "ADD", "FRACTION"] = "SCALED"
     margin: float = 0.001
 
 
-def pack(islands, settings):
+def pack(islands: Sequence[PlanarIsland], settings: PackSettings) -> None:
     """Moves and scales the UVs of islands, all by one scale, into the unit square."""
     before = np.array([box(island.uv) for island in islands])
     after = _packed(before, settings)
@@ -33,7 +36,7 @@ def pack(islands, settings):
         island.uv = scale * island.uv + offset
 
 
-def _packed(boxes, settings):
+def _packed(boxes: Floats, settings: PackSettings) -> Floats:
     """Boxes (b, 4, 2) where Blender puts them."""
     with _scratch_object(boxes) as (scene, obj):
         view = scene.view_layers[0]
@@ -55,7 +58,7 @@ def _packed(boxes, settings):
 
 
 @contextmanager
-def _scratch_object(boxes):
+def _scratch_object(boxes: Floats) -> Iterator[tuple[bpy.types.Scene, Any]]:
     """A mesh with one selected face for each box, alone in a scene."""
     mesh = bpy.data.meshes.new(".authalic")
     obj = bpy.data.objects.new(".authalic", mesh)
@@ -73,7 +76,7 @@ def _scratch_object(boxes):
         bpy.data.meshes.remove(mesh)
 
 
-def _fill(mesh, boxes):
+def _fill(mesh: bpy.types.Mesh, boxes: Floats) -> None:
     points = boxes.reshape(-1, 2)
     faces = np.arange(len(points)).reshape(-1, 4)
     mesh.from_pydata(np.pad(points, ((0, 0), (0, 1))).tolist(), [], faces.tolist())

@@ -7,25 +7,25 @@ from bpy.app.handlers import persistent
 _count = 0
 
 
-def count():
+def count() -> int:
     """A number that is another one after every change of a mesh, its shape keys or modifiers."""
     return _count
 
 
-def note():
+def note() -> None:
     """A change that Blender tells of later, if at all."""
     global _count
     _count += 1
 
 
-@persistent
-def _look(_scene, graph):
+@persistent  # type: ignore[untyped-decorator]
+def _look(_scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
     if any(update.is_updated_geometry for update in graph.updates):
         note()
 
 
-@persistent
-def _changed(*_):
+@persistent  # type: ignore[untyped-decorator]
+def _changed(*_: object) -> None:
     note()
 
 
@@ -38,11 +38,11 @@ _HANDLERS = (
 )
 
 
-def register():
+def register() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
 
 
-def unregister():
+def unregister() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)

@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The selection of vertices and edges, in object mode and in edit mode."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bmesh
+import bpy
+
+from ..landmarks.paths import Edge
+from .types import MeshObject
 
 
-def vertices(obj):
+def vertices(obj: MeshObject) -> list[int]:
     """The selected, visible vertices of an object in edit mode."""
     edit = bmesh.from_edit_mesh(obj.data)
     return [number for number, vertex in enumerate(edit.verts) if vertex.select and not vertex.hide]
 
 
-def edges(obj):
+def edges(obj: MeshObject) -> list[Edge]:
     """The selected, visible edges of an object in edit mode, as pairs of vertices."""
     edit = bmesh.from_edit_mesh(obj.data)
     edit.verts.index_update()
@@ -18,7 +25,7 @@ def edges(obj):
     return [tuple(vertex.index for vertex in edge.verts) for edge in chosen]
 
 
-def active_vertices(obj):
+def active_vertices(obj: MeshObject) -> list[int]:
     """The active vertex of an object in edit mode, or the two of the active edge."""
     edit = bmesh.from_edit_mesh(obj.data)
     edit.verts.index_update()
@@ -27,7 +34,7 @@ def active_vertices(obj):
     return [vertex.index for vertex in chosen if isinstance(vertex, bmesh.types.BMVert)]
 
 
-def select_vertex(obj, vertex):
+def select_vertex(obj: MeshObject, vertex: int) -> None:
     """Selects a vertex and nothing else of a mesh."""
     mesh = obj.data
     if not mesh.is_editmode:
@@ -46,7 +53,7 @@ def select_vertex(obj, vertex):
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
-def select_edges(obj, edges):
+def select_edges(obj: MeshObject, edges: Sequence[Edge]) -> None:
     """Selects edges (pairs of vertices) and nothing else of a mesh."""
     mesh, wanted = obj.data, {frozenset(edge) for edge in edges}
     if mesh.is_editmode:
@@ -54,17 +61,18 @@ def select_edges(obj, edges):
         return
     _deselect_all(mesh)
     for edge in mesh.edges:
-        edge.select = frozenset(edge.vertices) in wanted
+        ends: Any = edge.vertices
+        edge.select = frozenset(ends) in wanted
     for vertex in {vertex for edge in edges for vertex in edge}:
         mesh.vertices[vertex].select = True
 
 
-def _deselect_all(mesh):
+def _deselect_all(mesh: bpy.types.Mesh) -> None:
     for elements in (mesh.polygons, mesh.edges, mesh.vertices):
         elements.foreach_set("select", [False] * len(elements))
 
 
-def _select_edited_edges(mesh, edges):
+def _select_edited_edges(mesh: bpy.types.Mesh, edges: Sequence[Edge]) -> None:
     edit = bmesh.from_edit_mesh(mesh)
     for elements in (edit.verts, edit.edges, edit.faces):
         for element in elements:

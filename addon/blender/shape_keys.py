@@ -3,12 +3,16 @@
 
 from dataclasses import replace
 
+import bpy
 import numpy as np
 
+from ..surfaces.arrays import Floats, Reals
+from ..surfaces.surface import Surface
 from . import meshes
+from .types import MeshObject
 
 
-def read(obj):
+def read(obj: MeshObject) -> Surface:
     """The surface of an object in the coordinates of its mesh, or of its first shape key."""
     surface, mesh = meshes.read(obj), obj.data
     if mesh.shape_keys is None:
@@ -20,14 +24,14 @@ def read(obj):
     return replace(surface, positions=positions)
 
 
-def coordinates(key):
+def coordinates(key: bpy.types.ShapeKey) -> Floats:
     """Those of a shape key, (n, 3)."""
     values = np.empty(3 * len(key.points), np.float32)
     key.points.foreach_get("co", values)
     return values.reshape(-1, 3).astype(float)
 
 
-def why_not(mesh, name):
+def why_not(mesh: bpy.types.Mesh, name: str) -> str | None:
     """Why a mesh cannot have a relative shape key of this name, or None."""
     keys = mesh.shape_keys
     if keys is not None and not keys.use_relative:
@@ -37,7 +41,7 @@ def why_not(mesh, name):
     return None
 
 
-def write(obj, name, positions):
+def write(obj: MeshObject, name: str, positions: Reals) -> None:
     """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0, and selects it.
 
     A mesh without shape keys gets its first one too. All other shape keys stay as they are, bit for bit.

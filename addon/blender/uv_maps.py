@@ -1,33 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The UV maps of meshes, in object mode and, without leaving it, in edit mode."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import bmesh
+import bpy
 import numpy as np
+
+from ..surfaces.arrays import Integers, Singles
+from .types import MeshObject
 
 MAX_UV_LAYERS = 8
 _NAME_BYTES = 63
 
 
-def active(obj):
+def active(obj: MeshObject) -> str | None:
     """The name of the active UV map of an object's mesh, or None."""
     layer = obj.data.uv_layers.active
     return layer.name if layer else None
 
 
-def has(obj, layer):
+def has(obj: MeshObject, layer: str) -> bool:
     """Whether an object's mesh has a UV map of a name."""
     return layer in obj.data.uv_layers
 
 
-def names(obj):
+def names(obj: MeshObject) -> list[str]:
     """The names of the UV maps of an object's mesh."""
     return [layer.name for layer in obj.data.uv_layers]
 
 
 @contextmanager
-def active_stays(mesh, first):
+def active_stays(mesh: bpy.types.Mesh, first: str) -> Iterator[None]:
     """Keeps the active UV map the active one; where there is none, `first` becomes it."""
     before = mesh.uv_layers.active.name if mesh.uv_layers.active else first
     yield
@@ -35,14 +41,14 @@ def active_stays(mesh, first):
         mesh.uv_layers.active = mesh.uv_layers[before]
 
 
-def read(mesh, layer):
+def read(mesh: bpy.types.Mesh, layer: str) -> Singles:
     """The UVs (c, 2) of a layer of a mesh that is not in edit mode, float32."""
     uv = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers[layer].uv.foreach_get("vector", uv)
     return uv.reshape(-1, 2)
 
 
-def write(mesh, layer, corners, uv):
+def write(mesh: bpy.types.Mesh, layer: str, corners: Integers, uv: Singles) -> None:
     """Writes UVs (k, 2) at the mesh corners (k,) of a layer; all other corners keep theirs, bit for bit."""
     if mesh.is_editmode:
         _write_edited(mesh, layer, corners, uv)
@@ -50,29 +56,30 @@ def write(mesh, layer, corners, uv):
     values = read(mesh, layer)
     values[corners] = uv
     # Not `uv_layers[layer].uv`: in Blender 4.2 that writes into the array which the undo step shares.
-    mesh.attributes[layer].data.foreach_set("vector", values.ravel())
+    attribute: Any = mesh.attributes[layer]
+    attribute.data.foreach_set("vector", values.ravel())
     mesh.update()
 
 
-def name_of(mesh, wanted):
+def name_of(mesh: bpy.types.Mesh, wanted: str) -> str:
     """The name the UV layer `wanted` has or will have; empty is the active one, or else "UVMap"."""
     if wanted:
         return wanted.encode()[:_NAME_BYTES].decode(errors="ignore")
     return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"
 
 
-def is_taken(obj, layer):
+def is_taken(obj: MeshObject, layer: str) -> bool:
     """Whether something else has the name, so that Blender would add the UV layer under another one."""
     mesh = obj.data
     return layer not in mesh.uv_layers and (layer in mesh.attributes or layer in obj.vertex_groups)
 
 
-def has_room_for(mesh, layer):
+def has_room_for(mesh: bpy.types.Mesh, layer: str) -> bool:
     """Whether the UV layer is there or can be added."""
     return layer in mesh.uv_layers or len(mesh.uv_layers) < MAX_UV_LAYERS
 
 
-def ensure(mesh, layer):
+def ensure(mesh: bpy.types.Mesh, layer: str) -> str:
     """Makes a UV layer the active one, adding it as a copy of the active one if need be; returns its name."""
     if layer not in mesh.uv_layers:
         layer = _add_edited(mesh, layer) if mesh.is_editmode else mesh.uv_layers.new(name=layer).name
@@ -80,7 +87,7 @@ def ensure(mesh, layer):
     return layer
 
 
-def _write_edited(mesh, layer, corners, uv):
+def _write_edited(mesh: bpy.types.Mesh, layer: str, corners: Integers, uv: Singles) -> None:
     edit = bmesh.from_edit_mesh(mesh)
     uv_layer = edit.loops.layers.uv[layer]
     values = dict(zip(corners.tolist(), uv.tolist(), strict=True))
@@ -93,7 +100,7 @@ def _write_edited(mesh, layer, corners, uv):
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
-def _add_edited(mesh, name):
+def _add_edited(mesh: bpy.types.Mesh, name: str) -> str:
     edit = bmesh.from_edit_mesh(mesh)
     old = mesh.uv_layers.active.name if mesh.uv_layers.active else None
     new = edit.loops.layers.uv.new(name)

@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the vertices of a mesh are seen: moved by its shape keys and modifiers, or as they are edited."""
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import bmesh
 import bpy
 import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
+
+from ..surfaces.arrays import Booleans, Floats
+from .types import MeshObject
+
+Hit = tuple[Vector, list[int]]
+"""A point of a surface and the vertices of the face there."""
+Cast = Callable[[Vector, Vector], Hit | None]
+"""What a ray with an origin and a direction hits first."""
 
 Z = Vector((0.0, 0.0, 1.0))
 # Modifiers that may give the vertices of the mesh other numbers; others add some behind them, if any.
@@ -16,53 +27,53 @@ _RENUMBERING = {
 _HIDDEN_LAYERS = 64
 
 
-def in_world(obj, vertex, depsgraph):
+def in_world(obj: MeshObject, vertex: int, depsgraph: bpy.types.Depsgraph) -> tuple[Vector, Vector]:
     """The point and the normal, of length 1 or 0, of a vertex in the world."""
     return to_world(obj, *local(obj, vertex, depsgraph))
 
 
-def to_world(obj, point, normal):
+def to_world(obj: MeshObject, point: Vector, normal: Vector) -> tuple[Vector, Vector]:
     """The same of a point and a normal in the coordinates of the object."""
     matrix = obj.matrix_world
     turned = matrix.to_3x3().inverted_safe().transposed() @ normal
     return matrix @ point, turned.normalized()
 
 
-def local(obj, vertex, depsgraph):
+def local(obj: MeshObject, vertex: int, depsgraph: bpy.types.Depsgraph) -> tuple[Vector, Vector]:
     """The point and the normal of a vertex in the coordinates of the object."""
     mesh = obj.data
     if mesh.is_editmode:
         edit = bmesh.from_edit_mesh(mesh)
         edit.verts.ensure_lookup_table()
-        one = edit.verts[vertex]
+        found: Any = edit.verts[vertex]
     else:
-        one = _shown_mesh(obj, depsgraph).vertices[vertex]
-    return one.co.copy(), one.normal.copy()
+        found = _shown_mesh(obj, depsgraph).vertices[vertex]
+    return found.co.copy(), found.normal.copy()
 
 
-def many(obj, vertices, depsgraph):
+def many(obj: MeshObject, vertices: Sequence[int], depsgraph: bpy.types.Depsgraph) -> Floats:
     """The points (k, 3) of some vertices in the coordinates of the object."""
     mesh = obj.data
     if mesh.is_editmode:
-        elements = bmesh.from_edit_mesh(mesh).verts
+        elements: Any = bmesh.from_edit_mesh(mesh).verts
         elements.ensure_lookup_table()
     else:
         elements = _shown_mesh(obj, depsgraph).vertices
     return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
 
 
-def undeformed(obj, vertices):
+def undeformed(obj: MeshObject, vertices: Sequence[int]) -> Floats:
     """The points (k, 3) of some vertices in the mesh itself, without shape keys and modifiers."""
     mesh = obj.data
     if mesh.is_editmode:
-        elements = bmesh.from_edit_mesh(mesh).verts
+        elements: Any = bmesh.from_edit_mesh(mesh).verts
         elements.ensure_lookup_table()
     else:
         elements = mesh.vertices
     return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
 
 
-def surface(obj, depsgraph):
+def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Booleans, Cast]:
     """What is seen of an object, in its own coordinates, for finding vertices.
 
     Points (n, 3) of all vertices; which of them (n,) belong to a face that is seen; and a function of the
@@ -75,9 +86,9 @@ def surface(obj, depsgraph):
         used = np.array([bool(vertex.link_faces) and not vertex.hide for vertex in edit.verts], bool)
         return points, used, _cast_on_edited(mesh)
     shown = _shown_mesh(obj, depsgraph)
-    points = np.empty(3 * len(shown.vertices), np.float32)
-    shown.vertices.foreach_get("co", points)
-    points = points.reshape(-1, 3)[: len(mesh.vertices)].astype(float)
+    values = np.empty(3 * len(shown.vertices), np.float32)
+    shown.vertices.foreach_get("co", values)
+    points = values.reshape(-1, 3)[: len(mesh.vertices)].astype(float)
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
     used = np.zeros(len(points), bool)
@@ -86,7 +97,7 @@ def surface(obj, depsgraph):
     return points, used, _cast_on_shown(obj) if same_faces else _cast_on_own(mesh, points)
 
 
-def _shown_mesh(obj, depsgraph):
+def _shown_mesh(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
     """The mesh with shape keys and modifiers where its vertices begin with the object's own, else that."""
     mesh, shown = obj.data, obj.evaluated_get(depsgraph).data
     renumbered = any(each.show_viewport and each.type in _RENUMBERING for each in obj.modifiers)
@@ -94,35 +105,37 @@ def _shown_mesh(obj, depsgraph):
     return shown if added == 0 or (added > 0 and not renumbered) else mesh
 
 
-def _cast_on_shown(obj):
+def _cast_on_shown(obj: MeshObject) -> Cast:
     """Rays on the tree that Blender itself keeps of the mesh with its modifiers."""
 
-    def cast(origin, direction):
+    def cast(origin: Vector, direction: Vector) -> Hit | None:
         shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
         is_hit, point, _, face = shown.ray_cast(origin, direction)
-        return (point, list(obj.data.polygons[face].vertices)) if is_hit and face >= 0 else None
+        polygons: Any = obj.data.polygons
+        return (point, list(polygons[face].vertices)) if is_hit and face >= 0 else None
 
     return cast
 
 
-def _cast_on_own(mesh, points):
+def _cast_on_own(mesh: bpy.types.Mesh, points: Floats) -> Cast:
     """Rays on the faces of the mesh, which the modifiers have divided, between points (n, 3)."""
-    faces = [list(polygon.vertices) for polygon in mesh.polygons]
+    polygons: Any = mesh.polygons
+    faces = [list(polygon.vertices) for polygon in polygons]
     tree = BVHTree.FromPolygons(points.tolist(), faces)
 
-    def cast(origin, direction):
+    def cast(origin: Vector, direction: Vector) -> Hit | None:
         point, _, face, _ = tree.ray_cast(origin, direction)
         return (point, faces[face]) if point is not None else None
 
     return cast
 
 
-def _cast_on_edited(mesh):
+def _cast_on_edited(mesh: bpy.types.Mesh) -> Cast:
     """Rays on the faces that are not hidden in edit mode."""
     tree = BVHTree.FromBMesh(bmesh.from_edit_mesh(mesh))
 
-    def cast(origin, direction):
-        edit, start = bmesh.from_edit_mesh(mesh), Vector(origin)
+    def cast(origin: Vector, direction: Vector) -> Hit | None:
+        edit, start = bmesh.from_edit_mesh(mesh), origin.copy()
         edit.faces.ensure_lookup_table()
         edit.verts.index_update()
         for _ in range(_HIDDEN_LAYERS):
@@ -131,7 +144,7 @@ def _cast_on_edited(mesh):
                 return None
             if not edit.faces[face].hide:
                 return point, [vertex.index for vertex in edit.faces[face].verts]
-            start = point + direction.normalized() * max((point - Vector(origin)).length * 1e-5, 1e-6)
+            start = point + direction.normalized() * max((point - origin).length * 1e-5, 1e-6)
         return None
 
     return cast

@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of UV maps: area ratios, angles and flips."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 import authalic
 
 from ..surfaces import polygons, triangulation
+from ..surfaces.arrays import Booleans, Integers
+from ..surfaces.islands import PlanarIsland
+from ..surfaces.surface import Surface
 from .results import Measurement
 
 
-def folds(island):
+def folds(island: PlanarIsland) -> bool:
     """Whether a face of an island is folded over, exactly, in UVs of single precision as Blender has them."""
     try:
         figures = authalic.distortion(island.points, island.faces, island.uv.astype(np.float32).astype(float))
@@ -18,7 +25,7 @@ def folds(island):
     return len(figures.folded) > 0
 
 
-def measure(surfaces):
+def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     """Figures of the UVs of `surfaces`, all on one scale; None where no triangle has an area."""
     points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
     image = np.concatenate([surface.uvs[surface.corners] for surface in surfaces])
@@ -49,13 +56,13 @@ def measure(surfaces):
     )
 
 
-def _vertices(surfaces):
+def _vertices(surfaces: Sequence[Surface]) -> Integers:
     """The vertices of the triangles of all surfaces, (t, 3), numbered on from one surface to the next."""
     starts = np.cumsum([0, *(len(surface.positions) for surface in surfaces)])
     return np.concatenate([s.triangles + start for s, start in zip(surfaces, starts[:-1], strict=True)])
 
 
-def _spread(good, values):
+def _spread(good: Booleans, values: NDArray[Any]) -> NDArray[Any]:
     """Values of some triangles as values of all, 0 for the others."""
     result = np.zeros(len(good), values.dtype)
     result[good] = values

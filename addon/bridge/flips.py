@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UV maps without flipped faces, by moving as few UVs as possible."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +10,14 @@ import authalic
 
 from .. import messages
 from ..surfaces import suitability, uv_map
+from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.suitability import Unsuitable
-from .progress import NOT_REACHED, keep_going, one_by_one
+from ..surfaces.surface import Surface
+from .progress import NOT_REACHED, Progress, keep_going, one_by_one
 from .results import Refusal, Unflipped
 
 
-def fix_flips(surfaces, progress=keep_going):
+def fix_flips(surfaces: Sequence[Surface], progress: Progress = keep_going) -> Unflipped:
     """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as it can.
 
     Outlines, pinned UVs and UVs that other faces share stay. Islands that this leaves no way out are refused,
@@ -32,21 +35,21 @@ class _Tangle:
 
     name: str
     index: int
-    patch: object
-    points: np.ndarray
-    uv: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
-    vertices: np.ndarray
-    pinned: np.ndarray
-    shared: np.ndarray
+    patch: authalic.Patch
+    points: Floats
+    uv: Singles
+    corners: Integers
+    polygons: Integers
+    vertices: Integers
+    pinned: Booleans
+    shared: Booleans
 
     @property
-    def polygon(self):
+    def polygon(self) -> int:
         return int(self.polygons[0])
 
 
-def _tangles(surfaces, index, result):
+def _tangles(surfaces: Sequence[Surface], index: int, result: Unflipped) -> Iterator[_Tangle]:
     """The islands of a surface's UV map whose faces wind both ways, or have no area."""
     surface = surfaces[index]
     joined = uv_map.joined(surface)
@@ -76,7 +79,7 @@ def _tangles(surfaces, index, result):
             )
 
 
-def _unflip(tangle, result, progress):
+def _unflip(tangle: _Tangle, result: Unflipped, progress: Progress) -> None:
     """Adds what an island needs to have no flipped faces to an `Unflipped`."""
     faces = np.asarray(tangle.patch.faces)
     suitability.check_flat(tangle.patch)
@@ -96,7 +99,7 @@ def _unflip(tangle, result, progress):
     result.moved += int(np.count_nonzero(moved & (tangle.vertices >= 0)))
 
 
-def _untangled(tangle, faces, result, progress):
+def _untangled(tangle: _Tangle, faces: Integers, result: Unflipped, progress: Progress) -> authalic.Untangled:
     fixed = np.flatnonzero(tangle.pinned | tangle.shared)
     image = tangle.uv.astype(float)
     try:
@@ -104,11 +107,11 @@ def _untangled(tangle, faces, result, progress):
     except (authalic.MeshError, authalic.SolverError) as problem:
         if result.ended_early:
             raise Unsuitable(NOT_REACHED) from problem
-        flipped = np.unique(tangle.polygons[list(problem.indices)]) if problem.indices is not None else ()
-        raise Unsuitable(_why_not(flipped, tangle.pinned.any(), tangle.shared.any())) from problem
+        flipped = np.unique(tangle.polygons[np.array(problem.indices or (), int)])
+        raise Unsuitable(_why_not(flipped, bool(tangle.pinned.any()), bool(tangle.shared.any()))) from problem
 
 
-def _why_not(polygons, has_pins, is_part):
+def _why_not(polygons: Integers, has_pins: bool, is_part: bool) -> str:
     """Why polygons (k,) stay flipped, and what to do; `is_part`: of the island only a part is selected."""
     faces = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
     pins = " and pinned UVs" if has_pins else ""
@@ -123,7 +126,7 @@ def _why_not(polygons, has_pins, is_part):
     )
 
 
-def _is_unfolded(points, faces, uv):
+def _is_unfolded(points: Floats, faces: Integers, uv: Singles) -> bool:
     """Whether no face is folded over, exactly, in an image or in its mirror image."""
     images = [uv.astype(float) * [side, 1] for side in (1, -1)]
     return any(not len(authalic.distortion(points, faces, image).folded) for image in images)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UVs for the islands of surfaces: each by a map onto a disk or, where it is closed, onto a sphere."""
 
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -11,10 +12,14 @@ import authalic
 from .. import messages
 from ..sphere_layout import projection
 from ..surfaces import spherical, suitability, triangulation
+from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
-from .progress import keep_going, one_by_one
+from ..surfaces.surface import Surface
+from .progress import Progress, keep_going, one_by_one
 from .results import Island, Mapping, Refusal
+from .settings import UnwrapSettings
 from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
+from .solver import Solver
 from .spheres import sphere_map
 
 _CUT = "cut its long parts open by seams"
@@ -24,7 +29,7 @@ _OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or 
 _FIT_TO_LAY_FLAT = 0.9
 
 
-def unwrap(surfaces, settings, progress=keep_going):
+def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Progress = keep_going) -> Mapping:
     """Maps every island of every surface (`Surface`) to UVs of its own, by a disk or by a sphere.
 
     When `progress` returns False the island at hand is kept as it is by then, and later ones are refused.
@@ -33,7 +38,7 @@ def unwrap(surfaces, settings, progress=keep_going):
     result = Mapping()
     pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
 
-    def mapped(piece, step):
+    def mapped(piece: _Piece, step: Progress) -> None:
         result.islands.append(_map(piece, settings, step))
 
     one_by_one(pieces, mapped, result, progress)
@@ -46,19 +51,19 @@ class _Piece:
 
     name: str
     index: int
-    patch: object
-    points: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
-    vertices: np.ndarray
+    patch: authalic.Patch
+    points: Floats
+    corners: Integers
+    polygons: Integers
+    vertices: Integers
     pinned: bool
 
     @property
-    def polygon(self):
+    def polygon(self) -> int:
         return int(self.polygons[0])
 
 
-def _pieces(surfaces, index, result):
+def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterator[_Piece]:
     """The islands of a surface; one that cannot be cut at all is refused as a whole."""
     surface = surfaces[index]
     mesh = triangulation.sound(surface)
@@ -89,7 +94,7 @@ def _pieces(surfaces, index, result):
         )
 
 
-def _map(piece, settings, progress):
+def _map(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
     """The UVs of one island, counter-clockwise as most of its faces are wound."""
     if piece.pinned:
         raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
@@ -97,7 +102,7 @@ def _map(piece, settings, progress):
     return (_by_disk if domain == "DISK" else _by_sphere)(piece, settings, progress)
 
 
-def _by_disk(piece, settings, progress):
+def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
     found = _disk_map(piece.points, faces, settings, progress)
     turned = spherical.turned(faces, np.asarray(found.faces))
@@ -108,12 +113,14 @@ def _by_disk(piece, settings, progress):
     return island
 
 
-def _disk_map(points, faces, settings, progress):
-    options = {"fill_holes": settings.fill_holes, "progress": progress}
-    return authalic.disk_map(points, faces, **options, **settings.solver.disk_options())
+def _disk_map(
+    points: Floats, faces: Integers, settings: UnwrapSettings, progress: Progress
+) -> authalic.DiskMap:
+    options = settings.solver.disk_options()
+    return authalic.disk_map(points, faces, fill_holes=settings.fill_holes, progress=progress, **options)
 
 
-def _by_sphere(piece, settings, progress):
+def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
     """By the sphere map asked for, or by one with better shapes where its faces are too thin to lay flat."""
     try:
         return _laid_flat(piece, settings, settings.solver, progress)
@@ -128,7 +135,7 @@ def _by_sphere(piece, settings, progress):
         ) from problem
 
 
-def _laid_flat(piece, settings, solver, progress):
+def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
     found, positions, turned = sphere_map(piece.points, faces, solver, progress)
     uv = projection.project(
@@ -149,7 +156,7 @@ def _laid_flat(piece, settings, solver, progress):
     return island
 
 
-def _island(piece, uv, faces, turned, points):
+def _island(piece: _Piece, uv: Floats, faces: Integers, turned: Booleans, points: Integers) -> Island:
     """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
     real = piece.corners >= 0
     return Island(

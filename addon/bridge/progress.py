@@ -1,20 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pieces that are computed one by one: the progress of the whole, and pieces that are refused."""
 
+from collections.abc import Callable, Sequence
+from typing import Protocol, TypeVar
+
 import authalic
 
 from .. import messages
+from ..surfaces.arrays import Integers
 from ..surfaces.suitability import Unsuitable
 from .results import Refusal
+
+Progress = Callable[[float, str], bool | None]
+"""Is told the fraction done and a message; False asks the computation to end."""
 
 NOT_REACHED = "was not reached before the end"
 
 
-def keep_going(_fraction, _message):
+class Piece(Protocol):
+    """What is computed on its own, with the polygons and vertices of the mesh for its faces and vertices."""
+
+    name: str
+    polygons: Integers
+    vertices: Integers
+
+    @property
+    def polygon(self) -> int: ...
+
+
+class Result(Protocol):
+    """What the pieces make up."""
+
+    refusals: list[Refusal]
+    ended_early: bool
+
+
+SomePiece = TypeVar("SomePiece", bound=Piece)
+
+
+def keep_going(_fraction: float, _message: str) -> bool:
     return True
 
 
-def one_by_one(pieces, do, result, progress):
+def one_by_one(
+    pieces: Sequence[SomePiece], do: Callable[[SomePiece, Progress], None], result: Result, progress: Progress
+) -> None:
     """Calls `do(piece, progress)` for every piece; one that it raises for is refused in the result."""
     total = sum(len(piece.polygons) for piece in pieces)
     done = 0
@@ -34,16 +64,16 @@ def one_by_one(pieces, do, result, progress):
         done += share
 
 
-def _noting_the_end(progress, result):
+def _noting_the_end(progress: Progress, result: Result) -> Progress:
     """The progress callback, which also notes in a `Mapping` that it was asked to end."""
 
-    def listen(fraction, message):
+    def listen(fraction: float, message: str) -> bool:
         result.ended_early |= progress(fraction, message) is False
         return not result.ended_early
 
     return listen
 
 
-def _sub_progress(progress, start, share, name):
+def _sub_progress(progress: Progress, start: float, share: float, name: str) -> Progress:
     """A part of the whole as a progress callback of its own."""
     return lambda fraction, message: progress(start + share * fraction, f"{name}: {message}")

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Registrations of two surfaces by landmark points or by landmark curves, and what follows from them."""
 
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
 import numpy as np
 
 import authalic
@@ -9,16 +12,24 @@ from ..registration.curves import check_curves, in_words, registered_by_curves
 from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
 from ..registration.points import check_landmarks, domain, in_mesh_terms
-from ..registration.registered import registered_by_points
-from ..registration.sides import boundaries, moved
+from ..registration.registered import Registered, registered_by_points
+from ..registration.settings import Settings
+from ..registration.sides import CurvePair, PointPair, Side, boundaries, moved
+from ..surfaces.arrays import Floats, Reals
 from ..surfaces.suitability import Unsuitable
-from .progress import keep_going
+from .progress import Progress, keep_going
 from .solver import weight
 
 _registrations = Kept()
 
 
-def register(source, target, pairs, settings, progress=keep_going):
+def register(
+    source: Side,
+    target: Side,
+    pairs: Sequence[Any],
+    settings: Settings,
+    progress: Progress = keep_going,
+) -> Registered:
     """The `Registered` of two `Side`s by pairs (name, source vertex, target vertex).
 
     By curves the pairs are (name, source vertices, target vertices). One that was made before is not made
@@ -28,7 +39,9 @@ def register(source, target, pairs, settings, progress=keep_going):
     key, settings = fingerprint(source, target, pairs), settings.that_count
     found = _registrations.get(key, settings)
     if found is None:
-        make = _registered if settings.method == "POINTS" else _registered_by_curves
+        make: Callable[..., Registered] = (
+            _registered if settings.method == "POINTS" else _registered_by_curves
+        )
         try:
             found = make(source, target, pairs, settings, progress)
         except (authalic.MeshError, authalic.SolverError) as error:
@@ -41,17 +54,24 @@ def register(source, target, pairs, settings, progress=keep_going):
     return found
 
 
-def kept(source, target, pairs, curves=(), method=None):
+def kept(
+    source: Side,
+    target: Side,
+    pairs: Sequence[PointPair],
+    curves: Sequence[CurvePair] = (),
+    method: str | None = None,
+) -> Registered | None:
     """The latest registration of these meshes by these pairs or by these curves in this session, or None.
 
     With a method, one of that alone.
     """
-    methods = [("POINTS", pairs), ("CURVES", curves)]
-    methods = [one for one in methods if method in (None, one[0])]
-    return _registrations.latest([(fingerprint(source, target, own), method) for method, own in methods])
+    landmarks: dict[str, Sequence[PointPair] | Sequence[CurvePair]] = {"POINTS": pairs, "CURVES": curves}
+    methods = [method] if method else [*landmarks]
+    keys = [(fingerprint(source, target, landmarks[method]), method) for method in methods]
+    return _registrations.latest(keys)
 
 
-def morphed(registered, source, target, align):
+def morphed(registered: Registered, source: Side, target: Side, align: bool) -> Floats:
     """Where the source's points (u, 3) go in the world: onto the target, with `align` laid over the source.
 
     The sides are those of today, which may have moved since they were registered.
@@ -62,12 +82,14 @@ def morphed(registered, source, target, align):
     return moved(np.asarray(over), source.matrix)
 
 
-def pull(registered, values, per):
+def pull(registered: Registered, values: Reals, per: Literal["vertex", "corner"]) -> Floats:
     """The target's values as those of the source, `per` "vertex" (u, ...) or per "corner" (m, 3, ...)."""
     return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
 
 
-def _registered_by_curves(source, target, curves, _settings, progress):
+def _registered_by_curves(
+    source: Side, target: Side, curves: Sequence[CurvePair], _settings: Settings, progress: Progress
+) -> Registered:
     sides = source, target
     patches = [_patches(one) for one in sides]
     for one, part in zip(sides, patches, strict=True):
@@ -82,12 +104,14 @@ def _registered_by_curves(source, target, curves, _settings, progress):
     return registered_by_curves(native, sides, curves)
 
 
-def _patches(one):
+def _patches(one: Side) -> list[authalic.Patch]:
     """The pieces of a side; a bad coordinate is for the solver to name."""
     return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
 
 
-def _registered(source, target, pairs, settings, progress):
+def _registered(
+    source: Side, target: Side, pairs: Sequence[PointPair], settings: Settings, progress: Progress
+) -> Registered:
     sides = source, target
     patches = [_patches(one) for one in sides]
     shape = domain(sides, patches, settings.domain)

@@ -3,14 +3,14 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
+from ..surfaces.arrays import Floats, Integers, Singles
+from ..surfaces.islands import PlanarIsland
 from .shortfall import Shortfall
 
 
 @dataclass
-class Island:
-    """A map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3) of surface `surface`.
+class Island(PlanarIsland):
+    """A map of an island of the surface of number `surface` into the plane.
 
     A point of the surface is there once for each of its UVs. Those of the mesh corners `corners` (k,) are the
     UVs of the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the
@@ -21,12 +21,9 @@ class Island:
     name: str
     surface: int
     polygon: int
-    points: np.ndarray
-    faces: np.ndarray
-    corners: np.ndarray
-    corner_point: np.ndarray
-    uv: np.ndarray
-    turned: np.ndarray
+    corners: Integers
+    corner_point: Integers
+    turned: Integers
     shortfall: Shortfall | None = None
     may_turn: bool = False
 
@@ -39,7 +36,7 @@ class Refusal:
     polygon: int | None
     reason: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         where = "" if self.polygon is None else f" at face {self.polygon}"
         return f"{self.name}{where}: {self.reason}"
 
@@ -65,7 +62,7 @@ class Measurement:
     flips: int
     angle: float
     without_area: int
-    log2: list[np.ndarray]
+    log2: list[Floats]
 
 
 @dataclass
@@ -75,7 +72,7 @@ class SphereShape:
     `angle` is the mean angle distortion, `shortfall` as for islands, `ended_early` as for a mapping.
     """
 
-    positions: np.ndarray
+    positions: Singles
     radius: float
     deviation: float
     flips: int
@@ -92,7 +89,7 @@ class Unflipped:
     flips stay are refused. `ended_early` as for a mapping.
     """
 
-    writes: list = field(default_factory=list)
+    writes: list[tuple[int, Integers, Singles]] = field(default_factory=list)
     faces: int = 0
     islands: int = 0
     moved: int = 0

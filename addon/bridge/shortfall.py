@@ -5,6 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import authalic
+
+from .solver import Solver
+
 # Standard deviations of area ratios that are bad: on a disk where areas count, on a sphere, where large
 # polygons leave more, and with any weight of angles. A mean angle distortion that is bad.
 UNEVEN_DISK, UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
@@ -28,7 +32,7 @@ class Shortfall:
     is_sheared: bool
     remedy: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
         named = [fault for fault, is_there in faults.items() if is_there]
         ended = [_ENDS[self.status]] if self.status in _ENDS else []
@@ -37,7 +41,9 @@ class Shortfall:
         return "; ".join([f"{', '.join(named + ended)} ({figures})", *filter(None, [remedy])])
 
 
-def shortfall(status, figures, solver, uneven, remedy):
+def shortfall(
+    status: str, figures: authalic.Distortion, solver: Solver, uneven: float, remedy: str
+) -> Shortfall | None:
     """The `Shortfall` of a map by its figures; None where it has converged to what its weight leaves.
 
     `uneven` is a deviation of area ratios that is bad where areas count.

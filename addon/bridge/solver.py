@@ -2,6 +2,7 @@
 """The solver's options in Blender's words, and what the library calls them. Plain logic, no bpy."""
 
 from dataclasses import dataclass
+from typing import Any
 
 # For disks and for spheres. The papers have a descent of their own for either.
 _METHODS = {
@@ -38,20 +39,20 @@ class Solver:
     area_tolerance: float = 0.0
 
     @property
-    def is_free(self):
+    def is_free(self) -> bool:
         """Whether open islands get an outline of their own."""
         return self._is_ours and self.outline == "FREE"
 
     @property
-    def weight(self):
+    def weight(self) -> float:
         """The library's weight of angles, 0 where it does not apply."""
         return weight(self.angle_weight) if self._is_ours and not self.area_tolerance else 0.0
 
     @property
-    def puts_areas_first(self):
+    def puts_areas_first(self) -> bool:
         return self.weight <= _AREAS_FIRST
 
-    def disk_options(self):
+    def disk_options(self) -> dict[str, Any]:
         """Arguments of `authalic.disk_map`."""
         options = self._options(0)
         if self._is_ours:
@@ -60,22 +61,22 @@ class Solver:
             options["overlap"] = True
         return options
 
-    def sphere_options(self):
+    def sphere_options(self) -> dict[str, Any]:
         """Arguments of `authalic.sphere_map`."""
         return self._options(1)
 
     @property
-    def _is_ours(self):
+    def _is_ours(self) -> bool:
         return self.method == "GAUSS_NEWTON"
 
-    def _options(self, shape):
+    def _options(self, shape: int) -> dict[str, Any]:
         options = {"method": _METHODS[self.method][shape], "max_iterations": self.iterations or None}
         if self._is_ours and self.area_tolerance:
             return {**options, "area_tolerance": self.area_tolerance}
         return {**options, "angle_weight": self.weight}
 
 
-def weight(slider):
+def weight(slider: float) -> float:
     """The library's weight of angles against areas at a slider from 0 to 1.
 
     Rounded, so that Blender's single precision makes no difference.
@@ -83,22 +84,22 @@ def weight(slider):
     return float(f"{10 ** (_LEAST + _DECADES * slider):.6g}") if slider > 0 else 0.0
 
 
-def outline(name):
+def outline(name: str) -> str:
     """The outline of a preset."""
     return "CIRCLE" if FORMER_NAMES.get(name, name) == "CIRCLE" else "FREE"
 
 
-def slider(name):
+def slider(name: str) -> float:
     """Where the slider stands in a preset."""
     return PRESETS[FORMER_NAMES.get(name, name)]
 
 
-def is_preset(name):
+def is_preset(name: str) -> bool:
     """Whether it names a preset, by its name of today or a former one."""
     return FORMER_NAMES.get(name, name) in PRESETS
 
 
-def fits(name, angle_weight, its_outline=None, area_tolerance=0.0):
+def fits(name: str, angle_weight: float, its_outline: str | None = None, area_tolerance: float = 0.0) -> bool:
     """Whether the preset of this name has these values; without an outline, for the sphere."""
     return (
         is_preset(name)
@@ -108,7 +109,7 @@ def fits(name, angle_weight, its_outline=None, area_tolerance=0.0):
     )
 
 
-def preset(angle_weight, its_outline=None, area_tolerance=0.0):
+def preset(angle_weight: float, its_outline: str | None = None, area_tolerance: float = 0.0) -> str:
     """The name of the preset with these values, or "CUSTOM"."""
     values = angle_weight, its_outline, area_tolerance
     return next((name for name in PRESETS if fits(name, *values)), "CUSTOM")

@@ -7,8 +7,10 @@ import authalic
 
 from .. import messages
 from ..surfaces import spherical, suitability, triangulation
+from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
-from .progress import keep_going
+from ..surfaces.surface import Surface
+from .progress import Progress, keep_going
 from .results import SphereShape
 from .shortfall import UNEVEN_SPHERE, shortfall
 from .solver import Solver
@@ -16,7 +18,9 @@ from .solver import Solver
 _OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
 
 
-def sphere_shape(surface, solver=None, progress=keep_going):
+def sphere_shape(
+    surface: Surface, solver: Solver | None = None, progress: Progress = keep_going
+) -> SphereShape:
     """The vertices of a closed mesh (`Surface`) on the sphere of its area, about its area's centre.
 
     When `progress` returns False, as they are by then. Raises `Unsuitable`, in the words of an artist, where
@@ -54,7 +58,7 @@ def sphere_shape(surface, solver=None, progress=keep_going):
     )
 
 
-def _whole(mesh):
+def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch]]:
     """The vertices (u,) that have triangles, and the pieces that these make up."""
     used, faces = np.unique(mesh.triangles, return_inverse=True)
     # A bad coordinate is for the solver to name.
@@ -62,7 +66,9 @@ def _whole(mesh):
     return used, authalic.cut(points, faces.reshape(-1, 3))
 
 
-def sphere_map(points, faces, solver, progress):
+def sphere_map(
+    points: Floats, faces: Integers, solver: Solver, progress: Progress
+) -> tuple[authalic.SphereMap, Floats, Booleans]:
     """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
     found = authalic.sphere_map(points, faces, progress=progress, **solver.sphere_options())
     is_poor = found.status == "stalled" and solver.puts_areas_first
@@ -74,5 +80,5 @@ def sphere_map(points, faces, solver, progress):
     return found, over, spherical.turned(faces, oriented)
 
 
-def _is_thin(found):
+def _is_thin(found: authalic.SphereMap) -> bool:
     return spherical.is_thin(np.asarray(found.positions), np.asarray(found.faces))

@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The two objects of a registration, read and checked."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from .. import messages
 from ..blender import meshes, shape_keys
+from ..blender.types import Landmark, LandmarkCurve, MeshObject, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import points as landmark_points
+from ..landmarks.curves import Curve
 from ..landmarks.objects import active_source, target_problem
-from ..registration.sides import side
+from ..landmarks.points import Pair
+from ..registration.sides import CurvePair, PointPair, Side, side
+from ..surfaces.arrays import Floats
+from ..surfaces.surface import Surface
 
 
 class CannotRegister(Exception):
@@ -25,44 +32,43 @@ class Couple:
     pairs. `to_source` is the matrix (4, 4) from the world into the source's space.
     """
 
-    source: object
-    target: object
-    surfaces: list
-    sides: list
-    pairs: list
-    curves: list
-    problems: dict
-    to_source: np.ndarray
+    source: MeshObject
+    target: MeshObject
+    surfaces: tuple[Surface, Surface]
+    sides: tuple[Side, Side]
+    pairs: list[PointPair]
+    curves: list[CurvePair]
+    problems: dict[str, list[str]]
+    to_source: Floats
 
-    def landmarks(self, method):
+    def landmarks(self, method: str) -> list[PointPair] | list[CurvePair]:
         """The pairs that a method goes by. Raises `CannotRegister` where they are not sound."""
         if self.problems[method]:
             raise CannotRegister(messages.listed(self.problems[method]))
         return self.pairs if method == "POINTS" else self.curves
 
 
-def chosen(context):
+def chosen(context: bpy.types.Context) -> Couple:
     """The `Couple` of the active object and its target; raises `CannotRegister` where there is none."""
     source = active_source(context)
-    if source is None or source.type != "MESH":
+    if not is_mesh(source):
         raise CannotRegister("The active object is no mesh")
-    problem = target_problem(source)
-    if problem:
-        raise CannotRegister(f"{source.name}: {problem}")
     target = source.authalic_target
-    objects = [source, target]
-    for obj in objects:
+    problem = target_problem(source)
+    if problem or target is None:
+        raise CannotRegister(f"{source.name}: {problem}")
+    for obj in (source, target):
         _check(obj)
     if source.data.library is not None:
         raise CannotRegister(f"{source.name}: its mesh is linked from another file; make it local")
-    surfaces = [shape_keys.read(obj) for obj in objects]
-    matrices = [np.array(obj.matrix_world) for obj in objects]
+    surfaces = shape_keys.read(source), shape_keys.read(target)
+    matrices = np.array(source.matrix_world), np.array(target.matrix_world)
     points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
     return Couple(
         source=source,
         target=target,
         surfaces=surfaces,
-        sides=[side(*part) for part in zip(surfaces, matrices, strict=True)],
+        sides=(side(surfaces[0], matrices[0]), side(surfaces[1], matrices[1])),
         pairs=[pair[:3] for pair in points],
         curves=[(curve.name, curve.source.vertices, curve.target.vertices) for curve in curves],
         problems={"POINTS": _problems("Landmark", points), "CURVES": _problems("Curve", curves)},
@@ -70,7 +76,7 @@ def chosen(context):
     )
 
 
-def check_unchanged(couple):
+def check_unchanged(couple: Couple) -> None:
     """Meshes and landmarks may have changed since they were read, where a window was alive meanwhile."""
     for obj, surface in zip((couple.source, couple.target), couple.surfaces, strict=True):
         is_there = meshes.has_corners(obj, len(surface.corner_vertex))
@@ -81,12 +87,12 @@ def check_unchanged(couple):
         raise CannotRegister("The landmarks have changed meanwhile; nothing was written")
 
 
-def pair_lists(source):
+def pair_lists(source: MeshObject) -> tuple[list[Landmark], list[LandmarkCurve]]:
     """The lists of points and of curves."""
-    return source.authalic_landmarks, source.authalic_landmark_curves
+    return list(source.authalic_landmarks), list(source.authalic_landmark_curves)
 
 
-def _check(obj):
+def _check(obj: MeshObject) -> None:
     if obj.data.is_editmode:
         raise CannotRegister(f"{obj.name} is in Edit Mode; leave that first")
     if not meshes.has_faces(obj):
@@ -96,5 +102,5 @@ def _check(obj):
         raise CannotRegister(f"{obj.name} is scaled to nothing along an axis; clear its scale")
 
 
-def _problems(kind, pairs):
+def _problems(kind: str, pairs: Sequence[Pair] | Sequence[Curve]) -> list[str]:
     return [f'{kind} "{pair.name}": {pair.problem}' for pair in pairs if pair.problem]

@@ -1,12 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Turns over the flipped faces of a context's active UV maps: the one path of the operator and of scripts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import bpy
 
 from .. import bridge, messages
 from ..blender import meshes, uv_maps
+from ..blender.types import MeshObject
+from ..bridge.progress import Progress
+from ..surfaces.surface import Surface
 from . import targets
 from .job import Job
+
+Chosen = tuple[MeshObject, str, Surface]
+"""An object, the name of its UV map, and its surface."""
 
 
 class CannotFix(Exception):
@@ -18,14 +27,14 @@ class Report:
     """What was done, a `bridge.Unflipped`, and what could not be."""
 
     found: bridge.Unflipped
-    refusals: list
-    notes: list
+    refusals: list[bridge.Refusal]
+    notes: list[str]
 
-    def __str__(self):
+    def __str__(self) -> str:
         left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([self._done(), *left, *self.notes])
 
-    def _done(self):
+    def _done(self) -> str:
         if not self.found.faces:
             return "No flipped faces"
         faces = messages.count(self.found.faces, "flipped face")
@@ -33,7 +42,7 @@ class Report:
         return f"Fixed {faces} in {islands}; {messages.count(self.found.moved, 'UV')} moved"
 
 
-def job(context):
+def job(context: bpy.types.Context) -> Job[bridge.Unflipped, Report]:
     """A `Job` that fixes flipped faces in the active UV maps; its `apply` writes UVs and returns a `Report`.
 
     In edit mode of the selected faces only. Raises `targets.NothingToDo` before anything is computed.
@@ -44,10 +53,10 @@ def job(context):
     if not chosen:
         raise targets.NothingToDo(_why_nothing(objects, selected_only, refusals))
 
-    def work(progress):
+    def work(progress: Progress) -> bridge.Unflipped:
         return bridge.fix_flips([surface for _, _, surface in chosen], progress)
 
-    def finish(found):
+    def finish(found: bridge.Unflipped) -> Report:
         _check_unchanged(chosen)
         if found.refusals and not found.faces:
             raise CannotFix(f"No flipped face could be fixed: {messages.listed(found.refusals)}")
@@ -60,7 +69,7 @@ def job(context):
     return Job(work, finish)
 
 
-def _chosen(objects, selected_only):
+def _chosen(objects: Sequence[MeshObject], selected_only: bool) -> list[Chosen]:
     """(object, UV layer, surface) of those objects that have UVs and faces to look at."""
     layers = [(obj, layer) for obj in objects if (layer := uv_maps.active(obj))]
     read = [
@@ -69,7 +78,7 @@ def _chosen(objects, selected_only):
     return [part for part in read if len(part[2].triangles)]
 
 
-def _why_nothing(objects, selected_only, refusals):
+def _why_nothing(objects: Sequence[MeshObject], selected_only: bool, refusals: list[bridge.Refusal]) -> str:
     if refusals:
         return messages.listed(refusals)
     if not any(uv_maps.active(obj) for obj in objects):
@@ -77,7 +86,7 @@ def _why_nothing(objects, selected_only, refusals):
     return "No faces are selected" if selected_only else "The selected objects have no faces"
 
 
-def _check_unchanged(chosen):
+def _check_unchanged(chosen: Sequence[Chosen]) -> None:
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, layer, surface in chosen:
         is_there = meshes.has_corners(obj, len(surface.corner_vertex))

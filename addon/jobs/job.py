@@ -2,44 +2,59 @@
 """A computation on a thread of its own, so that a window stays alive, and its end on the main thread."""
 
 import threading
+from collections.abc import Callable
+from typing import Any, Generic, Self, TypeVar
+
+from ..bridge.progress import Progress
+
+Computed = TypeVar("Computed")
+Result = TypeVar("Result")
+
+
+_AS_IT_IS: Any = lambda computed: computed  # noqa: E731
 
 
 class Cancelled(Exception):
     """The job was cancelled; nothing was written."""
 
 
-class Job:
+class Job(Generic[Computed, Result]):
     """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
 
     `work` must not touch bpy; `progress(fraction, message)` is False once the job is to end. What `work`
     returns then counts if the job was to end early, and not if it was cancelled.
     """
 
-    def __init__(self, work, finish=lambda result: result):
+    def __init__(
+        self,
+        work: Callable[[Progress], Computed],
+        finish: Callable[[Computed], Result] = _AS_IT_IS,
+    ) -> None:
         self._work, self._finish = work, finish
         self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
         self._cancel, self._end = threading.Event(), threading.Event()
         self._state = (0.0, "")
-        self._result = self._error = None
+        self._result: Computed
+        self._error: BaseException | None = None
 
-    def start(self):
+    def start(self) -> Self:
         self._thread.start()
         return self
 
-    def poll(self):
+    def poll(self) -> tuple[bool, float, str]:
         """(running, fraction, message)."""
         return (self._thread.is_alive(), *self._state)
 
-    def cancel(self):
+    def cancel(self) -> None:
         """Asks the computation to stop; `apply` will raise `Cancelled` and change nothing."""
         self._cancel.set()
         self._end.set()
 
-    def end_early(self):
+    def end_early(self) -> None:
         """Asks the computation to stop; `apply` will write the best that it has by then."""
         self._end.set()
 
-    def apply(self):
+    def apply(self) -> Result:
         """Waits for the end of the computation and hands its result to `finish`."""
         self._thread.join()
         if self._cancel.is_set():
@@ -48,7 +63,7 @@ class Job:
             raise self._error
         return self._finish(self._result)
 
-    def execute(self):
+    def execute(self) -> Result:
         """The whole job at once, for scripts; Ctrl-C cancels it."""
         self.start()
         try:
@@ -60,12 +75,12 @@ class Job:
             raise
         return self.apply()
 
-    def _run(self):
+    def _run(self) -> None:
         try:
             self._result = self._work(self._report)
         except BaseException as error:  # raised again by apply, on the caller's thread
             self._error = error
 
-    def _report(self, fraction, message):
+    def _report(self, fraction: float, message: str) -> bool:
         self._state = (fraction, message)
         return not self._end.is_set()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The measurement of a context's objects: figures of their active UV layers and a face attribute."""
 
+import bpy
+
 from .. import bridge
 from ..blender import meshes, uv_maps
 from . import targets
@@ -10,7 +12,7 @@ from .targets import NothingToDo
 ATTRIBUTE = "authalic_log2_area_ratio"
 
 
-def job(context):
+def job(context: bpy.types.Context) -> Job[bridge.Measurement | None, bridge.Measurement]:
     """A `Job` that measures the active UV layers; its `apply` writes the attribute, returns figures.
 
     Raises `NothingToDo` where no object has faces and UVs.
@@ -23,7 +25,7 @@ def job(context):
         raise NothingToDo("The selected objects have no faces with a UV map")
     surfaces = [surface for _, surface in chosen]
 
-    def finish(figures):
+    def finish(figures: bridge.Measurement | None) -> bridge.Measurement:
         if figures is None:
             raise NothingToDo("No face has an area, or all UVs lie in one point")
         for (obj, _), values in zip(chosen, figures.log2, strict=True):
@@ -33,7 +35,7 @@ def job(context):
     return Job(lambda progress: bridge.measure(surfaces), finish)
 
 
-def line(figures):
+def line(figures: bridge.Measurement) -> str:
     """The figures in one line."""
     parts = [
         f"area ratio mean {figures.mean:.3f}",

@@ -2,16 +2,22 @@
 """The registration of the active object onto its target: the one path of the operator and of scripts."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import bpy
 import numpy as np
 
 from .. import bridge, messages
 from ..blender import animation, shape_keys, uv_maps
 from ..blender.appearance import deformers
+from ..blender.types import Landmark, LandmarkCurve, MeshObject
+from ..bridge.progress import Progress
+from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
-from ..registration.sides import moved
-from .couple import CannotRegister, check_unchanged, chosen, pair_lists
+from ..registration.sides import Side, moved
+from ..surfaces.arrays import Floats
+from .couple import CannotRegister, Couple, check_unchanged, chosen, pair_lists
 from .job import Job
 from .register_report import Report, warnings
 
@@ -30,7 +36,7 @@ class Settings:
     frames: tuple[int, int] | None = None
 
 
-def job(context, settings):
+def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered, Floats], Report]:
     """A `Job` that registers the active object; its `apply` writes the shape key and returns a `Report`.
 
     Raises `CannotRegister` before anything is computed.
@@ -45,16 +51,17 @@ def job(context, settings):
     if reason is not None:
         raise CannotRegister(f"{couple.source.name}: {reason}")
 
-    def work(progress):
+    def work(progress: Progress) -> tuple[Registered, Floats]:
         registered = registration(couple, settings.registration, progress)
         return registered, _positions(couple, registered, settings.align)
 
-    def finish(found):
+    def finish(found: tuple[Registered, Floats]) -> Report:
         registered, positions = found
         check_unchanged(couple)
         shape_keys.write(couple.source, key, positions)
         notes = _write_uv_maps(couple, registered, settings.target_uv)
-        listed = pair_lists(couple.source)[1 if registered.by_curves else 0]
+        points, curves = pair_lists(couple.source)
+        listed: Sequence[Landmark | LandmarkCurve] = curves if registered.by_curves else points
         for landmark, error in zip(listed, registered.errors.tolist(), strict=True):
             landmark.error = 100 * error
         couple.source.authalic_registered_by = registered.method
@@ -66,7 +73,7 @@ def job(context, settings):
     return Job(work, finish)
 
 
-def registration(couple, settings, progress):
+def registration(couple: Couple, settings: RegistrationSettings, progress: Progress) -> Registered:
     """The registration of a `Couple`; raises `CannotRegister`."""
     try:
         return bridge.register(*couple.sides, couple.landmarks(settings.method), settings, progress)
@@ -74,12 +81,12 @@ def registration(couple, settings, progress):
         raise CannotRegister(str(reason)) from reason
 
 
-def key_name(target):
+def key_name(target: MeshObject) -> str:
     """The name of the shape key that morphs into a target."""
     return (_PREFIX + target.name).encode()[:_NAME_BYTES].decode(errors="ignore")
 
 
-def _positions(couple, registered, align):
+def _positions(couple: Couple, registered: Registered, align: bool) -> Floats:
     """All vertices (n, 3) of the source's mesh where the morph ends; loose ones stay."""
     positions, own = couple.surfaces[0].positions.copy(), registered.source.vertices
     images = moved(bridge.morphed(registered, *couple.sides, align), couple.to_source)
@@ -89,7 +96,7 @@ def _positions(couple, registered, align):
     return positions
 
 
-def _write_uv_maps(couple, registered, on_target):
+def _write_uv_maps(couple: Couple, registered: Registered, on_target: bool) -> list[str]:
     """Disks: the maps under which both surfaces coincide, as UV maps that do not become active ones."""
     if registered.domain != "DISK":
         return []
@@ -99,7 +106,7 @@ def _write_uv_maps(couple, registered, on_target):
     return [note for note in (_write_uv_map(*part) for part in wanted) if note is not None]
 
 
-def _write_uv_map(obj, side, plane):
+def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
     """Writes one, the unit disk filling the square; returns why not, or None."""
     mesh = obj.data
     if mesh.library is not None:
@@ -114,7 +121,7 @@ def _write_uv_map(obj, side, plane):
     return None
 
 
-def _remarks(couple, key):
+def _remarks(couple: Couple, key: str) -> list[str]:
     """What else is affected, and what is seen of the two that was not registered."""
     users = couple.source.data.users
     notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []

@@ -15,11 +15,11 @@ class Report:
 
     key: str
     registered: Registered
-    notes: list
+    notes: list[str]
     seconds: float
-    refusals: tuple = ()
+    refusals: tuple[str, ...] = ()
 
-    def __str__(self):
+    def __str__(self) -> str:
         one = self.registered
         figures = _figures_of_curves(one) if one.by_curves else _figures_of_points(one)
         ending = [one.status.replace("_", " "), f"{self.seconds:.2f} s"]
@@ -27,7 +27,7 @@ class Report:
         return "; ".join([f"{self.key} on {one.source.name}: {line}", *self.notes])
 
 
-def warnings(registered):
+def warnings(registered: Registered) -> list[str]:
     """What is not as it was asked for."""
     early = messages.ENDED_EARLY_BY_CURVES if registered.by_curves else messages.ENDED_EARLY
     notes = [early] if registered.ended_early else []
@@ -40,7 +40,7 @@ def warnings(registered):
     return [*notes, *registered.remarks]
 
 
-def _figures_of_points(one):
+def _figures_of_points(one: Registered) -> list[str]:
     mean, most = 100 * one.errors.mean(), 100 * one.errors.max()
     error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {one.target.name}"
     return [
@@ -51,7 +51,7 @@ def _figures_of_points(one):
     ]
 
 
-def _figures_of_curves(one):
+def _figures_of_curves(one: Registered) -> list[str]:
     most = 100 * one.errors.max(initial=0)
     error = f"curve error max {most:.3f} % of the size of {one.target.name}{_worst(one)}"
     return [
@@ -61,7 +61,7 @@ def _figures_of_curves(one):
     ]
 
 
-def _worst(registered):
+def _worst(registered: Registered) -> str:
     """The pairs that end furthest from each other, for a report."""
     named = [f'"{name}" {100 * error:.3f} %' for name, error in registered.worst]
     return f", worst at {messages.listed(named)}" if named else ""

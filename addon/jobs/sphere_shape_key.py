@@ -2,14 +2,22 @@
 """The sphere shape keys of a context's objects: the one path of the operator and of scripts."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+
+import bpy
 
 from .. import bridge, messages
 from ..blender import meshes, shape_keys
+from ..blender.types import MeshObject
+from ..bridge.progress import Progress
+from ..surfaces.surface import Surface
 from . import targets
 from .job import Job
 
 NAME = "Authalic Sphere"
+
+Shape = bridge.SphereShape | bridge.Refusal
 
 
 class CannotMap(Exception):
@@ -27,18 +35,18 @@ class Settings:
 class Report:
     """What was done: (object name, `bridge.SphereShape`) for each key, and what was left as it was."""
 
-    shapes: list
-    refusals: list
-    notes: list
+    shapes: list[tuple[str, bridge.SphereShape]]
+    refusals: list[bridge.Refusal]
+    notes: list[str]
     seconds: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         done = "; ".join(f"{NAME} on {name}: {_figures(shape)}" for name, shape in self.shapes)
         left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([f"{done}, {self.seconds:.2f} s", *left, *self.notes])
 
 
-def job(context, settings):
+def job(context: bpy.types.Context, settings: Settings) -> Job[list[Shape], Report]:
     """A `Job` for the selected meshes; its `apply` writes the shape keys and returns a `Report`.
 
     Raises `targets.NothingToDo` or `CannotMap` before anything is computed.
@@ -55,10 +63,10 @@ def job(context, settings):
     if not chosen:
         raise CannotMap(messages.listed(refusals)) if refusals else targets.NothingToDo("No mesh is selected")
 
-    def work(progress):
+    def work(progress: Progress) -> list[Shape]:
         return _shapes([surface for _, surface in chosen], settings, progress)
 
-    def finish(found):
+    def finish(found: list[Shape]) -> Report:
         _check_unchanged(chosen)
         done = [
             (obj, shape)
@@ -76,7 +84,7 @@ def job(context, settings):
     return Job(work, finish)
 
 
-def _check_unchanged(chosen):
+def _check_unchanged(chosen: Sequence[tuple[MeshObject, Surface]]) -> None:
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, surface in chosen:
         is_there = meshes.has_corners(obj, len(surface.corner_vertex))
@@ -84,15 +92,16 @@ def _check_unchanged(chosen):
             raise CannotMap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
-def _why_not(obj):
+def _why_not(obj: MeshObject) -> str | None:
     if not meshes.has_faces(obj):
         return "has no faces"
     return shape_keys.why_not(obj.data, NAME)
 
 
-def _shapes(surfaces, settings, progress):
+def _shapes(surfaces: Sequence[Surface], settings: Settings, progress: Progress) -> list[Shape]:
     """A `bridge.SphereShape` for each surface, or the `Refusal` that says why there is none."""
-    found, total, before = [], sum(len(surface.triangles) for surface in surfaces), 0
+    found: list[Shape] = []
+    total, before = sum(len(surface.triangles) for surface in surfaces), 0
     for surface in surfaces:
         start, share = before / total, len(surface.triangles) / total
         if progress(start, surface.name) is False:
@@ -103,18 +112,18 @@ def _shapes(surfaces, settings, progress):
     return found
 
 
-def _shape(surface, settings, progress):
+def _shape(surface: Surface, settings: Settings, progress: Progress) -> Shape:
     try:
         return bridge.sphere_shape(surface, settings.solver, progress)
     except bridge.Unsuitable as reason:
         return bridge.Refusal(surface.name, None, str(reason))
 
 
-def _part(progress, start, share):
+def _part(progress: Progress, start: float, share: float) -> Progress:
     return lambda fraction, message: progress(start + share * fraction, message)
 
 
-def _figures(shape):
+def _figures(shape: bridge.SphereShape) -> str:
     flips = messages.count(shape.flips, "flip")
     return (
         f"area ratio SD {shape.deviation:.3g}, {flips}, angle distortion {shape.angle:.2f}, "
@@ -122,7 +131,7 @@ def _figures(shape):
     )
 
 
-def _notes(done):
+def _notes(done: Sequence[tuple[MeshObject, bridge.SphereShape]]) -> list[str]:
     """What was written but may not be what was wanted."""
     early = [messages.ENDED_EARLY] if any(shape.ended_early for _, shape in done) else []
     notes = [f"{obj.name}: {shape.shortfall}" for obj, shape in done if shape.shortfall is not None]

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects a command works on."""
 
+import bpy
+
+from ..blender.types import MeshObject, is_mesh
 from ..bridge import Refusal
 
 
@@ -8,22 +11,22 @@ class NothingToDo(Exception):
     """There is nothing selected to work on."""
 
 
-def meshes(context):
+def meshes(context: bpy.types.Context) -> list[MeshObject]:
     """The mesh objects of the context, those in edit mode or the selected ones, one for each mesh.
 
     Of several objects with one mesh the active one counts, else the first.
     """
     objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
-    active = context.view_layer.objects.active
-    found = {}
+    active = context.view_layer.objects.active if context.view_layer else None
+    chosen: dict[str, MeshObject] = {}
     for obj in sorted(objects, key=lambda obj: obj != active):
-        if obj.type == "MESH":
-            found.setdefault(obj.data.name_full, obj)
+        if is_mesh(obj):
+            chosen.setdefault(obj.data.name_full, obj)
     # In the order of the objects, which does not depend on the active one.
-    return [obj for obj in objects if obj in found.values()]
+    return [obj for obj in objects if is_mesh(obj) and obj in chosen.values()]
 
 
-def editable(context):
+def editable(context: bpy.types.Context) -> tuple[list[MeshObject], list[Refusal]]:
     """The same without those that cannot be written, and a refusal for each of those."""
     objects, refusals = [], []
     for obj in meshes(context):

@@ -4,19 +4,26 @@
 import time
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from .. import bridge, messages
 from ..blender import layers
+from ..bridge.progress import Progress
 from ..registration import elements, seams
+from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import is_open
+from ..surfaces.arrays import Floats, Integers
 from . import register, targets
-from .couple import CannotRegister, check_unchanged, chosen
+from .couple import CannotRegister, Couple, check_unchanged, chosen
 from .job import Job
 from .register_report import warnings
 
 _PLURALS = {kind: f"{kind}s" for kind in (layers.UV_MAP, layers.GROUP, layers.COLOR, layers.KEY)}
+
+Pulled = tuple[Registered, bool, list[tuple[Integers, Floats]]]
+"""A registration, whether it is new, and for each layer elements and their values."""
 
 
 @dataclass
@@ -39,12 +46,12 @@ class Report:
     source: str
     target: str
     by: str
-    written: list
-    refusals: list
-    notes: list
+    written: list[tuple[str, str]]
+    refusals: list[str]
+    notes: list[str]
     seconds: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         kinds = dict.fromkeys(kind for kind, _ in self.written)
         parts = [_listed(kind, [name for own, name in self.written if own == kind]) for kind in kinds]
         line = f"{', '.join(parts)} from {self.target} to {self.source} {self.by}, {self.seconds:.2f} s"
@@ -52,7 +59,7 @@ class Report:
         return "; ".join([line, *left, *self.notes])
 
 
-def job(context, settings):
+def job(context: bpy.types.Context, settings: Settings) -> Job[Pulled, Report]:
     """A `Job` that transfers to the active object; its `apply` writes the layers and returns a `Report`.
 
     Raises `targets.NothingToDo` or `CannotRegister` before anything is computed.
@@ -65,13 +72,13 @@ def job(context, settings):
     method = _method(couple)
     to_world, from_world = np.array(couple.target.matrix_world)[:3, :3], couple.to_source[:3, :3]
 
-    def work(progress):
+    def work(progress: Progress) -> Pulled:
         registered, is_new = _registration(couple, settings.registration, method, progress)
         turn = _turn(registered, couple) if settings.align else np.identity(3)
         pulled = [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
         return registered, is_new, pulled
 
-    def finish(found):
+    def finish(found: Pulled) -> Report:
         registered, is_new, pulled = found
         check_unchanged(couple)
         problems = [
@@ -93,7 +100,7 @@ def job(context, settings):
     return Job(work, finish)
 
 
-def _read(couple, settings):
+def _read(couple: Couple, settings: Settings) -> list[layers.Layer]:
     """The target's layers that are wanted."""
     items = []
     if settings.uv_maps:
@@ -108,13 +115,15 @@ def _read(couple, settings):
     return items
 
 
-def _nothing(couple, refusals):
+def _nothing(couple: Couple, refusals: list[str]) -> Exception:
     if refusals:
         return CannotRegister(messages.listed(refusals))
     return targets.NothingToDo(f"{couple.target.name} has nothing of what is to be transferred")
 
 
-def _registration(couple, settings, method, progress):
+def _registration(
+    couple: Couple, settings: RegistrationSettings | None, method: str, progress: Progress
+) -> tuple[Registered, bool]:
     """The one with the settings, or without any the latest of a method; and whether that had to be made."""
     if settings is not None:
         return register.registration(couple, settings, progress), False
@@ -124,7 +133,7 @@ def _registration(couple, settings, method, progress):
     return register.registration(couple, RegistrationSettings(method=method), progress), True
 
 
-def _method(couple):
+def _method(couple: Couple) -> str:
     """The method of the last registration with the target, or one that there is something to go by."""
     boundaries = any(is_open(one) for one in couple.sides)
     can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
@@ -132,20 +141,20 @@ def _method(couple):
     return next((method for method in (last, "POINTS", "CURVES") if can.get(method)), "POINTS")
 
 
-def _by(registered, is_new):
+def _by(registered: Registered, is_new: bool) -> str:
     """Which registration a transfer goes by, for the report."""
     curves = "landmark curves" if registered.names else "boundaries"
     by = f"by {curves if registered.by_curves else 'landmark points'}"
     return f"{by} (registered anew)" if is_new else by
 
 
-def _turn(registered, couple):
+def _turn(registered: Registered, couple: Couple) -> Floats:
     """How the target is turned and scaled in the world when it is laid over the source."""
     ends = [bridge.morphed(registered, *couple.sides, align) for align in (False, True)]
     return elements.turn_and_scale(*ends)
 
 
-def _pulled(registered, item, to_source):
+def _pulled(registered: Registered, item: layers.Layer, to_source: Floats) -> tuple[Integers, Floats]:
     """The elements of the source's mesh (k,) and their values (k, d)."""
     source, target = registered.source, registered.target
     if not item.of_corners:
@@ -158,6 +167,6 @@ def _pulled(registered, item, to_source):
     return elements.from_corners(source, values)
 
 
-def _listed(kind, names):
+def _listed(kind: str, names: list[str]) -> str:
     noun = kind if len(names) == 1 else _PLURALS[kind]
     return f"{len(names)} {noun} ({messages.listed(names)})"

@@ -2,19 +2,28 @@
 """The unwrap from a context's objects to their UV layers: the one path of the operator and of scripts."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import bpy
 import numpy as np
 
 from .. import bridge, messages
 from ..blender import meshes, uv_maps
 from ..blender.packing import PackSettings, pack
+from ..blender.types import MeshObject
+from ..bridge.progress import Progress
+from ..surfaces.arrays import Integers, Singles
 from ..surfaces.islands import scale_to_one_density, upright
+from ..surfaces.surface import Surface
 from . import targets
 from .job import Job
 
 _NAMED = 3
 _FOLDS = "its faces would fold over in UV precision; cut its long or thin parts open by seams"
+
+Chosen = tuple[MeshObject, str, Surface]
+"""An object, the name of its UV map, and its surface."""
 
 
 class CannotUnwrap(Exception):
@@ -36,11 +45,11 @@ class Report:
 
     islands: int
     figures: bridge.Measurement | None
-    refusals: list
-    notes: list
+    refusals: list[bridge.Refusal]
+    notes: list[str]
     seconds: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         parts = [messages.count(self.islands, "island")]
         if self.figures is not None:
             parts += [
@@ -53,7 +62,7 @@ class Report:
         return "; ".join([line, *left, *self.notes])
 
 
-def job(context, settings):
+def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, Report]:
     """A `Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
 
     Raises `targets.NothingToDo` or `CannotUnwrap` before anything is computed.
@@ -71,10 +80,10 @@ def job(context, settings):
         raise targets.NothingToDo(_why_nothing(selected_only, refusals))
     surfaces = [surface for _, _, surface in chosen]
 
-    def work(progress):
+    def work(progress: Progress) -> bridge.Mapping:
         return bridge.unwrap(surfaces, settings.mapping, progress)
 
-    def finish(mapping):
+    def finish(mapping: bridge.Mapping) -> Report:
         mapping.refusals[:0] = refusals
         _check_unchanged(chosen)
         figures = _write(chosen, mapping, settings.packing)
@@ -87,7 +96,7 @@ def job(context, settings):
     return Job(work, finish)
 
 
-def _layer(obj, wanted):
+def _layer(obj: MeshObject, wanted: str) -> str:
     layer = uv_maps.name_of(obj.data, wanted)
     if uv_maps.is_taken(obj, layer):
         raise CannotUnwrap(
@@ -102,20 +111,20 @@ def _layer(obj, wanted):
     return layer
 
 
-def _why_nothing(selected_only, refusals):
+def _why_nothing(selected_only: bool, refusals: list[bridge.Refusal]) -> str:
     if refusals:
         return messages.listed(refusals)
     return "No faces are selected" if selected_only else "The selected objects have no faces"
 
 
-def _check_unchanged(chosen):
+def _check_unchanged(chosen: Sequence[Chosen]) -> None:
     """Meshes may have changed since they were read, where a window was alive meanwhile."""
     for obj, _, surface in chosen:
         if not meshes.has_corners(obj, len(surface.corner_vertex)):
             raise CannotUnwrap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
-def _write(chosen, mapping, settings):
+def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSettings) -> bridge.Measurement:
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
     _place(mapping, settings)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
@@ -129,7 +138,7 @@ def _write(chosen, mapping, settings):
     return figures
 
 
-def _place(mapping, settings):
+def _place(mapping: bridge.Mapping, settings: PackSettings) -> None:
     """Packs the islands, without those that would fold over where they come to lie: these are refused."""
     for island in mapping.islands:
         if island.may_turn:
@@ -149,7 +158,7 @@ def _place(mapping, settings):
     raise CannotUnwrap(f"No island could be unwrapped: {messages.listed(mapping.refusals)}")
 
 
-def _gather(islands, index):
+def _gather(islands: Sequence[bridge.Island], index: int) -> tuple[Integers, Singles]:
     """Of one surface's islands the corners (k,) and their UVs (k, 2) as Blender will keep them."""
     own = [island for island in islands if island.surface == index]
     corners = np.concatenate([np.empty(0, int), *(island.corners for island in own)])
@@ -157,18 +166,20 @@ def _gather(islands, index):
     return corners, uv.astype(np.float32)
 
 
-def _mapped(surface, corners, uv):
+def _mapped(surface: Surface, corners: Integers, uv: Singles) -> Surface:
     """The part of a surface that was mapped, with its new UVs."""
     values = np.full((len(surface.corner_vertex), 2), np.nan, np.float32)
     values[corners] = uv
     return surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
 
 
-def _notes(chosen, islands, figures):
+def _notes(
+    chosen: Sequence[Chosen], islands: Sequence[bridge.Island], figures: bridge.Measurement
+) -> list[str]:
     """What was written but may not be what was wanted."""
-    short = [island for island in islands if island.shortfall is not None]
-    short.sort(key=lambda island: -island.shortfall.deviation)
-    notes = [f"{island.name} at face {island.polygon}: {island.shortfall}" for island in short]
+    short = [(island, island.shortfall) for island in islands if island.shortfall is not None]
+    short.sort(key=lambda pair: -pair[1].deviation)
+    notes = [f"{island.name} at face {island.polygon}: {shortfall}" for island, shortfall in short]
     if len(notes) > _NAMED:
         notes[_NAMED:] = [f"and {messages.count(len(notes) - _NAMED, 'island')} more"]
     turned = sum(len(island.turned) for island in islands)

@@ -6,40 +6,42 @@ undo would take back the marks there but not the key, which is a part of the obj
 """
 
 import uuid
+from collections.abc import Iterator
 
 import bpy
 
+from ..blender.types import LandmarkCurve, MeshObject, mesh_objects
 from . import curve_marks
 from .objects import SIDES, side_object
 
 
-def ensure_key(source):
+def ensure_key(source: MeshObject) -> None:
     """Gives a source a key if it has none."""
     source.authalic_curve_key = source.authalic_curve_key or _new_key()
 
 
-def others(source, side):
+def others(source: MeshObject, side: str) -> Iterator[tuple[MeshObject, LandmarkCurve]]:
     """(object, curve) of copies of the source with the same mesh on a side: these share paths with it."""
     obj, key = side_object(source, side), source.authalic_curve_key
-    for other in bpy.data.objects:
+    for other in mesh_objects():
         if key and obj is not None and other != source and other.authalic_curve_key == key:
             theirs = side_object(other, side)
             if theirs is not None and theirs.data == obj.data:
                 yield from ((other, curve) for curve in other.authalic_landmark_curves)
 
 
-def sharing(source, curve, side):
+def sharing(source: MeshObject, curve: LandmarkCurve, side: str) -> MeshObject | None:
     """An object that has a path of the source's curve too, or None."""
     return next((other for other, own in others(source, side) if own.mark == curve.mark), None)
 
 
-def can_part(source):
+def can_part(source: MeshObject) -> bool:
     """Whether a source can get a key of its own now."""
     objects = [side_object(source, side) for side in SIDES]
     return all(_is_free(obj.data) for obj in objects if obj is not None and obj.type == "MESH")
 
 
-def part(source):
+def part(source: MeshObject) -> None:
     """Gives a source that shares paths with copies a key of its own, where it can."""
     if not can_part(source) or not any(True for side in SIDES for _ in others(source, side)):
         return
@@ -52,9 +54,9 @@ def part(source):
     tidy(before, but=source)
 
 
-def tidy(key, but=None):
+def tidy(key: str, but: MeshObject | None = None) -> None:
     """Takes marks of a key that no object lists off all meshes; not while meshes of that key are edited."""
-    users = [obj for obj in bpy.data.objects if obj.authalic_curve_key == key and obj != but]
+    users = [obj for obj in mesh_objects() if obj.authalic_curve_key == key and obj != but]
     if not key or not all(can_part(user) for user in users):
         return
     listed = {curve.mark for user in users for curve in user.authalic_landmark_curves}
@@ -67,9 +69,9 @@ def tidy(key, but=None):
                 curve_marks.keep(mesh, f"{side}_{key}", set() if is_left else listed)
 
 
-def _is_free(mesh):
+def _is_free(mesh: bpy.types.Mesh) -> bool:
     return mesh.is_editable and not mesh.is_editmode
 
 
-def _new_key():
+def _new_key() -> str:
     return uuid.uuid4().hex[:8]

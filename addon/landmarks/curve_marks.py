@@ -6,18 +6,23 @@ mark too, its last one the negative of it. The attributes are those of a key: no
 share an edge on one mesh.
 """
 
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
+
+import bpy
 
 from ..blender import element_marks, scene_changes
 from ..blender.edges import edges_between, ends_of_edges
 from ..blender.element_marks import element_counts
+from ..blender.types import MeshObject
 from . import paths
 
 _NAME = "authalic_curve_"
 _BITS = 24
 # What was found last: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}), and the
 # `scene_changes` when it was true last.
-_seen, _true = {}, {}
+_seen: dict[tuple[int, str], tuple[tuple[int, int, int], "dict[int, _Found]"]] = {}
+_true: dict[tuple[int, str], int] = {}
 
 
 class Path(NamedTuple):
@@ -28,12 +33,12 @@ class Path(NamedTuple):
     `edges` are pairs of vertices.
     """
 
-    vertices: tuple
-    edges: tuple
+    vertices: paths.Path
+    edges: tuple[paths.Edge, ...]
     problem: str | None
 
     @property
-    def is_closed(self):
+    def is_closed(self) -> bool:
         return paths.is_closed(self.vertices)
 
 
@@ -44,22 +49,22 @@ class _Found(NamedTuple):
     """A path, the numbers of its edges, and what its ends had for marks."""
 
     path: Path
-    edges: list
-    ends: list
+    edges: list[int]
+    ends: list[tuple[int, int]]
 
 
-def new():
+def new() -> int:
     """A mark that no path has."""
     return element_marks.new(_BITS)
 
 
-def key(source, side):
+def key(source: MeshObject, side: str) -> str:
     """The key of the curves of a source object on its "source" or "target" mesh; "" if it has none yet."""
     own = source.authalic_curve_key
     return f"{side}_{own}" if own else ""
 
 
-def put(mesh, key, mark, path):
+def put(mesh: bpy.types.Mesh, key: str, mark: int, path: paths.Path) -> None:
     """Gives the edges of a path (vertices) a mark in place of those that have it. Raises `NoEdge`."""
     edges = edges_between(mesh, paths.edges(path))
     clear(mesh, key, mark)
@@ -67,14 +72,14 @@ def put(mesh, key, mark, path):
     _mark_ends(mesh, key, mark, path)
 
 
-def reverse(mesh, key, mark):
+def reverse(mesh: bpy.types.Mesh, key: str, mark: int) -> None:
     """Makes the end of a path its start."""
     path = find(mesh, key).get(mark, ABSENT)
     if path.vertices:
         _mark_ends(mesh, key, mark, path.vertices[::-1])
 
 
-def clear(mesh, key, mark):
+def clear(mesh: bpy.types.Mesh, key: str, mark: int) -> None:
     """Takes a mark off a mesh; with the last one go the attributes."""
     _drop(mesh, key)
     for kind in _kinds(key):
@@ -85,7 +90,7 @@ def clear(mesh, key, mark):
             kind.drop(mesh)
 
 
-def copy(mesh, key, new_key, wanted):
+def copy(mesh: bpy.types.Mesh, key: str, new_key: str, wanted: Collection[int]) -> None:
     """Gives what has wanted marks of a key the same under a new one."""
     for kind, new_kind in zip(_kinds(key), _kinds(new_key), strict=True):
         for value, elements in _by_value(kind, mesh).items():
@@ -94,7 +99,7 @@ def copy(mesh, key, new_key, wanted):
     _drop(mesh, new_key)
 
 
-def keep(mesh, key, wanted):
+def keep(mesh: bpy.types.Mesh, key: str, wanted: Collection[int]) -> None:
     """Takes all marks of a key off a mesh but the wanted ones; with the last one go the attributes."""
     for kind in _kinds(key):
         if kind.is_on(mesh):
@@ -107,7 +112,7 @@ def keep(mesh, key, wanted):
                 kind.drop(mesh)
 
 
-def find(mesh, key, *, drawing=False):
+def find(mesh: bpy.types.Mesh, key: str, *, drawing: bool = False) -> dict[int, Path]:
     """{mark: `Path`} of the paths of a key on a mesh.
 
     With `drawing`, what was found before is taken for true unless geometry has changed, and then if the paths
@@ -124,51 +129,52 @@ def find(mesh, key, *, drawing=False):
     return {mark: one.path for mark, one in found.items()}
 
 
-def forget():
+def forget() -> None:
     """What was found before counts no longer, as after undo."""
     _seen.clear()
     _true.clear()
 
 
-def check(mesh, path):
+def check(mesh: bpy.types.Mesh, path: paths.Path) -> None:
     """Raises `NoEdge` unless edges join the consecutive vertices of a path."""
     edges_between(mesh, paths.edges(path))
 
 
-def owners(mesh, key, path):
+def owners(mesh: bpy.types.Mesh, key: str, path: paths.Path) -> set[int]:
     """The marks that the edges and the ends of a path have. Raises `NoEdge`."""
     on_edges = _of_edges(key).of(mesh, edges_between(mesh, paths.edges(path)))
     return {abs(mark) for mark in [*on_edges, *_of_ends(key).of(mesh, [path[0], path[-1]])]} - {0}
 
 
-def _drop(mesh, key):
+def _drop(mesh: bpy.types.Mesh, key: str) -> None:
     _seen.pop((mesh.session_uid, key), None)
     _true.pop((mesh.session_uid, key), None)
     scene_changes.note()
 
 
-def _of_edges(key):
+def _of_edges(key: str) -> element_marks.Marks:
     return element_marks.Marks(_NAME + key, "EDGE")
 
 
-def _of_ends(key):
+def _of_ends(key: str) -> element_marks.Marks:
     return element_marks.Marks(f"{_NAME}{key}_ends", "POINT")
 
 
-def _kinds(key):
+def _kinds(key: str) -> tuple[element_marks.Marks, element_marks.Marks]:
     return _of_edges(key), _of_ends(key)
 
 
-def _by_value(kind, mesh):
+def _by_value(kind: element_marks.Marks, mesh: bpy.types.Mesh) -> dict[int, list[int]]:
     """{mark: elements} of a kind of marks."""
-    found = {}
+    found: dict[int, list[int]] = {}
     for element, value in kind.all(mesh).items():
         found.setdefault(value, []).append(element)
     return found
 
 
-def _search(mesh, key):
-    edges, ends = {}, {}
+def _search(mesh: bpy.types.Mesh, key: str) -> dict[int, _Found]:
+    edges: dict[int, list[int]] = {}
+    ends: dict[int, list[int]] = {}
     for edge, mark in _of_edges(key).all(mesh).items():
         edges.setdefault(mark, []).append(edge)
     for vertex, mark in _of_ends(key).all(mesh).items():
@@ -181,7 +187,7 @@ def _search(mesh, key):
     return found
 
 
-def _path(edges, starts, ends):
+def _path(edges: Sequence[paths.Edge], starts: Sequence[int], ends: Sequence[int]) -> Path:
     """The `Path` along edges, of which some vertices are marked as the start and the end."""
     edges = tuple(edges)
     try:
@@ -200,13 +206,13 @@ def _path(edges, starts, ends):
     return Path(directed, edges, None)
 
 
-def _lost(first, last):
+def _lost(first: int | None, last: int | None) -> str:
     if first is None and last is None:
         return "its start and its end"
     return "its start" if first is None else "its end"
 
 
-def _holds(mesh, key, found):
+def _holds(mesh: bpy.types.Mesh, key: str, found: dict[int, _Found]) -> bool:
     """Whether the paths that were found have their marks, edges and ends still."""
     edges = [edge for one in found.values() for edge in one.edges]
     values = [mark for mark, one in found.items() for _ in one.edges]
@@ -218,7 +224,7 @@ def _holds(mesh, key, found):
     )
 
 
-def _mark_ends(mesh, key, mark, path):
+def _mark_ends(mesh: bpy.types.Mesh, key: str, mark: int, path: paths.Path) -> None:
     _drop(mesh, key)
     own = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
     _of_ends(key).write(mesh, own, 0)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """To which pair of landmark curves selected paths belong, and which way they run."""
 
+from collections.abc import Collection
+
+from ..blender.types import MeshObject
 from . import curve_selection, paths
-from .curves import pairs
+from .curves import Curve, pairs
 from .objects import NONE, SIDES, side_object
+from .paths import Path
 
 
-def place_for(source, selected):
+def place_for(source: MeshObject, selected: dict[str, Path]) -> tuple[int, dict[str, Path]]:
     """The index of the pair to which selected paths {side: path} belong, -1 for a new one; and these paths.
 
     Alone, a path completes the active pair if that lacks its side, or else the first one that does. Of two,
@@ -25,9 +29,11 @@ def place_for(source, selected):
     return (active if active in lacking else lacking[0] if lacking else NONE), selected
 
 
-def directed(source, index, selected, loose):
+def directed(
+    source: MeshObject, index: int, selected: dict[str, Path], loose: Collection[str]
+) -> dict[str, Path]:
     """Selected paths {side: path}, those of the sides `loose` turned to run as their partners do."""
-    partners = dict.fromkeys(SIDES, ())
+    partners: dict[str, Path] = dict.fromkeys(SIDES, ())
     if index != NONE:
         pair = pairs(source)[index]
         partners = {side: getattr(pair, side).vertices for side in SIDES}
@@ -39,6 +45,6 @@ def directed(source, index, selected, loose):
     return {side: partners[side] for side in selected}
 
 
-def _has(pair, side, path):
+def _has(pair: Curve, side: str, path: Path) -> bool:
     """Whether a path is that of a pair, in either direction."""
     return set(paths.edges(path)) <= {way for edge in getattr(pair, side).edges for way in (edge, edge[::-1])}

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The path of selected edges in edit mode, and which end it starts at."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .. import messages
 from ..blender import selection, vertex_positions
+from ..blender.types import MeshObject
+from ..surfaces.arrays import Floats
 from . import paths
 from .objects import CannotPair
+from .paths import Path
 
 _WHAT = "select the edges of one open path or of one closed loop"
 
 
-def path(obj):
+def path(obj: MeshObject) -> tuple[Path, bool] | None:
     """The path along the selected edges of an object, from the end that is nearer to the active element.
 
     Returns also whether that says where it starts. None where no edge is selected in edit mode. Raises
@@ -30,14 +35,14 @@ def path(obj):
     return _from_active(ordered, selection.active_vertices(obj))
 
 
-def like(obj, path, partner, partner_path):
+def like(obj: MeshObject, path: Path, partner: MeshObject, partner_path: Path) -> Path:
     """An open path of an object in the direction that a path of its partner has in the world."""
     if paths.is_closed(path) or paths.is_closed(partner_path):
         return path
     return path[::-1] if _chord(obj, path) @ _chord(partner, partner_path) < 0 else path
 
 
-def _from_active(path, active):
+def _from_active(path: Path, active: Sequence[int]) -> tuple[Path, bool]:
     """The path from the end that is nearer to the active vertices, and whether there is such an end."""
     near = [vertex for vertex in active if vertex in path]
     if not near:
@@ -50,7 +55,7 @@ def _from_active(path, active):
     return (path[::-1] if 2 * middle > len(path) - 1 else path), True
 
 
-def _chord(obj, path):
+def _chord(obj: MeshObject, path: Path) -> Floats:
     """From the start to the end in the world."""
     start, end = vertex_positions.undeformed(obj, (path[0], path[-1]))
     return np.array(obj.matrix_world)[:3, :3] @ (end - start)

@@ -7,15 +7,18 @@ paths are found again after the meshes were edited. `pairs` is the one truth on 
 today, in which order, and where a path is missing or broken.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import messages
 from ..blender.edges import NoEdge
+from ..blender.types import LandmarkCurve, MeshObject, owner_of
 from . import curve_copies, curve_marks, paths, undo
 from .objects import NONE, SIDES, CannotPair, check_target, check_vertex, side_object, target_problem
+from .paths import Path
 
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 
@@ -29,8 +32,8 @@ class Curve(NamedTuple):
     problem: str | None
 
 
-def _numbers(side):
-    return lambda curve: " ".join(str(vertex) for vertex in _path(curve.id_data, curve, side).vertices)
+def _numbers(side: str) -> Callable[[LandmarkCurve], str]:
+    return lambda curve: " ".join(str(vertex) for vertex in _path(owner_of(curve), curve, side).vertices)
 
 
 class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
@@ -56,7 +59,7 @@ class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
     )
 
 
-def pairs(source, *, drawing=False):
+def pairs(source: MeshObject, *, drawing: bool = False) -> list[Curve]:
     """All pairs of curves of a source object, as a list of `Curve`, with what is wrong with each in words.
 
     With `drawing`, large meshes are not searched anew unless they have changed visibly.
@@ -64,15 +67,23 @@ def pairs(source, *, drawing=False):
     without_target = target_problem(source)
     objects = _objects(source)
     found = [_found(source, side, drawing) for side in SIDES]
-    listed, taken = [], {}
+    listed: list[Curve] = []
+    taken: dict[tuple[str, int], tuple[int, str]] = {}
     for index, curve in enumerate(source.authalic_landmark_curves):
         own = [on_side.get(curve.mark, curve_marks.ABSENT) for on_side in found]
         problem = without_target or _problem(taken, (index, curve.name), own, objects)
-        listed.append(Curve(curve.name, *own, problem))
+        listed.append(Curve(curve.name, own[0], own[1], problem))
     return listed
 
 
-def add(source, source_path, target_path, *, name="", index=NONE):
+def add(
+    source: MeshObject,
+    source_path: Path | None,
+    target_path: Path | None,
+    *,
+    name: str = "",
+    index: int = NONE,
+) -> LandmarkCurve:
     """Adds a pair, or sets the paths of the pair of an index, and makes it the active one; returns it.
 
     Paths are vertices from start to end, those of a loop end with the first one again; None leaves a side as
@@ -99,7 +110,7 @@ def add(source, source_path, target_path, *, name="", index=NONE):
     return curve
 
 
-def reverse(source, index, side):
+def reverse(source: MeshObject, index: int, side: str) -> None:
     """Makes the end of a pair's path on one side its start. Raises `CannotPair` and then changes nothing."""
     curve, obj = source.authalic_landmark_curves[index], side_object(source, side)
     if side == "target" and (problem := target_problem(source)):
@@ -119,7 +130,7 @@ def reverse(source, index, side):
     curve.error = -1.0
 
 
-def remove(source, index):
+def remove(source: MeshObject, index: int) -> None:
     """Removes the pair of an index; the one that takes its place is the active one."""
     curve_copies.part(source)
     undo.remember(source, index, undo.CURVES)
@@ -139,13 +150,13 @@ def remove(source, index):
     source.authalic_landmark_curve_index = max(min(source.authalic_landmark_curve_index, last), 0)
 
 
-def clear(source):
+def clear(source: MeshObject) -> None:
     """Removes all pairs."""
     for index in reversed(range(len(source.authalic_landmark_curves))):
         remove(source, index)
 
 
-def replace(source, wanted):
+def replace(source: MeshObject, wanted: Sequence[tuple[str, Path, Path]]) -> None:
     """Puts pairs (name, source path, target path) in place of all there are, or of none of them.
 
     Raises `CannotPair` and then changes nothing.
@@ -157,13 +168,14 @@ def replace(source, wanted):
         add(source, source_path, target_path, name=name)
 
 
-def check_all(source, wanted):
+def check_all(source: MeshObject, wanted: Sequence[tuple[str, Path, Path]]) -> None:
     """Raises `CannotPair` unless pairs (name, source path, target path) could be those of the source."""
     check_target(source)
-    for number_of_side, side in enumerate(SIDES, 1):
-        obj, taken = side_object(source, side), {}
+    for number_of_side, side in enumerate(SIDES):
+        obj = side_object(source, side)
+        taken: dict[int, int] = {}
         for number, pair in enumerate(wanted):
-            path = pair[number_of_side]
+            path = pair[1:][number_of_side]
             _check_path(obj, path)
             _check_copies(source, side, path)
             for vertex in path:
@@ -173,11 +185,11 @@ def check_all(source, wanted):
                     raise CannotPair(f"the curves {names} meet at vertex {vertex} of {obj.name}")
 
 
-def _objects(source):
+def _objects(source: MeshObject) -> list[MeshObject | None]:
     return [side_object(source, side) for side in SIDES]
 
 
-def _found(source, side, drawing):
+def _found(source: MeshObject, side: str, drawing: bool) -> dict[int, curve_marks.Path]:
     """{mark: path} of a side."""
     obj = side_object(source, side)
     if obj is None or obj.type != "MESH" or not source.authalic_curve_key:
@@ -185,22 +197,32 @@ def _found(source, side, drawing):
     return curve_marks.find(obj.data, curve_marks.key(source, side), drawing=drawing)
 
 
-def _path(source, curve, side):
+def _path(source: MeshObject, curve: LandmarkCurve, side: str) -> curve_marks.Path:
     return _found(source, side, False).get(curve.mark, curve_marks.ABSENT)
 
 
-def _worded(path, obj):
+def _worded(path: curve_marks.Path, obj: MeshObject) -> str:
     return f"{path.problem} on {obj.name}"
 
 
-def _problem(taken, numbered, own, objects):
+def _problem(
+    taken: dict[tuple[str, int], tuple[int, str]],
+    numbered: tuple[int, str],
+    own: Sequence[curve_marks.Path],
+    objects: Sequence[MeshObject],
+) -> str | None:
     """What is wrong with a pair whose paths are on two objects; `taken` are the vertices of earlier ones."""
     broken = [_worded(*part) for part in zip(own, objects, strict=True) if part[0].problem]
     touching = _touching(taken, numbered, own, objects)
     return broken[0] if broken else touching or _unlike(own, objects)
 
 
-def _touching(taken, numbered, own, objects):
+def _touching(
+    taken: dict[tuple[str, int], tuple[int, str]],
+    numbered: tuple[int, str],
+    own: Sequence[curve_marks.Path],
+    objects: Sequence[MeshObject],
+) -> str | None:
     """What is wrong if an earlier curve has a vertex of a path; else remembers them in `taken`."""
     for side, path, obj in zip(SIDES, own, objects, strict=True):
         for vertex in path.vertices:
@@ -210,7 +232,7 @@ def _touching(taken, numbered, own, objects):
     return None
 
 
-def _unlike(own, objects):
+def _unlike(own: Sequence[curve_marks.Path], objects: Sequence[MeshObject]) -> str | None:
     """What is wrong with two paths that are fine by themselves."""
     for path, obj in zip(own, objects, strict=True):
         few = _too_few(path.vertices)
@@ -222,12 +244,12 @@ def _unlike(own, objects):
     return None
 
 
-def _too_few(path):
+def _too_few(path: Path) -> str | None:
     count, fewest = len(path) - 1, _FEWEST[paths.is_closed(path)]
     return None if count >= fewest else f"has {messages.count(count, 'edge')} where {fewest} are the least"
 
 
-def _check(source, side, path, index):
+def _check(source: MeshObject, side: str, path: Path, index: int) -> None:
     """Raises `CannotPair` unless a path can be that of the pair of an index, or of a new one."""
     obj, curves = side_object(source, side), source.authalic_landmark_curves
     _check_path(obj, path)
@@ -241,7 +263,7 @@ def _check(source, side, path, index):
     _check_copies(source, side, path, own)
 
 
-def _check_copies(source, side, path, own=None):
+def _check_copies(source: MeshObject, side: str, path: Path, own: LandmarkCurve | None = None) -> None:
     """Raises `CannotPair` if a path of a pair, or of a new one, would take what is a copy's, too."""
     if curve_copies.can_part(source):
         return
@@ -254,14 +276,14 @@ def _check_copies(source, side, path, own=None):
             )
 
 
-def _vertices(numbers):
+def _vertices(numbers: Collection[int]) -> str:
     numbers = sorted(numbers)
     if len(numbers) == 1:
         return f"vertex {numbers[0]}"
     return f"{len(numbers)} vertices ({messages.numbers(numbers)})"
 
 
-def _check_path(obj, path):
+def _check_path(obj: MeshObject, path: Path) -> None:
     """Raises `CannotPair` unless vertices are a path along edges of an object."""
     if not path:
         raise CannotPair(f"a curve has no vertices on {obj.name}")
@@ -278,14 +300,14 @@ def _check_path(obj, path):
         raise CannotPair(f"{obj.name}: {missing}; a curve runs along edges") from None
 
 
-def _owners(source, side, path):
+def _owners(source: MeshObject, side: str, path: Path) -> set[int]:
     """The marks that edges or ends of a path have already."""
     if not source.authalic_curve_key:
         return set()
     return curve_marks.owners(side_object(source, side).data, curve_marks.key(source, side), path)
 
 
-def _free_name(source):
+def _free_name(source: MeshObject) -> str:
     taken = {curve.name for curve in source.authalic_landmark_curves}
     number = len(source.authalic_landmark_curves) + 1
     while f"Curve {number}" in taken:
@@ -293,22 +315,25 @@ def _free_name(source):
     return f"Curve {number}"
 
 
-def register():
+_PROPERTIES: Any = bpy.types.Object
+
+
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_PG_landmark_curve)
-    bpy.types.Object.authalic_landmark_curves = CollectionProperty(
+    _PROPERTIES.authalic_landmark_curves = CollectionProperty(
         type=AUTHALIC_PG_landmark_curve,
         name="Landmark Curves",
         description="Pairs of paths along edges, here and on the target",
     )
-    bpy.types.Object.authalic_landmark_curve_index = IntProperty(
+    _PROPERTIES.authalic_landmark_curve_index = IntProperty(
         name="Active Curve", description="The pair of curves that is selected in the list", min=0
     )
     # Names the attributes with the marks of this object's curves on both meshes.
-    bpy.types.Object.authalic_curve_key = StringProperty(options={"HIDDEN"})
+    _PROPERTIES.authalic_curve_key = StringProperty(options={"HIDDEN"})
 
 
-def unregister():
-    del bpy.types.Object.authalic_curve_key
-    del bpy.types.Object.authalic_landmark_curve_index
-    del bpy.types.Object.authalic_landmark_curves
+def unregister() -> None:
+    del _PROPERTIES.authalic_curve_key
+    del _PROPERTIES.authalic_landmark_curve_index
+    del _PROPERTIES.authalic_landmark_curves
     bpy.utils.unregister_class(AUTHALIC_PG_landmark_curve)

@@ -12,7 +12,11 @@ no "curves".
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, TypeGuard
+
+from .paths import Path
 
 FORMAT, VERSION = "authalic-landmarks", 1
 _NUMBERS = re.compile(r"\[\n[\d,\s]+\]")  # lists of numbers, which are to be one line
@@ -31,11 +35,11 @@ class Landmarks:
 
     source: str
     target: str
-    pairs: list
-    curves: list | None = field(default=None)
+    pairs: list[tuple[str, int, int]]
+    curves: list[tuple[str, Path, Path]] | None = field(default=None)
 
 
-def to_text(landmarks):
+def to_text(landmarks: Landmarks) -> str:
     """The text of a file."""
     listed = [{"name": name, "source": a, "target": b} for name, a, b in landmarks.pairs]
     content = {
@@ -53,7 +57,7 @@ def to_text(landmarks):
     return _NUMBERS.sub(lambda found: f"[{', '.join(found[0][1:-1].replace(',', ' ').split())}]", text) + "\n"
 
 
-def from_text(text):
+def from_text(text: str) -> Landmarks:
     """The landmarks in the text of a file. Raises `CannotRead`."""
     try:
         content = json.loads(text)
@@ -78,18 +82,18 @@ def from_text(text):
     )
 
 
-def _name(content, key):
+def _name(content: dict[str, object], key: str) -> str:
     value = content.get(key, "")
     if not isinstance(value, str):
         raise CannotRead(f'"{key}" is {json.dumps(value)}, not the name of an object')
     return value
 
 
-def _pair(item, what, read, number):
+def _pair(item: object, what: str, read: Callable[[object, str], object], number: int) -> Any:
     """(name, source, target) of one entry, of which `read` reads either end."""
     if not isinstance(item, dict):
         raise CannotRead(f"{what} is {json.dumps(item)}, not an object with a name, a source and a target")
-    name = item.get("name", f"{_CALLED[read]} {number}")
+    name = item.get("name", f"{'Curve' if read is _path else 'Landmark'} {number}")
     if not isinstance(name, str):
         raise CannotRead(f"the name of {what} is {json.dumps(name)}, not a text")
     for side in ("source", "target"):
@@ -98,13 +102,13 @@ def _pair(item, what, read, number):
     return name, *(read(item[side], f"the {side} of {what}") for side in ("source", "target"))
 
 
-def _vertex(value, what):
+def _vertex(value: object, what: str) -> int:
     if not _is_vertex(value):
         raise CannotRead(f"{what} is {json.dumps(value)}, not the number of a vertex")
     return value
 
 
-def _path(value, what):
+def _path(value: object, what: str) -> Path:
     if not isinstance(value, list):
         raise CannotRead(f"{what} is {json.dumps(value)}, not a list of vertices")
     bad = [item for item in value if not _is_vertex(item)]
@@ -113,8 +117,5 @@ def _path(value, what):
     return tuple(value)
 
 
-def _is_vertex(value):
+def _is_vertex(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
-
-
-_CALLED = {_vertex: "Landmark", _path: "Curve"}

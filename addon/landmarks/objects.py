@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The two objects of landmarks: the source, which keeps them, and its target."""
 
+import bpy
+
 from ..blender.element_marks import element_counts
+from ..blender.types import MeshObject, is_mesh
 
 NONE = -1
 SIDES = ("source", "target")
@@ -11,17 +14,17 @@ class CannotPair(Exception):
     """The landmarks are as they were; says why."""
 
 
-def active_source(context):
+def active_source(context: bpy.types.Context) -> MeshObject | None:
     """The object whose landmarks are meant: the active one, or the one selected whose target that is."""
-    active = context.object
-    if active is None or active.type != "MESH" or active.authalic_target is not None:
+    active: MeshObject | None = context.object  # type: ignore[assignment]
+    if not is_mesh(active) or active.authalic_target is not None:
         return active
     chosen = {*context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
-    aiming = [obj for obj in chosen if obj.type == "MESH" and obj.authalic_target == active]
+    aiming = [obj for obj in chosen if is_mesh(obj) and obj.authalic_target == active]
     return aiming[0] if len(aiming) == 1 else active
 
 
-def target_problem(source):
+def target_problem(source: MeshObject) -> str | None:
     """Why a source object has no target to work with, or None."""
     target = source.authalic_target
     if target is None:
@@ -33,12 +36,12 @@ def target_problem(source):
     return None
 
 
-def side_object(source, side):
+def side_object(source: MeshObject, side: str) -> MeshObject | None:
     """The object of the "source" or the "target" side, or None."""
     return source if side == "source" else source.authalic_target
 
 
-def check_target(source):
+def check_target(source: MeshObject) -> None:
     """Raises `CannotPair` unless pairs can be added to a source object."""
     problem = target_problem(source)
     if problem:
@@ -48,7 +51,7 @@ def check_target(source):
             raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
 
 
-def check_vertex(obj, vertex):
+def check_vertex(obj: MeshObject, vertex: int) -> None:
     """Raises `CannotPair` unless an object has a vertex."""
     count = element_counts(obj.data)[0]
     if not 0 <= vertex < count:

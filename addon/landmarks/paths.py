@@ -4,21 +4,25 @@
 A path is a tuple of vertices from its start to its end; that of a loop ends with its first vertex again.
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 from .. import messages
+
+Path = tuple[int, ...]
+Edge = tuple[int, int]
 
 
 class NoPath(Exception):
     """The edges are no single path; says what they are instead, to be read behind "the edges"."""
 
 
-def ordered(edges):
+def ordered(edges: Sequence[Edge]) -> Path:
     """The path along all edges, from its end with the lower number; a loop from its lowest vertex.
 
     Raises `NoPath`.
     """
-    near = {}
+    near: dict[int, list[int]] = {}
     for first, second in edges:
         near.setdefault(first, []).append(second)
         near.setdefault(second, []).append(first)
@@ -30,16 +34,16 @@ def ordered(edges):
     return _walk(near, ends[0] if ends else min(near))
 
 
-def is_closed(path):
+def is_closed(path: Path) -> bool:
     return len(path) > 1 and path[0] == path[-1]
 
 
-def edges(path):
+def edges(path: Path) -> list[Edge]:
     """The pairs of consecutive vertices."""
     return list(pairwise(path))
 
 
-def along(path, first, last):
+def along(path: Path, first: int | None, last: int | None) -> Path | None:
     """The path from its end `first` to its end `last`; a loop begins at `first`. None where that is no end.
 
     Either may be None, for an end that is not known.
@@ -51,7 +55,7 @@ def along(path, first, last):
     return path if (path[0], path[-1]) == (first, last) else None
 
 
-def started(path, vertex):
+def started(path: Path, vertex: int) -> Path:
     """The path from the end that is nearer to one of its vertices; a loop from this vertex."""
     place = path.index(vertex)
     if is_closed(path):
@@ -59,7 +63,7 @@ def started(path, vertex):
     return path[::-1] if 2 * place > len(path) - 1 else path
 
 
-def repeated(path):
+def repeated(path: Path) -> int | None:
     """A vertex that the path comes to twice, or None; that of a closed loop's start is none."""
     seen = set()
     for vertex in path[:-1] if is_closed(path) else path:
@@ -69,7 +73,7 @@ def repeated(path):
     return None
 
 
-def _walk(near, start):
+def _walk(near: dict[int, list[int]], start: int) -> Path:
     path, before = [start], None
     while True:
         here = path[-1]
@@ -82,7 +86,7 @@ def _walk(near, start):
             return tuple(path)
 
 
-def _pieces(near):
+def _pieces(near: dict[int, list[int]]) -> int:
     """How many pieces hang together by edges."""
     count, left = 0, set(near)
     while left:
@@ -95,7 +99,7 @@ def _pieces(near):
     return count
 
 
-def _reason(pieces, branches):
+def _reason(pieces: int, branches: Sequence[int]) -> str:
     parts = [f"make up {pieces} pieces"] if pieces > 1 else []
     if branches:
         parts.append(f"branch at {messages.count(len(branches), 'vertex')} ({messages.numbers(branches)})")

@@ -5,10 +5,16 @@ Under the cursor lies a face, and the nearest of its vertices is meant; beside t
 vertex some pixels away. Vertices behind a surface are never meant.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from mathutils import Matrix, Vector
+from numpy.typing import ArrayLike
+
+from ..blender.vertex_positions import Cast
+from ..surfaces.arrays import Booleans, Floats, Integers
 
 # A hit this much nearer than a vertex, as a part of its distance, hides it.
 _HIDING = 1e-4
@@ -18,11 +24,11 @@ _HIDING = 1e-4
 class View:
     """A view of `width` by `height` pixels through the matrix (4, 4) from the world to clip space."""
 
-    matrix: np.ndarray
+    matrix: Floats
     width: int
     height: int
 
-    def project(self, points):
+    def project(self, points: Floats) -> Floats:
         """Pixels (k, 2) of points (k, 3) in the world; not a number for those behind the eye."""
         clip = points @ self.matrix[:, :3].T + self.matrix[:, 3]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -30,7 +36,7 @@ class View:
         flat[clip[:, 3] <= 0] = np.nan
         return (flat + 1) / 2 * (self.width, self.height)
 
-    def ray(self, pixel):
+    def ray(self, pixel: ArrayLike) -> tuple[Floats, Floats]:
         """The origin, on the near side of what is seen, and the direction of the ray through a pixel."""
         x, y = 2 * np.asarray(pixel, float) / (self.width, self.height) - 1
         ends = np.array([[x, y, -1, 1], [x, y, 1, 1]]) @ np.linalg.inv(self.matrix).T
@@ -45,52 +51,59 @@ class Pickable:
     that it hits first with the vertices of the face there, or None.
     """
 
-    def __init__(self, points, used, cast, matrix):
+    def __init__(self, points: Floats, used: Booleans, cast: Cast, matrix: Matrix) -> None:
         self.points, self._used, self._cast = np.asarray(points, float), np.asarray(used, bool), cast
         corners = self.points if len(self.points) else np.zeros((1, 3))
         sides = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1)
         self._box = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
         self.place(matrix)
 
-    def place(self, matrix):
+    def place(self, matrix: Matrix) -> None:
         """Moves the surface."""
-        self.matrix = Matrix(matrix)
+        self.matrix = matrix.copy()
         self._inverse = self.matrix.inverted_safe()
 
-    def world(self, vertices=slice(None)):
+    def world(self, vertices: Any = slice(None)) -> Floats:
         """The points of some vertices, (k, 3), in the world."""
         return self._moved(self.points[vertices])
 
-    def candidates(self, view, pixel, radius):
+    def candidates(self, view: View, pixel: Floats, radius: float) -> tuple[Integers, Floats]:
         """The vertices that count at most so many pixels away, the nearest first, and how far they are."""
         if self._is_far(view, pixel, radius):
-            return [], []
+            return np.empty(0, int), np.empty(0)
         away = np.linalg.norm(view.project(self.world()) - pixel, axis=1)
         near = np.flatnonzero((away <= radius) & self._used)
         near = near[np.argsort(away[near], kind="stable")]
         return near, away[near]
 
-    def hit(self, origin, direction):
+    def hit(self, origin: Floats, direction: Floats) -> tuple[float, Integers | None]:
         """The distance and the vertices of the face that a ray hits first, or infinity and None."""
-        start = self._inverse @ Vector(origin)
-        found = self._cast(start, self._inverse.to_3x3() @ Vector(direction))
+        start = self._inverse @ Vector(origin.tolist())
+        found = self._cast(start, self._inverse.to_3x3() @ Vector(direction.tolist()))
         if found is None:
             return np.inf, None
         point, face = found
-        return (self.matrix @ point - Vector(origin)).length, np.array(face)
+        return (self.matrix @ point - Vector(origin.tolist())).length, np.array(face)
 
-    def _is_far(self, view, pixel, radius):
+    def _is_far(self, view: View, pixel: Floats, radius: float) -> bool:
         """Whether the box about the surface is in front of the eye and away from the pixel."""
         corners = view.project(self._moved(self._box))
         outside = (corners.min(axis=0) > pixel + radius) | (corners.max(axis=0) < pixel - radius)
         return bool(np.isfinite(corners).all() and outside.any())
 
-    def _moved(self, points):
+    def _moved(self, points: Floats) -> Floats:
         matrix = np.array(self.matrix)
         return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def pick(surfaces, view, pixel, *, radius=20.0, blocked=np.inf):
+def pick(
+    surfaces: Sequence[Pickable],
+    view: View,
+    pixel: ArrayLike,
+    *,
+    radius: float = 20.0,
+    blocked: float = np.inf,
+) -> tuple[int, int] | None:
     """(which of the surfaces, vertex) at a pixel, or None; `blocked` is how far away what hides them is."""
     pixel = np.asarray(pixel, float)
     origin, direction = view.ray(pixel)
@@ -102,7 +115,9 @@ def pick(surfaces, view, pixel, *, radius=20.0, blocked=np.inf):
     return _beside(surfaces, view, pixel, radius)
 
 
-def _corner(surfaces, which, face, view, pixel):
+def _corner(
+    surfaces: Sequence[Pickable], which: int, face: Integers, view: View, pixel: Floats
+) -> tuple[int, int] | None:
     """The nearest visible corner of the face under the cursor."""
     away = np.linalg.norm(view.project(surfaces[which].world(face)) - pixel, axis=1)
     for vertex in face[np.argsort(away)]:
@@ -111,9 +126,9 @@ def _corner(surfaces, which, face, view, pixel):
     return None
 
 
-def _beside(surfaces, view, pixel, radius):
+def _beside(surfaces: Sequence[Pickable], view: View, pixel: Floats, radius: float) -> tuple[int, int] | None:
     """The nearest visible vertex, where no surface is under the cursor."""
-    found = []
+    found: list[tuple[float, int, int]] = []
     for which, surface in enumerate(surfaces):
         vertices, away = surface.candidates(view, pixel, radius)
         found.extend((d, which, int(vertex)) for d, vertex in zip(away, vertices, strict=True))
@@ -123,7 +138,7 @@ def _beside(surfaces, view, pixel, radius):
     return None
 
 
-def _is_visible(surfaces, which, vertex, view):
+def _is_visible(surfaces: Sequence[Pickable], which: int, vertex: int, view: View) -> bool:
     point = surfaces[which].world([vertex])
     pixel = view.project(point)[0]
     if not np.isfinite(pixel).all():

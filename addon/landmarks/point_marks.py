@@ -5,16 +5,20 @@ Deleting a vertex renumbers those behind it, but their marks go with them. Dupli
 copies its mark; the vertex is then no longer certain.
 """
 
+from collections.abc import Sequence
+
+import bpy
+
 from ..blender import element_marks
 from ..blender.element_marks import element_counts
 
 NAME = "authalic_landmark"
 _MARKS = element_marks.Marks(NAME, "POINT")
 # What was found last: session id of a mesh -> (counts of its elements, marks).
-_seen = {}
+_seen: dict[int, tuple[tuple[int, int, int], dict[int, list[int]]]] = {}
 
 
-def put(mesh, vertex):
+def put(mesh: bpy.types.Mesh, vertex: int) -> int:
     """The mark of a vertex, which gets one if it has none that is its own."""
     (old,) = _MARKS.of(mesh, [vertex])
     if old > 0 and len(find(mesh).get(old, ())) == 1:
@@ -24,12 +28,12 @@ def put(mesh, vertex):
     return mark
 
 
-def clear(mesh, mark):
+def clear(mesh: bpy.types.Mesh, mark: int) -> None:
     """Takes a mark off all vertices that have it."""
     _write(mesh, find(mesh).get(mark, ()), 0)
 
 
-def find(mesh, *, wanted=None):
+def find(mesh: bpy.types.Mesh, *, wanted: Sequence[int] | None = None) -> dict[int, list[int]]:
     """The vertices, a list of numbers, for each mark on a mesh.
 
     With `wanted`, some marks, what was found before is taken for true unless one of these is not where it
@@ -44,12 +48,12 @@ def find(mesh, *, wanted=None):
     return found
 
 
-def vertex_count(mesh):
+def vertex_count(mesh: bpy.types.Mesh) -> int:
     """The number of vertices, in edit mode too."""
     return element_counts(mesh)[0]
 
 
-def _holds(mesh, found, wanted):
+def _holds(mesh: bpy.types.Mesh, found: dict[int, list[int]], wanted: Sequence[int]) -> bool:
     """Whether the wanted marks are there, and on the vertices where they were found."""
     if any(mark not in found for mark in wanted):
         return False
@@ -57,7 +61,7 @@ def _holds(mesh, found, wanted):
     return _MARKS.of(mesh, [vertex for _, vertex in placed]) == [mark for mark, _ in placed]
 
 
-def _write(mesh, vertices, value):
+def _write(mesh: bpy.types.Mesh, vertices: Sequence[int], value: int) -> None:
     if len(vertices):
         _seen.pop(mesh.session_uid, None)
         _MARKS.write(mesh, vertices, value)

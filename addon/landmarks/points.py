@@ -6,11 +6,13 @@ with it. What a pair keeps are marks (see `point_marks`), so that its vertices a
 meshes were edited. `pairs` is the one truth on which vertices those are today, and where they are lost.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from ..blender.types import Landmark, MeshObject, mesh_objects, owner_of
 from . import point_marks, undo
 from .objects import NONE, CannotPair, check_target, check_vertex, target_problem
 
@@ -24,11 +26,11 @@ class Pair(NamedTuple):
     problem: str | None
 
 
-def _getter(side):
+def _getter(side: str) -> Callable[[Landmark], int]:
     return lambda landmark: _vertex(landmark, side)
 
 
-def _setter(side):
+def _setter(side: str) -> Callable[[Landmark, int], None]:
     return lambda landmark, vertex: _bind(landmark, side, vertex)
 
 
@@ -60,7 +62,7 @@ class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
     )
 
 
-def pairs(source, *, drawing=False):
+def pairs(source: MeshObject, *, drawing: bool = False) -> list[Pair]:
     """All pairs of a source object, as a list of `Pair`, with what is wrong with each in words.
 
     With `drawing`, large meshes in edit mode are not searched anew unless they have changed visibly.
@@ -68,7 +70,8 @@ def pairs(source, *, drawing=False):
     target, without_target = source.authalic_target, target_problem(source)
     on_source = _found(source, source, "source", drawing)
     on_target = {} if without_target else _found(source, target, "target", drawing)
-    listed, taken = [], {}
+    listed: list[Pair] = []
+    taken: dict[tuple[str, int], str] = {}
     for landmark in source.authalic_landmarks:
         vertex, problem = _where(landmark.source_mark, on_source, source)
         if without_target:
@@ -80,7 +83,7 @@ def pairs(source, *, drawing=False):
     return listed
 
 
-def add(source, source_vertex, target_vertex, name=""):
+def add(source: MeshObject, source_vertex: int, target_vertex: int, name: str = "") -> Landmark:
     """Adds a pair and makes it the active one; returns it. Raises `CannotPair` and then changes nothing."""
     _check_new(source, source_vertex, target_vertex)
     landmark = source.authalic_landmarks.add()
@@ -90,16 +93,16 @@ def add(source, source_vertex, target_vertex, name=""):
     return landmark
 
 
-def replace(source, wanted):
+def replace(source: MeshObject, wanted: Sequence[tuple[str, int, int]]) -> None:
     """Puts pairs (name, source vertex, target vertex) in place of all there are, or of none of them.
 
     Raises `CannotPair` and then changes nothing.
     """
     check_target(source)
-    for side, obj in ((1, source), (2, source.authalic_target)):
-        first = {}
-        for pair in wanted:
-            name, vertex = pair[0], pair[side]
+    for side, obj in enumerate((source, source.authalic_target)):
+        first: dict[int, str] = {}
+        for name, *vertices in wanted:
+            vertex = vertices[side]
             check_vertex(obj, vertex)
             if vertex in first:
                 raise CannotPair(
@@ -111,7 +114,7 @@ def replace(source, wanted):
         add(source, source_vertex, target_vertex, name)
 
 
-def remove(source, index):
+def remove(source: MeshObject, index: int) -> None:
     """Removes the pair of an index; the one that takes its place is the active one."""
     undo.remember(source, index)
     gone = source.authalic_landmarks[index]
@@ -127,13 +130,13 @@ def remove(source, index):
     source.authalic_landmark_index = max(min(source.authalic_landmark_index, last), 0)
 
 
-def clear(source):
+def clear(source: MeshObject) -> None:
     """Removes all pairs."""
     for index in reversed(range(len(source.authalic_landmarks))):
         remove(source, index)
 
 
-def _check_new(source, source_vertex, target_vertex):
+def _check_new(source: MeshObject, source_vertex: int, target_vertex: int) -> None:
     check_target(source)
     there = pairs(source)
     for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
@@ -143,7 +146,7 @@ def _check_new(source, source_vertex, target_vertex):
             raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{other.name}" already')
 
 
-def _free_name(source):
+def _free_name(source: MeshObject) -> str:
     taken = {landmark.name for landmark in source.authalic_landmarks}
     number = len(source.authalic_landmarks)  # as its marker will have it
     while f"Landmark {number}" in taken:
@@ -151,12 +154,12 @@ def _free_name(source):
     return f"Landmark {number}"
 
 
-def _found(source, obj, side, drawing):
+def _found(source: MeshObject, obj: MeshObject, side: str, drawing: bool) -> dict[int, list[int]]:
     wanted = [getattr(landmark, f"{side}_mark") for landmark in source.authalic_landmarks]
     return point_marks.find(obj.data, wanted=wanted if drawing else None)
 
 
-def _where(mark, found, obj):
+def _where(mark: int, found: dict[int, list[int]], obj: MeshObject) -> tuple[int, str | None]:
     """The vertex that has a mark, or -1 and the problem."""
     vertices = found.get(mark, ())
     if len(vertices) == 1:
@@ -166,7 +169,12 @@ def _where(mark, found, obj):
     return NONE, f"its vertex on {obj.name} is gone"
 
 
-def _repeated(taken, name, vertices, objects):
+def _repeated(
+    taken: dict[tuple[str, int], str],
+    name: str,
+    vertices: tuple[int, int],
+    objects: tuple[MeshObject, MeshObject],
+) -> str | None:
     """What is wrong if an earlier pair has one of the vertices; else remembers them in `taken`."""
     for vertex, obj, side in zip(vertices, objects, ("source", "target"), strict=True):
         if vertex != NONE and (side, vertex) in taken:
@@ -175,9 +183,9 @@ def _repeated(taken, name, vertices, objects):
     return None
 
 
-def _release(obj, mark):
+def _release(obj: MeshObject, mark: int) -> bool:
     """Takes a mark off a mesh if no pair of any object needs it; whether that was so."""
-    for other in bpy.data.objects:
+    for other in mesh_objects():
         for landmark in other.authalic_landmarks:
             if mark in (landmark.source_mark, landmark.target_mark):
                 return False
@@ -186,14 +194,14 @@ def _release(obj, mark):
     return True
 
 
-def _object(landmark, side):
-    source = landmark.id_data
+def _object(landmark: Landmark, side: str) -> MeshObject | None:
+    source = owner_of(landmark)
     if side == "source":
         return source
     return None if target_problem(source) else source.authalic_target
 
 
-def _vertex(landmark, side):
+def _vertex(landmark: Landmark, side: str) -> int:
     obj, mark = _object(landmark, side), getattr(landmark, f"{side}_mark")
     if side == "target" and landmark.waiting != NONE:
         return landmark.waiting
@@ -202,7 +210,7 @@ def _vertex(landmark, side):
     return _where(mark, point_marks.find(obj.data, wanted=[mark]), obj)[0]
 
 
-def _bind(landmark, side, vertex):
+def _bind(landmark: Landmark, side: str, vertex: int) -> None:
     """Marks the vertex; one that the mesh does not have is no vertex."""
     obj, mark = _object(landmark, side), 0
     if side == "target":
@@ -213,11 +221,11 @@ def _bind(landmark, side, vertex):
     landmark.error = -1.0
 
 
-def _may_be_target(source, obj):
+def _may_be_target(source: MeshObject, obj: bpy.types.Object) -> bool:
     return obj.type == "MESH" and obj != source
 
 
-def _target_changed(source, _context):
+def _target_changed(source: MeshObject, _context: bpy.types.Context) -> None:
     for landmark in source.authalic_landmarks:
         landmark.error = -1.0
         if landmark.waiting != NONE and target_problem(source) is None:
@@ -227,16 +235,19 @@ def _target_changed(source, _context):
     source.authalic_registered_by = ""
 
 
-def register():
+_PROPERTIES: Any = bpy.types.Object
+
+
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_PG_landmark)
     undo.register()
-    bpy.types.Object.authalic_landmarks = CollectionProperty(
+    _PROPERTIES.authalic_landmarks = CollectionProperty(
         type=AUTHALIC_PG_landmark, name="Landmarks", description="Pairs of vertices, here and on the target"
     )
-    bpy.types.Object.authalic_landmark_index = IntProperty(
+    _PROPERTIES.authalic_landmark_index = IntProperty(
         name="Active Landmark", description="The pair of landmarks that is selected in the list", min=0
     )
-    bpy.types.Object.authalic_target = PointerProperty(
+    _PROPERTIES.authalic_target = PointerProperty(
         type=bpy.types.Object,
         name="Target",
         description="The mesh object that this one is registered with",
@@ -244,13 +255,13 @@ def register():
         update=_target_changed,
     )
     # The method of the last registration with this target, for transfers after it.
-    bpy.types.Object.authalic_registered_by = StringProperty(options={"HIDDEN"})
+    _PROPERTIES.authalic_registered_by = StringProperty(options={"HIDDEN"})
 
 
-def unregister():
-    del bpy.types.Object.authalic_registered_by
-    del bpy.types.Object.authalic_target
-    del bpy.types.Object.authalic_landmark_index
-    del bpy.types.Object.authalic_landmarks
+def unregister() -> None:
+    del _PROPERTIES.authalic_registered_by
+    del _PROPERTIES.authalic_target
+    del _PROPERTIES.authalic_landmark_index
+    del _PROPERTIES.authalic_landmarks
     undo.unregister()
     bpy.utils.unregister_class(AUTHALIC_PG_landmark)

@@ -8,12 +8,14 @@ again, and one leaves whose mark went away, or that has come without. A pair who
 deleted, which changes their number, stays.
 """
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.app.handlers import persistent
 
 from ..blender import element_marks
+from ..blender.types import MeshObject, mesh_objects
 from . import curve_marks, point_marks
 
 
@@ -22,7 +24,7 @@ class Listed(NamedTuple):
 
     name: str
     mark: str
-    kept: tuple
+    kept: tuple[str, ...]
 
 
 POINTS = Listed(
@@ -30,27 +32,27 @@ POINTS = Listed(
 )
 CURVES = Listed("authalic_landmark_curves", "mark", ("name", "mark", "error"))
 # All pairs seen of late: (list, session id of the source, mark) -> (place in the list, the pair's values).
-_known = {}
+_known: dict[tuple[str, int, int], tuple[int, dict[str, Any]]] = {}
 # The keys of the curves of sources, by session id, which are a part of the object too.
-_keys = {}
+_keys: dict[int, str] = {}
 # Before the step: (list, session id of a source) -> marks in its list, and what `_state` found.
-_before = {}
+_before: dict[tuple[str, int], tuple[set[int], Any, set[tuple[str, int]]]] = {}
 
 
-def remember(source, index, listed=POINTS):
+def remember(source: MeshObject, index: int, listed: Listed = POINTS) -> None:
     """To be called before a pair is removed, the mark of which goes too."""
     pair = getattr(source, listed.name)[index]
     values = {name: getattr(pair, name) for name in listed.kept}
     _known[listed.name, source.session_uid, getattr(pair, listed.mark)] = index, values
 
 
-def forget(source, mark):
+def forget(source: MeshObject, mark: int) -> None:
     """The same if the mark of a point stays, for the sake of another pair: it says nothing about this one."""
     _known.pop((POINTS.name, source.session_uid, mark), None)
 
 
-@persistent
-def _look(_scene, *_):
+@persistent  # type: ignore[untyped-decorator]
+def _look(_scene: bpy.types.Scene, *_: object) -> None:
     _before.clear()
     for source in _sources():
         if source.authalic_curve_key:
@@ -61,17 +63,17 @@ def _look(_scene, *_):
             _before[listed.name, source.session_uid] = _marks(source, listed), *_state(source, listed)
 
 
-@persistent
-def _after_undo(_scene, *_):
+@persistent  # type: ignore[untyped-decorator]
+def _after_undo(_scene: bpy.types.Scene, *_: object) -> None:
     _follow(is_redone=False)
 
 
-@persistent
-def _after_redo(_scene, *_):
+@persistent  # type: ignore[untyped-decorator]
+def _after_redo(_scene: bpy.types.Scene, *_: object) -> None:
     _follow(is_redone=True)
 
 
-def _follow(is_redone):
+def _follow(is_redone: bool) -> None:
     curve_marks.forget()
     for source in _sources():
         if not source.authalic_curve_key and _edited(source, CURVES):
@@ -82,7 +84,7 @@ def _follow(is_redone):
     _before.clear()
 
 
-def _update(source, listed, is_redone):
+def _update(source: MeshObject, listed: Listed, is_redone: bool) -> None:
     """Makes a list follow the marks that a step has brought or taken away."""
     in_list, size, there = _before.get((listed.name, source.session_uid), (set(), None, set()))
     new_size, found = _state(source, listed)
@@ -96,21 +98,23 @@ def _update(source, listed, is_redone):
     _restore(source, listed, back - went)
 
 
-def _sources():
-    return [obj for obj in bpy.data.objects if obj.type == "MESH"]
+def _sources() -> list[MeshObject]:
+    return mesh_objects()
 
 
-def _marks(source, listed):
+def _marks(source: MeshObject, listed: Listed) -> set[int]:
     return {getattr(pair, listed.mark) for pair in getattr(source, listed.name)}
 
 
-def _edited(source, listed):
+def _edited(source: MeshObject, listed: Listed) -> list[bpy.types.Mesh]:
     """The meshes in edit mode that have marks of a list."""
     objects = [source] if listed is POINTS else [source, source.authalic_target]
     return [obj.data for obj in objects if obj is not None and obj.type == "MESH" and obj.data.is_editmode]
 
 
-def _state(source, listed):
+def _state(
+    source: MeshObject, listed: Listed
+) -> tuple[list[tuple[int, int, int]] | None, set[tuple[str, int]]]:
     """The sizes of the meshes in edit mode, and (side, mark) of the marks there."""
     meshes = _edited(source, listed)
     if not meshes:
@@ -121,7 +125,7 @@ def _state(source, listed):
     return sizes, {(side, mark) for side in ("source", "target") for mark in _of_curves(source, side)}
 
 
-def _of_curves(source, side):
+def _of_curves(source: MeshObject, side: str) -> Iterable[int]:
     """The marks of curves on a side."""
     obj = source if side == "source" else source.authalic_target
     if obj is None or obj.type != "MESH" or not source.authalic_curve_key:
@@ -129,11 +133,11 @@ def _of_curves(source, side):
     return curve_marks.find(obj.data, curve_marks.key(source, side))
 
 
-def _only_marks(found):
+def _only_marks(found: set[tuple[str, int]]) -> set[int]:
     return {mark for _, mark in found}
 
 
-def _drop(source, listed, gone):
+def _drop(source: MeshObject, listed: Listed, gone: set[int]) -> None:
     pairs = getattr(source, listed.name)
     for index in reversed(range(len(pairs))):
         if getattr(pairs[index], listed.mark) in gone:
@@ -141,7 +145,7 @@ def _drop(source, listed, gone):
             pairs.remove(index)
 
 
-def _restore(source, listed, wanted):
+def _restore(source: MeshObject, listed: Listed, wanted: set[int]) -> None:
     pairs = getattr(source, listed.name)
     missing = [(listed.name, source.session_uid, mark) for mark in wanted - _marks(source, listed)]
     back = [_known[key] for key in missing if key in _known]
@@ -160,12 +164,12 @@ _HANDLERS = (
 )
 
 
-def register():
+def register() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
 
 
-def unregister():
+def unregister() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     _known.clear()

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.fix_flips: turns flipped faces of the active UV map over."""
 
+from typing import Any
+
 import bpy
 
 from ..jobs import fix_flips
+from ..jobs.job import Job
 from . import poll
 from .modal import Modal
 
@@ -19,19 +22,19 @@ class AUTHALIC_OT_fix_flips(Modal, bpy.types.Operator):
     refused = (fix_flips.CannotFix,)
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_uv_maps(cls, context)
 
-    def job(self, context):
+    def job(self, context: bpy.types.Context) -> Job[Any, fix_flips.Report]:
         return fix_flips.job(context)
 
-    def line(self, report):
+    def line(self, report: fix_flips.Report) -> str:
         return str(report)
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_fix_flips)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_fix_flips)

@@ -1,34 +1,43 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the operators on the landmarks of the active object have in common."""
 
+from typing import TYPE_CHECKING, Any
+
+import bpy
 from bpy.props import IntProperty
 
+from ..blender.types import MeshObject, OperatorMixin, Status
 from ..landmarks.objects import NONE, CannotPair, active_source
 
-GIVEN = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
+GIVEN: Any = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
 
 
-class LandmarkOperator:
+class LandmarkOperator(OperatorMixin):
     """A mixin for operators with `run(context, source)`; where that raises `CannotPair`, it tells the reason.
 
     `pairs` and `active` name the list of the source that it works on and the index of its active entry.
     """
 
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
+    if TYPE_CHECKING:
+        index: int
+
+        def run(self, context: bpy.types.Context, source: MeshObject) -> Status: ...
+
     pairs, active, noun = "authalic_landmarks", "authalic_landmark_index", "pair"
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> Status:
         try:
             return self.run(context, active_source(context))
         except CannotPair as problem:
             self.report({"ERROR"}, self.worded(str(problem)))
             return {"CANCELLED"}
 
-    def worded(self, problem):
+    def worded(self, problem: str) -> str:
         """The problem as it is reported."""
         return problem
 
-    def chosen(self, source):
+    def chosen(self, source: MeshObject) -> int:
         """The index of the pair that is meant."""
         index, count = self.index, len(getattr(source, self.pairs))
         index = getattr(source, self.active) if index == NONE else index
@@ -38,7 +47,7 @@ class LandmarkOperator:
         return index
 
 
-def index_property(what="the pair", meaning="-1 for the active one"):
+def index_property(what: str = "the pair", meaning: str = "-1 for the active one") -> Any:
     """The place of a pair in its list."""
     return IntProperty(
         name="Index",

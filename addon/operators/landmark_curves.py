@@ -2,15 +2,18 @@
 """authalic.landmark_curve_add, _remove, _clear, _select, _reverse: the pairs of curves of the source."""
 
 import re
+from typing import Any
 
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
 from .. import messages
 from ..blender import selection
-from ..landmarks import curve_pairing, curve_selection
+from ..blender.types import MeshObject, Status
+from ..landmarks import curve_marks, curve_pairing, curve_selection
 from ..landmarks import curves as landmark_curves
 from ..landmarks.objects import NONE, SIDES, CannotPair, side_object
+from ..landmarks.paths import Path
 from . import poll, views
 from .landmark_base import GIVEN, LandmarkOperator, index_property
 
@@ -24,22 +27,22 @@ class _CurveOperator(LandmarkOperator):
     pairs, active, noun = "authalic_landmark_curves", "authalic_landmark_curve_index", "curve"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_curves(cls, context)
 
-    def worded(self, problem):
+    def worded(self, problem: str) -> str:
         return problem[:1].upper() + problem[1:]
 
 
-def _index(meaning="-1 for the active one"):
+def _index(meaning: str = "-1 for the active one") -> Any:
     return index_property("the pair of curves", meaning)
 
 
-def _side(meaning, default):
+def _side(meaning: str, default: str) -> Any:
     return EnumProperty(name="Side", description=meaning, items=_SIDES, default=default)
 
 
-def _path(name, where):
+def _path(name: str, where: str) -> Any:
     return StringProperty(
         name=name,
         description=f"The numbers of the vertices {where} from start to end, of a loop the first one again "
@@ -66,10 +69,10 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
     target_vertices: _path("Target Vertices", "on the target")
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_target(cls, context)
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index = NONE if self.index == NONE else self.chosen(source)
         given = {"source": _numbers(self.source_vertices), "target": _numbers(self.target_vertices)}
         given = {side: path for side, path in given.items() if path}
@@ -91,7 +94,7 @@ class AUTHALIC_OT_landmark_curve_remove(_CurveOperator, bpy.types.Operator):
     bl_label = "Remove Landmark Curve"
     index: _index()
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         name = source.authalic_landmark_curves[index].name
         landmark_curves.remove(source, index)
@@ -105,7 +108,7 @@ class AUTHALIC_OT_landmark_curve_clear(_CurveOperator, bpy.types.Operator):
     bl_idname = "authalic.landmark_curve_clear"
     bl_label = "Clear Landmark Curves"
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         count = len(source.authalic_landmark_curves)
         landmark_curves.clear(source)
         self.report({"INFO"}, f"Removed {messages.count(count, 'landmark curve')} of {source.name}")
@@ -120,7 +123,7 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
     index: _index()
     side: _side("Whose edges to select", "SOURCE")
 
-    def run(self, context, source):
+    def run(self, context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         pair, side = landmark_curves.pairs(source)[index], self.side.lower()
         obj = side_object(source, side)
@@ -129,7 +132,7 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
             raise CannotPair(f"{pair.name}: {pair.problem}")
         source.authalic_landmark_curve_index = index
         # With vertices, edges between any two of the path would be selected too.
-        context.tool_settings.mesh_select_mode = False, True, False
+        context.tool_settings.mesh_select_mode = False, True, False  # type: ignore[assignment]
         selection.select_edges(obj, path.edges)
         views.show(context, obj, _middle(path))
         self.report({"INFO"}, f"{pair.name}: {_described(path.vertices, obj, len(path.edges))}")
@@ -144,7 +147,7 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
     index: _index()
     side: _side("Whose path to reverse", "TARGET")
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index, side = self.chosen(source), self.side.lower()
         landmark_curves.reverse(source, index, side)
         source.authalic_landmark_curve_index = index
@@ -155,7 +158,7 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _numbers(text):
+def _numbers(text: str) -> Path:
     """The vertices in a text."""
     words = [word for word in re.split(r"[\s,]+", text) if word]
     bad = next((word for word in words if not word.isdecimal()), None)
@@ -164,7 +167,7 @@ def _numbers(text):
     return tuple(map(int, words))
 
 
-def _selected(source, index):
+def _selected(source: MeshObject, index: int) -> tuple[dict[str, Path], int]:
     """The paths {side: path} of selected edges, and the index of their pair, -1 for a new one."""
     found = {side: path for side in SIDES if (path := curve_selection.path(side_object(source, side)))}
     if not found:
@@ -179,12 +182,12 @@ def _selected(source, index):
     return curve_pairing.directed(source, index, chosen, loose), index
 
 
-def _middle(path):
+def _middle(path: curve_marks.Path) -> int:
     """A vertex halfway along."""
     return path.vertices[len(path.vertices) // 2] if path.vertices else path.edges[0][0]
 
 
-def _described(path, obj, count=None):
+def _described(path: Path, obj: MeshObject, count: int | None = None) -> str:
     edges = messages.count(len(path) - 1 if count is None else count, "edge")
     if not path:
         return f"{edges} of {obj.name}"
@@ -202,11 +205,11 @@ _CLASSES = (
 )
 
 
-def register():
+def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
 
-def unregister():
+def unregister() -> None:
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

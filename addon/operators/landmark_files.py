@@ -1,26 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.landmark_export and authalic.landmark_import: pairs of landmarks and of curves as JSON files."""
 
+from collections.abc import Sized
 from pathlib import Path
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
 
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import messages
+from ..blender.types import MeshObject, OperatorMixin, Status, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import files as landmark_files
 from ..landmarks import points as landmark_points
+from ..landmarks.curves import Curve
 from ..landmarks.objects import CannotPair, active_source
+from ..landmarks.points import Pair
 from . import poll
 
 
-class _File:
+class _File(OperatorMixin):
+    if TYPE_CHECKING:
+        filepath: str
+
+        def run(self, source: MeshObject, path: FilePath) -> Status: ...
+
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> Status:
         try:
             return self.run(active_source(context), self._path())
         except (CannotPair, landmark_files.CannotRead, OSError, UnicodeDecodeError) as problem:
@@ -29,39 +40,43 @@ class _File:
             self.report({"ERROR"}, f"{name}: {text}" if name else str(text))
             return {"CANCELLED"}
 
-    def _path(self):
+    def _path(self) -> FilePath:
         if not self.filepath:
             raise CannotPair("No file is named")
         return Path(bpy.path.abspath(self.filepath))
 
 
-class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):
+class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):  # type: ignore[misc]
     """Write the landmarks and landmark curves to a JSON file, with the numbers of their vertices"""
 
     bl_idname = "authalic.landmark_export"
     bl_label = "Export Landmarks"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_points_or_curves(cls, context)
 
-    def run(self, source, path):
+    def run(self, source: MeshObject, path: FilePath) -> Status:
         pairs, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
         sound = [pair[:3] for pair in pairs if pair.problem is None]
         whole = [
             (one.name, one.source.vertices, one.target.vertices) for one in curves if one.problem is None
         ]
-        left = [f"{pair.name}: {pair.problem}" for pair in (*pairs, *curves) if pair.problem is not None]
+        unsound: list[Pair | Curve] = [*pairs, *curves]
+        left = [f"{pair.name}: {pair.problem}" for pair in unsound if pair.problem is not None]
         if not sound and not whole:
             raise CannotPair(f"nothing was written, {messages.listed(left)}")
         content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound, whole)
         path.write_text(landmark_files.to_text(content), encoding="utf-8")
         done = f"Wrote {_counted(sound, whole)} to {path.name}"
-        self.report(*(({"WARNING"}, f"{done}, not {messages.listed(left)}") if left else ({"INFO"}, done)))
+        if left:
+            self.report({"WARNING"}, f"{done}, not {messages.listed(left)}")
+        else:
+            self.report({"INFO"}, done)
         return {"FINISHED"}
 
 
-class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
+class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # type: ignore[misc]
     """Read landmarks and landmark curves from a JSON file, in place of those there are.
 
     A file without curves leaves these alone. Where there is no target yet, the mesh object that the file
@@ -71,14 +86,14 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
     bl_label = "Import Landmarks"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_source(cls, context)
 
-    def run(self, source, path):
+    def run(self, source: MeshObject, path: FilePath) -> Status:
         found = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))
-        named = bpy.data.objects.get(found.target)
+        named: bpy.types.Object | None = bpy.data.objects.get(found.target)
         before = source.authalic_target
-        if before is None and named is not None and named != source and named.type == "MESH":
+        if before is None and is_mesh(named) and named != source:
             source.authalic_target = named
         try:
             landmark_curves.check_all(source, found.curves or [])
@@ -96,18 +111,18 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):
         return {"FINISHED"}
 
 
-def _counted(pairs, curves):
+def _counted(pairs: Sized | None, curves: Sized | None) -> str:
     """ "3 landmarks", "2 landmark curves", or both."""
     counted = ((pairs, "landmark"), (curves, "landmark curve"))
     parts = [messages.count(len(found), noun) for found, noun in counted if found]
     return " and ".join(parts) or "no landmarks"
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_landmark_export)
     bpy.utils.register_class(AUTHALIC_OT_landmark_import)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_landmark_import)
     bpy.utils.unregister_class(AUTHALIC_OT_landmark_export)

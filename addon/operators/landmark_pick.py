@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.landmark_pick: pairs of landmarks by clicking on the two objects in a 3D view."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.props import IntProperty
+from numpy.typing import ArrayLike
 
 from ..blender import vertex_positions
+from ..blender.types import MeshObject, Status
 from ..landmarks import picking, point_marks
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, CannotPair, active_source
@@ -13,6 +18,9 @@ from ..overlay.drawing import redraw
 from ..overlay.points import Marker
 from ..overlay.points import hints as shown_hints
 from . import poll
+
+Seen = tuple[bpy.types.Area, bpy.types.Region, tuple[int, int]]
+"""A 3D view, its region, and a pixel there."""
 
 # Looking around; mouse buttons and keys that do something else are held back.
 _NAVIGATION = {
@@ -32,6 +40,14 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     bl_label = "Pick Landmarks"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
     running = False
+    # While it runs: the names of both objects, the vertex chosen on either side, the pairs added, those of
+    # them that have a step of undo, what the surfaces were read from, and the surfaces.
+    _names: tuple[str, str]
+    _chosen: dict[str, int]
+    _steps: list[tuple[str, int, int]]
+    _pushed: list[tuple[str, int, int]]
+    _states: list[tuple[object, ...]] | None
+    _surfaces: list[picking.Pickable]
 
     source_vertex: IntProperty(
         name="Source Vertex",
@@ -49,13 +65,13 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         if AUTHALIC_OT_landmark_pick.running:
             cls.poll_message_set("Landmarks are being picked already")
             return False
         return poll.has_target(cls, context)
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> Status:
         """The last pair again, with other numbers; or a pair for scripts."""
         if NONE in (self.source_vertex, self.target_vertex):
             self.report({"ERROR"}, "Picking needs a window, or the numbers of two vertices")
@@ -68,7 +84,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def invoke(self, context, _event):
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> Status:
         if bpy.app.background or context.window is None:
             return self.execute(context)
         source = active_source(context)
@@ -80,7 +96,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> Status:
         objects = self._objects(context)
         if objects is None or context.mode not in {"OBJECT", "EDIT_MESH"}:
             self.report({"WARNING"}, "Picking has ended: its objects or their mode have changed")
@@ -102,22 +118,25 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._click(context, objects, self._under(context, objects, view))
         return {"PASS_THROUGH" if event.type == "MOUSEMOVE" else "RUNNING_MODAL"}
 
-    def cancel(self, context):
+    def cancel(self, context: bpy.types.Context) -> None:
         """Blender closes the window or loads another file."""
         self._end(context)
 
-    def _objects(self, context):
+    def _objects(self, context: bpy.types.Context) -> list[MeshObject] | None:
         """The source and its target, or None if one is gone or is another one now."""
-        found = [context.view_layer.objects.get(name) for name in self._names]
+        found: list[Any] = [context.view_layer.objects.get(name) for name in self._names]
         return found if None not in found and found[0].authalic_target == found[1] else None
 
-    def _under(self, context, objects, view):
+    def _under(
+        self, context: bpy.types.Context, objects: Sequence[MeshObject], view: Seen
+    ) -> tuple[str, int] | None:
         """(side, vertex) under the cursor, or None."""
         area, region, pixel = view
+        space: Any = area.spaces.active
         states = [_state(obj) for obj in objects]
         if self._states != states:
             self._states, self._surfaces = states, [_surface(obj, context) for obj in objects]
-        shown = [k for k, obj in enumerate(objects) if obj.visible_get(viewport=area.spaces.active)]
+        shown = [k for k, obj in enumerate(objects) if obj.visible_get(viewport=space)]
         for k in shown:
             self._surfaces[k].place(objects[k].matrix_world)
         matrix = np.array(region.data.perspective_matrix)
@@ -127,8 +146,8 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         )
         return found and (_SIDES[shown[found[0]]], found[1])
 
-    def _hover(self, context, found):
-        source = context.view_layer.objects.get(self._names[0])
+    def _hover(self, context: bpy.types.Context, found: tuple[str, int] | None) -> None:
+        source: Any = context.view_layer.objects.get(self._names[0])
         number = str(len(source.authalic_landmarks) + 1) if source else ""
         hints = [self._hint(side, vertex, number) for side, vertex in self._chosen.items()]
         if found is not None:
@@ -137,10 +156,12 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             shown_hints[:] = hints
             redraw(context)
 
-    def _hint(self, side, vertex, text):
+    def _hint(self, side: str, vertex: int, text: str) -> Marker:
         return Marker(self._names[_SIDES.index(side)], vertex, text, side, is_active=True)
 
-    def _click(self, context, objects, found):
+    def _click(
+        self, context: bpy.types.Context, objects: Sequence[MeshObject], found: tuple[str, int] | None
+    ) -> None:
         if found is None:
             self._say(context, "No vertex of the two objects is there")
             return
@@ -152,7 +173,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._say(context, f"{side.capitalize()} vertex {vertex}")
         self._hover(context, None)
 
-    def _pair(self, context, source):
+    def _pair(self, context: bpy.types.Context, source: MeshObject) -> None:
         vertices = self._chosen["source"], self._chosen["target"]
         self._chosen.clear()
         try:
@@ -167,7 +188,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self.source_vertex, self.target_vertex = vertices
             self._say(context, f"Added {added.name}")
 
-    def _take_back(self, context, objects):
+    def _take_back(self, context: bpy.types.Context, objects: Sequence[MeshObject]) -> None:
         """Undoes the last click that has not made a pair yet, else the last pair of this run."""
         if self._chosen:
             self._chosen.popitem()
@@ -180,13 +201,13 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         self._hover(context, None)
         redraw(context)
 
-    def _say(self, context, text):
+    def _say(self, context: bpy.types.Context, text: str) -> None:
         missing = [side for side in _SIDES if side not in self._chosen]
         where = "the source or the target" if len(missing) == 2 else f"the {missing[0]}" if missing else ""
         names = dict(zip(_SIDES, self._names, strict=True))
         named = f" ({names[missing[0]]})" if len(missing) == 1 else ""
 
-        def draw(header, _context):
+        def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             layout = header.layout
             layout.label(text=f"Pick on {where}{named}", icon="MOUSE_LMB")
             layout.label(text="Take Back", icon=_backspace())
@@ -197,7 +218,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             context.workspace.status_text_set(draw)
         redraw(context)
 
-    def _end(self, context):
+    def _end(self, context: bpy.types.Context) -> Status:
         AUTHALIC_OT_landmark_pick.running = False
         shown_hints.clear()
         if context.window is not None:
@@ -211,17 +232,18 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _takes_back(event):
+def _takes_back(event: bpy.types.Event) -> bool:
     return event.type == "BACK_SPACE" or (event.type == "Z" and (event.ctrl or event.oskey))
 
 
-def _backspace():
+def _backspace() -> Any:
     """The icon of the key, which 4.2 has not."""
-    icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+    layout: Any = bpy.types.UILayout
+    icons = layout.bl_rna.functions["label"].parameters["icon"].enum_items
     return "EVENT_BACKSPACE" if "EVENT_BACKSPACE" in icons else "LOOP_BACK"
 
 
-def _view_under(context, event):
+def _view_under(context: bpy.types.Context, event: bpy.types.Event) -> Seen | None:
     """(area, region, pixel) of the 3D view that the mouse is in, or None if a panel is there."""
     x, y = event.mouse_x, event.mouse_y
     for area in context.window.screen.areas:
@@ -233,28 +255,30 @@ def _view_under(context, event):
     return None
 
 
-def _contains(place, x, y):
+def _contains(place: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:
     return place.x <= x < place.x + place.width and place.y <= y < place.y + place.height
 
 
-def _surface(obj, context):
+def _surface(obj: MeshObject, context: bpy.types.Context) -> picking.Pickable:
     seen = vertex_positions.surface(obj, context.evaluated_depsgraph_get())
     return picking.Pickable(*seen, obj.matrix_world)
 
 
-def _state(obj):
+def _state(obj: MeshObject) -> tuple[object, ...]:
     """Changes where the surface of an object has to be looked at again."""
     mesh = obj.data
     return obj.as_pointer(), mesh.session_uid, mesh.is_editmode, point_marks.vertex_count(mesh)
 
 
-def _blocked(context, objects, view, pixel):
+def _blocked(
+    context: bpy.types.Context, objects: Sequence[MeshObject], view: picking.View, pixel: ArrayLike
+) -> float:
     """How far away another object lies that hides what is behind it."""
     origin, direction = view.ray(pixel)
     start = origin
     for _ in range(_SKIPPED):
         hit, point, _, _, obj, _ = context.scene.ray_cast(
-            context.evaluated_depsgraph_get(), origin=start, direction=direction
+            context.evaluated_depsgraph_get(), origin=start.tolist(), direction=direction.tolist()
         )
         if not hit or obj.original in objects:
             return np.inf
@@ -265,9 +289,9 @@ def _blocked(context, objects, view, pixel):
     return np.inf
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_landmark_pick)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_landmark_pick)

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ..blender import selection
+from ..blender.types import MeshObject, Status
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, CannotPair
 from . import poll, views
@@ -15,7 +16,7 @@ class _PointOperator(LandmarkOperator):
     needs_pairs = True
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_landmarks(cls, context) if cls.needs_pairs else poll.has_source(cls, context)
 
 
@@ -45,10 +46,10 @@ class AUTHALIC_OT_landmark_add(_PointOperator, bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_target(cls, context)
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         target = source.authalic_target
         source_vertex = _or_selected(self.source_vertex, source)
         target_vertex = _or_selected(self.target_vertex, target)
@@ -67,7 +68,7 @@ class AUTHALIC_OT_landmark_remove(_PointOperator, bpy.types.Operator):
     bl_label = "Remove Landmark"
     index: index_property()
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         name = source.authalic_landmarks[index].name
         landmark_points.remove(source, index)
@@ -81,7 +82,7 @@ class AUTHALIC_OT_landmark_clear(_PointOperator, bpy.types.Operator):
     bl_idname = "authalic.landmark_clear"
     bl_label = "Clear Landmarks"
 
-    def run(self, _context, source):
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         count = len(source.authalic_landmarks)
         landmark_points.clear(source)
         self.report({"INFO"}, f"Removed {count} landmarks of {source.name}")
@@ -104,7 +105,7 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
         default="SOURCE",
     )
 
-    def run(self, context, source):
+    def run(self, context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         pair = landmark_points.pairs(source)[index]
         is_source = self.side == "SOURCE"
@@ -119,7 +120,7 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _or_selected(vertex, obj):
+def _or_selected(vertex: int, obj: MeshObject) -> int:
     """The vertex, or for -1 the one that is selected on the object."""
     if vertex != NONE:
         return vertex
@@ -140,11 +141,11 @@ _CLASSES = (
 )
 
 
-def register():
+def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
 
-def unregister():
+def unregister() -> None:
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.measure: how far the active UV map is from equal areas."""
 
+from typing import Any
+
 import bpy
 from bpy.props import StringProperty
 
+from ..blender.types import Status
 from ..jobs import measure, targets
 from . import poll
 
@@ -18,28 +21,32 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_meshes(cls, context)
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> Status:
         try:
             figures = measure.job(context).execute()
         except targets.NothingToDo as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
         line = measure.line(figures)
-        context.window_manager.authalic_figures = line
+        manager: Any = context.window_manager
+        manager.authalic_figures = line
         self.report({"INFO"}, f"Measured {figures.triangles} triangles: {line}")
         return {"FINISHED"}
 
 
-def register():
+_PROPERTIES: Any = bpy.types.WindowManager
+
+
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_measure)
-    bpy.types.WindowManager.authalic_figures = StringProperty(
+    _PROPERTIES.authalic_figures = StringProperty(
         name="Figures", description="What was measured last", options={"SKIP_SAVE"}
     )
 
 
-def unregister():
-    del bpy.types.WindowManager.authalic_figures
+def unregister() -> None:
+    del _PROPERTIES.authalic_figures
     bpy.utils.unregister_class(AUTHALIC_OT_measure)

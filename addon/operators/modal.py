@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators that run a `Job`: at once for scripts and the redo panel, behind a living window for people."""
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
 import bpy
 
+from ..blender.types import OperatorMixin, Status
 from ..jobs import targets
-from ..jobs.job import Cancelled
+from ..jobs.job import Cancelled, Job
 
 _INTERVAL = 0.1
 # What may go on meanwhile: looking around. Anything else could change what is being worked on.
@@ -14,20 +18,27 @@ _PASSED_ON = {
 }
 
 
-class Modal:
+class Modal(OperatorMixin):
     """A mixin for operators with `job(context)`, `refused`, the exceptions of that, and `line(report)`."""
 
-    _running = _timer = None
+    if TYPE_CHECKING:
+        refused: tuple[type[Exception], ...]
 
-    def execute(self, context):
+        def job(self, context: bpy.types.Context) -> Job[Any, Any]: ...
+        def line(self, report: Any) -> str: ...
+
+    _running: Any = None
+    _timer: Any = None
+
+    def execute(self, context: bpy.types.Context) -> Status:
         return self._attempt(lambda: self._say(self.job(context).execute()))
 
-    def invoke(self, context, _event):
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> Status:
         if bpy.app.background or context.window is None:  # without a window nothing would wake the operator
             return self.execute(context)
         return self._attempt(lambda: self._start(context))
 
-    def modal(self, context, event):
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> Status:
         if event.type == "TIMER":
             running, fraction, message = self._running.poll()
             if not running:
@@ -40,12 +51,12 @@ class Modal:
             self._running.end_early()
         return {"PASS_THROUGH" if event.type in _PASSED_ON else "RUNNING_MODAL"}
 
-    def cancel(self, context):
+    def cancel(self, context: bpy.types.Context) -> None:
         """Blender closes the window or loads another file."""
         self._running.cancel()
         self._leave(context)
 
-    def _start(self, context):
+    def _start(self, context: bpy.types.Context) -> Status:
         self._running = self.job(context).start()
         manager = context.window_manager
         self._timer = manager.event_timer_add(_INTERVAL, window=context.window)
@@ -54,11 +65,11 @@ class Modal:
         self._show(context, 0.0, "")
         return {"RUNNING_MODAL"}
 
-    def _show(self, context, fraction, message):
+    def _show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
         context.window_manager.progress_update(round(100 * fraction))
         title = f"{self.bl_label}: {message}" if message else self.bl_label
 
-        def draw(header, _context):
+        def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             header.layout.label(text="Cancel", icon="EVENT_ESC")
             header.layout.label(text="Keep What There Is", icon="EVENT_RETURN")
             header.layout.progress(factor=fraction, text=title)
@@ -66,22 +77,22 @@ class Modal:
         if context.workspace is not None:
             context.workspace.status_text_set(draw)
 
-    def _leave(self, context):
+    def _leave(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
 
-    def _attempt(self, step):
+    def _attempt(self, step: Callable[[], Status]) -> Status:
         """What a step returns; where the job was refused, the reason is told and nothing has changed."""
         try:
             return step()
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
-        except (*self.refused, Cancelled) as problem:
+        except (Cancelled, *self.refused) as problem:  # type: ignore[misc]
             self.report({"ERROR"}, str(problem))
         return {"CANCELLED"}
 
-    def _say(self, report):
+    def _say(self, report: Any) -> Status:
         self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, self.line(report))
         return {"FINISHED"}

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When commands can be used."""
 
+import bpy
+
 from ..blender import uv_maps
+from ..blender.types import is_mesh
 from ..landmarks.objects import active_source, target_problem
 
 
-def has_meshes(operator, context):
+def has_meshes(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object or edit mode with a mesh to work on; else tells the user what is missing."""
     if context.mode not in {"OBJECT", "EDIT_MESH"}:
         operator.poll_message_set("Only in Object Mode and in Edit Mode of a mesh")
@@ -16,7 +19,7 @@ def has_meshes(operator, context):
     return True
 
 
-def has_meshes_in_object_mode(operator, context):
+def has_meshes_in_object_mode(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object mode with a mesh to work on; else tells the user what is missing."""
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")
@@ -24,18 +27,18 @@ def has_meshes_in_object_mode(operator, context):
     return has_meshes(operator, context)
 
 
-def has_uv_maps(operator, context):
+def has_uv_maps(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object or edit mode with a mesh that has a UV map; else tells the user what is missing."""
     if not has_meshes(operator, context):
         return False
     objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
-    if not any(obj.type == "MESH" and uv_maps.active(obj) for obj in objects):
+    if not any(is_mesh(obj) and uv_maps.active(obj) for obj in objects):
         operator.poll_message_set("The selected meshes have no UV map")
         return False
     return True
 
 
-def has_source(operator, context):
+def has_source(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object or edit mode with an active mesh, whose landmarks are meant."""
     if context.mode not in {"OBJECT", "EDIT_MESH"}:
         operator.poll_message_set("Only in Object Mode and in Edit Mode of a mesh")
@@ -46,7 +49,7 @@ def has_source(operator, context):
     return True
 
 
-def has_target(operator, context):
+def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """The same, and a target for it."""
     if not has_source(operator, context):
         return False
@@ -56,7 +59,7 @@ def has_target(operator, context):
     return not problem
 
 
-def has_landmarks(operator, context):
+def has_landmarks(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """An active mesh that has landmarks."""
     if not has_source(operator, context):
         return False
@@ -66,7 +69,7 @@ def has_landmarks(operator, context):
     return True
 
 
-def has_curves(operator, context):
+def has_curves(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """An active mesh that has landmark curves."""
     if not has_source(operator, context):
         return False
@@ -76,7 +79,7 @@ def has_curves(operator, context):
     return True
 
 
-def has_points_or_curves(operator, context):
+def has_points_or_curves(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """An active mesh that has landmarks of either kind."""
     if not has_source(operator, context):
         return False

@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.register: a slider that morphs the active object into its target, landmarks onto landmarks."""
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from ..blender.types import OperatorMixin
 from ..jobs import register as registration
+from ..jobs.couple import CannotRegister
+from ..jobs.job import Job
+from ..jobs.register_report import Report
 from ..landmarks.objects import active_source, target_problem
 from ..registration.settings import Settings
 from .modal import Modal
 
 
-class Registering:
+class Registering(OperatorMixin):
     """Properties of registrations and their part of a panel."""
 
     method: EnumProperty(
@@ -58,7 +64,7 @@ class Registering:
         default=1.0,
     )
 
-    def registration(self):
+    def registration(self) -> Settings:
         return Settings(self.domain, self.weight, self.angle_weight, self.method)
 
 
@@ -72,7 +78,7 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     bl_idname = "authalic.register"
     bl_label = "Register and Morph"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
-    refused = (registration.CannotRegister,)
+    refused = (CannotRegister,)
 
     align: BoolProperty(
         name="Align",
@@ -90,24 +96,24 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     frame_end: IntProperty(name="End Frame", description="Where the shape key is 1", default=100)
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return has_target(cls, context)
 
-    def job(self, context):
+    def job(self, context: bpy.types.Context) -> Job[Any, Report]:
         frames = (self.frame_start, self.frame_end) if self.animate else None
         settings = registration.Settings(self.registration(), self.align, self.target_uv, frames)
         return registration.job(context, settings)
 
-    def line(self, report):
+    def line(self, report: Report) -> str:
         return str(report)
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         draw_options(self.layout, self)
 
 
-def has_target(operator, context):
+def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object mode, an active mesh and a target for it; else tells the user what is missing."""
     obj = active_source(context)
     if context.mode != "OBJECT":
@@ -121,7 +127,7 @@ def has_target(operator, context):
     return False
 
 
-def draw_options(layout, properties):
+def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
     column.prop(properties, "method")
@@ -136,9 +142,9 @@ def draw_options(layout, properties):
     frames.prop(properties, "frame_end", text="End")
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_register)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_register)

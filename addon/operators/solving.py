@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The solver's options, which several operators have."""
 
+from typing import Any
+
+import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from .. import bridge
+from ..blender.types import OperatorMixin
 from ..bridge import solver
 
 # Numbered, because key maps keep numbers: AUTHALIC is what CIRCLE was called before there were others.
@@ -24,12 +28,12 @@ _PRESETS = (
 _SHOWN = _PRESETS[:4]
 
 
-def _values(properties):
+def _values(properties: Any) -> tuple[float, str | None, float]:
     """What a preset is made of; only islands have an outline."""
     return properties.angle_weight, getattr(properties, "outline", None), properties.area_tolerance
 
 
-def _set_values(properties, _context):
+def _set_values(properties: Any, _context: bpy.types.Context) -> None:
     name = properties.angle_preset
     if not solver.is_preset(name) or solver.fits(name, *_values(properties)):
         return
@@ -40,19 +44,19 @@ def _set_values(properties, _context):
     properties.angle_preset = name
 
 
-def _set_preset(properties, _context):
+def _set_preset(properties: Any, _context: bpy.types.Context) -> None:
     values = _values(properties)
     if not solver.fits(properties.angle_preset, *values):
         _assign(properties, "angle_preset", solver.preset(*values))
 
 
-def _assign(properties, name, value):
+def _assign(properties: Any, name: str, value: object) -> None:
     # Assigning calls the update function again.
     if getattr(properties, name) != value:
         setattr(properties, name, value)
 
 
-class Solving:
+class Solving(OperatorMixin):
     """Properties and their part of a panel."""
 
     method: EnumProperty(
@@ -105,7 +109,7 @@ class Solving:
         default=0,
     )
 
-    def solver(self):
+    def solver(self) -> bridge.Solver:
         """The settings; of a preset that a script names, those values count that it does not give itself."""
         is_set = self.properties.is_property_set
         if is_set("angle_preset") and solver.is_preset(self.angle_preset):
@@ -123,7 +127,7 @@ class Solving:
             **self.outline_options(),
         )
 
-    def outline_options(self):
+    def outline_options(self) -> dict[str, Any]:
         """Arguments of `bridge.Solver` for open islands."""
         return {}
 
@@ -149,11 +153,11 @@ class Outlining(Solving):
         default=False,
     )
 
-    def outline_options(self):
+    def outline_options(self) -> dict[str, Any]:
         return {"outline": self.outline, "overlap": self.allow_overlap}
 
 
-def draw_options(column, properties):
+def draw_options(column: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     trade = column.column()
     trade.active = properties.method == "GAUSS_NEWTON"
@@ -171,7 +175,7 @@ def draw_options(column, properties):
     column.prop(properties, "iterations")
 
 
-def _draw_presets(column, properties):
+def _draw_presets(column: bpy.types.UILayout, properties: Any) -> None:
     """Two rows of buttons; none is pressed where the values are those of no preset."""
     grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     grid.use_property_split = False

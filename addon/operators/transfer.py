@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.transfer: UV maps, vertex groups, colours and shape keys from the target to the active object."""
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty
 
 from ..jobs import transfer
 from ..jobs.couple import CannotRegister
+from ..jobs.job import Job
 from .modal import Modal
 from .register import Registering, has_target
 
@@ -44,10 +47,10 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return has_target(cls, context)
 
-    def job(self, context):
+    def job(self, context: bpy.types.Context) -> Job[Any, transfer.Report]:
         # Without any of these set, the registration that there is serves.
         is_set = any(self.properties.is_property_set(name) for name in _OF_REGISTRATION)
         return transfer.job(
@@ -58,16 +61,16 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
             ),
         )
 
-    def line(self, report):
+    def line(self, report: transfer.Report) -> str:
         return f"Transferred {report}"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         draw_options(self.layout, self)
 
 
-def draw_options(layout, properties):
+def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
     for name in _KINDS:
@@ -79,9 +82,9 @@ def draw_options(layout, properties):
 _DEPENDS = {"active_uv_only": "uv_maps", "align": "shape_keys"}
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_transfer)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_transfer)

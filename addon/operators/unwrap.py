@@ -2,21 +2,24 @@
 """authalic.unwrap: UVs with equal areas for every selected island."""
 
 import math
+from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import bridge
 from ..blender import packing, uv_maps
+from ..blender.types import is_mesh
 from ..jobs import unwrap
+from ..jobs.job import Job
 from . import poll, solving
 from .modal import Modal
 from .solving import Outlining
 
 
-def _layer_names(_operator, context, _text):
+def _layer_names(_operator: bpy.types.Operator, context: bpy.types.Context, _text: str) -> list[str]:
     obj = context.object
-    return uv_maps.names(obj) if obj and obj.type == "MESH" else []
+    return uv_maps.names(obj) if is_mesh(obj) else []
 
 
 class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
@@ -110,21 +113,21 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_meshes(cls, context)
 
-    def job(self, context):
+    def job(self, context: bpy.types.Context) -> Job[Any, unwrap.Report]:
         return unwrap.job(context, self._settings())
 
-    def line(self, report):
+    def line(self, report: unwrap.Report) -> str:
         return f"Unwrapped {report}"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
         draw_options(self.layout, self)
 
-    def _settings(self):
+    def _settings(self) -> unwrap.Settings:
         return unwrap.Settings(
             uv_layer=self.uv_layer,
             mapping=bridge.UnwrapSettings(
@@ -139,7 +142,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
         )
 
 
-def draw_options(layout, properties):
+def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
     column.prop(properties, "domain")
@@ -162,9 +165,9 @@ _SPHERE = ("sphere_layout", "pole_axis", "seam_direction")
 _PACKING = ("margin_method", "margin")
 
 
-def register():
+def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_unwrap)
 
 
-def unregister():
+def unregister() -> None:
     bpy.utils.unregister_class(AUTHALIC_OT_unwrap)

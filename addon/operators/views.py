@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What brings a place on an object into view."""
 
+import bpy
+from mathutils import Vector
+
 from ..blender import vertex_positions
+from ..blender.types import MeshObject
 
 
-def show(context, obj, vertex):
+def show(context: bpy.types.Context, obj: MeshObject, vertex: int) -> None:
     """Selects an object and puts one of its vertices into the middle of the 3D view, if there is one."""
     if obj.visible_get():
         obj.select_set(True)
     _look_at(context, *vertex_positions.in_world(obj, vertex, context.evaluated_depsgraph_get()))
 
 
-def _look_at(context, point, normal):
+def _look_at(context: bpy.types.Context, point: Vector, normal: Vector) -> None:
     """Puts a point into the middle of the 3D view and turns to its front."""
     view = getattr(context.space_data, "region_3d", None)
     if view is None:

@@ -2,30 +2,31 @@
 """Discs and labels drawn over a 3D view, and when and for what they are drawn."""
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import blf
 import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
+from mathutils import Vector
 
 from ..blender import vertex_positions
+from ..blender.types import MeshObject, is_mesh
 
 PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
 BEHIND = 0.22  # how opaque what is hidden is
 _SIDES = 24
 
 
-def sources(context):
+def sources(context: bpy.types.Context) -> list[MeshObject]:
     """The mesh objects that are selected, and those whose target is."""
     chosen = {context.object, *context.selected_objects, *(getattr(context, "objects_in_mode", None) or ())}
-    return [
-        obj
-        for obj in context.view_layer.objects
-        if obj.type == "MESH" and chosen & {obj, obj.authalic_target}
-    ]
+    objects = context.view_layer.objects
+    return [obj for obj in objects if is_mesh(obj) and chosen & {obj, obj.authalic_target}]
 
 
-def redraw(context):
+def redraw(context: bpy.types.Context) -> None:
     """Asks for all 3D views to be drawn again."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
@@ -33,29 +34,29 @@ def redraw(context):
                 area.tag_redraw()
 
 
-def is_drawn(context):
+def is_drawn(context: bpy.types.Context) -> bool:
     """Whether there is a view to draw on, with its overlays turned on."""
-    space = context.space_data
+    space: Any = context.space_data
     return not bpy.app.background and space is not None and space.overlay.show_overlays
 
 
-def faces_eye(context, point, normal):
+def faces_eye(context: bpy.types.Context, point: Vector, normal: Vector) -> bool:
     """Whether a surface is seen from its front at a point."""
     return normal.length == 0 or normal.dot(_to_eye(context, point)) > -0.05
 
 
-def _to_eye(context, point):
+def _to_eye(context: bpy.types.Context, point: Vector) -> Vector:
     view = context.region_data
     if view.is_perspective:
         return (view.view_matrix.inverted().translation - point).normalized()
     return view.view_matrix.inverted().to_3x3() @ vertex_positions.Z
 
 
-def disc(center, radius, color):
+def disc(center: Sequence[float] | Vector, radius: float, color: Sequence[float]) -> None:
     """A disc whose rim fades out over a pixel."""
     inner, outer = _circle(center, radius - 0.5), _circle(center, radius + 0.5)
     clear = (*color[:3], 0.0)
-    points = [tuple(center), *inner, *outer]
+    points = [(center[0], center[1]), *inner, *outer]
     triangles = []
     for k in range(_SIDES):
         a, b = 1 + k, 1 + (k + 1) % _SIDES
@@ -66,12 +67,12 @@ def disc(center, radius, color):
     batch_for_shader(shader, "TRIS", {"pos": flat, "color": colors}, indices=triangles).draw(shader)
 
 
-def _circle(center, radius):
+def _circle(center: Sequence[float] | Vector, radius: float) -> list[tuple[float, float]]:
     turns = [2 * math.pi * k / _SIDES for k in range(_SIDES)]
     return [(center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)) for a in turns]
 
 
-def label(text, pixel, size, color):
+def label(text: str, pixel: Sequence[float] | Vector, size: float, color: Sequence[float]) -> None:
     """A text of a size to the right of a pixel, on a dark ground."""
     font, scale = 0, bpy.context.preferences.system.ui_scale
     blf.size(font, size)
@@ -85,7 +86,7 @@ def label(text, pixel, size, color):
     blf.draw(font, text)
 
 
-def _plate(left, bottom, width, height, alpha):
+def _plate(left: float, bottom: float, width: float, height: float, alpha: float) -> None:
     """A dark ground that makes text readable over wires."""
     right, top = left + width, bottom + height
     corners = [(left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0)]

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Numbered markers on the landmarks of the source and of its target, drawn over the 3D view."""
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import bpy
 import gpu
 from bpy.props import BoolProperty
 from bpy_extras.view3d_utils import location_3d_to_region_2d
+from mathutils import Vector
 
 from ..blender import element_marks, vertex_positions
+from ..blender.types import MeshObject
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, active_source
 from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disc, faces_eye, is_drawn, label, redraw, sources
 
 _COLORS = {"source": (0.16, 0.55, 1.0), "target": (1.0, 0.58, 0.1)}
 _RADIUS = 5.0
-_handle = None
-# What picking shows besides: markers of vertices that are no landmarks yet.
-hints = []
+_handle: Any = None
 
 
 class Marker(NamedTuple):
@@ -31,15 +32,20 @@ class Marker(NamedTuple):
     has_problem: bool = False
 
 
-def shown(context):
+# What picking shows besides: markers of vertices that are no landmarks yet.
+hints: list[Marker] = []
+
+
+def shown(context: bpy.types.Context) -> list[Marker]:
     """The markers for what is selected: of sources and of those whose target is."""
-    if not context.scene.authalic_show_landmarks:
+    scene: Any = context.scene
+    if not scene.authalic_show_landmarks:
         return list(hints)
     listed = [source for source in sources(context) if source.authalic_landmarks]
     return [marker for source in listed for marker in _of(source, context)] + hints
 
 
-def _of(source, context):
+def _of(source: MeshObject, context: bpy.types.Context) -> Iterator[Marker]:
     active, is_meant = source.authalic_landmark_index, source == active_source(context)
     for index, pair in enumerate(landmark_points.pairs(source, drawing=True)):
         looks = (is_meant and index == active, pair.problem is not None)
@@ -49,7 +55,7 @@ def _of(source, context):
             yield Marker(source.authalic_target.name, pair.target_vertex, str(index + 1), "target", *looks)
 
 
-def _draw():
+def _draw() -> None:
     context = bpy.context
     if not is_drawn(context):
         return
@@ -66,35 +72,38 @@ def _draw():
         _draw_text(marker, pixel, scale, 1.0 if is_front else BEHIND)
 
 
-def _place(marker, context):
+def _place(marker: Marker, context: bpy.types.Context) -> tuple[Marker, Vector, bool] | None:
     """(marker, its pixel, whether its surface faces the eye), or None where it cannot be seen."""
-    obj = context.view_layer.objects.get(marker.object_name)
+    obj: Any = context.view_layer.objects.get(marker.object_name)
     if obj is None or not obj.visible_get(viewport=context.space_data):
         return None
     point, normal = vertex_positions.in_world(obj, marker.vertex, context.evaluated_depsgraph_get())
     pixel = location_3d_to_region_2d(context.region, context.region_data, point)
-    return pixel and (marker, pixel, faces_eye(context, point, normal))
+    return (marker, pixel, faces_eye(context, point, normal)) if pixel else None
 
 
-def _draw_disc(marker, pixel, scale, alpha):
+def _draw_disc(marker: Marker, pixel: Vector, scale: float, alpha: float) -> None:
     color = PROBLEM if marker.has_problem else _COLORS[marker.side]
     radius = _RADIUS * scale * (1.3 if marker.is_active else 1.0)
     disc(pixel, radius + 1.5 * scale, (*(ACTIVE if marker.is_active else DARK), alpha))
     disc(pixel, radius, (*color, alpha))
 
 
-def _draw_text(marker, pixel, scale, alpha):
+def _draw_text(marker: Marker, pixel: Vector, scale: float, alpha: float) -> None:
     color = PROBLEM if marker.has_problem else ACTIVE
     label(marker.text, pixel, scale * (14 if marker.is_active else 12), (*color, alpha))
 
 
-def _toggled(_scene, context):
+def _toggled(_scene: bpy.types.Scene, context: bpy.types.Context) -> None:
     redraw(context)
 
 
-def register():
+_PROPERTIES: Any = bpy.types.Scene
+
+
+def register() -> None:
     global _handle
-    bpy.types.Scene.authalic_show_landmarks = BoolProperty(
+    _PROPERTIES.authalic_show_landmarks = BoolProperty(
         name="Show Markers",
         description="Draw the landmarks and landmark curves of selected objects, with their numbers",
         default=True,
@@ -103,9 +112,9 @@ def register():
     _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
 
 
-def unregister():
+def unregister() -> None:
     global _handle
     bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
     _handle = None
     hints.clear()
-    del bpy.types.Scene.authalic_show_landmarks
+    del _PROPERTIES.authalic_show_landmarks

@@ -2,14 +2,18 @@
 """Landmark curves of two surfaces that are to be registered, and the figures. Plain numpy, no bpy."""
 
 import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import messages
 from ..landmarks import paths
+from ..surfaces.arrays import Integers
 from ..surfaces.suitability import Unsuitable
 from .registered import Registered
-from .sides import is_open
+from .sides import CurvePair, Side, is_open
 
 # "curve 3", "curves 0 and 2", "2 curves (0, 3)".
 _FEATURE = re.compile(r"\bfeature (\d+)\b")
@@ -20,7 +24,9 @@ _OPPOSITE = "look to opposite sides"
 _FLIP = "flip the normals of one (Mesh > Normals > Flip)"
 
 
-def check_curves(sides, curves, boundaries):
+def check_curves(
+    sides: tuple[Side, Side], curves: Sequence[CurvePair], boundaries: Sequence[Sequence[Integers]]
+) -> list[list[Integers]]:
     """The curves of source and target as lists of paths of points of the sides.
 
     `curves` are (name, source vertices, target vertices), `boundaries` the boundary loops of either side.
@@ -45,7 +51,7 @@ def check_curves(sides, curves, boundaries):
     return found
 
 
-def registered_by_curves(native, sides, curves):
+def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> Registered:
     """The figures of a registration by curves (`authalic.Registration`) of two sides."""
     names = [name for name, _, _ in curves]
     return Registered(
@@ -66,7 +72,7 @@ def registered_by_curves(native, sides, curves):
     )
 
 
-def _remarks(warnings, sides, curves):
+def _remarks(warnings: Sequence[str], sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> list[str]:
     """The library's warnings in words, the cause of most of them first."""
     found = [in_words(warning, sides, curves) for warning in warnings]
     backwards = sum(_BACKWARDS in warning for warning in warnings)
@@ -77,7 +83,7 @@ def _remarks(warnings, sides, curves):
     return found
 
 
-def in_words(message, sides, curves):
+def in_words(message: str, sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> str:
     """The library's message with the names of curves and objects, and with the numbers of their meshes."""
     for one, argument in zip(sides, ("source_curves: ", "target_curves: "), strict=True):
         if message.startswith(argument):
@@ -89,7 +95,7 @@ def in_words(message, sides, curves):
     message = _FEATURE.sub(lambda match: _feature(int(match[1]), curves), message)
     names = [name for name, _, _ in curves]
 
-    def named(match):
+    def named(match: re.Match[str]) -> str:
         numbers = [int(digits) for digits in re.findall(r"\d+", match[3] or match[0])]
         if any(number >= len(names) for number in numbers):
             return match[0]
@@ -100,24 +106,24 @@ def in_words(message, sides, curves):
     return _NUMBERS.sub(named, message)
 
 
-def _any_open(sides):
+def _any_open(sides: tuple[Side, Side]) -> bool:
     return any(is_open(one) for one in sides)
 
 
-def _mirrored(sides):
+def _mirrored(sides: tuple[Side, Side]) -> str:
     """What to do where the curves of one surface are a mirror image of the other's."""
     flip = f"{_FLIP}, or " if _any_open(sides) else ""
     return f"the curves {_MIRRORED}: {flip}mirror one (Object > Mirror), or check the order of the curves"
 
 
-def _feature(number, curves):
+def _feature(number: int, curves: Sequence[CurvePair]) -> str:
     """What the library means; closed curves part surfaces into pieces, which have numbers of their own."""
     if any(paths.is_closed(source) for _, source, _ in curves):
         return "a curve or boundary"
     return f'curve "{curves[number][0]}"' if number < len(curves) else "a boundary"
 
 
-def _points(one, name, vertices):
+def _points(one: Side, name: str, vertices: ArrayLike) -> Integers:
     """A path as points of a side."""
     vertices = np.asarray(vertices)
     if not len(vertices) or vertices.min() < 0 or vertices.max() >= one.count:
@@ -129,7 +135,7 @@ def _points(one, name, vertices):
     return points
 
 
-def _check_edges(one, curves, own):
+def _check_edges(one: Side, curves: Sequence[CurvePair], own: Sequence[Integers]) -> None:
     """Raises `Unsuitable` where an edge of a curve has no face."""
     ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
     there = np.unique(ends[:, 0] * len(one.points) + ends[:, 1])
@@ -143,13 +149,15 @@ def _check_edges(one, curves, own):
             )
 
 
-def _without_curves(one, curves, own, loops):
+def _without_curves(
+    one: Side, curves: Sequence[CurvePair], own: Sequence[Integers], loops: Sequence[Integers]
+) -> int:
     """How many boundary loops are no curves. Raises `Unsuitable` where a curve has a part of one."""
     left = len(loops)
     for (name, *_), path in zip(curves, own, strict=True):
         for loop in loops:
             shared = np.intersect1d(path, loop)
-            if paths.is_closed(path) and len(shared) == len(loop) == len(path) - 1:
+            if path[0] == path[-1] and len(shared) == len(loop) == len(path) - 1:
                 left -= 1
             elif len(shared):
                 noun = "vertex" if len(shared) == 1 else "vertices"

@@ -3,8 +3,11 @@
 
 import numpy as np
 
+from ..surfaces.arrays import Floats, Integers, Reals
+from .sides import Side
 
-def by_points(side, values):
+
+def by_points(side: Side, values: Reals) -> Floats:
     """Values (n, d) of a mesh's vertices as those of a side's points (u, d).
 
     The centre of a divided polygon has the mean of its corners.
@@ -17,7 +20,7 @@ def by_points(side, values):
     return result
 
 
-def by_corners(side, values):
+def by_corners(side: Side, values: Reals) -> Floats:
     """Values (c, d) of a mesh's corners as those of a side's triangles (m, 3, d); centres as for points."""
     result = np.zeros((*side.corners.shape, values.shape[1]))
     real = side.corners >= 0
@@ -27,13 +30,13 @@ def by_corners(side, values):
     return result
 
 
-def from_points(side, values):
+def from_points(side: Side, values: Floats) -> tuple[Integers, Floats]:
     """The vertices (k,) of the mesh that are points of a side, and their values (k, d)."""
     real = side.vertices >= 0
     return side.vertices[real], values[real]
 
 
-def from_corners(side, values):
+def from_corners(side: Side, values: Floats) -> tuple[Integers, Floats]:
     """The corners (k,) of the mesh that a side's triangles have, and their values (k, d).
 
     Of a corner that several triangles of its polygon share, the one in the first of these.
@@ -43,7 +46,7 @@ def from_corners(side, values):
     return corners[real], values.reshape(-1, values.shape[-1])[first[real]]
 
 
-def turn_and_scale(points, images):
+def turn_and_scale(points: Floats, images: Floats) -> Floats:
     """The linear part (3, 3) of the similarity that takes points (n, 3) to their images (n, 3)."""
     points, images = points - points.mean(axis=0), images - images.mean(axis=0)
     u, _, vt = np.linalg.svd(images.T @ points)
@@ -51,7 +54,7 @@ def turn_and_scale(points, images):
     return np.linalg.norm(images) / np.linalg.norm(points) * (u @ vt)
 
 
-def _means(side, values):
+def _means(side: Side, values: Floats) -> Floats:
     """At the centres of divided polygons the means (u, d) of values (m, 3, d) around them."""
     centre = side.corners < 0
     fan = centre.any(axis=1)

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every registration asks of a surface: one piece without handles. Plain numpy, no bpy."""
 
+from collections.abc import Sequence
+
 from ..surfaces import suitability
-from ..surfaces.suitability import Unsuitable
+from ..surfaces.suitability import Patch, Unsuitable
+from .sides import Side
 
 
-def check_piece(one, patches):
+def check_piece(one: Side, patches: Sequence[Patch]) -> Patch:
     """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
     try:
         _check_one_piece(len(one.points), patches)
@@ -18,7 +21,7 @@ def check_piece(one, patches):
     return patches[0]
 
 
-def _check_one_piece(count, patches):
+def _check_one_piece(count: int, patches: Sequence[Patch]) -> None:
     if sum(len(patch.vertex_of) for patch in patches) > count:
         raise Unsuitable(
             "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "

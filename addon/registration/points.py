@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a registration by landmark points asks of two surfaces and their landmarks. Plain numpy, no bpy."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .. import messages
-from ..surfaces.suitability import Unsuitable
+from ..surfaces.arrays import Booleans, Integers
+from ..surfaces.suitability import Patch, Unsuitable
 from .piece import check_piece
+from .sides import PointPair, Side
 
 _FEWEST = {"DISK": 1, "SPHERE": 2}
 
 
-def domain(sides, patches, wanted):
+def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted: str) -> str:
     """ "DISK" or "SPHERE", which both sides (source, target) are; `patches` has the pieces of either.
 
     Raises `Unsuitable` where one of them is neither, where they differ, or where they are not what is wanted.
@@ -34,7 +38,7 @@ _NOT_WANTED = {
 }
 
 
-def _shape(one, patches):
+def _shape(one: Side, patches: Sequence[Patch]) -> str:
     """What one side is, which must be a single piece without handles and with one boundary at the most."""
     patch = check_piece(one, patches)
     loops = [one.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
@@ -44,13 +48,15 @@ def _shape(one, patches):
     return "DISK" if loops else "SPHERE"
 
 
-def _holes(loops):
+def _holes(loops: Sequence[Integers]) -> str:
     """All boundaries but the longest, each by its length and a vertex."""
     named = messages.listed([f"the one of {len(loop)} edges at vertex {max(loop)}" for loop in loops])
     return f"{named} (select a boundary edge, Select Boundary Loop, F)"
 
 
-def check_landmarks(sides, pairs, shape, boundaries):
+def check_landmarks(
+    sides: tuple[Side, Side], pairs: Sequence[PointPair], shape: str, boundaries: Sequence[Integers]
+) -> Integers:
     """The landmarks of source and target as points (2, k) of the sides.
 
     `pairs` are (name, source vertex, target vertex), `boundaries` the points of either boundary. Raises
@@ -76,13 +82,13 @@ def check_landmarks(sides, pairs, shape, boundaries):
     return np.array(found)
 
 
-def _refuse(pairs, bad, problem):
-    names = [f'"{pairs[index][0]}"' for index in np.flatnonzero(bad)]
+def _refuse(pairs: Sequence[PointPair], bad: Booleans, problem: str) -> None:
+    names = [f'"{pairs[index][0]}"' for index in np.flatnonzero(bad).tolist()]
     if names:
         raise Unsuitable(f"Landmark {messages.listed(names)} {problem}")
 
 
-def in_mesh_terms(message, source, target):
+def in_mesh_terms(message: str, source: Side, target: Side) -> str:
     """The library's message with the numbers of the mesh that it is about, and that mesh's name."""
     for one, prefix in ((source, "the source: "), (target, "the target: ")):
         if message.startswith(prefix):

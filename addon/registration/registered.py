@@ -2,9 +2,11 @@
 """A registration of two surfaces and its figures. Plain numpy, no bpy."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from ..surfaces.arrays import Floats, Integers
 from .sides import Side
 
 _WORST, _NEXT_WORST = 3, 0.5  # so many pairs are named, of those with so much of the largest error
@@ -22,14 +24,14 @@ class Registered:
     `remarks` say what should be looked at.
     """
 
-    native: object
+    native: Any
     source: Side
     target: Side
     domain: str
-    places: np.ndarray
-    target_places: np.ndarray
+    places: Floats
+    target_places: Floats
     names: list[str]
-    errors: np.ndarray
+    errors: Floats
     missed: list[str]
     energy: float
     folds: int
@@ -38,32 +40,34 @@ class Registered:
     remarks: list[str] = field(default_factory=list)
 
     @property
-    def by_curves(self):
+    def by_curves(self) -> bool:
         return self.domain == "CURVES"
 
     @property
-    def method(self):
+    def method(self) -> str:
         return "CURVES" if self.by_curves else "POINTS"
 
     @property
-    def ended_early(self):
+    def ended_early(self) -> bool:
         return self.status == "cancelled"
 
     @property
-    def worst(self):
+    def worst(self) -> list[tuple[str, float]]:
         """The few pairs (name, error) with the largest errors, the largest first; none if all meet."""
         order = np.argsort(-self.errors, kind="stable")[:_WORST]
         least = max(_SEEN, _NEXT_WORST * self.errors.max(initial=0))
         return [(self.names[pair], float(self.errors[pair])) for pair in order if self.errors[pair] >= least]
 
 
-def registered_by_points(native, sides, shape, landmarks, names):
+def registered_by_points(
+    native: Any, sides: tuple[Side, Side], shape: str, landmarks: Integers, names: list[str]
+) -> Registered:
     """The figures of a registration (`authalic.Registration`) of two sides by landmarks (2, k)."""
     source, target = sides
     ends = np.asarray(native.positions)[landmarks[0]]
     apart = np.linalg.norm(ends - target.points[landmarks[1]], axis=1)
-    figures = native.distortion, getattr(native, "target_distortion", None)
-    figures = [one for one in figures if one is not None]
+    both = native.distortion, getattr(native, "target_distortion", None)
+    figures: list[Any] = [figures for figures in both if figures is not None]
     return Registered(
         native=native,
         source=source,
@@ -81,6 +85,6 @@ def registered_by_points(native, sides, shape, landmarks, names):
     )
 
 
-def _in_space(points):
+def _in_space(points: Floats) -> Floats:
     """Points (n, 2) of the disk at height 1; points (n, 3) as they are."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.ones(len(points))])

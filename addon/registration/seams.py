@@ -8,11 +8,14 @@ numpy, no bpy.
 
 import numpy as np
 
+from ..surfaces.arrays import Booleans, Floats, Integers
+from .sides import Side
+
 # Triangles of a polygon are on different sides where they differ at a corner by this part of their size.
 _APART = 0.25
 
 
-def on_one_side(side, places, uv):
+def on_one_side(side: Side, places: Floats, uv: Floats) -> Floats:
     """UVs (m, 3, 2) of a side's triangles, with polygons on different sides of seams laid on one.
 
     `places` (u, 3) are the side's points in the domain of the registration.
@@ -29,7 +32,7 @@ def on_one_side(side, places, uv):
     return result
 
 
-def _torn(side, uv):
+def _torn(side: Side, uv: Floats) -> Booleans:
     """Which polygons have triangles that differ by much at a corner they share, (p,)."""
     real = side.corners >= 0
     corners, count = side.corners[real], side.corners.max() + 1
@@ -44,7 +47,7 @@ def _torn(side, uv):
     return torn
 
 
-def _largest(polygons, areas):
+def _largest(polygons: Integers, areas: Floats) -> Integers:
     """For each triangle (f,) the number of the one with the largest area in its polygon."""
     order = np.lexsort([areas, polygons])
     ends = np.flatnonzero(np.append(polygons[order][1:] != polygons[order][:-1], True))

@@ -18,6 +18,6 @@ class Settings:
     method: str = "POINTS"
 
     @property
-    def that_count(self):
+    def that_count(self) -> "Settings":
         """The same, but for options that make no difference."""
         return self if self.method == "POINTS" else Settings(method=self.method)

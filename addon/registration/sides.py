@@ -1,11 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A surface to be registered, in the shape that it has in the world. Plain numpy, no bpy."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..landmarks.paths import Path
 from ..surfaces import triangulation
+from ..surfaces.arrays import Floats, Integers
+from ..surfaces.suitability import Patch
+from ..surfaces.surface import Surface
+
+PointPair = tuple[str, int, int]
+"""The name of a pair of landmarks, its vertices on the source and on the target."""
+CurvePair = tuple[str, Path, Path]
+"""The name of a pair of landmark curves, its vertices along the source and along the target."""
 
 _UNIFORM = 1e-5  # matrices have single precision
 
@@ -21,20 +31,20 @@ class Side:
     """
 
     name: str
-    matrix: np.ndarray
-    points: np.ndarray
-    faces: np.ndarray
-    vertices: np.ndarray
-    corners: np.ndarray
-    polygons: np.ndarray
+    matrix: Floats
+    points: Floats
+    faces: Integers
+    vertices: Integers
+    corners: Integers
+    polygons: Integers
     count: int
 
     @property
-    def size(self):
+    def size(self) -> float:
         """The diagonal of the bounding box."""
         return float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
-    def points_of(self, vertices):
+    def points_of(self, vertices: Integers) -> Integers:
         """Where mesh vertices (k,) are among the points, -1 for loose ones."""
         numbers = np.full(self.count, -1)
         real = np.flatnonzero(self.vertices >= 0)
@@ -42,7 +52,7 @@ class Side:
         return numbers[vertices]
 
 
-def side(surface, matrix):
+def side(surface: Surface, matrix: Floats) -> Side:
     """The `Side` of a `Surface` in the mesh's own coordinates, with a matrix (4, 4) into the world.
 
     A matrix that mirrors turns the faces over, as Blender does, so that fronts stay fronts.
@@ -68,7 +78,7 @@ def side(surface, matrix):
     )
 
 
-def _shape_of(linear):
+def _shape_of(linear: Floats) -> Floats:
     """What a linear map (3, 3) does but to turn and to scale: to squeeze, and maybe to mirror."""
     u, scale, vt = np.linalg.svd(linear)
     squeeze = (vt.T * (scale / scale.max())) @ vt
@@ -77,17 +87,17 @@ def _shape_of(linear):
     return squeeze * [[-1], [1], [1]] if np.linalg.det(u @ vt) < 0 else squeeze
 
 
-def moved(points, matrix):
+def moved(points: Floats, matrix: Floats) -> Floats:
     """Points (n, 3) moved by a matrix (4, 4)."""
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def boundaries(patches):
+def boundaries(patches: Sequence[Patch]) -> list[Integers]:
     """The boundary loops of the pieces (k,) as points of their side."""
     return [np.asarray(patch.vertex_of)[loop] for patch in patches for loop in patch.boundary_loops]
 
 
-def is_open(one):
+def is_open(one: Side) -> bool:
     """Whether a side has an edge with one face."""
     ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     return bool((np.unique(ends, axis=0, return_counts=True)[1] == 1).any())

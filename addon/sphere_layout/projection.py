@@ -10,6 +10,7 @@ poles and across the creases of the octahedral map, is evened out in the plane, 
 import numpy as np
 
 from ..surfaces import triangulation
+from ..surfaces.arrays import Booleans, Floats, Integers
 from .charts import develop
 from .layouts import LAYOUTS
 from .relaxation import even_out, relax
@@ -45,8 +46,16 @@ class CannotProject(Exception):
 
 
 def project(
-    positions, faces, *, polygons=None, areas=None, movable=None, layout="LAMBERT", axis="Z", seam=0.0
-):
+    positions: Floats,
+    faces: Integers,
+    *,
+    polygons: Integers | None = None,
+    areas: Floats | None = None,
+    movable: Booleans | None = None,
+    layout: str = "LAMBERT",
+    axis: str = "Z",
+    seam: float = 0.0,
+) -> Floats:
     """UVs (m, 3, 2) of the corners of faces (m, 3) between positions (n, 3) on the unit sphere.
 
     Faces are seen counter-clockwise from outside, or all clockwise: then the image is mirrored. Faces with

@@ -1,20 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the registration panel with the list of landmark curves, and what is done with them."""
 
+from typing import Any
+
 import bpy
 
+from ..blender.types import LandmarkCurve, MeshObject
+from ..landmarks import curve_marks
 from ..landmarks import curves as landmark_curves
 from ..landmarks.objects import target_problem
 from ..overlay.curves import icon
 from . import text
 
-_shown = []  # the pairs of the list that is being drawn
+_shown: list[landmark_curves.Curve] = []  # the pairs of the list that is being drawn
 
 
 class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
     """Number and color, name, last error and edges of each pair, and a warning where a path is missing."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, index=0):
+    def draw_item(  # type: ignore[override]
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _data: Any,
+        item: LandmarkCurve,
+        _icon: int | None,
+        _active_data: Any,
+        _active_name: str,
+        index: int = 0,
+    ) -> None:
         pair = _shown[index] if index < len(_shown) else None
         row = layout.row(align=True)
         number = row.row()
@@ -34,7 +48,7 @@ class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
 class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
     bl_label = "Landmark Curves"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         for side in ("SOURCE", "TARGET"):
             operator = layout.operator(
@@ -50,7 +64,7 @@ class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
         layout.operator("authalic.landmark_curve_clear", icon="X")
 
 
-def draw_curves(layout, source, context):
+def draw_curves(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     """A panel within the panel, closed until it is wanted."""
     header, body = layout.panel("AUTHALIC_PT_landmark_curves", default_closed=True)
     count = len(source.authalic_landmark_curves)
@@ -85,7 +99,7 @@ def draw_curves(layout, source, context):
     text.draw_problems(body, _problems(source), context)
 
 
-def draw_hint(layout, source, context):
+def draw_hint(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     """Why a registration by curves would not do what is wanted."""
     pairs = landmark_curves.pairs(source, drawing=True)
     bad = sum(pair.problem is not None for pair in pairs)
@@ -95,7 +109,7 @@ def draw_hint(layout, source, context):
         text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
 
 
-def _problems(source):
+def _problems(source: MeshObject) -> list[str]:
     """The active pair's problem in words, or how many there are elsewhere in the list."""
     if not _shown:
         return ["Select edges in Edit Mode and add them"] if not target_problem(source) else []
@@ -109,7 +123,7 @@ def _problems(source):
     return [f"{len(bad)} of the curves cannot be used"] if bad else []
 
 
-def _edges(path):
+def _edges(path: curve_marks.Path) -> str:
     if path.problem:
         return "?"
     return f"○{len(path.edges)}" if path.is_closed else str(len(path.edges))
@@ -118,11 +132,11 @@ def _edges(path):
 _CLASSES = (AUTHALIC_UL_landmark_curves, AUTHALIC_MT_landmark_curves)
 
 
-def register():
+def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
 
-def unregister():
+def unregister() -> None:
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

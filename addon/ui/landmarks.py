@@ -1,20 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The registration panel of the 3D view: the target, the list of landmarks, and what is done with them."""
 
+from typing import Any
+
 import bpy
 
+from ..blender.types import Landmark, MeshObject
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, active_source, target_problem
 from . import curves, text
 from .register import draw_register
 
-_shown = []  # the pairs of the list that is being drawn
+_shown: list[landmark_points.Pair] = []  # the pairs of the list that is being drawn
 
 
 class AUTHALIC_UL_landmarks(bpy.types.UIList):
     """Number, name, last error and the two vertices of each pair, and a warning where one was lost."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, index=0):
+    def draw_item(  # type: ignore[override]
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _data: Any,
+        item: Landmark,
+        _icon: int | None,
+        _active_data: Any,
+        _active_name: str,
+        index: int = 0,
+    ) -> None:
         pair = _shown[index] if index < len(_shown) else None
         row = layout.row(align=True)
         number = row.row()
@@ -38,10 +51,10 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return context.object is not None and context.object.type == "MESH"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout, source = self.layout, active_source(context)
         column = layout.column()
         column.use_property_split = True
@@ -61,7 +74,7 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
 class AUTHALIC_MT_landmarks(bpy.types.Menu):
     bl_label = "Landmarks"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator("authalic.landmark_import", icon="IMPORT")
         layout.operator("authalic.landmark_export", icon="EXPORT")
@@ -69,7 +82,7 @@ class AUTHALIC_MT_landmarks(bpy.types.Menu):
         layout.operator("authalic.landmark_clear", icon="X")
 
 
-def _draw_landmarks(layout, source, context):
+def _draw_landmarks(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     _shown[:] = landmark_points.pairs(source, drawing=True)
     row = layout.row(align=True)
     row.label(text="Landmarks")
@@ -97,32 +110,32 @@ def _draw_landmarks(layout, source, context):
     text.draw_problems(layout, _lines(source), context)
 
 
-def _lines(source):
+def _lines(source: MeshObject) -> list[str]:
     """What is wrong with the target, or with the pairs."""
     if target := target_problem(source):
         return [target] if source.authalic_target is not None or _shown else []
     return _problems(source.authalic_landmark_index)
 
 
-def _problems(active):
+def _problems(active: int) -> list[str]:
     bad = [number for number, pair in enumerate(_shown) if pair.problem is not None]
     if active in bad:
         return [f"{_shown[active].name}: {_shown[active].problem}; remove the pair and pick it again"]
     return [f"{len(bad)} of the pairs cannot be used"] if bad else []
 
 
-def _number(vertex):
+def _number(vertex: int) -> str:
     return "?" if vertex == NONE else str(vertex)
 
 
 _CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_registration_view3d)
 
 
-def register():
+def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
 
 
-def unregister():
+def unregister() -> None:
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

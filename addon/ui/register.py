@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part of the registration panel below the landmarks: the two buttons and their options."""
 
+from typing import Any
+
+import bpy
+
+from ..blender.types import MeshObject
 from ..operators import register, transfer
 from . import curves
 
 
-def draw_register(layout, source, context):
+def draw_register(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     """What the buttons were used with last, and will be used with next, is below either."""
     last = context.window_manager.operator_properties_last
-    for operator, module, icon in (("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")):
+    buttons: Any = ("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")
+    for operator, module, icon in buttons:
         column = layout.column()
         row = column.row()
         row.scale_y = 1.5 if operator == "register" else 1.0

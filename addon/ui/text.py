@@ -2,12 +2,16 @@
 """Figures and problems of landmarks in words, as panels show them."""
 
 import textwrap
+from collections.abc import Sequence
+from typing import Any
+
+import bpy
 
 _LETTER = 7.5  # pixels that a letter takes on average
 _EXACT = 5e-4  # percent
 
 
-def draw_aside(row, text):
+def draw_aside(row: bpy.types.UILayout, text: str) -> None:
     """A figure at the right end of a row of a list, greyed out."""
     part = row.row()
     part.alignment = "RIGHT"
@@ -15,7 +19,7 @@ def draw_aside(row, text):
     part.label(text=text, translate=False)
 
 
-def draw_error(layout, pairs, index):
+def draw_error(layout: bpy.types.UILayout, pairs: Any, index: int) -> None:
     """How far the last registration missed the active one of some pairs, if there was one."""
     error = pairs[index].error if index < len(pairs) else -1.0
     if error >= 0:
@@ -25,7 +29,9 @@ def draw_error(layout, pairs, index):
         row.label(text=said, translate=False)
 
 
-def draw_problems(layout, lines, context, icon="ERROR"):
+def draw_problems(
+    layout: bpy.types.UILayout, lines: Sequence[str], context: bpy.types.Context, icon: Any = "ERROR"
+) -> None:
     """Some sentences in a box, as wide as the panel."""
     if not lines:
         return

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar panels of the 3D view and the UV editor, and the entries in the UV and shape key menus."""
 
+from typing import Any
+
 import bpy
 
+from ..blender.types import PanelMixin
 from ..operators import sphere_shape_key, unwrap
 
 
-class _Panel:
+class _Panel(PanelMixin):
     bl_category = "Authalic"
     bl_region_type = "UI"
 
@@ -14,7 +17,7 @@ class _Panel:
 class _UnwrapPanel(_Panel):
     bl_label = "Authalic Unwrap"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         row = layout.row()
         row.scale_y = 1.5
@@ -28,14 +31,15 @@ class _UnwrapPanel(_Panel):
 class _MeasurePanel(_Panel):
     bl_label = "Area Distortion"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         column = layout.column(align=True)
         column.operator("authalic.measure", text="Measure")
         column.operator("authalic.fix_flips")
         column = layout.column(align=True)
+        manager: Any = context.window_manager
         # One figure a line: a sidebar is narrow.
-        for figure in filter(None, context.window_manager.authalic_figures.split(", ")):
+        for figure in filter(None, manager.authalic_figures.split(", ")):
             column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
 
@@ -52,7 +56,7 @@ class AUTHALIC_PT_sphere_shape_key_view3d(_Panel, bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
         layout.use_property_split = True
@@ -69,21 +73,22 @@ class AUTHALIC_PT_measure_image(_MeasurePanel, bpy.types.Panel):
     bl_space_type = "IMAGE_EDITOR"
 
 
-def _draw_uv_menu(self, _context):
+def _draw_uv_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
     self.layout.operator("authalic.unwrap")
 
 
-def _draw_flips_menu(self, _context):
+def _draw_flips_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
     self.layout.operator("authalic.fix_flips")
 
 
-def _draw_shape_key_menu(self, _context):
+def _draw_shape_key_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
     self.layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
 
 
+_MENUS: Any = bpy.types
 # The UV menus of the UV editor and of the 3D view.
 _FLIPS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
@@ -95,20 +100,20 @@ _CLASSES = (
 )
 
 
-def register():
+def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     # Serves the UV editor's menu and the 3D view's.
-    bpy.types.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
+    _MENUS.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
     for menu in _FLIPS_MENUS:
-        getattr(bpy.types, menu).append(_draw_flips_menu)
-    bpy.types.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
+        getattr(_MENUS, menu).append(_draw_flips_menu)
+    _MENUS.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
-def unregister():
-    bpy.types.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
+def unregister() -> None:
+    _MENUS.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
     for menu in _FLIPS_MENUS:
-        getattr(bpy.types, menu).remove(_draw_flips_menu)
-    bpy.types.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
+        getattr(_MENUS, menu).remove(_draw_flips_menu)
+    _MENUS.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

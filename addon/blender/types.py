@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The types of Blender's data with what the extension adds to them. Known to the type checker alone."""
+
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
+
+import bpy
+
+if TYPE_CHECKING:
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    Entry = TypeVar("Entry")
+
+    class EntryList(bpy.types.bpy_prop_collection[Entry]):
+        """A list that the extension keeps on objects."""
+
+        def add(self) -> Entry: ...
+        def remove(self, index: int) -> None: ...
+        def move(self, index: int, to: int) -> None: ...
+
+    class Landmark(bpy.types.PropertyGroup):
+        """A pair of landmark points as it is saved."""
+
+        source_vertex: int
+        target_vertex: int
+        source_mark: int
+        target_mark: int
+        waiting: int
+        error: float
+
+    class LandmarkCurve(bpy.types.PropertyGroup):
+        """A pair of landmark curves as it is saved."""
+
+        mark: int
+        error: float
+
+    class MeshObject(bpy.types.Object):
+        """An object of type "MESH"."""
+
+        data: bpy.types.Mesh
+        authalic_target: "MeshObject | None"
+        authalic_landmarks: EntryList[Landmark]
+        authalic_landmark_index: int
+        authalic_landmark_curves: EntryList[LandmarkCurve]
+        authalic_landmark_curve_index: int
+        authalic_curve_key: str
+        authalic_registered_by: str
+
+    Status = set[OperatorReturnItems]
+    OperatorMixin = bpy.types.Operator
+    PanelMixin = bpy.types.Panel
+else:
+    MeshObject, Landmark, LandmarkCurve = bpy.types.Object, bpy.types.PropertyGroup, bpy.types.PropertyGroup
+    Status, OperatorMixin, PanelMixin = set, object, object
+
+
+def owner_of(entry: "Landmark | LandmarkCurve") -> MeshObject:
+    """The object that a list entry is kept on."""
+    owner: Any = entry.id_data
+    return owner
+
+
+def mesh_objects() -> list[MeshObject]:
+    """All mesh objects of the file."""
+    return [obj for obj in bpy.data.objects if is_mesh(obj)]
+
+
+def is_mesh(obj: "bpy.types.Object | None") -> TypeGuard[MeshObject]:
+    """Whether it is an object of type "MESH"."""
+    return obj is not None and obj.type == "MESH"

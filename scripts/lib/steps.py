@@ -94,11 +94,12 @@ def install_wheel(log: Path) -> Count:
 
 
 def check_types(log: Path) -> Count:
-    """The stub against the built module, then the package's own types."""
+    """The stub against the built module, then the types of the package and of the extension."""
     install_wheel(log)
     python = environment.dev().python
     run([python, "-m", "mypy.stubtest", "authalic._native"], log=log)
     run([python, "-m", "mypy", "rust/python/authalic"], log=log)
+    run([python, "-m", "mypy", "addon"], log=log)
     return Count()
 
 
@@ -127,7 +128,7 @@ STEPS = (
     Step("rustdoc", "documentation of the Rust crates", check_rust_docs),
     Step("ruff", "formatting and lints of the Python code", check_python_style),
     Step("wheel", "build of the wheel, installed into .venv/dev", install_wheel),
-    Step("types", "stub against the built module, types of the package", check_types),
+    Step("types", "stub against the built module, types of the package and of the extension", check_types),
     Step("python", "tests of the Python package and of the project's structure", test_python),
     Step("extension", "build and validation of the extension zip", build_extension),
     Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest),

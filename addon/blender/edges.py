@@ -8,8 +8,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..landmarks.paths import Edge
-from ..surfaces.arrays import Integers
+from ..surfaces.arrays import Edge, Integers
 
 
 class NoEdge(Exception):

@@ -7,7 +7,7 @@ from typing import Any
 import bmesh
 import bpy
 
-from ..landmarks.paths import Edge
+from ..surfaces.arrays import Edge
 from .types import MeshObject
 
 

@@ -15,6 +15,7 @@ from ..blender import element_marks, scene_changes
 from ..blender.edges import edges_between, ends_of_edges
 from ..blender.element_marks import element_counts
 from ..blender.types import MeshObject
+from ..surfaces.arrays import Edge, Path
 from . import paths
 
 _NAME = "authalic_curve_"
@@ -25,7 +26,7 @@ _seen: dict[tuple[int, str], tuple[tuple[int, int, int], "dict[int, _Found]"]] =
 _true: dict[tuple[int, str], int] = {}
 
 
-class Path(NamedTuple):
+class MarkedPath(NamedTuple):
     """A marked path as it is today.
 
     `vertices` are from its start to its end, a loop's first one again at the end; none if it is not certain,
@@ -33,8 +34,8 @@ class Path(NamedTuple):
     `edges` are pairs of vertices.
     """
 
-    vertices: paths.Path
-    edges: tuple[paths.Edge, ...]
+    vertices: Path
+    edges: tuple[Edge, ...]
     problem: str | None
 
     @property
@@ -42,13 +43,13 @@ class Path(NamedTuple):
         return paths.is_closed(self.vertices)
 
 
-ABSENT = Path((), (), "has no edges")
+ABSENT = MarkedPath((), (), "has no edges")
 
 
 class _Found(NamedTuple):
     """A path, the numbers of its edges, and what its ends had for marks."""
 
-    path: Path
+    path: MarkedPath
     edges: list[int]
     ends: list[tuple[int, int]]
 
@@ -64,7 +65,7 @@ def key(source: MeshObject, side: str) -> str:
     return f"{side}_{own}" if own else ""
 
 
-def put(mesh: bpy.types.Mesh, key: str, mark: int, path: paths.Path) -> None:
+def put(mesh: bpy.types.Mesh, key: str, mark: int, path: Path) -> None:
     """Gives the edges of a path (vertices) a mark in place of those that have it. Raises `NoEdge`."""
     edges = edges_between(mesh, paths.edges(path))
     clear(mesh, key, mark)
@@ -112,8 +113,8 @@ def keep(mesh: bpy.types.Mesh, key: str, wanted: Collection[int]) -> None:
                 kind.drop(mesh)
 
 
-def find(mesh: bpy.types.Mesh, key: str, *, drawing: bool = False) -> dict[int, Path]:
-    """{mark: `Path`} of the paths of a key on a mesh.
+def find(mesh: bpy.types.Mesh, key: str, *, drawing: bool = False) -> dict[int, MarkedPath]:
+    """{mark: `MarkedPath`} of the paths of a key on a mesh.
 
     With `drawing`, what was found before is taken for true unless geometry has changed, and then if the paths
     are where they were and the mesh has as many elements: fast enough for drawing.
@@ -135,12 +136,12 @@ def forget() -> None:
     _true.clear()
 
 
-def check(mesh: bpy.types.Mesh, path: paths.Path) -> None:
+def check(mesh: bpy.types.Mesh, path: Path) -> None:
     """Raises `NoEdge` unless edges join the consecutive vertices of a path."""
     edges_between(mesh, paths.edges(path))
 
 
-def owners(mesh: bpy.types.Mesh, key: str, path: paths.Path) -> set[int]:
+def owners(mesh: bpy.types.Mesh, key: str, path: Path) -> set[int]:
     """The marks that the edges and the ends of a path have. Raises `NoEdge`."""
     on_edges = _of_edges(key).of(mesh, edges_between(mesh, paths.edges(path)))
     return {abs(mark) for mark in [*on_edges, *_of_ends(key).of(mesh, [path[0], path[-1]])]} - {0}
@@ -187,23 +188,23 @@ def _search(mesh: bpy.types.Mesh, key: str) -> dict[int, _Found]:
     return found
 
 
-def _path(edges: Sequence[paths.Edge], starts: Sequence[int], ends: Sequence[int]) -> Path:
-    """The `Path` along edges, of which some vertices are marked as the start and the end."""
+def _path(edges: Sequence[Edge], starts: Sequence[int], ends: Sequence[int]) -> MarkedPath:
+    """The `MarkedPath` along edges, of which some vertices are marked as the start and the end."""
     edges = tuple(edges)
     try:
         line = paths.ordered(edges)
     except paths.NoPath as problem:
-        return Path((), edges, f"has edges that {problem}")
+        return MarkedPath((), edges, f"has edges that {problem}")
     if paths.is_closed(line):
         inside = [vertex for vertex in starts if vertex in line]
-        return Path(paths.started(line, inside[0]) if inside else line, edges, None)
+        return MarkedPath(paths.started(line, inside[0]) if inside else line, edges, None)
     tips = line[0], line[-1]
     first = next((vertex for vertex in starts if vertex in tips), None)
     last = next((vertex for vertex in ends if vertex in tips), None)
     directed = paths.along(line, first, last)
     if directed is None:
-        return Path((), edges, "has lost " + _lost(first, last))
-    return Path(directed, edges, None)
+        return MarkedPath((), edges, "has lost " + _lost(first, last))
+    return MarkedPath(directed, edges, None)
 
 
 def _lost(first: int | None, last: int | None) -> str:
@@ -224,7 +225,7 @@ def _holds(mesh: bpy.types.Mesh, key: str, found: dict[int, _Found]) -> bool:
     )
 
 
-def _mark_ends(mesh: bpy.types.Mesh, key: str, mark: int, path: paths.Path) -> None:
+def _mark_ends(mesh: bpy.types.Mesh, key: str, mark: int, path: Path) -> None:
     _drop(mesh, key)
     own = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
     _of_ends(key).write(mesh, own, 0)

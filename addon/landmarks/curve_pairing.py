@@ -4,10 +4,10 @@
 from collections.abc import Collection
 
 from ..blender.types import MeshObject
+from ..surfaces.arrays import Path
 from . import curve_selection, paths
 from .curves import Curve, pairs
 from .objects import NONE, SIDES, side_object
-from .paths import Path
 
 
 def place_for(source: MeshObject, selected: dict[str, Path]) -> tuple[int, dict[str, Path]]:

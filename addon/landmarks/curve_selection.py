@@ -8,10 +8,9 @@ import numpy as np
 from .. import messages
 from ..blender import selection, vertex_positions
 from ..blender.types import MeshObject
-from ..surfaces.arrays import Floats
+from ..surfaces.arrays import Floats, Path
 from . import paths
 from .objects import CannotPair
-from .paths import Path
 
 _WHAT = "select the edges of one open path or of one closed loop"
 

@@ -16,19 +16,19 @@ from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProp
 from .. import messages
 from ..blender.edges import NoEdge
 from ..blender.types import LandmarkCurve, MeshObject, owner_of
+from ..surfaces.arrays import Path
 from . import curve_copies, curve_marks, paths, undo
 from .objects import NONE, SIDES, CannotPair, check_target, check_vertex, side_object, target_problem
-from .paths import Path
 
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 
 
 class Curve(NamedTuple):
-    """A pair of curves as it is today: two `curve_marks.Path`, and the problem in words or None."""
+    """A pair of curves as it is today: two `curve_marks.MarkedPath`, and the problem in words or None."""
 
     name: str
-    source: curve_marks.Path
-    target: curve_marks.Path
+    source: curve_marks.MarkedPath
+    target: curve_marks.MarkedPath
     problem: str | None
 
 
@@ -189,7 +189,7 @@ def _objects(source: MeshObject) -> list[MeshObject | None]:
     return [side_object(source, side) for side in SIDES]
 
 
-def _found(source: MeshObject, side: str, drawing: bool) -> dict[int, curve_marks.Path]:
+def _found(source: MeshObject, side: str, drawing: bool) -> dict[int, curve_marks.MarkedPath]:
     """{mark: path} of a side."""
     obj = side_object(source, side)
     if obj is None or obj.type != "MESH" or not source.authalic_curve_key:
@@ -197,18 +197,18 @@ def _found(source: MeshObject, side: str, drawing: bool) -> dict[int, curve_mark
     return curve_marks.find(obj.data, curve_marks.key(source, side), drawing=drawing)
 
 
-def _path(source: MeshObject, curve: LandmarkCurve, side: str) -> curve_marks.Path:
+def _path(source: MeshObject, curve: LandmarkCurve, side: str) -> curve_marks.MarkedPath:
     return _found(source, side, False).get(curve.mark, curve_marks.ABSENT)
 
 
-def _worded(path: curve_marks.Path, obj: MeshObject) -> str:
+def _worded(path: curve_marks.MarkedPath, obj: MeshObject) -> str:
     return f"{path.problem} on {obj.name}"
 
 
 def _problem(
     taken: dict[tuple[str, int], tuple[int, str]],
     numbered: tuple[int, str],
-    own: Sequence[curve_marks.Path],
+    own: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
     """What is wrong with a pair whose paths are on two objects; `taken` are the vertices of earlier ones."""
@@ -220,7 +220,7 @@ def _problem(
 def _touching(
     taken: dict[tuple[str, int], tuple[int, str]],
     numbered: tuple[int, str],
-    own: Sequence[curve_marks.Path],
+    own: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
     """What is wrong if an earlier curve has a vertex of a path; else remembers them in `taken`."""
@@ -232,7 +232,7 @@ def _touching(
     return None
 
 
-def _unlike(own: Sequence[curve_marks.Path], objects: Sequence[MeshObject]) -> str | None:
+def _unlike(own: Sequence[curve_marks.MarkedPath], objects: Sequence[MeshObject]) -> str | None:
     """What is wrong with two paths that are fine by themselves."""
     for path, obj in zip(own, objects, strict=True):
         few = _too_few(path.vertices)

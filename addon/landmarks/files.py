@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeGuard
 
-from .paths import Path
+from ..surfaces.arrays import Path
 
 FORMAT, VERSION = "authalic-landmarks", 1
 _NUMBERS = re.compile(r"\[\n[\d,\s]+\]")  # lists of numbers, which are to be one line

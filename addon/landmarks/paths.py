@@ -8,9 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from .. import messages
-
-Path = tuple[int, ...]
-Edge = tuple[int, int]
+from ..surfaces.arrays import Edge, Path
 
 
 class NoPath(Exception):

@@ -13,7 +13,7 @@ from ..blender.types import MeshObject, Status
 from ..landmarks import curve_marks, curve_pairing, curve_selection
 from ..landmarks import curves as landmark_curves
 from ..landmarks.objects import NONE, SIDES, CannotPair, side_object
-from ..landmarks.paths import Path
+from ..surfaces.arrays import Path
 from . import poll, views
 from .landmark_base import GIVEN, LandmarkOperator, index_property
 
@@ -182,7 +182,7 @@ def _selected(source: MeshObject, index: int) -> tuple[dict[str, Path], int]:
     return curve_pairing.directed(source, index, chosen, loose), index
 
 
-def _middle(path: curve_marks.Path) -> int:
+def _middle(path: curve_marks.MarkedPath) -> int:
     """A vertex halfway along."""
     return path.vertices[len(path.vertices) // 2] if path.vertices else path.edges[0][0]
 

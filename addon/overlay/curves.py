@@ -19,7 +19,7 @@ from ..blender.types import MeshObject
 from ..landmarks import curves as landmark_curves
 from ..landmarks import paths
 from ..landmarks.objects import SIDES, active_source, side_object
-from ..landmarks.paths import Edge
+from ..surfaces.arrays import Edge
 from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disc, faces_eye, is_drawn, label, sources
 
 Color = tuple[float, float, float]

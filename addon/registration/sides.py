@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..landmarks.paths import Path
 from ..surfaces import triangulation
-from ..surfaces.arrays import Floats, Integers
+from ..surfaces.arrays import Floats, Integers, Path
 from ..surfaces.suitability import Patch
 from ..surfaces.surface import Surface
 

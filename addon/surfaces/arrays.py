@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The types of arrays. Shapes stand in the docstrings of those who take or give them."""
+"""The types of arrays, whose shapes stand in the docstrings of those who take or give them, and of paths."""
 
 from typing import Any
 
@@ -12,3 +12,8 @@ Reals = NDArray[np.floating[Any]]
 """In double or in single precision."""
 Integers = NDArray[np.integer[Any]]
 Booleans = NDArray[np.bool_]
+
+Edge = tuple[int, int]
+"""Two vertices."""
+Path = tuple[int, ...]
+"""Vertices along edges, from start to end; those of a loop end with the first one again."""

@@ -123,7 +123,7 @@ def _problems(source: MeshObject) -> list[str]:
     return [f"{len(bad)} of the curves cannot be used"] if bad else []
 
 
-def _edges(path: curve_marks.Path) -> str:
+def _edges(path: curve_marks.MarkedPath) -> str:
     if path.problem:
         return "?"
     return f"○{len(path.edges)}" if path.is_closed else str(len(path.edges))

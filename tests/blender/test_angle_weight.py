@@ -19,7 +19,7 @@ def report_of(**solver):
     return unwrap.job(bpy.context, settings).execute()
 
 
-def seamed_suzanne():
+def seamed_suzanne(levels=2):
     """Suzanne with the seams of her own UV map."""
     obj = meshes.suzanne(0)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -27,7 +27,7 @@ def seamed_suzanne():
     bpy.ops.uv.select_all(action="SELECT")
     bpy.ops.uv.seams_from_islands()
     bpy.ops.object.mode_set(mode="OBJECT")
-    return meshes.subdivided(obj, 2)
+    return meshes.subdivided(obj, levels)
 
 
 def figures_of(**options):
@@ -74,7 +74,7 @@ def test_the_whole_slider_beats_minimum_stretch():
 
 
 def test_islands_with_outlines_of_their_own_are_packed_apart():
-    obj = meshes.suzanne()
+    obj = meshes.suzanne(1)
     report_of(angle_weight=0.8)
     uv = meshes.uv(obj)
     assert uv.min() >= 0 and uv.max() <= 1 and np.ptp(uv, axis=0).max() > 0.9
@@ -191,7 +191,7 @@ def test_choosing_a_preset_sets_outline_and_tolerance_too():
 
 
 def test_the_former_name_of_a_preset_still_counts():
-    obj = seamed_suzanne()
+    obj = seamed_suzanne(0)
     for options in ({}, {"angle_weight": 0.0}):
         figures_of(angle_preset="AUTHALIC", **options)
         former = meshes.uv(obj)
@@ -305,7 +305,7 @@ def test_other_methods_know_circles_only(method):
 
 
 def test_area_tolerance_is_kept_and_spares_shapes():
-    seamed_suzanne()
+    seamed_suzanne(1)
     figures = {tolerance: figures_of(area_tolerance=tolerance) for tolerance in (0.01, 0.05, 0.2)}
     assert all(deviation < 1.5 * tolerance for tolerance, (deviation, _) in figures.items())
     angles = [angle for _, angle in figures.values()]

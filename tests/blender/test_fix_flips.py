@@ -198,7 +198,7 @@ def test_inconsistent_normals_are_no_flips(capfd):
 
 
 def test_nothing_to_fix_changes_nothing(capfd):
-    obj = meshes.suzanne()
+    obj = meshes.suzanne(1)
     bpy.ops.authalic.unwrap()
     before = meshes.uv(obj)
     assert fix() == {"FINISHED"}

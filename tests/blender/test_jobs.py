@@ -50,7 +50,7 @@ def test_cancelled_job_writes_nothing():
 
 
 def test_progress_rises_to_the_end():
-    surface, bridge = part("blender.meshes").read(meshes.suzanne()), part("bridge")
+    surface, bridge = part("blender.meshes").read(meshes.suzanne(1)), part("bridge")
     seen = []
     bridge.unwrap([surface], bridge.UnwrapSettings(), lambda fraction, message: seen.append(fraction) or True)
     assert len(seen) > 10 and seen == sorted(seen) and seen[0] >= 0 and seen[-1] <= 1

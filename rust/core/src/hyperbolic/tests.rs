@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stages between metric and certificates, each by its own mathematics, on slit spheres.
 
+use super::features::curves::Curves;
 use super::features::piece::Piece;
 use super::features::pieces::pieces;
 use super::features::placement::placed;
 use super::features::regions::divided;
 use super::harmonic::atlas::{Atlas, Random};
 use super::harmonic::certificates::{certify, signed_area};
+use super::harmonic::chart_map::ChartMap;
 use super::harmonic::delaunay::{Net, Weighted, delaunay};
 use super::harmonic::heat::diffuse;
 use super::harmonic::initial::{initial_map, segment};
 use super::harmonic::inverse::inverse;
-use super::harmonic::newton::{ChartMap, newton};
-use super::harmonic::piece_map::sliced_points;
+use super::harmonic::newton::newton;
 use super::metric::{Metric, MetricMethod, hyperbolic_metric};
+use super::moebius;
 use super::moebius::{Complex, Moebius, distance};
 use super::sample_meshes::{mesh, path, sphere};
-use super::slice::{NONE, Sliced, SlicedPair, slice_pair};
-use super::{Curves, moebius};
+use super::slice::slice_pair;
+use super::slice::sliced::{Sliced, SlicedPair};
 use crate::control::{Silent, Status, Watch};
+use crate::mesh::NO_CORNER;
 use crate::vector::{Vector, add, scaled};
 
 /// Ends of four curves on the sphere.
@@ -52,7 +55,7 @@ fn slit_spheres(level: u32) -> SlicedPair {
 fn metric(sliced: &Sliced) -> Metric {
     let mut silent = Silent;
     let watch = Watch::new(&mut silent, 0.0, "");
-    hyperbolic_metric(&sliced_points(sliced), &sliced.surface.faces, -2, MetricMethod::Newton, &watch)
+    hyperbolic_metric(&sliced.surface_points(), &sliced.surface.faces, -2, MetricMethod::Newton, &watch)
         .unwrap()
 }
 
@@ -83,7 +86,7 @@ fn charts_have_the_lengths_of_the_metric_and_fit_together() {
             let length = distance(chart[(k + 1) % 3], chart[(k + 2) % 3]);
             assert!((length - metric.lengths[face][k]).abs() < 1e-12);
             let across = sliced.surface.opposite[3 * face + k];
-            if across != NONE {
+            if across != NO_CORNER {
                 let there_and_back = atlas.transitions[across as usize] * atlas.transitions[3 * face + k];
                 assert!(is_identity(there_and_back));
             }
@@ -96,7 +99,7 @@ fn coordinates_on_a_face_come_back_and_agree_across_edges() {
     let sliced = slit_spheres(3).target;
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
-    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NONE) {
+    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
         let (face, k) = (corner as u32 / 3, corner % 3);
         let back = atlas.barycentric(face, atlas.at(face, [0.2, 0.5, 0.3]));
         assert!((back[0] - 0.2).abs() + (back[1] - 0.5).abs() + (back[2] - 0.3).abs() < 1e-9);
@@ -118,7 +121,7 @@ fn walks_end_where_they_should() {
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
     // from each face to the middles of its neighbours, as seen from it
-    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NONE) {
+    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
         let across = sliced.surface.opposite[corner] / 3;
         let middle = atlas.at(across, [0.3, 0.4, 0.3]);
         let seen = atlas.transitions[corner].inverse().apply(middle);
@@ -157,7 +160,7 @@ fn flips_end_in_a_delaunay_triangulation_with_the_same_area() {
         delaunay(net.clone(), &ours.lengths, &vec![false; sliced.faces.len()]);
     assert!(weights.iter().all(|&weight| weight > 0.0));
     assert_ne!(flipped.faces, net.faces, "something was flipped");
-    for corner in (0..flipped.opposite.len()).filter(|&corner| flipped.opposite[corner] != NONE) {
+    for corner in (0..flipped.opposite.len()).filter(|&corner| flipped.opposite[corner] != NO_CORNER) {
         let across = flipped.opposite[corner] as usize;
         assert_eq!(flipped.opposite[across] as usize, corner);
         let [tail, head] = flipped.ends(corner);
@@ -265,7 +268,7 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
 }
 
 fn is_boundary(sliced: &Sliced, vertex: usize) -> bool {
-    let corners = (0..3 * sliced.faces.len()).filter(|&corner| sliced.surface.opposite[corner] == NONE);
+    let corners = (0..3 * sliced.faces.len()).filter(|&corner| sliced.surface.opposite[corner] == NO_CORNER);
     corners.map(|corner| sliced.surface.faces[corner / 3][(corner + 1) % 3]).any(|v| v as usize == vertex)
 }
 

@@ -46,6 +46,16 @@ impl Location {
     pub(crate) fn point(&self, corners: [Vector; 3]) -> Vector {
         [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
     }
+
+    /// The point of the place on a surface.
+    pub(crate) fn point_on(&self, points: &[Vector], faces: &[[u32; 3]]) -> Vector {
+        self.point(triangle(points, faces[self.triangle as usize]))
+    }
+}
+
+/// The points of places on a surface.
+pub(crate) fn points_on(locations: &[Location], points: &[Vector], faces: &[[u32; 3]]) -> Vec<Vector> {
+    parallel::map(locations.len(), |place| locations[place].point_on(points, faces))
 }
 
 /// Finds points in a map.

@@ -5,11 +5,12 @@
 //! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which leaves the
 //! faces next to it their areas too.
 
+use super::Landmarks;
 use super::landmark_descent::Carrying;
 use super::landmarks::best_turn;
-use super::{
-    DiskRegistration, Landmarks, MISSED, Registration, RegistrationOptions, located, missed, verdict,
-};
+use super::options::RegistrationOptions;
+use super::result::{DiskRegistration, Registration};
+use super::verdict::{MISSED, located, missed, verdict};
 use crate::codomain::CanonicalDomain;
 use crate::codomain::planar::{flat, lifted};
 use crate::control::{History, Observer, Phase, Status};

@@ -20,6 +20,16 @@ pub fn area_ratios(points: &[Vector], faces: &[[u32; 3]], positions: &[Vector]) 
     })
 }
 
+/// A third of the area of the faces at each vertex, (n,), of the surface scaled to a bounding box with a diagonal of 1.
+pub fn vertex_areas(points: &[Vector], faces: &[[u32; 3]]) -> Vec<f64> {
+    let areas = face_areas(&normalized(points).0, faces);
+    let mut at_vertex = vec![0.0; points.len()];
+    for (face, area) in faces.iter().zip(areas) {
+        face.iter().for_each(|&vertex| at_vertex[vertex as usize] += area / 3.0);
+    }
+    at_vertex
+}
+
 /// How well data on the source agree with those `pulled` from the target: Pearson's correlation and the mean of the
 /// absolute difference, both weighted, each (n,).
 ///

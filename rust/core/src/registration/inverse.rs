@@ -3,7 +3,7 @@
 //!
 //! Cost: one point location per vertex of the target.
 
-use super::Registration;
+use super::result::Registration;
 use crate::control::{Observer, Watch};
 use crate::distortion::Image;
 use crate::error::Error;

@@ -10,8 +10,8 @@
 //!
 //! Cost: the flow, and about ten factorisations with two unknowns per vertex.
 
-use super::RegistrationOptions;
 use super::flow::flow;
+use super::options::RegistrationOptions;
 use crate::codomain::planar::{flat, lifted};
 use crate::codomain::{CanonicalDomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status, Watch};

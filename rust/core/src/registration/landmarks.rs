@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pairs of landmarks, their check, and the rotations that lay them over each other.
 
-use super::RegistrationOptions;
 use crate::codomain::CanonicalDomain;
 use crate::error::{Elements, Error, LandmarkError, Side};
 use crate::mesh::TriangleMesh;
-use crate::options::check_angle_weight;
 use crate::vector::Vector;
 
 /// Pairs of vertices, one on the source and one on the target, that belong together.
@@ -57,20 +55,6 @@ fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<()
         return Err(LandmarkError::OnBoundary { side, pairs, vertex });
     }
     Ok(())
-}
-
-impl RegistrationOptions {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        check_angle_weight(self.angle_weight, true)?;
-        match self.weight > 0.0 && self.weight.is_finite() {
-            true => Ok(()),
-            false => Err(Error::InvalidOption {
-                name: "weight",
-                found: self.weight.to_string(),
-                expected: "a finite number > 0".into(),
-            }),
-        }
-    }
 }
 
 /// How many pairs it takes to determine a rotation.

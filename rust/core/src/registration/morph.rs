@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The morph along a registration.
 
+use crate::alignment::similarity::similarity;
 use crate::parallel;
 use crate::vector::{Vector, add, scaled};
 
@@ -17,6 +18,17 @@ use crate::vector::{Vector, add, scaled};
 pub fn homotopy(vertices: &[Vector], positions: &[Vector], t: f64) -> Vec<Vector> {
     assert_eq!(vertices.len(), positions.len(), "one position per vertex");
     parallel::map(vertices.len(), |v| add(scaled(vertices[v], 1.0 - t), scaled(positions[v], t)))
+}
+
+/// The morph to the `positions` brought onto the `vertices` by the best similarity by `weights` (n,), so that the shape
+/// changes but does not travel.
+///
+/// # Panics
+/// Where the lengths differ.
+pub fn aligned_homotopy(vertices: &[Vector], positions: &[Vector], weights: &[f64], t: f64) -> Vec<Vector> {
+    let motion = similarity(positions, vertices, weights);
+    let aligned: Vec<Vector> = positions.iter().map(|&position| motion.apply(position)).collect();
+    homotopy(vertices, &aligned, t)
 }
 
 #[cfg(test)]

@@ -6,10 +6,11 @@
 //! h₁ move both landmarks of a pair to the middle between them, so that either surface is moved half the way
 //! only.
 
+use super::Landmarks;
 use super::landmark_descent::Carrying;
-use super::{
-    Landmarks, Registration, RegistrationOptions, SphereRegistration, located, missed, verdict, worst,
-};
+use super::options::RegistrationOptions;
+use super::result::{Registration, SphereRegistration};
+use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};

@@ -95,13 +95,13 @@ fn assert_sound(
     prop_assert!((proof.area / proof.expected_area - 1.0).abs() < 1e-8, "{:?}", proof);
     prop_assert!(proof.curve_error.max(proof.bank_error) < 1e-11, "{:?}", proof);
     prop_assert!(proof.cocycle_error < 1e-7, "{:?}", proof);
-    prop_assert_eq!(found.registration.status, Status::Converged);
-    for location in &found.registration.locations {
+    prop_assert_eq!(found.map.status, Status::Converged);
+    for location in &found.map.locations {
         let sum: f64 = location.barycentric.iter().sum();
         prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
         prop_assert!((location.triangle as usize) < meshes[1].n_faces());
     }
-    let positions = found.registration.positions(meshes[1].points());
+    let positions = found.map.positions(meshes[1].points());
     for (ours, theirs) in paths[0].iter().zip(paths[1]) {
         let images: Vec<Point> = ours.iter().map(|&v| positions[v]).collect();
         let [path, other] = [(0, ours), (1, theirs)]

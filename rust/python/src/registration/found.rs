@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use authalic::hyperbolic::CurveRegistration;
-use authalic::mesh::geometry::{face_areas, normalized};
-use authalic::registration::{DiskRegistration, Location, SphereRegistration, similarity};
+use authalic::registration::{
+    DiskRegistration, GivenFaces, Location, SphereRegistration, nearest_given_corners, pull_given_corners,
+};
 use authalic::{Error, Observer, registration};
 
 /// A surface of a registration.
@@ -39,7 +40,7 @@ macro_rules! either {
             Outcome::Disk($found) => $value,
             Outcome::Sphere($found) => $value,
             Outcome::Curves(curves) => {
-                let $found = &curves.registration;
+                let $found = &curves.map;
                 $value
             }
         }
@@ -49,14 +50,9 @@ macro_rules! either {
 pub(super) use either;
 
 impl Surface {
-    /// The corner given, 3 × face + corner, that has become each corner as oriented, (3 m,).
-    fn corner_of(&self) -> Vec<u32> {
-        let given = |corner: usize| {
-            let (face, vertex) = (corner / 3, self.faces[corner / 3][corner % 3]);
-            let place = self.given[face].iter().position(|&other| other == vertex);
-            (3 * face + place.expect("a face keeps its vertices")) as u32
-        };
-        (0..3 * self.faces.len()).map(given).collect()
+    /// The surface with its vertices at places in the domain.
+    fn registered<'a>(&'a self, places: &'a [[f64; 3]]) -> GivenFaces<'a> {
+        GivenFaces { given: &self.given, oriented: &self.faces, registered: places }
     }
 }
 
@@ -76,9 +72,7 @@ impl Found {
         match &self.outcome {
             Outcome::Disk(found) => (lifted(&found.registered), lifted(&found.target_registered)),
             Outcome::Sphere(found) => (found.registered.clone(), found.target_registered.clone()),
-            Outcome::Curves(found) => {
-                (found.registration.registered.clone(), found.registration.target_registered.clone())
-            }
+            Outcome::Curves(curves) => (curves.map.registered.clone(), curves.spheres[1].positions.clone()),
         }
     }
 
@@ -98,40 +92,19 @@ impl Found {
         if per == Per::Vertex {
             return registration::nearest_vertices(&self.target.faces, self.locations());
         }
-        let ((ours, theirs), (faces, target_faces)) =
-            (self.in_domain(), (&self.source.faces, &self.target.faces));
-        let sides = registration::corner_sides(faces, &ours, target_faces, &theirs, self.locations());
-        let nearest = registration::nearest_corners(&sides);
-        let corner_of = self.target.corner_of();
-        let mut rows = vec![0; nearest.len()];
-        for (corner, given) in self.source.corner_of().into_iter().enumerate() {
-            rows[given as usize] = corner_of[nearest[corner] as usize];
-        }
-        rows
+        let (ours, theirs) = self.in_domain();
+        let (source, target) = (self.source.registered(&ours), self.target.registered(&theirs));
+        nearest_given_corners(&source, &target, self.locations())
     }
 
     /// Per-vertex or per-corner rows of the target at those of the source, interpolated.
     pub fn interpolated(&self, values: &[f64], width: usize, per: Per) -> Vec<f64> {
-        let (faces, target_faces) = (&self.source.faces, &self.target.faces);
         if per == Per::Vertex {
-            return registration::pull_vertices(values, width, target_faces, self.locations());
+            return registration::pull_vertices(values, width, &self.target.faces, self.locations());
         }
         let (ours, theirs) = self.in_domain();
-        let oriented = registration::pull_rows(values, width, &self.target.corner_of());
-        let pulled = registration::pull_corners(
-            &oriented,
-            width,
-            faces,
-            &ours,
-            target_faces,
-            &theirs,
-            self.locations(),
-        );
-        let mut place_of = vec![0; 3 * faces.len()];
-        self.source.corner_of().iter().enumerate().for_each(|(corner, &given)| {
-            place_of[given as usize] = corner as u32;
-        });
-        registration::pull_rows(&pulled, width, &place_of)
+        let (source, target) = (self.source.registered(&ours), self.target.registered(&theirs));
+        pull_given_corners(values, width, &source, &target, self.locations())
     }
 
     /// (1 − t) v + t g(v); aligned, g(v) is brought onto v first.
@@ -139,20 +112,12 @@ impl Found {
         if !align {
             return registration::homotopy(vertices, &self.positions, t);
         }
-        let motion = similarity(&self.positions, vertices, &self.vertex_areas());
-        let aligned: Vec<_> = self.positions.iter().map(|&position| motion.apply(position)).collect();
-        registration::homotopy(vertices, &aligned, t)
+        registration::aligned_homotopy(vertices, &self.positions, &self.vertex_areas(), t)
     }
 
     /// A third of the area of the faces at each vertex of the source.
     pub fn vertex_areas(&self) -> Vec<f64> {
-        let points = normalized(&self.source.vertices).0;
-        let areas = face_areas(&points, &self.source.faces);
-        let mut at_vertex = vec![0.0; points.len()];
-        for (face, area) in self.source.faces.iter().zip(areas) {
-            face.iter().for_each(|&vertex| at_vertex[vertex as usize] += area / 3.0);
-        }
-        at_vertex
+        registration::vertex_areas(&self.source.vertices, &self.source.faces)
     }
 }
 

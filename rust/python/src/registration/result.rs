@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use authalic::registration;
-use authalic::{DiskMap, SphereMap};
+use authalic::hyperbolic::RoughSphere;
+use authalic::{DiskMap, History, SphereMap, Status, registration};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -112,10 +112,10 @@ impl Registration {
                 sphere_map(py, &f.target_map, &found.target.faces)?,
             ),
             Outcome::Curves(curves) => (
-                from_points(py, &curves.registration.registered).into_any(),
-                from_points(py, &curves.registration.target_registered).into_any(),
-                sphere_map(py, &curves.registration.source_map, &found.source.faces)?,
-                sphere_map(py, &curves.registration.target_map, &found.target.faces)?,
+                from_points(py, &curves.map.registered).into_any(),
+                from_points(py, &curves.spheres[1].positions).into_any(),
+                rough_sphere(py, &curves.spheres[0], &found.source.faces)?,
+                rough_sphere(py, &curves.spheres[1], &found.target.faces)?,
             ),
         };
         let (certificates, warnings, energies) = match &found.outcome {
@@ -130,10 +130,13 @@ impl Registration {
         let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
         let triangles = locations.iter().map(|location| location.triangle as usize);
         let area_distortion = found.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
-        let target_distortion = either!(&found.outcome, f => &f.target_distortion);
-        let (landmark_error, missed, status, iterations, seconds, distortion) = either!(&found.outcome, f => {
-            (&f.landmark_error, &f.missed, f.status.as_str(), f.iterations, f.seconds, &f.distortion)
-        });
+        let (missed, status, distortion) =
+            either!(&found.outcome, f => (&f.missed, f.status.as_str(), &f.distortion));
+        let (landmark_error, target_distortion, iterations, seconds) = match &found.outcome {
+            Outcome::Disk(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
+            Outcome::Sphere(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
+            Outcome::Curves(f) => (&f.map.curve_error, &f.inverse.distortion, f.iterations, f.seconds),
+        };
         Ok(Self {
             positions: from_points(py, &found.positions),
             triangles: from_index_list(py, triangles),
@@ -167,6 +170,19 @@ fn disk_map(py: Python<'_>, map: &DiskMap, faces: &[[u32; 3]]) -> PyResult<Py<Py
 
 fn sphere_map(py: Python<'_>, map: &SphereMap, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
     Ok(Py::new(py, sphere::SphereMap::new(py, map, faces)?)?.into_any())
+}
+
+/// A surface laid roughly onto the sphere, as a map without iterations.
+fn rough_sphere(py: Python<'_>, sphere: &RoughSphere, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
+    let map = SphereMap {
+        positions: sphere.positions.clone(),
+        status: Status::Converged,
+        history: History::start(),
+        distortion: sphere.distortion.clone(),
+        refinement: None,
+        seconds: 0.0,
+    };
+    sphere_map(py, &map, faces)
 }
 
 #[pymethods]

@@ -11,7 +11,8 @@ use crate::hyperbolic::metric::Metric;
 use crate::hyperbolic::moebius::{
     Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
 };
-use crate::hyperbolic::slice::{NONE, Opened};
+use crate::hyperbolic::slice::Opened;
+use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::{Vector, add, cross, dot, scaled};
 
@@ -57,7 +58,7 @@ impl<'a> Atlas<'a> {
         let charts =
             parallel::map(surface.faces.len(), |face| chart(metric.lengths[face], metric.angles[face]));
         let transitions = parallel::map(3 * charts.len(), |corner| match opposite[corner] {
-            NONE => Moebius::default(),
+            NO_CORNER => Moebius::default(),
             across => {
                 let [from, to] = edge(&charts, corner);
                 let [to_from, to_to] = edge(&charts, across as usize);
@@ -75,7 +76,7 @@ impl<'a> Atlas<'a> {
         for step in 0..MOST_STEPS {
             let heights = self.heights(walk.face, walk.x);
             let crossed =
-                |k: &usize| heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NONE;
+                |k: &usize| heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NO_CORNER;
             let candidates: Vec<usize> = (0..3).filter(crossed).collect();
             let lowest = || candidates.iter().copied().min_by(|&a, &b| heights[a].total_cmp(&heights[b]));
             let chosen = match candidates.len() {

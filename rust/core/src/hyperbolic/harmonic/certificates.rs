@@ -6,8 +6,8 @@
 
 use std::f64::consts::PI;
 
+use super::chart_map::ChartMap;
 use super::delaunay::Net;
-use super::newton::ChartMap;
 use crate::hyperbolic::moebius::{Complex, Moebius, orientation, seen_from};
 use crate::parallel;
 
@@ -67,7 +67,7 @@ pub(crate) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
 }
 
 /// Faces of the sliced source with an image that is not positively oriented, ascending.
-pub(super) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
+pub(crate) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
     let is_folded = parallel::map(map.input.faces.len(), |face| {
         let [a, b, c] = image(map, &map.input, face);
         orientation(a, b, c) <= 0.0

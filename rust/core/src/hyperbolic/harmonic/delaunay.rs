@@ -11,7 +11,8 @@
 //! Cost: O(m) flips in practice.
 
 use crate::hyperbolic::moebius::Moebius;
-use crate::hyperbolic::slice::{NONE, Opened};
+use crate::hyperbolic::slice::Opened;
+use crate::mesh::NO_CORNER;
 
 /// An edge is flipped where its cotangents sum to less than minus this.
 const CONVEX: f64 = 1e-9;
@@ -69,7 +70,7 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
     let mut flips_left = 100 * lengths.len();
     while let Some(corner) = queue.pop() {
         is_queued[corner as usize] = false;
-        let is_kept = |corner: u32| corner != NONE && kept[corner as usize / 3];
+        let is_kept = |corner: u32| corner != NO_CORNER && kept[corner as usize / 3];
         let may_flip = flips_left > 0 && !is_kept(corner) && !is_kept(net.opposite[corner as usize]);
         if !may_flip || !should_flip(&net, &lengths, &is_boundary, corner as usize) {
             continue;
@@ -77,7 +78,7 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
         flips_left -= 1;
         for around in flip(&mut net, &mut lengths, corner as usize) {
             let edge = around.min(net.opposite[around as usize]);
-            if net.opposite[around as usize] != NONE && !is_queued[edge as usize] {
+            if net.opposite[around as usize] != NO_CORNER && !is_queued[edge as usize] {
                 is_queued[edge as usize] = true;
                 queue.push(edge);
             }
@@ -86,11 +87,11 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
     // 2. Weights
     let halves: Vec<f64> = (0..net.faces.len()).flat_map(|face| cotangents(&lengths, face)).collect();
     let weight = |corner: usize| match net.opposite[corner] {
-        NONE => 0.5 * halves[corner],
+        NO_CORNER => 0.5 * halves[corner],
         across => 0.5 * (halves[corner] + halves[across as usize]),
     };
     let is_kept = |corner: usize| {
-        kept[corner / 3] || net.opposite[corner] != NONE && kept[net.opposite[corner] as usize / 3]
+        kept[corner / 3] || net.opposite[corner] != NO_CORNER && kept[net.opposite[corner] as usize / 3]
     };
     let least = |corner: usize| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
     let weights = (0..halves.len()).map(|corner| weight(corner).max(least(corner))).collect();
@@ -100,7 +101,7 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
 fn boundary_vertices(net: &Net) -> Vec<bool> {
     let n_vertices = net.faces.iter().flatten().max().map_or(0, |&last| last as usize + 1);
     let mut is_boundary = vec![false; n_vertices];
-    for corner in (0..net.opposite.len()).filter(|&corner| net.opposite[corner] == NONE) {
+    for corner in (0..net.opposite.len()).filter(|&corner| net.opposite[corner] == NO_CORNER) {
         net.ends(corner).iter().for_each(|&vertex| is_boundary[vertex as usize] = true);
     }
     is_boundary
@@ -109,7 +110,7 @@ fn boundary_vertices(net: &Net) -> Vec<bool> {
 /// Whether an edge is not Delaunay and may be flipped.
 fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) -> bool {
     let across = net.opposite[corner];
-    if across == NONE || across as usize / 3 == corner / 3 {
+    if across == NO_CORNER || across as usize / 3 == corner / 3 {
         return false;
     }
     let across = across as usize;
@@ -151,8 +152,8 @@ fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
         None => old,
     };
     for (&place, (opposite, length, transition)) in places.iter().zip(kept) {
-        net.opposite[place] = if opposite == NONE { NONE } else { moved(opposite) };
-        if opposite != NONE {
+        net.opposite[place] = if opposite == NO_CORNER { NO_CORNER } else { moved(opposite) };
+        if opposite != NO_CORNER {
             net.opposite[moved(opposite) as usize] = place as u32;
         }
         lengths[place] = length;

@@ -9,16 +9,17 @@
 //!
 //! Cost: one sparse Cholesky factorisation for either surface and a point location for each vertex.
 
+use crate::mesh::NO_CORNER;
 use std::f64::consts::PI;
 
 use super::certificates::PieceCertificates;
-use super::initial::{boundary_corners, segment};
+use super::initial::segment;
 use super::layout::{Laplace, Planar, clamped_weights, planar_layout};
 use crate::codomain::planar::lifted;
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError, Side};
-use crate::hyperbolic::slice::{NONE, Sliced};
+use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
 
 /// How many times a layout of a cylinder may wind around it beyond its own period.
@@ -27,7 +28,7 @@ const WINDINGS: i32 = 8;
 const FOUND: f64 = 1e-9;
 
 /// A map of a piece.
-pub(super) struct FlatMap {
+pub(crate) struct FlatMap {
     /// For each vertex of the sliced source a place in the sliced target.
     pub locations: Vec<Location>,
     /// For each vertex of the sliced target a place in the sliced source.
@@ -47,7 +48,7 @@ struct Laid<'a> {
 /// # Errors
 /// [`NumericsError::NoEmbedding`], with faces of the pieces, where a layout folds in double precision;
 /// [`Error::CancelledEarly`].
-pub(super) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
+pub(crate) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
     // 1. Both surfaces on the same domain
     let is_cylinder = source.sides.len() > 2;
     let theirs = match is_cylinder {
@@ -76,7 +77,7 @@ impl Laid<'_> {
     /// For each vertex of the surface its place on another.
     fn places_on(&self, other: &Self, watch: &Watch<'_>) -> Result<Vec<Location>, Error> {
         let mut copies = located(other.sliced, &other.layout, &self.layout, watch)?;
-        let corners = boundary_corners(&other.sliced.disk);
+        let corners = other.sliced.disk.boundary_corners();
         let sides = self.sliced.sides.iter().zip(&other.sliced.sides);
         for (side, theirs) in sides.filter(|(side, _)| !side.is_arc) {
             for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
@@ -103,7 +104,7 @@ impl Laid<'_> {
     /// The area inside the boundary.
     fn outline_area(&self) -> f64 {
         let disk = &self.sliced.disk;
-        let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NONE);
+        let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NO_CORNER);
         let part = |corner: usize| {
             let face = disk.faces[corner / 3];
             let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3] as usize]);

@@ -8,7 +8,8 @@
 //!
 //! Cost: one pass over the edges per step.
 
-use super::newton::{ChartMap, Descent};
+use super::chart_map::ChartMap;
+use super::newton::Descent;
 use crate::control::{Observer, Status};
 use crate::hyperbolic::moebius::Complex;
 use crate::parallel;

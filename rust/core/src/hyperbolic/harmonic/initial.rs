@@ -11,6 +11,7 @@
 //!
 //! Cost: two sparse Cholesky factorisations, a point location for each vertex and a short walk for each edge.
 
+use crate::mesh::NO_CORNER;
 use std::collections::{HashMap, VecDeque};
 use std::f64::consts::PI;
 
@@ -23,7 +24,8 @@ use crate::codomain::planar::lifted;
 use crate::control::Watch;
 use crate::error::{Error, Side};
 use crate::hyperbolic::moebius::{Complex, Moebius};
-use crate::hyperbolic::slice::{NONE, Opened, Sliced};
+use crate::hyperbolic::slice::Opened;
+use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
 use crate::parallel;
 
@@ -99,7 +101,7 @@ fn places_of_copies(
     let locator = Locator::new(&theirs, &target.disk.faces);
     let mut copies = locator.locate_all(&ours, watch).ok_or(Error::CancelledEarly)?;
 
-    let corners = boundary_corners(&target.disk);
+    let corners = target.disk.boundary_corners();
     // arcs last: where a bank ends in an arc, the faces along the arc are those that its two sides share
     for is_arc in [false, true] {
         for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| side.is_arc == is_arc)
@@ -127,15 +129,6 @@ pub(crate) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
     (at, ((s - from) / (to - from)).clamp(0.0, 1.0))
 }
 
-/// For each vertex of the boundary the corner opposite to the edge that leaves it with the disk on the left.
-pub(crate) fn boundary_corners(disk: &Opened) -> Vec<u32> {
-    let mut corners = vec![NONE; disk.vertex_of.len()];
-    for corner in (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NONE) {
-        corners[disk.faces[corner / 3][(corner + 1) % 3] as usize] = corner as u32;
-    }
-    corners
-}
-
 /// Which copy stands for each vertex, and how the charts of the others lead to its chart.
 struct Links {
     /// (n,): the vertex of the disk that stands for each vertex of the sliced source.
@@ -150,12 +143,12 @@ impl Links {
     fn new(source: &Sliced, target: &Sliced, atlas: &Atlas<'_>, copies: &[Location]) -> Self {
         let n = source.surface.vertex_of.len();
         let surface_vertex = source.surface_vertices();
-        let mut masters = vec![NONE; n];
+        let mut masters = vec![u32::MAX; n];
         // on the left sides first, which come before the others
         let left = source.sides.iter().flat_map(|side| side.vertices.iter().copied());
         for copy in left.chain(0..copies.len() as u32) {
             let master = &mut masters[surface_vertex[copy as usize] as usize];
-            *master = if *master == NONE { copy } else { *master };
+            *master = if *master == u32::MAX { copy } else { *master };
         }
         let mut to_master = vec![Moebius::default(); copies.len()];
         for copy in 0..copies.len() {
@@ -166,7 +159,7 @@ impl Links {
             }
         }
         let mut is_boundary = vec![false; n];
-        for corner in (0..3 * source.faces.len()).filter(|&c| source.surface.opposite[c] == NONE) {
+        for corner in (0..3 * source.faces.len()).filter(|&c| source.surface.opposite[c] == NO_CORNER) {
             for step in [1, 2] {
                 is_boundary[source.surface.faces[corner / 3][(corner + step) % 3] as usize] = true;
             }
@@ -228,7 +221,7 @@ fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: u32, to: u32)
         }
         let is_beyond = |k: &usize| {
             let corner = 3 * face as usize + k;
-            disk.opposite[corner] != NONE && is_right_of(edge_of(disk, layout, corner), goal)
+            disk.opposite[corner] != NO_CORNER && is_right_of(edge_of(disk, layout, corner), goal)
         };
         let exits: Vec<usize> = (0..3).filter(is_beyond).collect();
         let Some(&k) = exits.get(random.next() as usize % exits.len().max(1)) else { break };
@@ -260,7 +253,7 @@ fn path(opposite: &[u32], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
         }
         for corner in [0, 1, 2].map(|k| 3 * face as usize + k) {
             let across = opposite[corner];
-            if across != NONE && !motions.contains_key(&(across / 3)) {
+            if across != NO_CORNER && !motions.contains_key(&(across / 3)) {
                 motions.insert(across / 3, atlas.transitions[corner] * motion);
                 queue.push_back(across / 3);
             }

@@ -9,11 +9,12 @@
 //! Cost: some ten faces of the target for every face of the source.
 
 use super::certificates::image;
-use super::initial::{boundary_corners, segment};
-use super::newton::ChartMap;
+use super::chart_map::ChartMap;
+use super::initial::segment;
 use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
-use crate::hyperbolic::slice::{NONE, Sliced};
+use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::Location;
+use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::{Vector, cross, dot};
 
@@ -38,7 +39,7 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
         }
     }
     // 2. On the boundary: the same parameter
-    let corners = boundary_corners(&source.disk);
+    let corners = source.disk.boundary_corners();
     let surface_vertex = target.surface_vertices();
     for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| !side.is_arc) {
         for (&vertex, &s) in theirs.vertices.iter().zip(&theirs.parameters) {
@@ -64,9 +65,9 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
     let triangle = corners.map(straight);
     let mut vertices: Vec<(u32, [f64; 3])> = Vec::new();
     let first = map.places.faces[map.input.faces[face][0] as usize];
-    let mut queue = vec![(first, Moebius::default(), NONE)];
+    let mut queue = vec![(first, Moebius::default())];
     let mut visited = vec![first];
-    while let Some((at, motion, _)) = queue.pop() {
+    while let Some((at, motion)) = queue.pop() {
         let chart = map.atlas.charts[at as usize].map(|z| straight(motion.apply(z)));
         if at != first && !overlap(&triangle, &chart) {
             continue;
@@ -81,9 +82,9 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
         }
         for corner in 3 * at as usize..3 * at as usize + 3 {
             let across = target.surface.opposite[corner];
-            if across != NONE && visited.len() < MOST_COVERED && !visited.contains(&(across / 3)) {
+            if across != NO_CORNER && visited.len() < MOST_COVERED && !visited.contains(&(across / 3)) {
                 visited.push(across / 3);
-                queue.push((across / 3, motion * map.atlas.transitions[corner].inverse(), corner as u32));
+                queue.push((across / 3, motion * map.atlas.transitions[corner].inverse()));
             }
         }
     }

@@ -9,7 +9,9 @@
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError};
-use crate::hyperbolic::slice::{NONE, Opened, Sliced};
+use crate::hyperbolic::slice::Opened;
+use crate::hyperbolic::slice::sliced::Sliced;
+use crate::mesh::NO_CORNER;
 use crate::mesh::geometry::corner_cotangents;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
@@ -18,14 +20,14 @@ use crate::sparse::{Analysis, Factor, Failure, Order};
 const WEIGHTS: [f64; 2] = [1e-2, 1e2];
 
 /// A place in the plane.
-pub(super) type Planar = [f64; 2];
+pub(crate) type Planar = [f64; 2];
 
 /// One position for each vertex of the disk, `held` where given; no face is folded.
 ///
 /// # Errors
 /// [`NumericsError::NoEmbedding`], with faces of the piece, where some fold in double precision;
 /// [`Error::CancelledEarly`].
-pub(super) fn planar_layout(
+pub(crate) fn planar_layout(
     sliced: &Sliced,
     held: &[Option<Planar>],
     watch: &Watch<'_>,
@@ -49,7 +51,7 @@ pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
     let opposite = &sliced.surface.opposite;
     let of = |corner: usize| cotangents[corner / 3][corner % 3];
     let weight = |corner: usize| match opposite[corner] {
-        NONE => 0.5 * of(corner),
+        NO_CORNER => 0.5 * of(corner),
         across => 0.5 * (of(corner) + of(across as usize)),
     };
     parallel::map(3 * cotangents.len(), |corner| {

@@ -3,11 +3,12 @@
 
 pub(super) mod atlas;
 pub(super) mod certificates;
+pub(super) mod chart_map;
 pub(crate) mod delaunay;
-mod flat;
+pub(super) mod flat;
 pub(crate) mod heat;
 pub(super) mod initial;
 pub(crate) mod inverse;
-mod layout;
+pub(super) mod layout;
 pub(super) mod newton;
 pub(super) mod piece_map;

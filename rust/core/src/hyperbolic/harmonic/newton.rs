@@ -13,15 +13,11 @@
 //! Input: a start in the right homotopy class, and the intrinsic Delaunay weights of the source's own
 //! hyperbolic metric. Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
 
-use super::atlas::{Atlas, Walk};
-use super::delaunay::{Net, Weighted, delaunay};
-use super::initial::Places;
+use super::chart_map::{ChartMap, hessian};
 use crate::control::{Observer, Status, Watch};
 use crate::error::{Error, NumericsError};
-use crate::hyperbolic::moebius::{Complex, Moebius, exponential, seen_from};
-use crate::hyperbolic::slice::NONE;
-use crate::parallel;
-use crate::sparse::{Analysis, Factor, Failure, Order};
+use crate::hyperbolic::moebius::Complex;
+use crate::sparse::{Factor, Failure};
 
 /// The gradient of a minimum, in its largest component.
 const CONVERGED: f64 = 1e-12;
@@ -36,26 +32,6 @@ const SUFFICIENT: f64 = 1e-4;
 const ROUNDING: f64 = 1e-13;
 /// Halvings of a step.
 const HALVINGS: i32 = 40;
-/// Below this distance d coth d and d / sinh d are taken from their series.
-const SERIES: f64 = 1e-4;
-
-/// A map into the atlas of the target, by local charts.
-pub(crate) struct ChartMap<'a> {
-    /// The target.
-    pub atlas: &'a Atlas<'a>,
-    /// Where each vertex is.
-    pub places: Places,
-    /// The faces of the source, with transitions between the charts of their vertices' places.
-    pub input: Net,
-    /// The triangulation by which the energy is taken.
-    pub intrinsic: Net,
-    /// (3 m,): the weight of the edge opposite to each corner of it.
-    pub weights: Vec<f64>,
-    /// Its edges between different places that are not both held, each by one corner.
-    edges: Vec<u32>,
-    /// E of the identity of the source by the same edges.
-    pub rest_energy: f64,
-}
 
 /// What a descent did.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,16 +42,6 @@ pub struct Descent {
     pub gradient: f64,
     /// Why it ended.
     pub status: Status,
-}
-
-/// An edge seen from both ends.
-#[derive(Clone, Copy, Default)]
-struct Pull {
-    ends: [u32; 2],
-    weight: f64,
-    distance: f64,
-    /// The unit vectors at either end towards the other.
-    towards: [Complex; 2],
 }
 
 /// Minimises E in place.
@@ -135,202 +101,4 @@ fn refused(failure: Failure) -> Error {
 
 fn largest(values: &[Complex]) -> f64 {
     values.iter().fold(0.0, |most: f64, g| most.max(g.re.abs()).max(g.im.abs()))
-}
-
-impl<'a> ChartMap<'a> {
-    /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges
-    /// are `lengths` long, but for the faces that are `kept`.
-    pub(crate) fn by_delaunay(
-        atlas: &'a Atlas<'a>,
-        places: Places,
-        input: Net,
-        lengths: &[[f64; 3]],
-        kept: &[bool],
-    ) -> Self {
-        let Weighted { net: intrinsic, weights, lengths } = delaunay(input.clone(), lengths, kept);
-        let mut map = Self { atlas, places, input, intrinsic, weights, edges: Vec::new(), rest_energy: 0.0 };
-        map.edges = (0..map.weights.len() as u32).filter(|&corner| map.counts(corner)).collect();
-        let rest = |&corner: &u32| 0.5 * map.weights[corner as usize] * lengths[corner as usize].powi(2);
-        map.rest_energy = map.edges.iter().map(rest).sum();
-        map
-    }
-
-    /// Whether the edge of a corner is counted, from this side: not where it lies between two vertices that are held.
-    fn counts(&self, corner: u32) -> bool {
-        let across = self.intrinsic.opposite[corner as usize];
-        let is_held = |vertex: u32| self.places.held[vertex as usize].is_some();
-        let [tail, head] = self.intrinsic.ends(corner as usize);
-        (across == NONE || corner < across) && !(is_held(tail) && is_held(head))
-    }
-
-    /// E at the present places.
-    pub(crate) fn energy(&self) -> f64 {
-        self.energy_at(&self.places.positions)
-    }
-
-    /// E with every vertex elsewhere in its chart.
-    pub(crate) fn energy_at(&self, positions: &[Complex]) -> f64 {
-        parallel::sum(self.edges.len(), |edge| {
-            let pull = self.pull(self.edges[edge], positions);
-            0.5 * pull.weight * pull.distance * pull.distance
-        })
-    }
-
-    fn pull(&self, corner: u32, positions: &[Complex]) -> Pull {
-        let corner = corner as usize;
-        let ends = self.intrinsic.ends(corner);
-        let [a, x] = ends.map(|vertex| positions[vertex as usize]);
-        let transition = self.intrinsic.transitions[corner];
-        let b = transition.apply(x);
-        let (there, back) = (seen_from(a, b), seen_from(b, a));
-        let size = there.norm();
-        let unit = |z: Complex| if size > 0.0 { z / z.norm() } else { Complex::new(1.0, 0.0) };
-        let turn = transition.derivative(x);
-        let away = if size > 0.0 { unit(back) } else { Complex::new(-1.0, 0.0) };
-        let towards = [unit(there), away * (turn / turn.norm()).conj()];
-        Pull { ends, weight: self.weights[corner], distance: 2.0 * size.atanh(), towards }
-    }
-
-    /// All edges of the energy as they pull at their ends.
-    fn pulls(&self) -> Vec<Pull> {
-        parallel::map(self.edges.len(), |edge| self.pull(self.edges[edge], &self.places.positions))
-    }
-
-    /// (n,): the gradient of E in the orthonormal frame of each vertex; zero for those held.
-    fn gradient(&self, pulls: &[Pull]) -> Vec<Complex> {
-        let mut gradient = vec![Complex::default(); self.places.positions.len()];
-        for pull in pulls {
-            for (vertex, towards) in pull.ends.into_iter().zip(pull.towards) {
-                gradient[vertex as usize] -= pull.weight * pull.distance * towards;
-            }
-        }
-        for (slope, held) in gradient.iter_mut().zip(&self.places.held) {
-            *slope = if held.is_some() { Complex::default() } else { *slope };
-        }
-        gradient
-    }
-
-    /// (n,): the gradient at the present places.
-    pub(crate) fn gradient_now(&self) -> Vec<Complex> {
-        self.gradient(&self.pulls())
-    }
-
-    /// (n,): the sum of the weights at each vertex.
-    pub(super) fn stiffness(&self) -> Vec<f64> {
-        let mut sums = vec![0.0; self.places.positions.len()];
-        for &corner in &self.edges {
-            let ends = self.intrinsic.ends(corner as usize);
-            ends.iter().for_each(|&vertex| sums[vertex as usize] += self.weights[corner as usize]);
-        }
-        sums
-    }
-
-    /// The pattern of the Hessian: two unknowns for each vertex that is not held, and one held vertex more
-    /// for edges to have three corners.
-    fn analysis(&self) -> Result<Analysis, Error> {
-        let n = self.places.positions.len();
-        let mut dofs: Vec<u8> =
-            self.places.held.iter().map(|held| if held.is_some() { 0 } else { 2 }).collect();
-        dofs.push(0);
-        let clique = |&corner: &u32| match self.intrinsic.ends(corner as usize) {
-            [tail, head] if tail == head => [tail, n as u32, n as u32],
-            [tail, head] => [tail, head, n as u32],
-        };
-        let cliques: Vec<[u32; 3]> = self.edges.iter().map(clique).collect();
-        Analysis::new(dofs.len(), &cliques, &dofs, Order::Sparse)
-    }
-
-    fn direction(&self, analysis: &Analysis, factor: &Factor<f64>, slopes: &[Complex]) -> Vec<Complex> {
-        let mut rhs = vec![0.0; analysis.n_unknowns()];
-        let is_free = |vertex: usize| self.places.held[vertex].is_none();
-        for vertex in (0..slopes.len()).filter(|&vertex| is_free(vertex)) {
-            let at = analysis.first_unknown(vertex);
-            (rhs[at], rhs[at + 1]) = (-slopes[vertex].re, -slopes[vertex].im);
-        }
-        factor.solve(analysis, &mut rhs);
-        parallel::map(slopes.len(), |vertex| match is_free(vertex) {
-            true => {
-                let at = analysis.first_unknown(vertex);
-                Complex::new(rhs[at], rhs[at + 1])
-            }
-            false => Complex::default(),
-        })
-    }
-
-    /// The positions after a move of every vertex along its geodesic.
-    pub(crate) fn moved(&self, moves: &[Complex], part: f64) -> Vec<Complex> {
-        let (positions, held) = (&self.places.positions, &self.places.held);
-        parallel::map(positions.len(), |vertex| match held[vertex] {
-            Some(_) => positions[vertex],
-            None => exponential(positions[vertex], part * moves[vertex]),
-        })
-    }
-
-    /// Takes new positions in the present charts, and goes over to the charts of the faces in which they lie.
-    pub(crate) fn recharted(&mut self, positions: Vec<Complex>) {
-        let (atlas, places) = (self.atlas, &self.places);
-        let stays = |vertex: usize| Walk {
-            face: places.faces[vertex],
-            x: positions[vertex],
-            motion: Moebius::default(),
-            is_outside: false,
-        };
-        let walks = parallel::map(positions.len(), |vertex| match places.held[vertex] {
-            Some(_) => stays(vertex),
-            None => atlas.walk(places.faces[vertex], positions[vertex]),
-        });
-        for net in [&mut self.input, &mut self.intrinsic] {
-            let (faces, old) = (&net.faces, &net.transitions);
-            net.transitions = parallel::map(old.len(), |corner| {
-                let face = faces[corner / 3];
-                let [tail, head] = [1, 2].map(|step| walks[face[(corner + step) % 3] as usize].motion);
-                match tail == Moebius::default() && head == Moebius::default() {
-                    true => old[corner],
-                    false => tail * old[corner] * head.inverse(),
-                }
-            });
-        }
-        self.places.faces = walks.iter().map(|walk| walk.face).collect();
-        self.places.positions = walks.iter().map(|walk| walk.x).collect();
-    }
-}
-
-/// The Hessian of ½ w d² as the matrix of its two ends, with two rows for each.
-fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
-    let d = pull.distance;
-    let (along, across) = match d < SERIES {
-        true => (1.0 + d * d / 3.0, 1.0 - d * d / 6.0),
-        false => (d / d.tanh(), d / d.sinh()),
-    };
-    let [e, f] = pull.towards.map(|z| [z.re, z.im]);
-    let [n, o] = pull.towards.map(|z| [-z.im, z.re]);
-    let mut matrix = [[0.0; 6]; 6];
-    for row in 0..2 {
-        for column in 0..2 {
-            let own =
-                |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
-            // towards each other along one geodesic: the vectors at the ends are opposite, and so are their
-            // normals
-            let both = pull.weight * (e[row] * f[column] + across * n[row] * o[column]);
-            matrix[row][column] = own(e, n);
-            matrix[2 + row][2 + column] = own(f, o);
-            matrix[row][2 + column] = both;
-            matrix[2 + column][row] = both;
-        }
-    }
-    if pull.ends[0] == pull.ends[1] {
-        return loop_hessian(&matrix);
-    }
-    matrix
-}
-
-/// Both ends are the same vertex.
-fn loop_hessian(matrix: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
-    let mut sum = [[0.0; 6]; 6];
-    for row in 0..4 {
-        for column in 0..4 {
-            sum[row % 2][column % 2] += matrix[row][column];
-        }
-    }
-    sum
 }

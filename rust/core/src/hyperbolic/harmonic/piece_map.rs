@@ -6,18 +6,18 @@
 
 use super::atlas::Atlas;
 use super::certificates::{PieceCertificates, certify, folded_faces};
+use super::chart_map::ChartMap;
 use super::flat::flat_map;
 use super::heat::diffuse;
 use super::initial::initial_map;
 use super::inverse::inverse;
-use super::newton::{ChartMap, Descent, newton};
+use super::newton::{Descent, newton};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::{Error, Side};
 use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
-use crate::hyperbolic::slice::{Sliced, SlicedPair};
-use crate::hyperbolic::{HyperbolicOptions, Solver};
+use crate::hyperbolic::options::{HyperbolicOptions, Solver};
+use crate::hyperbolic::slice::sliced::{Sliced, SlicedPair};
 use crate::location::Location;
-use crate::vector::Vector;
 
 /// A map between two sliced pieces.
 pub(crate) struct PieceMap {
@@ -54,7 +54,7 @@ pub(crate) fn map_piece(
     //    the weights
     let metric = |surface: usize, observer: &mut dyn Observer| {
         let sliced = [source, target][surface];
-        let points = sliced_points(sliced);
+        let points = sliced.surface_points();
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
         let metric = hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch);
         let side = [Side::Source, Side::Target][surface];
@@ -130,11 +130,6 @@ fn grow(is_near: &mut [bool], faces: &[[u32; 3]]) {
     let before = is_near.to_vec();
     let touches = |face: &&[u32; 3]| face.iter().any(|&vertex| before[vertex as usize]);
     faces.iter().filter(touches).for_each(|&face| mark(is_near, face));
-}
-
-/// The points of the vertices of the sliced surface.
-pub(crate) fn sliced_points(sliced: &Sliced) -> Vec<Vector> {
-    sliced.surface.vertex_of.iter().map(|&vertex| sliced.points[vertex as usize]).collect()
 }
 
 /// A third of the hyperbolic area of the faces at each vertex.

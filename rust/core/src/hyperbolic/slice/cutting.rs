@@ -12,7 +12,7 @@
 //! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a
 //! vertex as many steps as it has neighbours.
 
-use super::Place;
+use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
 use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
 use crate::vector::{Vector, add, distance, norm, scaled};

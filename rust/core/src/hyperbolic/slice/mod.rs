@@ -20,89 +20,23 @@ mod arcs;
 mod chain;
 mod cutting;
 pub(super) mod isotopy;
-mod openings;
+pub(super) mod openings;
 mod paths;
 mod polyline;
+pub(super) mod sliced;
 #[cfg(test)]
 mod tests;
 
 use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
-use crate::error::{self, CurveError, Error};
-use crate::vector::Vector;
+use crate::error;
+use crate::error::{CurveError, Error};
+use crate::mesh::NO_CORNER;
 use arcs::Carry;
 use cutting::{Cutting, Seam};
 
 pub(super) use openings::Opened;
-
-/// A corner without another across its edge.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts
-/// are split.
-#[derive(Debug, Clone)]
-pub(super) struct Sliced {
-    /// (n, 3): the points of the piece and of the midpoints of split edges, before cutting.
-    pub points: Vec<Vector>,
-    /// (m, 3): faces before cutting.
-    pub faces: Vec<[u32; 3]>,
-    /// (m,): where each face lies in the piece.
-    pub places: Vec<Place>,
-    /// Cut along the features alone.
-    pub surface: Opened,
-    /// Cut along features and arcs: a disk.
-    pub disk: Opened,
-    /// The boundary of the disk run through with the disk on the left: left bank of feature 1 of the chain,
-    /// arc 1, left bank of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B −
-    /// 1 (backwards), …, right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last
-    /// vertex (of the disk) of the one before.
-    pub sides: Vec<Side>,
-}
-
-impl Sliced {
-    /// For each vertex of the disk the vertex of the surface.
-    pub(super) fn surface_vertices(&self) -> Vec<u32> {
-        let mut vertices = vec![0; self.disk.vertex_of.len()];
-        for (disk, surface) in self.disk.faces.iter().zip(&self.surface.faces) {
-            (0..3).for_each(|k| vertices[disk[k] as usize] = surface[k]);
-        }
-        vertices
-    }
-}
-
-/// A part of a face of the piece.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    /// The face of the piece.
-    pub face: u32,
-    /// The barycentric coordinates in it of each corner of the part; exact, as all splits are at midpoints.
-    pub corners: [[f64; 3]; 3],
-}
-
-/// One side of the boundary of the disk.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Side {
-    /// Whether it is a side of an arc rather than a bank.
-    pub is_arc: bool,
-    /// Which feature of the chain, or which arc: both from 0.
-    pub index: usize,
-    /// Vertices of the disk in the order of travel, at least two.
-    pub vertices: Vec<u32>,
-    /// Their parameters: increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0 on the
-    /// others. On a bank those of the feature, on an arc shares of its length in space.
-    pub parameters: Vec<f64>,
-}
-
-/// Source and target cut open, with corresponding sides.
-#[derive(Debug, Clone)]
-pub(super) struct SlicedPair {
-    /// The source.
-    pub source: Sliced,
-    /// The target.
-    pub target: Sliced,
-    /// Whether all arcs on the target follow the carried ones; otherwise the homotopy class may be another.
-    pub followed: bool,
-}
+use sliced::{Side, Sliced, SlicedPair};
 
 /// Cuts both pieces open along their features and along arcs of the same homotopy class.
 ///
@@ -181,7 +115,7 @@ fn outline(feature: &Feature) -> Vec<u32> {
 fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sliced, Error> {
     let opposite_unless = |is_open: fn(Seam) -> bool| {
         let pairs = cutting.opposite.iter().zip(&cutting.seams);
-        pairs.map(|(&across, &seam)| if is_open(seam) { NONE } else { across }).collect()
+        pairs.map(|(&across, &seam)| if is_open(seam) { NO_CORNER } else { across }).collect()
     };
     let surface = Opened::new(&cutting.faces, opposite_unless(|seam| seam == Seam::Feature));
     let disk = Opened::new(&cutting.faces, opposite_unless(|seam| seam != Seam::None));

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Opening a surface along its cut edges, and walking along the boundary that this makes.
 
-use super::NONE;
-use crate::mesh::{next_corner, previous_corner, vertex_at};
+use crate::mesh::{NO_CORNER, next_corner, previous_corner, vertex_at};
+
+/// A corner that has no vertex yet.
+const UNNUMBERED: u32 = u32::MAX;
 
 /// The faces with other vertices, after cutting.
 #[derive(Debug, Clone)]
 pub(in crate::hyperbolic) struct Opened {
-    /// (m, 3), in the order of [`Sliced::faces`](super::Sliced::faces).
+    /// (m, 3), in the order of [`Sliced::faces`](super::sliced::Sliced::faces).
     pub faces: Vec<[u32; 3]>,
-    /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NONE`] on the
+    /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NO_CORNER`] on the
     /// boundary.
     pub opposite: Vec<u32>,
     /// The vertex before cutting.
@@ -21,9 +23,9 @@ impl Opened {
     ///
     /// The vertices are numbered in the order of their lowest corners.
     pub(super) fn new(faces: &[[u32; 3]], opposite: Vec<u32>) -> Self {
-        let mut opened = Self { faces: vec![[NONE; 3]; faces.len()], opposite, vertex_of: Vec::new() };
+        let mut opened = Self { faces: vec![[UNNUMBERED; 3]; faces.len()], opposite, vertex_of: Vec::new() };
         for corner in 0..3 * faces.len() as u32 {
-            if vertex_at(&opened.faces, corner) == NONE {
+            if vertex_at(&opened.faces, corner) == UNNUMBERED {
                 opened.number_fan(corner);
                 opened.vertex_of.push(vertex_at(faces, corner));
             }
@@ -39,7 +41,7 @@ impl Opened {
             loop {
                 self.faces[corner as usize / 3][corner as usize % 3] = number;
                 let across = self.opposite[turn(corner) as usize];
-                if across == NONE {
+                if across == NO_CORNER {
                     break;
                 }
                 corner = turn(across);
@@ -63,10 +65,19 @@ impl Opened {
         let mut corner = previous_corner(edge);
         loop {
             let across = self.opposite[previous_corner(corner) as usize];
-            if across == NONE {
+            if across == NO_CORNER {
                 return previous_corner(corner);
             }
             corner = previous_corner(across);
         }
+    }
+
+    /// For each vertex of the boundary the corner opposite to the edge that leaves it with the surface on the left.
+    pub(crate) fn boundary_corners(&self) -> Vec<u32> {
+        let mut corners = vec![NO_CORNER; self.vertex_of.len()];
+        for corner in (0..self.opposite.len()).filter(|&corner| self.opposite[corner] == NO_CORNER) {
+            corners[self.faces[corner / 3][(corner + 1) % 3] as usize] = corner as u32;
+        }
+        corners
     }
 }

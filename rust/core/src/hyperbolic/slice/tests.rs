@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Slicing of spheres with all kinds of slits and holes.
 
+use crate::vector::Vector;
 use std::f64::consts::PI;
 
 use super::polyline::Polyline;

@@ -10,13 +10,13 @@
 //!
 //! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
 
+use crate::mesh::NO_CORNER;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use crate::hyperbolic::harmonic::atlas::Atlas;
-use crate::hyperbolic::harmonic::initial::boundary_corners;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
-use crate::hyperbolic::slice::{NONE, Side, Sliced};
+use crate::hyperbolic::slice::sliced::{Side, Sliced};
 use crate::parallel;
 use crate::vector::{Vector, add, scaled};
 
@@ -49,7 +49,7 @@ impl<'a> Development<'a> {
         while let Some(face) = queue.pop_front() {
             for corner in 3 * face..3 * face + 3 {
                 let across = sliced.disk.opposite[corner as usize];
-                if across == NONE || is_placed[across as usize / 3] {
+                if across == NO_CORNER || is_placed[across as usize / 3] {
                     continue;
                 }
                 is_placed[across as usize / 3] = true;
@@ -92,7 +92,7 @@ impl<'a> Development<'a> {
 
     /// (B − 1,): the isometries that take the left copy of each arc to the right one; Re a > 0.
     pub(super) fn generators(&self) -> Vec<Moebius> {
-        let corners = boundary_corners(&self.sliced.disk);
+        let corners = self.sliced.disk.boundary_corners();
         let arcs = self.sliced.sides.iter().filter(|side| side.is_arc);
         arcs.take(self.sliced.sides.len() / 4).map(|side| self.generator(side, &corners)).collect()
     }
@@ -100,7 +100,7 @@ impl<'a> Development<'a> {
     /// The isometry from the left copy of an arc to the right one, by that of its edges whose copies lie
     /// nearest to the origin.
     fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
-        let candidates = edges(side, corners).map(|corner| {
+        let candidates = side.opposite_corners(corners).map(|corner| {
             let across = self.sliced.surface.opposite[corner as usize];
             let [left, right] = [corner, across].map(|corner| self.frames[corner as usize / 3]);
             (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner as usize] * left.inverse())
@@ -119,11 +119,6 @@ const ORIGIN: Complex = Complex::new(0.0, 0.0);
 /// A point on the hyperboloid, scaled so that sums do not overflow.
 fn weighted(z: Complex) -> Vector {
     scaled(to_hyperboloid(z), 1e-9)
-}
-
-/// The corners opposite to the edges of a side of the disk.
-pub(super) fn edges<'a>(side: &'a Side, corners: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-    side.vertices[..side.vertices.len() - 1].iter().map(|&vertex| corners[vertex as usize])
 }
 
 /// The fundamental domain and its copies in the universal cover, at most `count` in all.

@@ -23,19 +23,17 @@ use super::features::pieces::pieces;
 use super::features::placement::placed;
 use super::features::regions::divided;
 use super::harmonic::atlas::Atlas;
-use super::harmonic::initial::boundary_corners;
-use super::harmonic::piece_map::sliced_points;
 use super::metric::{Metric, MetricMethod, hyperbolic_metric};
 use super::moebius::{Complex, Moebius};
-use super::register::{on_surface, surface_vertex};
-use super::slice::{Side, Sliced, slice_alone};
+use super::slice::slice_alone;
+use super::slice::sliced::{Side, Sliced};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
 use crate::location::Location;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::vector::Vector;
-use fuchsian::{CoverCopy, Development, cover, edges};
+use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
 use trace::closed_geodesic;
 
@@ -125,7 +123,7 @@ pub fn hyperbolic_structure(
     // 3. Its metric
     let chi = 2 - chain.len() as i64;
     let watch = Watch::new(observer, 0.15, "Hyperbolic metric");
-    let metric = hyperbolic_metric(&sliced_points(&sliced), &sliced.surface.faces, chi, metric, &watch);
+    let metric = hyperbolic_metric(&sliced.surface_points(), &sliced.surface.faces, chi, metric, &watch);
     let face_of = |face: usize| piece.face_of[sliced.places[face].face as usize] as usize;
     let metric = metric.map_err(|error| error.with_faces(face_of))?;
     // 4. The fundamental domain and the group
@@ -185,10 +183,10 @@ fn piece(mesh: &TriangleMesh, pairs: Vec<CurvePair>, watch: &Watch<'_>) -> Resul
 /// Every pair of pants, by a layout around the left bank of its feature so that it is as precise far out as
 /// in the middle.
 fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Vec<Pants> {
-    let corners = boundary_corners(&sliced.disk);
+    let corners = sliced.disk.boundary_corners();
     let last = domain.generators().len();
     let of_feature = |k: usize| {
-        let bank: Vec<u32> = edges(&sliced.sides[2 * k + 2], &corners).collect();
+        let bank: Vec<u32> = sliced.sides[2 * k + 2].opposite_corners(&corners).collect();
         let face = bank[bank.len() / 2] / 3;
         let generators = Development::around(face, sliced, atlas).generators();
         let pants = pants(generators[k], generators[k + 1]);
@@ -205,7 +203,7 @@ fn pants_curves(
     atlas: &Atlas<'_>,
     piece: &Piece,
 ) -> Result<(Vec<Vec<Location>>, Vec<f64>), Error> {
-    let corners = boundary_corners(&sliced.disk);
+    let corners = sliced.disk.boundary_corners();
     let generators = domain.generators();
     let traced = (0..generators.len() - 2).map(|k| {
         let far = |face: u32| {
@@ -213,7 +211,7 @@ fn pants_curves(
             let [from, to] = [from, to].map(|end| domain.frames[face as usize].inverse().apply(end));
             (from + to).norm()
         };
-        let faces = edges(&sliced.sides[2 * k + 3], &corners).map(|corner| corner / 3);
+        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(|corner| corner / 3);
         let face = faces.min_by(|&a, &b| far(a).total_cmp(&far(b)))?;
         let generator = Development::around(face, sliced, atlas).generators()[k + 1];
         let line = generator.fixed_points();
@@ -221,7 +219,7 @@ fn pants_curves(
     });
     let lost = || NumericsError::FactorizationFailed { what: "the pants curves".into() };
     let traced = traced.collect::<Option<Vec<_>>>().ok_or_else(lost)?;
-    let on_given = |place: &Location| on_surface(piece, sliced, place);
+    let on_given = |place: &Location| sliced.given_place(piece, place);
     Ok(traced.iter().map(|curve| (curve.places.iter().map(on_given).collect(), curve.length)).unzip())
 }
 
@@ -238,11 +236,11 @@ fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<u32>; 2]> {
 
 /// The lengths of the features once around, by their own numbers.
 fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -> Vec<f64> {
-    let corners = boundary_corners(&sliced.disk);
+    let corners = sliced.disk.boundary_corners();
     let length = |corner: u32| metric.lengths[corner as usize / 3][corner as usize % 3];
     let mut lengths = vec![0.0; chain.len()];
     for side in sliced.sides.iter().filter(|side| !side.is_arc) {
-        lengths[chain[side.index].0] += edges(side, &corners).map(length).sum::<f64>();
+        lengths[chain[side.index].0] += side.opposite_corners(&corners).map(length).sum::<f64>();
     }
     lengths
 }
@@ -255,7 +253,7 @@ fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
             let mut barycentric = [0.0; 3];
             barycentric[k] = 1.0;
             let place = Location { triangle: face as u32, barycentric };
-            vertices[vertex as usize] = on_surface(piece, sliced, &place);
+            vertices[vertex as usize] = sliced.given_place(piece, &place);
         }
     }
     vertices
@@ -263,5 +261,5 @@ fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
 
 fn vertex_of(piece: &Piece, sliced: &Sliced) -> Vec<Option<u32>> {
     let copies = 0..sliced.surface.vertex_of.len();
-    copies.map(|copy| surface_vertex(piece, sliced, copy).map(|vertex| vertex as u32)).collect()
+    copies.map(|copy| sliced.given_vertex(piece, copy).map(|vertex| vertex as u32)).collect()
 }

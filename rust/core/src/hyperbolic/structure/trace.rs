@@ -11,9 +11,9 @@
 
 use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
-use crate::hyperbolic::slice::{NONE, Opened};
+use crate::hyperbolic::slice::Opened;
 use crate::location::Location;
-use crate::mesh::{next_corner, previous_corner};
+use crate::mesh::{NO_CORNER, next_corner, previous_corner};
 use crate::vector::{Vector, add, cross, dot, scaled};
 
 /// The line has closed up where it crosses the first edge again after its length but for this share.
@@ -102,7 +102,7 @@ fn crossings(
             return Some(corners);
         }
         let (across, tau) = (surface.opposite[corner as usize], atlas.transitions[corner as usize]);
-        if across == NONE {
+        if across == NO_CORNER {
             return None;
         }
         let entry = tau.apply(crossing(atlas, corner, line).1);
@@ -122,7 +122,7 @@ fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
     };
     // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them
     // do so
-    if surface.opposite[one as usize] == NONE { other } else { one }
+    if surface.opposite[one as usize] == NO_CORNER { other } else { one }
 }
 
 /// The isometry from a chart once around to the same one.

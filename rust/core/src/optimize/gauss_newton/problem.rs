@@ -30,7 +30,7 @@ pub(crate) struct GaussNewtonOptions {
     pub angle_weight: f64,
     /// Which way it falls.
     pub path: AnglePath,
-    /// Iterations after which a deviation below [`EVEN_ENOUGH`] is good enough; `usize::MAX` where a limit or a tolerance
+    /// Iterations after which a deviation below [`EVEN_ENOUGH`](super::descent) is good enough; `usize::MAX` where a limit or a tolerance
     /// was asked for.
     pub usual_iterations: usize,
     /// Iterations at the most.

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The maps of all pieces put together to one of the surfaces, with its figures.
+
+use super::features::curves::Curves;
+use super::features::piece::Piece;
+use super::features::placement::Placement;
+use super::harmonic::certificates::{Certificates, PieceCertificates};
+use super::harmonic::newton::Descent;
+use super::harmonic::piece_map::PieceMap;
+use super::metric::Metric;
+use super::slice::sliced::SlicedPair;
+use super::warnings::{Warning, warnings};
+use crate::control::{History, Status};
+use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
+use crate::error::Error;
+use crate::location::{Location, Locator, points_on};
+use crate::mesh::TriangleMesh;
+use crate::parallel;
+use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
+
+/// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.
+const MISSED: f64 = 1e-9;
+
+/// A registration by curves.
+#[derive(Debug, Clone)]
+pub struct CurveRegistration {
+    /// The map of the source onto the target.
+    pub map: CurveMap,
+    /// The way back of the same map.
+    pub inverse: CurveMap,
+    /// How source and target were laid over each other.
+    pub spheres: [RoughSphere; 2],
+    /// The proof that the map is one-to-one.
+    pub certificates: Certificates,
+    /// The metrics of source and target for every piece that has three features or more.
+    pub metrics: Vec<[Metric; 2]>,
+    /// The descents of the same pieces.
+    pub descents: Vec<Descent>,
+    /// What the caller should look at.
+    pub warnings: Vec<Warning>,
+    /// Steps of all descents.
+    pub iterations: usize,
+    /// Wall time of the whole call.
+    pub seconds: f64,
+}
+
+/// A one-to-one map of a surface onto another that takes curves to curves.
+#[derive(Debug, Clone)]
+pub struct CurveMap {
+    /// (n,): where on the other surface each vertex comes to lie.
+    pub locations: Vec<Location>,
+    /// The faces of the other surface that [`Self::locations`] speak of.
+    pub target_faces: Vec<[u32; 3]>,
+    /// (n, 3): the same places on the rough sphere of the other surface, where straight faces may fold a little along the
+    /// curves.
+    pub registered: Vec<Vector>,
+    /// (B,): the largest distance of the image of each curve from its partner, in parts of the other surface's size.
+    pub curve_error: Vec<f64>,
+    /// The curves that are farther than 10⁻⁹ from their partners.
+    pub missed: Vec<usize>,
+    /// Why the run ended; [`Status::LandmarksMissed`] where there are such curves.
+    pub status: Status,
+    /// The figures of the map in space, with the folds of the certificates.
+    pub distortion: Distortion,
+}
+
+/// A surface laid roughly onto the unit sphere, to tell how two surfaces lie over each other; faces may be folded.
+#[derive(Debug, Clone)]
+pub struct RoughSphere {
+    /// (n, 3): unit rows.
+    pub positions: Vec<Vector>,
+    /// Its figures.
+    pub distortion: Distortion,
+}
+
+impl CurveRegistration {
+    /// The same map from the target's side; the certificates stay those of the map as computed.
+    pub fn inverted(&self) -> Self {
+        let mut inverted = self.clone();
+        std::mem::swap(&mut inverted.map, &mut inverted.inverse);
+        inverted.spheres.reverse();
+        inverted
+    }
+}
+
+impl CurveMap {
+    /// The place of each vertex among the other surface's `vertices`, (n, 3).
+    ///
+    /// # Panics
+    /// Where `vertices` are fewer than the other surface's.
+    pub fn positions(&self, vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        points_on(&self.locations, vertices, &self.target_faces)
+    }
+}
+
+impl RoughSphere {
+    fn new(mesh: &TriangleMesh, positions: &[Vector]) -> Result<Self, Error> {
+        let image = Image::Sphere(positions);
+        let distortion = distortion(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
+        Ok(Self { positions: positions.to_vec(), distortion })
+    }
+}
+
+/// What the pieces have given so far.
+pub(super) struct Assembly {
+    locations: Vec<Option<Location>>,
+    inverse: Vec<Option<Location>>,
+    /// Faces of the source.
+    pub folded: Vec<usize>,
+    bank_error: f64,
+    certificates: Vec<PieceCertificates>,
+    metrics: Vec<[Metric; 2]>,
+    descents: Vec<Descent>,
+    is_sure: bool,
+}
+
+impl Assembly {
+    pub(super) fn new([source, target]: [&TriangleMesh; 2]) -> Self {
+        Self {
+            locations: vec![None; source.n_vertices()],
+            inverse: vec![None; target.n_vertices()],
+            folded: Vec::new(),
+            bank_error: 0.0,
+            certificates: Vec::new(),
+            metrics: Vec::new(),
+            descents: Vec::new(),
+            is_sure: true,
+        }
+    }
+
+    /// Brings the map of a piece back to the surfaces.
+    pub(super) fn take(
+        &mut self,
+        ours: &Piece,
+        theirs: &Piece,
+        sliced: &SlicedPair,
+        map: PieceMap,
+        target: &TriangleMesh,
+    ) {
+        let SlicedPair { source, target: cut, .. } = sliced;
+        self.is_sure &= sliced.followed;
+        for (copy, location) in map.locations.iter().enumerate() {
+            let Some(vertex) = source.given_vertex(ours, copy) else { continue };
+            let location = cut.given_place(theirs, location);
+            match &mut self.locations[vertex] {
+                Some(other) => {
+                    let gap = distance(
+                        other.point_on(target.points(), target.faces()),
+                        location.point_on(target.points(), target.faces()),
+                    );
+                    self.bank_error = self.bank_error.max(gap);
+                }
+                empty => *empty = Some(location),
+            }
+        }
+        for (copy, location) in map.inverse.iter().enumerate() {
+            if let (Some(vertex), Some(location)) = (cut.given_vertex(theirs, copy), location) {
+                self.inverse[vertex] = Some(source.given_place(ours, location));
+            }
+        }
+        let face_of = |face: usize| ours.face_of[source.places[face].face as usize] as usize;
+        self.folded.extend(map.certificates.folded.iter().map(|&face| face_of(face)));
+        self.certificates.push(map.certificates);
+        if let Some((metrics, descent)) = map.hyperbolic {
+            self.metrics.push(metrics);
+            self.descents.push(descent);
+        }
+    }
+
+    pub(super) fn finish(
+        mut self,
+        meshes: [&TriangleMesh; 2],
+        curves: &Curves<'_>,
+        placement: &Placement,
+        history: &History,
+    ) -> Result<CurveRegistration, Error> {
+        self.folded.sort_unstable();
+        self.folded.dedup();
+        // 1. There and back
+        let locations: Vec<Location> = self.locations.iter().map(|found| found.unwrap_or_default()).collect();
+        let registered = interpolated(&locations, meshes[1].faces(), &placement.target);
+        let inverse = self.inverse_locations(meshes, &registered, placement);
+        let back = interpolated(&inverse, meshes[0].faces(), &placement.source);
+        // 2. How well the curves lie on each other
+        let paths = [curves.source, curves.target];
+        let [there_error, back_error] =
+            [(&locations, 0, 1), (&inverse, 1, 0)].map(|(locations, from, to)| -> Vec<f64> {
+                let error =
+                    |curve: usize| strays(&paths[from][curve], &paths[to][curve], locations, meshes[to]);
+                (0..paths[0].len()).map(error).collect()
+            });
+        let certificates = self.certificates(&there_error);
+        // 3. Figures of the map in space; the way back folds what the way there folds
+        let positions = points_on(&locations, meshes[1].points(), meshes[1].faces());
+        let there_figures = figures(meshes[0], &positions, certificates.folded.clone())?;
+        let positions = points_on(&inverse, meshes[0].points(), meshes[0].faces());
+        let back_figures = figures(meshes[1], &positions, Vec::new())?;
+        let warnings = warnings(meshes, placement, self.is_sure, &certificates, &there_figures);
+        // 4. Both directions
+        Ok(CurveRegistration {
+            map: self.map(meshes[1], locations, registered, there_error, there_figures),
+            inverse: self.map(meshes[0], inverse, back, back_error, back_figures),
+            spheres: [
+                RoughSphere::new(meshes[0], &placement.source)?,
+                RoughSphere::new(meshes[1], &placement.target)?,
+            ],
+            certificates,
+            iterations: self.descents.iter().map(|descent| descent.energies.len() - 1).sum(),
+            metrics: self.metrics,
+            descents: self.descents,
+            warnings,
+            seconds: history.seconds(),
+        })
+    }
+
+    /// The places of the target's vertices on the source; those that rounding has lost are looked up on the
+    /// sphere.
+    fn inverse_locations(
+        &self,
+        [source, target]: [&TriangleMesh; 2],
+        registered: &[Vector],
+        placement: &Placement,
+    ) -> Vec<Location> {
+        let locator = self.inverse.contains(&None).then(|| Locator::new(registered, source.faces()));
+        let lost = |vertex: usize| {
+            let locate = |locator: &Locator<'_>| locator.locate(placement.target[vertex]);
+            locator.as_ref().map_or_else(Location::default, locate)
+        };
+        (0..target.n_vertices()).map(|vertex| self.inverse[vertex].unwrap_or_else(|| lost(vertex))).collect()
+    }
+
+    /// One direction of the map.
+    fn map(
+        &self,
+        target: &TriangleMesh,
+        locations: Vec<Location>,
+        registered: Vec<Vector>,
+        curve_error: Vec<f64>,
+        distortion: Distortion,
+    ) -> CurveMap {
+        let missed: Vec<usize> =
+            (0..curve_error.len()).filter(|&curve| curve_error[curve] > MISSED).collect();
+        let status = self.status(&missed);
+        let target_faces = target.faces().to_vec();
+        CurveMap { locations, target_faces, registered, curve_error, missed, status, distortion }
+    }
+
+    fn status(&self, missed: &[usize]) -> Status {
+        let worst = |status| self.descents.iter().any(|descent| descent.status == status);
+        match () {
+            () if !missed.is_empty() => Status::LandmarksMissed,
+            () if worst(Status::Cancelled) => Status::Cancelled,
+            () if worst(Status::Stalled) || !self.folded.is_empty() => Status::Stalled,
+            () if worst(Status::MaxIterations) => Status::MaxIterations,
+            () => Status::Converged,
+        }
+    }
+
+    fn certificates(&self, curve_error: &[f64]) -> Certificates {
+        let all = &self.certificates;
+        let total = |value: fn(&PieceCertificates) -> f64| all.iter().map(value).sum::<f64>();
+        let most = |value: fn(&PieceCertificates) -> f64| all.iter().map(value).fold(0.0, f64::max);
+        let residual =
+            |surface: usize| self.metrics.iter().map(|metrics| metrics[surface].residual).fold(0.0, f64::max);
+        Certificates {
+            folded: self.folded.clone(),
+            area: all.iter().map(|piece| piece.area).sum(),
+            expected_area: all.iter().map(|piece| piece.expected_area).sum(),
+            curve_error: curve_error.iter().copied().fold(0.0, f64::max),
+            bank_error: self.bank_error,
+            cocycle_error: most(|piece| piece.cocycle_error),
+            outside: all.iter().map(|piece| piece.outside).sum(),
+            energy_ratio: total(|piece| piece.energy) / total(|piece| piece.rest_energy),
+            curvature: [residual(0), residual(1)],
+        }
+    }
+}
+
+/// Places as points of the unit sphere.
+fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector]) -> Vec<Vector> {
+    parallel::map(locations.len(), |vertex| {
+        let place = locations[vertex].point_on(on_sphere, faces);
+        scaled(place, 1.0 / norm(place))
+    })
+}
+
+/// How far the image of a path's vertices strays from another path at most.
+fn strays(path: &[usize], other: &[usize], locations: &[Location], target: &TriangleMesh) -> f64 {
+    let segments: Vec<[Vector; 2]> =
+        other.windows(2).map(|ends| [target.points()[ends[0]], target.points()[ends[1]]]).collect();
+    let strays = |&vertex: &usize| {
+        let image = locations[vertex].point_on(target.points(), target.faces());
+        segments.iter().fold(f64::INFINITY, |least, &segment| least.min(to_segment(image, segment)))
+    };
+    path.iter().map(strays).fold(0.0, f64::max)
+}
+
+/// The distance of a point from a segment.
+fn to_segment(x: Vector, [from, to]: [Vector; 2]) -> f64 {
+    let along = sub(to, from);
+    let part = (dot(sub(x, from), along) / dot(along, along)).clamp(0.0, 1.0);
+    distance(x, add(from, scaled(along, part)))
+}
+
+/// The figures of a map of a surface to places in space.
+fn figures(mesh: &TriangleMesh, positions: &[Vector], folded: Vec<usize>) -> Result<Distortion, Error> {
+    distortion_in_space(mesh.points(), mesh.faces(), positions, folded, mesh.face_areas())
+}

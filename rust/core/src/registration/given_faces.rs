@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Data at the corners of faces as given, of which orienting a surface has turned some.
+
+use super::transfer::{corner_sides, nearest_corners, pull_corners, pull_rows};
+use crate::location::Location;
+use crate::vector::Vector;
+
+/// A registered surface with its faces as given, which say in what order data at corners come.
+#[derive(Debug, Clone, Copy)]
+pub struct GivenFaces<'a> {
+    /// (m, 3): the faces as given.
+    pub given: &'a [[u32; 3]],
+    /// (m, 3): the faces as oriented.
+    pub oriented: &'a [[u32; 3]],
+    /// (n, 3): the vertices in the domain, on the unit sphere or in the plane z = 1.
+    pub registered: &'a [Vector],
+}
+
+impl GivenFaces<'_> {
+    /// The corner given, 3 × face + corner, that has become each corner as oriented, (3 m,).
+    fn given_corners(&self) -> Vec<u32> {
+        let given = |corner: usize| {
+            let (face, vertex) = (corner / 3, self.oriented[corner / 3][corner % 3]);
+            let place = self.given[face].iter().position(|&given| given == vertex);
+            (3 * face + place.expect("a face keeps its vertices")) as u32
+        };
+        (0..3 * self.oriented.len()).map(given).collect()
+    }
+}
+
+/// The row of the target's data nearest to each corner of the source, (3 m,), both in the order of the corners given.
+///
+/// `locations` (n,) say where on the target the vertices of the source lie.
+///
+/// # Panics
+/// Where a face as oriented has other vertices than as given.
+pub fn nearest_given_corners(
+    source: &GivenFaces<'_>,
+    target: &GivenFaces<'_>,
+    locations: &[Location],
+) -> Vec<u32> {
+    let sides =
+        corner_sides(source.oriented, source.registered, target.oriented, target.registered, locations);
+    let (nearest, target_corners) = (nearest_corners(&sides), target.given_corners());
+    let mut rows = vec![0; nearest.len()];
+    for (corner, given) in source.given_corners().into_iter().enumerate() {
+        rows[given as usize] = target_corners[nearest[corner] as usize];
+    }
+    rows
+}
+
+/// As [`pull_corners`], with the rows of both surfaces in the order of the corners given.
+///
+/// # Panics
+/// As [`pull_corners`], and where a face as oriented has other vertices than as given.
+pub fn pull_given_corners(
+    values: &[f64],
+    width: usize,
+    source: &GivenFaces<'_>,
+    target: &GivenFaces<'_>,
+    locations: &[Location],
+) -> Vec<f64> {
+    let oriented = pull_rows(values, width, &target.given_corners());
+    let pulled = pull_corners(
+        &oriented,
+        width,
+        source.oriented,
+        source.registered,
+        target.oriented,
+        target.registered,
+        locations,
+    );
+    let mut oriented_corners = vec![0; 3 * source.oriented.len()];
+    source.given_corners().iter().enumerate().for_each(|(corner, &given)| {
+        oriented_corners[given as usize] = corner as u32;
+    });
+    pull_rows(&pulled, width, &oriented_corners)
+}

@@ -3,6 +3,7 @@
 
 import os
 import sys
+from collections.abc import Iterator
 
 import bpy
 import pytest
@@ -11,14 +12,14 @@ from installed import MODULE
 _STATUS = pytest.StashKey[int]()
 
 
-def _setting(name, meaning):
+def _setting(name: str, meaning: str) -> str:
     value = os.environ.get(name)
     if not value:
         pytest.exit(f"set {name} to {meaning} (scripts/test does)", returncode=2)
     return value
 
 
-def install():
+def install() -> None:
     """Installs and enables the zip as a person would."""
     archive = _setting("AUTHALIC_EXTENSION_ZIP", "the extension zip")
     bpy.ops.extensions.package_install_files(
@@ -27,7 +28,7 @@ def install():
 
 
 @pytest.fixture(scope="session", autouse=True)
-def extension():
+def extension() -> Iterator[str]:
     """The installed extension; the module itself."""
     _setting("BLENDER_USER_RESOURCES", "an empty folder for Blender's profile")
     install()
@@ -37,11 +38,11 @@ def extension():
     bpy.ops.preferences.addon_disable(module=MODULE)
 
 
-def pytest_sessionfinish(session, exitstatus):
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
     session.config.stash[_STATUS] = int(exitstatus)
 
 
-def pytest_unconfigure(config):
+def pytest_unconfigure(config: pytest.Config) -> None:
     """Blender 4.2 may crash as the interpreter ends, long after the report is written."""
     if bpy.app.version < (4, 5) and _STATUS in config.stash:
         sys.stdout.flush()
@@ -50,7 +51,7 @@ def pytest_unconfigure(config):
 
 
 @pytest.fixture(autouse=True)
-def empty_file(extension):
+def empty_file(extension: str) -> None:
     """A file without objects for every test, and undo that starts there."""
     for obj in list(bpy.context.view_layer.objects):
         if obj.mode != "OBJECT":

@@ -2,13 +2,16 @@
 """Landmark curves for the tests: two grids of 7 and of 9 vertices a side, and paths on them."""
 
 import heapq
+from collections.abc import Callable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import bmesh
 import bpy
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 ROW = (8, 9, 10, 11)  # inside Head A
 OTHER = (22, 23, 24, 25)
@@ -18,29 +21,29 @@ LOOP = (16, 17, 18, 25, 32, 31, 30, 23, 16)
 LOOP_B = (20, 21, 22, 31, 40, 39, 38, 29, 20)
 
 
-def text(path):
+def text(path: Sequence[int]) -> str:
     return " ".join(map(str, path))
 
 
-def add(source=(), target=(), **options):
+def add(source: Sequence[int] | None = (), target: Sequence[int] | None = (), **options: Any) -> None:
     options |= {"source_vertices": text(source), "target_vertices": text(target)}
     assert bpy.ops.authalic.landmark_curve_add(**options) == {"FINISHED"}
 
 
-def listed(obj=None):
+def listed(obj: MeshObject | None = None) -> list[tuple[Any, ...]]:
     """(name, source path, target path, problem) of each."""
     found = part("landmarks.curves").pairs(obj or bpy.data.objects["Head A"])
     return [(one.name, one.source.vertices, one.target.vertices, one.problem) for one in found]
 
 
-def refused(words, call, **options):
+def refused(words: str, call: Callable[..., Any], **options: Any) -> None:
     before = listed()
     with pytest.raises(RuntimeError, match=words):
         call(**options)
     assert listed() == before
 
 
-def select_path(obj, *paths, active=None):
+def select_path(obj: MeshObject, *paths: Sequence[int], active: Any = None) -> None:
     """Selects the edges of some paths and nothing else in edit mode; `active` is a vertex or an edge."""
     edit = bmesh.from_edit_mesh(obj.data)
     for elements in (edit.faces, edit.edges, edit.verts):
@@ -57,11 +60,11 @@ def select_path(obj, *paths, active=None):
     bmesh.update_edit_mesh(obj.data)
 
 
-def edge_between(edit, first, second):
+def edge_between(edit: bmesh.types.BMesh, first: int, second: int) -> bmesh.types.BMEdge:
     return edit.edges.get((edit.verts[first], edit.verts[second]))
 
 
-def selected_edges(obj):
+def selected_edges(obj: MeshObject) -> list[tuple[int, ...]]:
     """The selected edges as sorted pairs of vertices, in either mode."""
     if obj.data.is_editmode:
         edit = bmesh.from_edit_mesh(obj.data)
@@ -71,11 +74,11 @@ def selected_edges(obj):
     return sorted(tuple(sorted(pair)) for pair in found)
 
 
-def route(obj, *stops):
+def route(obj: MeshObject, *stops: Sequence[float]) -> tuple[int, ...]:
     """The vertices along edges of an object on short ways from stop (a point) to stop."""
     points = np.array([vertex.co for vertex in obj.data.vertices])
     near = [int(np.argmin(np.linalg.norm(points - stop, axis=1))) for stop in stops]
-    around = {}
+    around: dict[int, list[int]] = {}
     for first, second in (tuple(edge.vertices) for edge in obj.data.edges):
         around.setdefault(first, []).append(second)
         around.setdefault(second, []).append(first)
@@ -85,7 +88,7 @@ def route(obj, *stops):
     return tuple(path)
 
 
-def _shortest(points, around, first, last):
+def _shortest(points: Array, around: dict[int, list[int]], first: int, last: int) -> list[int]:
     heap, before = [(0.0, first, first)], {}
     while last not in before:
         length, vertex, origin = heapq.heappop(heap)

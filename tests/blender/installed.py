@@ -2,10 +2,11 @@
 """The modules of the extension as installed."""
 
 import importlib
+from typing import Any
 
 MODULE = "bl_ext.user_default.authalic"
 
 
-def part(name):
+def part(name: str) -> Any:
     """A module by its name within the extension; looked up anew, since installing again replaces them all."""
     return importlib.import_module(f"{MODULE}.{name}")

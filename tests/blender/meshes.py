@@ -1,17 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes for the tests, and what is measured on them with numpy alone."""
 
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Any
+
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+MeshObject = bpy.types.Object
+Array = NDArray[Any]
+Surface = tuple[Array, Array]
+"""Vertices and faces."""
 
 
-def add(vertices, faces, name="Mesh", seams=()):
+def add(
+    vertices: ArrayLike,
+    faces: Iterable[Iterable[int]] | Array,
+    name: str = "Mesh",
+    seams: Collection[Sequence[int]] = (),
+) -> MeshObject:
     """A new selected, active object."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata([tuple(map(float, v)) for v in vertices], [], [list(map(int, f)) for f in faces])
     mesh.update(calc_edges=True)
     wanted = {tuple(sorted(seam)) for seam in seams}
+    edge: Any
     for edge in mesh.edges:
         edge.use_seam = tuple(sorted(edge.vertices)) in wanted
     obj = bpy.data.objects.new(name, mesh)
@@ -20,7 +35,7 @@ def add(vertices, faces, name="Mesh", seams=()):
     return obj
 
 
-def select(*objects):
+def select(*objects: MeshObject) -> None:
     """Selects exactly these; the first is the active one."""
     bpy.ops.object.select_all(action="DESELECT")
     for obj in objects:
@@ -28,7 +43,7 @@ def select(*objects):
     bpy.context.view_layer.objects.active = objects[0]
 
 
-def grid(n=6, bump=0.6, offset=(0, 0, 0)):
+def grid(n: int = 6, bump: float = 0.6, offset: Sequence[float] = (0, 0, 0)) -> Surface:
     """Vertices and quads of a square with a bump in the middle."""
     side = np.linspace(-1, 1, n + 1)
     x, y = (a.ravel() for a in np.meshgrid(side, side))
@@ -37,16 +52,16 @@ def grid(n=6, bump=0.6, offset=(0, 0, 0)):
     return vertices, np.stack([first, first + 1, first + n + 2, first + n + 1], axis=1)
 
 
-def add_grid(name="Grid", **options):
+def add_grid(name: str = "Grid", **options: Any) -> MeshObject:
     return add(*grid(**options), name)
 
 
-def suzanne(levels=2):
+def suzanne(levels: int = 2) -> MeshObject:
     bpy.ops.mesh.primitive_monkey_add()
     return subdivided(bpy.context.object, levels)
 
 
-def seam_sphere():
+def seam_sphere() -> MeshObject:
     """A UV sphere, cut open along a meridian from pole to pole."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
     obj = bpy.context.object
@@ -57,23 +72,23 @@ def seam_sphere():
     return obj
 
 
-def icosphere(subdivisions=4, radius=1.0):
+def icosphere(subdivisions: int = 4, radius: float = 1.0) -> MeshObject:
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions, radius=radius)
     return bpy.context.object
 
 
-def uv_sphere(segments=32, ring_count=16):
+def uv_sphere(segments: int = 32, ring_count: int = 16) -> MeshObject:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=ring_count)
     return bpy.context.object
 
 
-def cube_sphere(levels=3):
+def cube_sphere(levels: int = 3) -> MeshObject:
     """A cube of quads, subdivided to nearly a sphere."""
     bpy.ops.mesh.primitive_cube_add()
     return subdivided(bpy.context.object, levels)
 
 
-def subdivided(obj, levels):
+def subdivided(obj: MeshObject, levels: int) -> MeshObject:
     if levels:
         modifier = obj.modifiers.new("Subdivision", "SUBSURF")
         modifier.levels = levels
@@ -81,7 +96,7 @@ def subdivided(obj, levels):
     return obj
 
 
-def closed_suzanne(levels=1):
+def closed_suzanne(levels: int = 1) -> MeshObject:
     """Suzanne's head without her eyes, their sockets closed by n-gons."""
     bpy.ops.mesh.primitive_monkey_add()
     obj = bpy.context.object
@@ -100,7 +115,7 @@ def closed_suzanne(levels=1):
     return subdivided(obj, levels)
 
 
-def bumpy(obj, size=0.3):
+def bumpy(obj: MeshObject, size: float = 0.3) -> MeshObject:
     """The object with smooth bumps all over."""
     position = np.array([vertex.co for vertex in obj.data.vertices])
     waves = np.sin(3 * position[:, 0]) * np.cos(4 * position[:, 1] + 1) + np.sin(5 * position[:, 2])
@@ -110,23 +125,23 @@ def bumpy(obj, size=0.3):
     return obj
 
 
-def torus():
+def torus() -> MeshObject:
     bpy.ops.mesh.primitive_torus_add(major_segments=12, minor_segments=8)
     return bpy.context.object
 
 
-def join(*objects):
+def join(*objects: MeshObject) -> MeshObject:
     select(*objects)
     bpy.ops.object.join()
     return bpy.context.object
 
 
-def edit(*objects):
+def edit(*objects: MeshObject) -> None:
     select(*objects)
     bpy.ops.object.mode_set(mode="EDIT")
 
 
-def select_faces(obj, chosen, hidden=()):
+def select_faces(obj: MeshObject, chosen: Callable[[int], bool], hidden: Collection[int] = ()) -> None:
     """Selects the faces in edit mode for which `chosen(index)` holds, hiding those in `hidden`."""
     mesh = bmesh.from_edit_mesh(obj.data)
     for vertex in mesh.verts:
@@ -141,7 +156,7 @@ def select_faces(obj, chosen, hidden=()):
     bmesh.update_edit_mesh(obj.data)
 
 
-def uv(obj, layer=None):
+def uv(obj: MeshObject, layer: str | None = None) -> Array:
     """UVs (c, 2) float32 of a layer, by default the active one, in object mode or edit mode."""
     if obj.data.is_editmode:
         obj.update_from_editmode()
@@ -152,12 +167,12 @@ def uv(obj, layer=None):
     return np.array([item.uv for item in data], np.float32)
 
 
-def set_uv(obj, values, layer=None):
+def set_uv(obj: MeshObject, values: Array, layer: str | None = None) -> None:
     data = (obj.data.uv_layers[layer] if layer else obj.data.uv_layers.active).data
     data.foreach_set("uv", np.ascontiguousarray(values, np.float32).ravel())
 
 
-def triangles(obj):
+def triangles(obj: MeshObject) -> tuple[Array, Array, Array]:
     """Corners (t, 3), polygons (t,) and world positions (t, 3, 3) of the loop triangles; object mode."""
     obj.data.calc_loop_triangles()
     corners = np.array([tuple(triangle.loops) for triangle in obj.data.loop_triangles])
@@ -167,24 +182,24 @@ def triangles(obj):
     return corners, polygons, positions[vertices]
 
 
-def surface_areas(points):
+def surface_areas(points: Array) -> Array:
     return np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1) / 2
 
 
-def uv_areas(image):
+def uv_areas(image: Array) -> Array:
     """Signed areas (t,) of triangles (t, 3, 2), by the shoelace formula."""
     x, y = image[..., 0].astype(float), image[..., 1].astype(float)
     return (x * (np.roll(y, -1, axis=1) - np.roll(y, 1, axis=1))).sum(axis=1) / 2
 
 
-def area_ratios(obj, layer=None):
+def area_ratios(obj: MeshObject, layer: str | None = None) -> Array:
     """UV area over surface area (t,), rescaled so that both sums agree; negative for a flip."""
     corners, _, points = triangles(obj)
     image, area = uv_areas(uv(obj, layer)[corners]), surface_areas(points)
     return image / area * (area.sum() / np.abs(image).sum())
 
 
-def islands(obj, layer=None):
+def islands(obj: MeshObject, layer: str | None = None) -> Array:
     """The UV island number of each triangle, by what triangles share UVs at a vertex."""
     corners, _, _ = triangles(obj)
     vertices = np.array([loop.vertex_index for loop in obj.data.loops])
@@ -200,7 +215,7 @@ def islands(obj, layer=None):
         label = new
 
 
-def densities(*objects):
+def densities(*objects: MeshObject) -> Array:
     """UV area over world area of every island of all objects."""
     found = []
     for obj in objects:
@@ -210,12 +225,12 @@ def densities(*objects):
     return np.array(found)
 
 
-def tetrahedron(centre=(0, 0, 0)):
+def tetrahedron(centre: Sequence[float] = (0, 0, 0)) -> Surface:
     vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) + centre
     return vertices, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
 
 
-def moebius(n=12, offset=(0, 0, 0)):
+def moebius(n: int = 12, offset: Sequence[float] = (0, 0, 0)) -> Surface:
     """A one-sided strip of quads."""
     angle = np.repeat(np.arange(n) * 2 * np.pi / n, 2)
     width = np.tile([-0.3, 0.3], n)
@@ -225,7 +240,7 @@ def moebius(n=12, offset=(0, 0, 0)):
     return vertices + offset, np.array([*faces, [2 * n - 2, 1, 0, 2 * n - 1]])
 
 
-def ring(offset=(0, 0, 0), n=4):
+def ring(offset: Sequence[float] = (0, 0, 0), n: int = 4) -> Surface:
     """A closed ring of n x n quads, a torus."""
     angle = np.arange(n) * 2 * np.pi / n
     around, across = (a.ravel() for a in np.meshgrid(angle, angle, indexing="ij"))
@@ -238,7 +253,7 @@ def ring(offset=(0, 0, 0), n=4):
     )
 
 
-def together(*parts):
+def together(*parts: tuple[Array, Any]) -> tuple[Array, list[list[int]]]:
     """Several (vertices, faces) as one; faces stay lists, so that they may differ in size."""
     vertices, faces, start = [], [], 0
     for points, polygons in parts:
@@ -248,7 +263,7 @@ def together(*parts):
     return np.array(vertices), faces
 
 
-def tube(rings, around, closed=True, step=0.8):
+def tube(rings: int, around: int, closed: bool = True, step: float = 0.8) -> tuple[Array, list[list[int]]]:
     """A long tube of quads, open at its first ring and closed by a fan (or open too) at its last one."""
     angle = 2 * np.pi * np.arange(around) / around
     height = np.repeat(step * np.arange(rings), around)

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of landmarks for the tests: two objects, and what is done with them."""
 
+from collections.abc import Callable
+from typing import Any
+
 import bmesh
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     """Two grids of which the active one has the other for a target."""
     source, target = meshes.add_grid("Head A"), meshes.add_grid("Head B", n=8)
     target.location.x = 3
@@ -18,23 +22,23 @@ def heads():
     return source, target
 
 
-def add(source_vertex, target_vertex, **options):
+def add(source_vertex: int, target_vertex: int, **options: Any) -> None:
     options.update(source_vertex=source_vertex, target_vertex=target_vertex)
     assert bpy.ops.authalic.landmark_add(**options) == {"FINISHED"}
 
 
-def listed(obj=None):
+def listed(obj: MeshObject | None = None) -> list[tuple[Any, ...]]:
     return [tuple(pair) for pair in part("landmarks.points").pairs(obj or bpy.data.objects["Head A"])]
 
 
-def refused(words, call, **options):
+def refused(words: str, call: Callable[..., Any], **options: Any) -> None:
     before = listed()
     with pytest.raises(RuntimeError, match=words):
         call(**options)
     assert listed() == before
 
 
-def select_vertices(obj, *vertices):
+def select_vertices(obj: MeshObject, *vertices: int) -> None:
     edit = bmesh.from_edit_mesh(obj.data)
     for number, vertex in enumerate(edit.verts):
         vertex.select_set(number in vertices)
@@ -42,11 +46,11 @@ def select_vertices(obj, *vertices):
     bmesh.update_edit_mesh(obj.data)
 
 
-def position(obj, vertex):
+def position(obj: MeshObject, vertex: int) -> Array:
     return np.array(obj.data.vertices[vertex].co)
 
 
-def in_edit_mode(obj, *vertices, do):
+def in_edit_mode(obj: MeshObject, *vertices: int, do: Callable[[], Any]) -> None:
     """Does something to some selected vertices of an object and returns to object mode."""
     meshes.edit(obj)
     select_vertices(obj, *vertices)
@@ -54,5 +58,5 @@ def in_edit_mode(obj, *vertices, do):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def step(message):
+def step(message: str) -> None:
     bpy.ops.ed.undo_push(message=message)

@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects with landmark pairs, and what registrations leave on them."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import bpy
 import meshes
 import numpy as np
 from installed import part
 from mathutils import Euler, Matrix
+from meshes import Array, MeshObject
+from numpy.typing import ArrayLike
 
 TILTED = Matrix.LocRotScale((3, -2, 1), Euler((0.3, -0.8, 1.1)), (1.7, 1.7, 1.7))
 SQUEEZED = Matrix.LocRotScale((-1, 4, 0.5), Euler((-0.5, 0.2, 2.0)), (0.5, 0.9, 1.4))
 
 
-def pair(source, target, vertices):
+def pair(
+    source: MeshObject, target: MeshObject, vertices: dict[str, tuple[int, int]] | Iterable[int]
+) -> tuple[MeshObject, MeshObject]:
     """Gives the source a target and landmarks, {name: (vertex, vertex)} or a list of vertices of both."""
     if not isinstance(vertices, dict):
         vertices = {f"Landmark {number}": (vertex, vertex) for number, vertex in enumerate(vertices, 1)}
@@ -24,7 +31,7 @@ def pair(source, target, vertices):
     return source, target
 
 
-def twin(obj, matrix=None, name="Twin"):
+def twin(obj: MeshObject, matrix: Matrix | None = None, name: str = "Twin") -> MeshObject:
     """A copy of an object with a mesh of its own, elsewhere."""
     copy = obj.copy()
     copy.data = obj.data.copy()
@@ -35,13 +42,13 @@ def twin(obj, matrix=None, name="Twin"):
     return copy
 
 
-def nearest(obj, points):
+def nearest(obj: MeshObject, points: ArrayLike) -> list[int]:
     """The vertices nearest to points (k, 3) in the coordinates of the mesh."""
     distance = np.linalg.norm(positions(obj)[:, None] - np.asarray(points, float), axis=2)
     return distance.argmin(axis=0).tolist()
 
 
-def positions(obj, key=None):
+def positions(obj: MeshObject, key: str | None = None) -> Array:
     """Of a mesh or of its shape key, (n, 3)."""
     points = obj.data.shape_keys.key_blocks[key].points if key else obj.data.vertices
     values = np.empty(3 * len(points), np.float32)
@@ -49,10 +56,10 @@ def positions(obj, key=None):
     return values.reshape(-1, 3).astype(float)
 
 
-def moved(points, matrix):
+def moved(points: Array, matrix: Any) -> Array:
     matrix = np.array(matrix)
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def size(points):
+def size(points: Array) -> float:
     return np.linalg.norm(np.ptp(points, axis=0))

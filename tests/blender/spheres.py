@@ -4,20 +4,21 @@
 from fractions import Fraction
 
 import numpy as np
+from meshes import Array
 
 
-def unit(vectors):
+def unit(vectors: Array) -> Array:
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
-def icosphere(subdivisions, turned=None):
+def icosphere(subdivisions: int, turned: int | None = None) -> tuple[Array, Array]:
     """Vertices (n, 3) and triangles (m, 3) of an icosahedron with its faces divided in four; maybe turned."""
     golden = (1 + 5**0.5) / 2
     corners = np.array([(0, a, b * golden) for a in (-1, 1) for b in (-1, 1)])
     vertices = unit(np.concatenate([np.roll(corners, k, axis=1) for k in range(3)]))
     near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 1.1
-    faces = [(i, j, k) for i in range(12) for j in range(12) for k in range(12) if i < j and i < k and j != k]
-    faces = np.array([face for face in faces if near[face[0], face[1]] and near[face[1], face[2]]])
+    some = [(i, j, k) for i in range(12) for j in range(12) for k in range(12) if i < j and i < k and j != k]
+    faces = np.array([face for face in some if near[face[0], face[1]] and near[face[1], face[2]]])
     faces = faces[near[faces[:, 0], faces[:, 2]]]
     faces = faces[np.linalg.det(vertices[faces]) > 0]
     for _ in range(subdivisions):
@@ -25,7 +26,7 @@ def icosphere(subdivisions, turned=None):
     return (vertices if turned is None else vertices @ rotation(turned).T), faces
 
 
-def _divided(vertices, faces):
+def _divided(vertices: Array, faces: Array) -> tuple[Array, Array]:
     edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     unique, index = np.unique(edges, axis=0, return_inverse=True)
     ab, bc, ca = (len(vertices) + index.reshape(-1, 3)).T
@@ -35,18 +36,18 @@ def _divided(vertices, faces):
     return np.concatenate([vertices, middles]), np.concatenate([np.stack(part, axis=1) for part in parts])
 
 
-def rotation(seed):
+def rotation(seed: int) -> Array:
     """Some rotation (3, 3)."""
     matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     return matrix * np.linalg.det(matrix)
 
 
-def uneven(vertices, strength=0.4):
+def uneven(vertices: Array, strength: float = 0.4) -> Array:
     """Points of the sphere pulled towards one side, smoothly and without a fold."""
     return unit(vertices + strength * np.array([0.3, 0.5, 0.8]))
 
 
-def areas(triangles):
+def areas(triangles: Array) -> Array:
     """The areas (t,) of triangles (t, 3, 3) of great arcs, by the theorem of L'Huilier."""
     a, b, c = (
         2 * np.arcsin(np.linalg.norm(triangles[:, i] - triangles[:, j], axis=1) / 2)
@@ -57,7 +58,7 @@ def areas(triangles):
     return 4 * np.arctan(np.sqrt(np.maximum(product, 0)))
 
 
-def exactly_folded(uv):
+def exactly_folded(uv: Array) -> list[int]:
     """Faces of images (m, 3, 2) in single precision that are not counter-clockwise, in exact arithmetic."""
     found = []
     for face, triangle in enumerate(np.asarray(uv, np.float32)):

@@ -2,24 +2,27 @@
 """What is traded for what: presets, outlines, slider and tolerance, and the islands that come of it."""
 
 import time
+from collections.abc import Callable
+from typing import Any
 
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 PRESETS = ("CIRCLE", "EVEN", "BALANCED", "SOFT")
 
 
-def report_of(**solver):
+def report_of(**solver: Any) -> Any:
     """What a job says of the selected meshes."""
     unwrap, bridge = part("jobs.unwrap"), part("bridge")
     settings = unwrap.Settings(mapping=bridge.UnwrapSettings(solver=bridge.Solver(**solver)))
     return unwrap.job(bpy.context, settings).execute()
 
 
-def seamed_suzanne(levels=2):
+def seamed_suzanne(levels: int = 2) -> MeshObject:
     """Suzanne with the seams of her own UV map."""
     obj = meshes.suzanne(0)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -30,7 +33,7 @@ def seamed_suzanne(levels=2):
     return meshes.subdivided(obj, levels)
 
 
-def figures_of(**options):
+def figures_of(**options: Any) -> Any:
     """Area ratio SD and angle distortion of an unwrap as a script calls it, as measured."""
     assert bpy.ops.authalic.unwrap(**options) == {"FINISHED"}
     figures = part("jobs.measure").job(bpy.context).execute()
@@ -38,7 +41,7 @@ def figures_of(**options):
     return figures.deviation, figures.angle
 
 
-def test_presets_trade_areas_for_angles(capfd):
+def test_presets_trade_areas_for_angles(capfd: pytest.CaptureFixture[str]) -> None:
     obj = seamed_suzanne()
     figures = {name: figures_of(angle_preset=name) for name in PRESETS}
     assert (meshes.area_ratios(obj) > 0).all()
@@ -51,7 +54,7 @@ def test_presets_trade_areas_for_angles(capfd):
     assert figures_of() == figures["EVEN"]
 
 
-def test_flat_islands_keep_their_shape():
+def test_flat_islands_keep_their_shape() -> None:
     # The circle bends them: corners with both edges on the boundary collapse (SD .503).
     points = [(0, 0), (1, 0), (0.5, 0.9), (0.5, -0.5), (1.4, -0.9), (-0.4, -0.9), (-0.65, -0.25)]
     vertices = [(x, y, 0) for x, y in points]
@@ -61,7 +64,7 @@ def test_flat_islands_keep_their_shape():
 
 
 @pytest.mark.skipif(bpy.app.version < (4, 3), reason="Minimum Stretch came with Blender 4.3")
-def test_the_whole_slider_beats_minimum_stretch():
+def test_the_whole_slider_beats_minimum_stretch() -> None:
     seamed_suzanne()
     ours = report_of(angle_weight=1.0).figures
     bpy.ops.object.mode_set(mode="EDIT")
@@ -73,19 +76,19 @@ def test_the_whole_slider_beats_minimum_stretch():
     assert ours.angle < theirs.angle and ours.deviation < theirs.deviation
 
 
-def test_islands_with_outlines_of_their_own_are_packed_apart():
+def test_islands_with_outlines_of_their_own_are_packed_apart() -> None:
     obj = meshes.suzanne(1)
     report_of(angle_weight=0.8)
     uv = meshes.uv(obj)
     assert uv.min() >= 0 and uv.max() <= 1 and np.ptp(uv, axis=0).max() > 0.9
     label, (corners, _, _) = meshes.islands(obj), meshes.triangles(obj)
-    boxes = [uv[corners[label == island]].reshape(-1, 2) for island in range(label.max() + 1)]
-    boxes = np.array([[box.min(axis=0), box.max(axis=0)] for box in boxes])
+    shapes = [uv[corners[label == island]].reshape(-1, 2) for island in range(label.max() + 1)]
+    boxes = np.array([[shape.min(axis=0), shape.max(axis=0)] for shape in shapes])
     gap = np.maximum(boxes[:, None, 0] - boxes[None, :, 1], boxes[None, :, 0] - boxes[:, None, 1]).max(axis=2)
     assert (gap[~np.eye(len(boxes), dtype=bool)] > 0).all()
 
 
-def test_a_long_island_lies_along_the_square():
+def test_a_long_island_lies_along_the_square() -> None:
     side, rows = np.linspace(0, 8, 41), np.linspace(0, 1, 6)
     x, y = (a.ravel() for a in np.meshgrid(side, rows))
     first = (np.arange(5)[:, None] * 41 + np.arange(40)).ravel()
@@ -99,7 +102,7 @@ def test_a_long_island_lies_along_the_square():
 
 
 @pytest.mark.parametrize("aspect", [1, 1.7, 5])
-def test_upright_finds_the_smallest_box(aspect):
+def test_upright_finds_the_smallest_box(aspect: float) -> None:
     rng = np.random.default_rng(5)
     points = np.concatenate([rng.random((3000, 2)), [[0, 0], [1, 0], [1, 1], [0, 1]]]) * [1, aspect]
     for angle in rng.uniform(0, 2 * np.pi, 5):
@@ -115,14 +118,14 @@ def test_upright_finds_the_smallest_box(aspect):
         assert before == pytest.approx(after)
 
 
-def test_upright_is_quick():
+def test_upright_is_quick() -> None:
     points = np.random.default_rng(5).standard_normal((300_000, 2))
     started = time.perf_counter()
     part("surfaces.islands").upright(points)
     assert time.perf_counter() - started < 2
 
 
-def test_spheres_take_the_slider_too():
+def test_spheres_take_the_slider_too() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     even, soft = (report_of(angle_weight=weight).figures for weight in (0.0, 0.9))
     assert soft.angle < even.angle - 0.5 and soft.flips == 0
@@ -138,7 +141,9 @@ def test_spheres_take_the_slider_too():
 
 @pytest.mark.parametrize("method", ["GRADIENT_DESCENT", "FIXED_POINT"])
 @pytest.mark.parametrize("make", [meshes.add_grid, lambda: meshes.bumpy(meshes.icosphere(3))])
-def test_other_methods_leave_angles_alone(make, method):
+def test_other_methods_leave_angles_alone(
+    make: Callable[[], tuple[MeshObject, MeshObject]], method: str
+) -> None:
     obj = make()
     assert bpy.ops.authalic.unwrap(method=method, angle_weight=0.9) == {"FINISHED"}
     weighed = meshes.uv(obj)
@@ -146,7 +151,7 @@ def test_other_methods_leave_angles_alone(make, method):
     assert (meshes.uv(obj) == weighed).all()
 
 
-def test_iterations_limit_every_method():
+def test_iterations_limit_every_method() -> None:
     meshes.suzanne(1)
     for method in ("GAUSS_NEWTON", "GRADIENT_DESCENT", "FIXED_POINT"):
         options = {"method": method, "outline": "CIRCLE", "angle_weight": 0.0}
@@ -157,12 +162,12 @@ def test_iterations_limit_every_method():
 # The preset of the redo panel, which moves with the slider
 
 
-def operator_properties():
+def operator_properties() -> Any:
     """Properties of the operator as the redo panel and the sidebar show them."""
     return bpy.context.window_manager.operator_properties_last("authalic.unwrap")
 
 
-def test_choosing_a_preset_sets_the_slider():
+def test_choosing_a_preset_sets_the_slider() -> None:
     properties, solver = operator_properties(), part("bridge.solver")
     for name in (*PRESETS, *reversed(PRESETS)):
         properties.angle_preset = name
@@ -175,7 +180,7 @@ def test_choosing_a_preset_sets_the_slider():
     properties.angle_preset = "EVEN"
 
 
-def test_choosing_a_preset_sets_outline_and_tolerance_too():
+def test_choosing_a_preset_sets_outline_and_tolerance_too() -> None:
     properties = operator_properties()
     for name, outline in (("CIRCLE", "CIRCLE"), ("SOFT", "FREE"), ("CIRCLE", "CIRCLE"), ("EVEN", "FREE")):
         properties.angle_preset = name
@@ -190,7 +195,7 @@ def test_choosing_a_preset_sets_outline_and_tolerance_too():
     assert properties.angle_preset == "EVEN"
 
 
-def test_the_former_name_of_a_preset_still_counts():
+def test_the_former_name_of_a_preset_still_counts() -> None:
     obj = seamed_suzanne(0)
     for options in ({}, {"angle_weight": 0.0}):
         figures_of(angle_preset="AUTHALIC", **options)
@@ -207,11 +212,11 @@ def test_the_former_name_of_a_preset_still_counts():
 
 
 @pytest.mark.parametrize("name", ["unwrap", "sphere_shape_key"])
-def test_scripts_may_name_a_preset(name):
+def test_scripts_may_name_a_preset(name: str) -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     operator = getattr(bpy.ops.authalic, name)
 
-    def written():
+    def written() -> Any:
         if name == "unwrap":
             return meshes.uv(obj)
         points = np.empty(3 * len(obj.data.vertices), np.float32)
@@ -230,7 +235,7 @@ def test_scripts_may_name_a_preset(name):
     assert (written() != by_name).any()
 
 
-def test_the_slider_spans_the_useful_weights():
+def test_the_slider_spans_the_useful_weights() -> None:
     solver = part("bridge.solver")
     assert solver.weight(0) == 0
     assert solver.weight(solver.PRESETS["EVEN"]) == pytest.approx(0.001, rel=1e-6)
@@ -241,7 +246,7 @@ def test_the_slider_spans_the_useful_weights():
 
 
 @pytest.mark.parametrize("options", [{}, {"angle_preset": "CIRCLE"}, {"angle_weight": 0.5}])
-def test_what_it_says_has_the_angles(options, capfd):
+def test_what_it_says_has_the_angles(options: dict[str, Any], capfd: pytest.CaptureFixture[str]) -> None:
     meshes.suzanne(1)
     bpy.ops.authalic.unwrap(**options)
     said = capfd.readouterr().out
@@ -251,7 +256,7 @@ def test_what_it_says_has_the_angles(options, capfd):
 # Outlines
 
 
-def outline_distances(obj):
+def outline_distances(obj: MeshObject) -> Array:
     """The distances of the UVs on the boundary from the middle of all, over the largest."""
     corners, _, _ = meshes.triangles(obj)
     vertices = np.array([loop.vertex_index for loop in obj.data.loops])[corners]
@@ -264,7 +269,7 @@ def outline_distances(obj):
 
 
 @pytest.mark.parametrize("options", [{"angle_preset": "CIRCLE"}, {"outline": "CIRCLE"}])
-def test_circles_are_round(options):
+def test_circles_are_round(options: Any) -> None:
     obj = meshes.add_grid(n=8)
     figures_of(**options)
     assert outline_distances(obj).min() > 0.999
@@ -272,13 +277,13 @@ def test_circles_are_round(options):
     assert outline_distances(obj).min() < 0.8
 
 
-def test_the_circle_takes_the_slider_too():
+def test_the_circle_takes_the_slider_too() -> None:
     meshes.add_grid(n=8, bump=1.5)
     even, soft = (figures_of(outline="CIRCLE", angle_weight=weight) for weight in (0.0, 0.8))
     assert even[0] < soft[0] and soft[1] < even[1]
 
 
-def test_rectangles_are_upright_and_full():
+def test_rectangles_are_upright_and_full() -> None:
     obj = meshes.add_grid(n=8)
     figures_of(outline="RECTANGLE")
     uv = meshes.uv(obj)
@@ -288,14 +293,14 @@ def test_rectangles_are_upright_and_full():
     assert size.max() > 0.99
 
 
-def test_overlap_is_no_flip():
+def test_overlap_is_no_flip() -> None:
     meshes.add_grid(n=8, bump=1.5)
     deviation, _ = figures_of(allow_overlap=True)
     assert deviation < 0.1
 
 
 @pytest.mark.parametrize("method", ["GRADIENT_DESCENT", "FIXED_POINT"])
-def test_other_methods_know_circles_only(method):
+def test_other_methods_know_circles_only(method: str) -> None:
     obj = meshes.add_grid(n=8)
     figures_of(method=method, outline="RECTANGLE", area_tolerance=0.1)
     assert outline_distances(obj).min() > 0.999
@@ -304,7 +309,7 @@ def test_other_methods_know_circles_only(method):
 # The area tolerance
 
 
-def test_area_tolerance_is_kept_and_spares_shapes():
+def test_area_tolerance_is_kept_and_spares_shapes() -> None:
     seamed_suzanne(1)
     figures = {tolerance: figures_of(area_tolerance=tolerance) for tolerance in (0.01, 0.05, 0.2)}
     assert all(deviation < 1.5 * tolerance for tolerance, (deviation, _) in figures.items())
@@ -314,7 +319,7 @@ def test_area_tolerance_is_kept_and_spares_shapes():
     assert figures_of(area_tolerance=0.05, angle_weight=0.9) == figures[0.05]
 
 
-def test_area_tolerance_of_closed_meshes():
+def test_area_tolerance_of_closed_meshes() -> None:
     meshes.bumpy(meshes.icosphere(4))
     close, loose = (figures_of(area_tolerance=tolerance) for tolerance in (0.01, 0.3))
     assert close[0] < loose[0] and loose[1] < close[1]
@@ -327,7 +332,7 @@ def test_area_tolerance_of_closed_meshes():
 # Warnings
 
 
-def test_what_has_not_converged_is_said_whatever_the_preset(capfd):
+def test_what_has_not_converged_is_said_whatever_the_preset(capfd: pytest.CaptureFixture[str]) -> None:
     obj = seamed_suzanne()
     for name in PRESETS:
         figures_of(angle_preset=name, iterations=1)
@@ -341,7 +346,7 @@ def test_what_has_not_converged_is_said_whatever_the_preset(capfd):
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_bad_figures_are_said_whatever_the_preset(name, capfd):
+def test_bad_figures_are_said_whatever_the_preset(name: str, capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.add(*meshes.tube(100, 3, closed=True), "Tube")
     try:
         bpy.ops.authalic.unwrap(angle_preset=name)

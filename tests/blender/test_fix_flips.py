@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.fix_flips: flipped faces are turned over, and nothing else changes."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bmesh
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 N = 8
 
 
-def fix():
+def fix() -> set[str]:
     return bpy.ops.authalic.fix_flips()
 
 
-def flat_grid(offset=(0, 0, 0), n=N):
+def flat_grid(offset: Sequence[float] = (0, 0, 0), n: int = N) -> tuple[Array, Array]:
     return meshes.grid(n=n, bump=0, offset=offset)
 
 
-def laid_flat(obj, scale=0.1, mirrored=False):
+def laid_flat(obj: MeshObject, scale: float = 0.1, mirrored: bool = False) -> MeshObject:
     """Gives an object UVs: its x and y."""
     obj.data.uv_layers.new(name="UVMap")
     position = np.array([obj.data.vertices[loop.vertex_index].co for loop in obj.data.loops])
@@ -28,18 +32,18 @@ def laid_flat(obj, scale=0.1, mirrored=False):
     return obj
 
 
-def corner_vertices(obj):
+def corner_vertices(obj: MeshObject) -> Array:
     return np.array([loop.vertex_index for loop in obj.data.loops])
 
 
-def move(obj, vertex, to):
+def move(obj: MeshObject, vertex: int, to: Any) -> None:
     """Puts all UVs of a vertex somewhere else."""
     uv = meshes.uv(obj)
     uv[corner_vertices(obj) == vertex] = to
     meshes.set_uv(obj, uv)
 
 
-def tangled_grid(mirrored=False, **options):
+def tangled_grid(mirrored: bool = False, **options: Any) -> MeshObject:
     """A grid one vertex of which has gone too far, over several faces."""
     obj = laid_flat(meshes.add(*flat_grid(**options), "Grid"), mirrored=mirrored)
     inner = (N + 1) * 4 + 3
@@ -49,31 +53,31 @@ def tangled_grid(mirrored=False, **options):
     return obj
 
 
-def flipped(obj, mirrored=False):
+def flipped(obj: MeshObject, mirrored: bool = False) -> Array:
     """The polygons with a triangle that is not open to the right side."""
     corners, polygons, _ = meshes.triangles(obj)
     areas = meshes.uv_areas(meshes.uv(obj)[corners])
     return np.unique(polygons[(areas >= 0) if mirrored else (areas <= 0)])
 
 
-def boundary(obj):
+def boundary(obj: MeshObject) -> Array:
     """Which corners are at boundary vertices of the mesh."""
     edges = [edge.vertices for edge, count in zip(obj.data.edges, uses(obj), strict=True) if count == 1]
     return np.isin(corner_vertices(obj), np.unique(np.array([tuple(edge) for edge in edges])))
 
 
-def uses(obj):
+def uses(obj: MeshObject) -> Array:
     edge = np.array([loop.edge_index for loop in obj.data.loops])
     return np.bincount(edge, minlength=len(obj.data.edges))
 
 
-def islands_of_uvs(obj, before):
+def islands_of_uvs(obj: MeshObject, before: Array) -> int:
     """How many UV vertices are elsewhere than before."""
     moved = (meshes.uv(obj) != before).any(axis=1)
     return len(np.unique(corner_vertices(obj)[moved]))
 
 
-def test_flips_are_fixed_and_told(capfd):
+def test_flips_are_fixed_and_told(capfd: pytest.CaptureFixture[str]) -> None:
     obj = tangled_grid()
     before, faces = meshes.uv(obj), len(flipped(obj))
     assert fix() == {"FINISHED"}
@@ -86,14 +90,14 @@ def test_flips_are_fixed_and_told(capfd):
     assert f"Info: Fixed {named} in 1 island; {uvs} moved" in said
 
 
-def test_outline_stays():
+def test_outline_stays() -> None:
     obj = tangled_grid()
     before = meshes.uv(obj)
     fix()
     assert (meshes.uv(obj)[boundary(obj)] == before[boundary(obj)]).all()
 
 
-def test_corners_of_a_vertex_stay_together():
+def test_corners_of_a_vertex_stay_together() -> None:
     obj = tangled_grid()
     fix()
     vertices, uv = corner_vertices(obj), meshes.uv(obj)
@@ -101,7 +105,7 @@ def test_corners_of_a_vertex_stay_together():
         assert len(np.unique(uv[vertices == vertex], axis=0)) == 1
 
 
-def test_pinned_uvs_stay():
+def test_pinned_uvs_stay() -> None:
     obj = tangled_grid()
     pins = [(N + 1) * 4 + 5, (N + 1) * 3 + 3]
     pinned = np.isin(corner_vertices(obj), pins)
@@ -116,17 +120,17 @@ def test_pinned_uvs_stay():
     assert (found == pinned).all()
 
 
-def test_pins_that_leave_no_way_out_are_told():
+def test_pins_that_leave_no_way_out_are_told() -> None:
     obj = tangled_grid()
     attribute = obj.data.attributes.new(".pn.UVMap", "BOOLEAN", "CORNER")
-    attribute.data.foreach_set("value", np.ones(len(obj.data.loops), bool))
+    attribute.data.foreach_set("value", np.ones(len(obj.data.loops), np.bool_))
     before = meshes.uv(obj)
     with pytest.raises(RuntimeError, match=r"Grid at face 0: .*pinned UVs; unpin UVs, smooth"):
         fix()
     assert (meshes.uv(obj) == before).all()
 
 
-def test_outline_that_leaves_no_way_out_is_told():
+def test_outline_that_leaves_no_way_out_is_told() -> None:
     obj = laid_flat(meshes.add(*flat_grid(), "Grid"))
     # a corner over the opposite one: its face is flipped and has nothing to move
     move(obj, 0, (0.7, 0.7))
@@ -136,15 +140,15 @@ def test_outline_that_leaves_no_way_out_is_told():
     assert (meshes.uv(obj) == before).all()
 
 
-def several(*parts, name="Parts"):
+def several(*parts: tuple[Array, Any], name: str = "Parts") -> MeshObject:
     return laid_flat(meshes.add(*meshes.together(*parts), name))
 
 
-def tangle(obj, vertex, target):
+def tangle(obj: MeshObject, vertex: int, target: Any) -> None:
     move(obj, vertex, meshes.uv(obj)[corner_vertices(obj) == target][0])
 
 
-def test_other_islands_are_bit_identical(capfd):
+def test_other_islands_are_bit_identical(capfd: pytest.CaptureFixture[str]) -> None:
     obj = several(flat_grid(), flat_grid((4, 0, 0)), flat_grid((0, 4, 0)))
     size = (N + 1) ** 2
     inner = (N + 1) * 4 + 3
@@ -158,7 +162,7 @@ def test_other_islands_are_bit_identical(capfd):
     assert " in 2 islands; " in capfd.readouterr().out
 
 
-def test_one_island_that_cannot_be_fixed_beside_one_that_can(capfd):
+def test_one_island_that_cannot_be_fixed_beside_one_that_can(capfd: pytest.CaptureFixture[str]) -> None:
     obj = several(flat_grid(), flat_grid((4, 0, 0)))
     inner = (N + 1) * 4 + 3
     tangle(obj, inner, inner + 2)
@@ -173,7 +177,7 @@ def test_one_island_that_cannot_be_fixed_beside_one_that_can(capfd):
     assert "Warning: Fixed" in said and f"left as it was: Parts at face {N * N}: " in said
 
 
-def test_mirrored_islands_are_no_flips(capfd):
+def test_mirrored_islands_are_no_flips(capfd: pytest.CaptureFixture[str]) -> None:
     obj = laid_flat(meshes.add(*flat_grid(), "Grid"), mirrored=True)
     before = meshes.uv(obj)
     assert fix() == {"FINISHED"}
@@ -181,13 +185,13 @@ def test_mirrored_islands_are_no_flips(capfd):
     assert "Info: No flipped faces" in capfd.readouterr().out
 
 
-def test_flips_of_mirrored_islands_are_fixed():
+def test_flips_of_mirrored_islands_are_fixed() -> None:
     obj = tangled_grid(mirrored=True)
     assert fix() == {"FINISHED"}
     assert len(flipped(obj, mirrored=True)) == 0
 
 
-def test_inconsistent_normals_are_no_flips(capfd):
+def test_inconsistent_normals_are_no_flips(capfd: pytest.CaptureFixture[str]) -> None:
     vertices, faces = flat_grid()
     faces[20] = faces[20][::-1]
     obj = laid_flat(meshes.add(vertices, faces, "Grid"))
@@ -197,7 +201,7 @@ def test_inconsistent_normals_are_no_flips(capfd):
     assert "No flipped faces" in capfd.readouterr().out
 
 
-def test_nothing_to_fix_changes_nothing(capfd):
+def test_nothing_to_fix_changes_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.suzanne(1)
     bpy.ops.authalic.unwrap()
     before = meshes.uv(obj)
@@ -206,7 +210,7 @@ def test_nothing_to_fix_changes_nothing(capfd):
     assert "No flipped faces" in capfd.readouterr().out
 
 
-def test_only_the_active_uv_map_changes():
+def test_only_the_active_uv_map_changes() -> None:
     obj = tangled_grid()
     other = obj.data.uv_layers.new(name="Other")
     before = meshes.uv(obj, "Other")
@@ -216,7 +220,7 @@ def test_only_the_active_uv_map_changes():
     assert (meshes.uv(obj, other.name) == before).all() and obj.data.uv_layers.active.name == "UVMap"
 
 
-def both_halves_tangled():
+def both_halves_tangled() -> tuple[MeshObject, set[int]]:
     """A grid with one tangle on the left and one on the right, and the faces of the left half."""
     obj = laid_flat(meshes.add(*flat_grid(n=12), "Grid"))
     left, right = 13 * 6 + 3, 13 * 6 + 9
@@ -225,7 +229,7 @@ def both_halves_tangled():
     return obj, {face for face in range(144) if face % 12 < 6}
 
 
-def test_edit_mode_fixes_selected_faces_only():
+def test_edit_mode_fixes_selected_faces_only() -> None:
     obj, chosen = both_halves_tangled()
     before, bad = meshes.uv(obj), flipped(obj)
     meshes.edit(obj)
@@ -243,7 +247,7 @@ def test_edit_mode_fixes_selected_faces_only():
         assert len(np.unique(uv[vertices == vertex], axis=0)) == 1
 
 
-def test_edit_mode_asks_for_the_faces_around_where_it_needs_them():
+def test_edit_mode_asks_for_the_faces_around_where_it_needs_them() -> None:
     obj = tangled_grid()
     before, bad = meshes.uv(obj), set(flipped(obj))
     meshes.edit(obj)
@@ -254,7 +258,7 @@ def test_edit_mode_asks_for_the_faces_around_where_it_needs_them():
     assert (meshes.uv(obj) == before).all()
 
 
-def test_edit_mode_without_selected_faces(capfd):
+def test_edit_mode_without_selected_faces(capfd: pytest.CaptureFixture[str]) -> None:
     obj = tangled_grid()
     meshes.edit(obj)
     meshes.select_faces(obj, lambda index: False)
@@ -262,7 +266,7 @@ def test_edit_mode_without_selected_faces(capfd):
     assert "No faces are selected" in capfd.readouterr().out
 
 
-def test_several_objects():
+def test_several_objects() -> None:
     first, second = tangled_grid(), tangled_grid()
     meshes.select(first, second)
     assert fix() == {"FINISHED"}
@@ -270,7 +274,7 @@ def test_several_objects():
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_undo(mode):
+def test_undo(mode: str) -> None:
     obj = tangled_grid()
     bpy.ops.object.mode_set(mode=mode)
     if mode == "EDIT":
@@ -284,7 +288,7 @@ def test_undo(mode):
     assert (meshes.uv(bpy.context.object) == before).all()
 
 
-def test_cancelling_changes_nothing():
+def test_cancelling_changes_nothing() -> None:
     obj = tangled_grid()
     before = meshes.uv(obj)
     job = part("jobs.fix_flips").job(bpy.context).start()
@@ -294,7 +298,7 @@ def test_cancelling_changes_nothing():
     assert (meshes.uv(obj) == before).all()
 
 
-def test_meshes_without_uv_maps_say_what_is_missing():
+def test_meshes_without_uv_maps_say_what_is_missing() -> None:
     meshes.add(*flat_grid())
     with pytest.raises(RuntimeError, match=r"poll.*have no UV map"):
         fix()
@@ -303,21 +307,21 @@ def test_meshes_without_uv_maps_say_what_is_missing():
         fix()
 
 
-def test_uvs_that_were_never_laid_out_are_told():
+def test_uvs_that_were_never_laid_out_are_told() -> None:
     obj = laid_flat(meshes.add(*flat_grid(), "Grid"), scale=0)
     with pytest.raises(RuntimeError, match="Grid at face 0: "):
         fix()
     assert (meshes.uv(obj) == 0.5).all()
 
 
-def test_closed_islands_are_told():
+def test_closed_islands_are_told() -> None:
     vertices, faces = meshes.tetrahedron()
     laid_flat(meshes.add(vertices, faces, "Solid"))
     with pytest.raises(RuntimeError, match=r"Solid at face 0: is closed in its UV map"):
         fix()
 
 
-def test_a_scrambled_island_of_n_gons(capfd):
+def test_a_scrambled_island_of_n_gons(capfd: pytest.CaptureFixture[str]) -> None:
     bpy.ops.mesh.primitive_circle_add(vertices=12, fill_type="NGON")
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.inset(thickness=0.3)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The zip installs, enables, disables and uninstalls without leaving anything behind."""
 
+from typing import Any
+
 import bpy
 import conftest
 import pytest
@@ -8,17 +10,17 @@ import pytest
 MENUS = ("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu")
 
 
-def _menu_entries():
+def _menu_entries() -> list[Any]:
     menus = (getattr(bpy.types, name) for name in MENUS)
     return [f for menu in menus for f in menu._dyn_ui_initialize() if "authalic" in f.__module__]
 
 
-def _registered():
+def _registered() -> set[str]:
     found = {name for name in dir(bpy.types) if name.startswith("AUTHALIC_")}
     return found | ({"figures"} if hasattr(bpy.types.WindowManager, "authalic_figures") else set())
 
 
-def test_enabled():
+def test_enabled() -> None:
     assert len(_menu_entries()) == len(MENUS)
     operators = {f"AUTHALIC_OT_{name}" for name in ("unwrap", "sphere_shape_key", "measure", "fix_flips")}
     assert operators | {"figures"} <= _registered()
@@ -26,14 +28,14 @@ def test_enabled():
     assert spaces == {"VIEW_3D", "IMAGE_EDITOR"}
 
 
-def test_disabling_leaves_nothing(extension):
+def test_disabling_leaves_nothing(extension: str) -> None:
     bpy.ops.preferences.addon_disable(module=extension)
     assert not _menu_entries() and not _registered()
     bpy.ops.preferences.addon_enable(module=extension)
     assert len(_menu_entries()) == len(MENUS) and _registered()
 
 
-def test_uninstall_and_install_again(extension):
+def test_uninstall_and_install_again(extension: str) -> None:
     repo = next(
         i for i, r in enumerate(bpy.context.preferences.extensions.repos) if r.module == "user_default"
     )
@@ -44,7 +46,7 @@ def test_uninstall_and_install_again(extension):
     assert extension in bpy.context.preferences.addons and len(_menu_entries()) == len(MENUS)
 
 
-def test_defaults_are_declared():
+def test_defaults_are_declared() -> None:
     properties = bpy.ops.authalic.unwrap.get_rna_type().properties
     expected = {
         "domain": "AUTO",
@@ -73,7 +75,7 @@ def test_defaults_are_declared():
         assert all(p.name and p.description and not p.description.endswith(".") for p in named)
 
 
-def test_sidebar_has_options_before_the_first_use():
+def test_sidebar_has_options_before_the_first_use() -> None:
     options = bpy.context.window_manager.operator_properties_last("authalic.unwrap")
     assert options.iterations == 0 and options.fill_holes
     assert (options.method, options.angle_preset, options.outline) == ("GAUSS_NEWTON", "EVEN", "FREE")

@@ -4,6 +4,8 @@
 import threading
 import time
 import types
+from collections.abc import Callable
+from typing import Any
 
 import bpy
 import meshes
@@ -12,7 +14,7 @@ import pytest
 from installed import part
 
 
-def test_operator_and_job_write_the_same():
+def test_operator_and_job_write_the_same() -> None:
     obj = meshes.seam_sphere()
     bpy.ops.authalic.unwrap(uv_layer="Operator")
     unwrap = part("jobs.unwrap")
@@ -21,7 +23,7 @@ def test_operator_and_job_write_the_same():
     np.testing.assert_array_equal(meshes.uv(obj, "Operator"), meshes.uv(obj, "Job"))
 
 
-def test_job_computes_first_and_writes_on_apply():
+def test_job_computes_first_and_writes_on_apply() -> None:
     obj = meshes.add_grid()
     unwrap = part("jobs.unwrap")
     job = unwrap.job(bpy.context, unwrap.Settings()).start()
@@ -32,7 +34,7 @@ def test_job_computes_first_and_writes_on_apply():
     assert len(obj.data.uv_layers) == 1
 
 
-def test_cancelled_job_writes_nothing():
+def test_cancelled_job_writes_nothing() -> None:
     obj, bridge, unwrap = meshes.suzanne(), part("bridge"), part("jobs.unwrap")
     obj.data.uv_layers.active.name = "Old"
     before = meshes.uv(obj)
@@ -49,22 +51,22 @@ def test_cancelled_job_writes_nothing():
     assert (meshes.uv(obj) == before).all()
 
 
-def test_progress_rises_to_the_end():
+def test_progress_rises_to_the_end() -> None:
     surface, bridge = part("blender.meshes").read(meshes.suzanne(1)), part("bridge")
-    seen = []
+    seen: list[float] = []
     bridge.unwrap([surface], bridge.UnwrapSettings(), lambda fraction, message: seen.append(fraction) or True)
     assert len(seen) > 10 and seen == sorted(seen) and seen[0] >= 0 and seen[-1] <= 1
 
 
-def test_job_works_on_another_thread_and_finishes_on_this_one():
+def test_job_works_on_another_thread_and_finishes_on_this_one() -> None:
     threads = []
 
-    def work(progress):
+    def work(progress: Callable[[float, str], Any]) -> int:
         threads.append(threading.current_thread())
         assert progress(0.5, "half")
         return 1
 
-    def finish(result):
+    def finish(result: Any) -> int:
         threads.append(threading.current_thread())
         return result + 1
 
@@ -74,18 +76,18 @@ def test_job_works_on_another_thread_and_finishes_on_this_one():
     assert job.poll() == (False, 0.5, "half")
 
 
-def test_job_raises_what_the_work_raised():
-    def work(_progress):
+def test_job_raises_what_the_work_raised() -> None:
+    def work(_progress: Any) -> None:
         raise ValueError("why")
 
     with pytest.raises(ValueError, match="why"):
         part("jobs.job").Job(work).execute()
 
 
-def test_failing_packer_changes_nothing(monkeypatch):
+def test_failing_packer_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     obj, unwrap = meshes.add_grid(), part("jobs.unwrap")
 
-    def fail(*_):
+    def fail(*_: Any) -> None:
         raise RuntimeError("no room")
 
     monkeypatch.setattr(unwrap, "pack", fail)
@@ -94,10 +96,10 @@ def test_failing_packer_changes_nothing(monkeypatch):
     assert not obj.data.uv_layers
 
 
-def test_not_finite_results_are_not_written(monkeypatch):
+def test_not_finite_results_are_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     obj, unwrap = meshes.add_grid(), part("jobs.unwrap")
 
-    def spoil(islands, _settings):
+    def spoil(islands: Any, _settings: Any) -> None:
         islands[0].uv[0] = np.nan
 
     monkeypatch.setattr(unwrap, "pack", spoil)
@@ -106,7 +108,7 @@ def test_not_finite_results_are_not_written(monkeypatch):
     assert not obj.data.uv_layers
 
 
-def test_unmeasurable_results_are_not_written(monkeypatch):
+def test_unmeasurable_results_are_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     obj = meshes.add_grid()
     monkeypatch.setattr(part("bridge"), "measure", lambda surfaces: None)
     with pytest.raises(RuntimeError, match="nothing was changed"):
@@ -114,13 +116,15 @@ def test_unmeasurable_results_are_not_written(monkeypatch):
     assert not obj.data.uv_layers
 
 
-def test_island_that_folds_when_packed_is_left_out_and_the_rest_fills_the_square(monkeypatch):
+def test_island_that_folds_when_packed_is_left_out_and_the_rest_fills_the_square(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     obj.data.uv_layers.new(name="UVMap")
     before, unwrap = meshes.uv(obj), part("jobs.unwrap")
     pack = unwrap.pack
 
-    def spoil(islands, settings):
+    def spoil(islands: Any, settings: Any) -> None:
         pack(islands, settings)
         if len(islands) > 1:  # one point of the second crosses over to the far side
             inner = np.linalg.norm(islands[1].uv - islands[1].uv.mean(axis=0), axis=1).argmin()
@@ -149,12 +153,18 @@ _FIGURES = "(area ratio SD 6, angle distortion 1.50)"
         ("max_iterations", False, f"stopped at the iteration limit {_FIGURES}; raise Iterations to go on"),
     ],
 )
-def test_island_that_falls_short_is_named(status, is_uneven, text, monkeypatch, capfd):
+def test_island_that_falls_short_is_named(
+    status: str,
+    is_uneven: bool,
+    text: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
     meshes.add_grid()
     bridge, islands = part("bridge"), part("bridge.islands")
     map_ = islands._map
 
-    def stalled(*arguments):
+    def stalled(*arguments: Any) -> Any:
         island = map_(*arguments)
         island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, "cut it")
         return island
@@ -167,7 +177,7 @@ def test_island_that_falls_short_is_named(status, is_uneven, text, monkeypatch, 
 
 
 @pytest.mark.parametrize("method", ["SCALED", "ADD", "FRACTION"])
-def test_packing_is_quick_and_keeps_margins(method):
+def test_packing_is_quick_and_keeps_margins(method: str) -> None:
     packing, shapes = part("blender.packing"), part("surfaces.islands")
     angle = np.linspace(0, 2 * np.pi, 100)
     disk = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -186,13 +196,13 @@ def test_packing_is_quick_and_keeps_margins(method):
     assert gap > 0.0199 if method == "FRACTION" else gap > 1e-3
 
 
-def test_boxes_enclose():
+def test_boxes_enclose() -> None:
     points = np.random.default_rng(3).normal(size=(500, 2)) * [3, 1]
     box = part("surfaces.islands").box(points)
     assert (box[0] == points.min(axis=0)).all() and (box[2] == points.max(axis=0)).all()
 
 
-def test_messages_name_the_elements_of_the_mesh():
+def test_messages_name_the_elements_of_the_mesh() -> None:
     polygons, vertices = np.array([70, 80, 90, 90]), np.array([5, 6, 7, -1])
     expected = {
         "no area in face 1: dissolve": "no area in face 80: dissolve",

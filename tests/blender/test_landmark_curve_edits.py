@@ -2,6 +2,9 @@
 """Landmark curves are kept through edits of the meshes, undo, saving and files, and told where they broke."""
 
 import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 import bpy
 import curving
@@ -11,28 +14,29 @@ import pairing
 import pytest
 from curving import LOOP, LOOP_B, OTHER, OTHER_B, ROW, ROW_B
 from installed import part
+from meshes import MeshObject
 
 call = bpy.ops.authalic
 
 
 @pytest.fixture
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     return pairing.heads()
 
 
-def edited(obj, *vertices, do):
+def edited(obj: MeshObject, *vertices: int, do: Callable[[], Any]) -> None:
     pairing.in_edit_mode(obj, *vertices, do=do)
 
 
-def delete():
+def delete() -> Any:
     return bpy.ops.mesh.delete(type="VERT")
 
 
-def places(obj, path):
+def places(obj: MeshObject, path: Sequence[int]) -> Any:
     return np.array([obj.data.vertices[vertex].co for vertex in path])
 
 
-def test_paths_are_followed_when_vertices_are_deleted(heads):
+def test_paths_are_followed_when_vertices_are_deleted(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP, LOOP_B)
@@ -47,7 +51,7 @@ def test_paths_are_followed_when_vertices_are_deleted(heads):
 
 
 @pytest.mark.parametrize("cuts", [1, 3])
-def test_subdividing_divides_paths(heads, cuts):
+def test_subdividing_divides_paths(heads: tuple[MeshObject, MeshObject], cuts: int) -> None:
     source, _ = heads
     curving.add(ROW[::-1], ROW_B)
     curving.add(LOOP, LOOP_B)
@@ -58,7 +62,7 @@ def test_subdividing_divides_paths(heads, cuts):
     assert set(loop[:: cuts + 1]) == set(LOOP) and len(loop) == 8 * (cuts + 1) + 1 and loop[0] == LOOP[0]
 
 
-def test_an_applied_subdivision_surface_divides_paths(heads):
+def test_an_applied_subdivision_surface_divides_paths(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     meshes.select(heads[0])
     meshes.subdivided(heads[0], 2)
@@ -74,7 +78,9 @@ def test_an_applied_subdivision_surface_divides_paths(heads):
         (15, "has lost its end on Head B"),
     ],
 )
-def test_a_broken_path_is_told_and_can_be_set_again(heads, vertex, problem):
+def test_a_broken_path_is_told_and_can_be_set_again(
+    heads: tuple[MeshObject, MeshObject], vertex: int, problem: str
+) -> None:
     path = (10, 11, 12, 13, 14, 15) if vertex != 11 else (9, 10, 11, 12, 13)
     source, target = heads
     curving.add(ROW, path)
@@ -98,32 +104,32 @@ def test_a_broken_path_is_told_and_can_be_set_again(heads, vertex, problem):
     assert len(curving.listed()) == 1
 
 
-def test_a_path_without_both_ends_is_told(heads):
+def test_a_path_without_both_ends_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add((7, 8, 9, 10, 11, 12), ROW_B)
     edited(heads[0], 7, 12, do=delete)
     assert curving.listed()[0][3] == "has lost its start and its end on Head A"
 
 
-def test_a_deleted_path_is_told(heads):
+def test_a_deleted_path_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     edited(heads[0], *ROW, do=delete)
     assert curving.listed() == [("Curve 1", (), ROW_B, "has no edges on Head A")]
 
 
-def test_a_copied_path_is_told(heads):
+def test_a_copied_path_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     edited(heads[0], *ROW, do=bpy.ops.mesh.duplicate)
     assert curving.listed()[0][3] == "has edges that make up 2 pieces on Head A"
 
 
-def test_merging_can_make_curves_meet(heads):
+def test_merging_can_make_curves_meet(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add((8, 9, 10), ROW_B)
     curving.add((12, 11, 18), OTHER_B)
     edited(heads[0], 10, 11, do=lambda: bpy.ops.mesh.merge(type="CENTER"))
     assert any(problem is not None for *_, problem in curving.listed())
 
 
-def test_edits_are_noticed_while_drawing(heads):
+def test_edits_are_noticed_while_drawing(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     curving.add(ROW, ROW_B)
     find = part("landmarks.curves").pairs
@@ -136,7 +142,9 @@ def test_edits_are_noticed_while_drawing(heads):
     assert find(source, drawing=True)[0].source.vertices == tuple(v - 2 for v in ROW[::-1])
 
 
-def test_drawing_does_not_search_again(heads, monkeypatch):
+def test_drawing_does_not_search_again(
+    heads: tuple[MeshObject, MeshObject], monkeypatch: pytest.MonkeyPatch
+) -> None:
     source, _ = heads
     curving.add(ROW)  # nothing on the target
     module, find = part("landmarks.curve_marks"), part("landmarks.curves").pairs
@@ -145,7 +153,7 @@ def test_drawing_does_not_search_again(heads, monkeypatch):
     assert find(source, drawing=True)[0].source.vertices == ROW
 
 
-def test_undo_and_redo(heads):
+def test_undo_and_redo(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.step("start")
     curving.add(ROW, ROW_B)
     pairing.step("first")
@@ -165,18 +173,18 @@ def test_undo_and_redo(heads):
     assert curving.listed() == [("Curve 1", ROW, ROW_B[::-1], None), second]
 
 
-def both():
+def both() -> Any:
     return bpy.data.objects["Head A"], bpy.data.objects["Head B"]
 
 
-def edit(with_target=True):
+def edit(with_target: bool = True) -> None:
     pairing.step("objects")
     meshes.edit(*(both() if with_target else both()[:1]))
     pairing.step("edit mode")
 
 
 @pytest.mark.parametrize("with_target", [True, False])
-def test_undo_of_adding_in_edit_mode(heads, with_target):
+def test_undo_of_adding_in_edit_mode(heads: tuple[MeshObject, MeshObject], with_target: bool) -> None:
     edit(with_target)
     curving.add(ROW)
     pairing.step("source")
@@ -195,7 +203,7 @@ def test_undo_of_adding_in_edit_mode(heads, with_target):
 
 
 @pytest.mark.parametrize("with_target", [True, False])
-def test_undo_of_removing_in_edit_mode(heads, with_target):
+def test_undo_of_removing_in_edit_mode(heads: tuple[MeshObject, MeshObject], with_target: bool) -> None:
     curving.add(ROW, ROW_B, name="Brow")
     curving.add(LOOP, LOOP_B)
     expected = [("Brow", ROW, ROW_B, None), ("Curve 2", LOOP, LOOP_B, None)]
@@ -216,7 +224,7 @@ def test_undo_of_removing_in_edit_mode(heads, with_target):
     assert curving.listed() == expected
 
 
-def test_undo_of_reversing_and_replacing_in_edit_mode(heads):
+def test_undo_of_reversing_and_replacing_in_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     edit()
     call.landmark_curve_reverse(side="SOURCE")
@@ -232,7 +240,7 @@ def test_undo_of_reversing_and_replacing_in_edit_mode(heads):
     assert curving.listed()[0][1] == ROW[::-1]
 
 
-def test_undo_of_deleting_in_edit_mode(heads):
+def test_undo_of_deleting_in_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     edit()
     curving.add(ROW, ROW_B)
     pairing.step("added")
@@ -251,7 +259,7 @@ def test_undo_of_deleting_in_edit_mode(heads):
     assert curving.listed() == []
 
 
-def test_undo_back_into_edit_mode(heads):
+def test_undo_back_into_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     edit()
     curving.add(OTHER, OTHER_B)
@@ -272,7 +280,9 @@ def test_undo_back_into_edit_mode(heads):
     assert bpy.context.mode == "OBJECT"
 
 
-def test_the_first_curve_made_in_edit_mode_survives_undo_back_into_it(heads):
+def test_the_first_curve_made_in_edit_mode_survives_undo_back_into_it(
+    heads: tuple[MeshObject, MeshObject],
+) -> None:
     edit()
     curving.add(ROW, ROW_B)
     pairing.step("added")
@@ -282,7 +292,7 @@ def test_the_first_curve_made_in_edit_mode_survives_undo_back_into_it(heads):
     assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
 
 
-def test_saved_with_the_file(heads, tmp_path):
+def test_saved_with_the_file(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     curving.add(ROW, ROW_B[::-1], name="Brow")
     curving.add(LOOP, LOOP_B)
     path = str(tmp_path / "heads.blend")
@@ -292,7 +302,7 @@ def test_saved_with_the_file(heads, tmp_path):
     assert curving.listed() == [("Brow", ROW, ROW_B[::-1], None), ("Curve 2", LOOP, LOOP_B, None)]
 
 
-def test_export_and_import(heads, tmp_path):
+def test_export_and_import(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     curving.add(ROW, ROW_B, name="Brow [1,2]")
     curving.add(LOOP, LOOP_B)
     curving.add((36, 37, 38))  # not whole
@@ -316,7 +326,9 @@ def test_export_and_import(heads, tmp_path):
 
 
 @pytest.mark.parametrize("in_edit", [False, True])
-def test_import_on_a_copy_of_the_source(heads, tmp_path, in_edit):
+def test_import_on_a_copy_of_the_source(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, in_edit: bool
+) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     pairing.add(40, 50)
@@ -339,7 +351,9 @@ def test_import_on_a_copy_of_the_source(heads, tmp_path, in_edit):
     assert len(pairing.listed(copy)) == 1
 
 
-def test_a_file_without_curves_leaves_them_alone(heads, tmp_path):
+def test_a_file_without_curves_leaves_them_alone(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path
+) -> None:
     curving.add(ROW, ROW_B)
     path = tmp_path / "pairs.json"
     content = {"format": "authalic-landmarks", "version": 1, "pairs": [{"source": 1, "target": 2}]}
@@ -369,7 +383,9 @@ def test_a_file_without_curves_leaves_them_alone(heads, tmp_path):
         ),
     ],
 )
-def test_a_bad_file_changes_nothing(heads, tmp_path, curves, words):
+def test_a_bad_file_changes_nothing(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, curves: Any, words: str
+) -> None:
     curving.add(ROW, ROW_B)
     pairing.add(40, 50)
     path = tmp_path / "pairs.json"
@@ -380,7 +396,9 @@ def test_a_bad_file_changes_nothing(heads, tmp_path, curves, words):
 
 
 @pytest.mark.parametrize("in_edit", [False, True])
-def test_drawing_looks_again_only_after_changes(heads, monkeypatch, in_edit):
+def test_drawing_looks_again_only_after_changes(
+    heads: tuple[MeshObject, MeshObject], monkeypatch: pytest.MonkeyPatch, in_edit: bool
+) -> None:
     source, _ = heads
     curving.add(ROW, ROW_B)
     if in_edit:

@@ -2,6 +2,8 @@
 """Landmark curves: added, refused, listed, reversed, selected, removed, and how they are drawn."""
 
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import bmesh
@@ -12,16 +14,17 @@ import pairing
 import pytest
 from curving import LOOP, LOOP_B, OTHER, OTHER_B, ROW, ROW_B
 from installed import part
+from meshes import MeshObject
 
 call = bpy.ops.authalic
 
 
 @pytest.fixture
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     return pairing.heads()
 
 
-def test_add_by_numbers(heads):
+def test_add_by_numbers(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     curving.add(OTHER, OTHER_B, name="Brow")
     assert curving.listed() == [("Curve 1", ROW, ROW_B, None), ("Brow", OTHER, OTHER_B, None)]
@@ -30,23 +33,23 @@ def test_add_by_numbers(heads):
     assert stored[1].target_vertices == "38 39 40" and heads[0].authalic_landmark_curve_index == 1
 
 
-def test_numbers_may_have_commas_and_are_not_remembered(heads):
+def test_numbers_may_have_commas_and_are_not_remembered(heads: tuple[MeshObject, MeshObject]) -> None:
     call.landmark_curve_add(source_vertices="8, 9,10", target_vertices="10,11,  12", name="Brow")
     assert curving.listed() == [("Brow", (8, 9, 10), (10, 11, 12), None)]
     curving.refused("Select edges of Head A or of Head B in Edit Mode", call.landmark_curve_add)
 
 
-def test_closed(heads):
+def test_closed(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(LOOP, LOOP_B)
     assert curving.listed() == [("Curve 1", LOOP, LOOP_B, None)]
     assert part_curves(heads[0])[0].source.is_closed
 
 
-def part_curves(obj):
+def part_curves(obj: MeshObject) -> Any:
     return part("landmarks.curves").pairs(obj)
 
 
-def test_one_side_after_the_other(heads):
+def test_one_side_after_the_other(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW)
     assert curving.listed() == [("Curve 1", ROW, (), "has no edges on Head B")]
     curving.add(target=ROW_B, index=0)
@@ -55,7 +58,7 @@ def test_one_side_after_the_other(heads):
     assert curving.listed() == [("Curve 1", OTHER, ROW_B, None)]
 
 
-def test_one_side_after_the_other_without_an_index(heads):
+def test_one_side_after_the_other_without_an_index(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW)
     curving.add(target=ROW_B, name="Brow")
     curving.add(target=OTHER_B)
@@ -63,7 +66,7 @@ def test_one_side_after_the_other_without_an_index(heads):
     assert curving.listed() == [("Brow", ROW, ROW_B, None), ("Curve 2", OTHER, OTHER_B, None)]
 
 
-def test_a_name_is_set_when_selected_edges_complete_a_pair(heads):
+def test_a_name_is_set_when_selected_edges_complete_a_pair(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW)
     meshes.edit(*heads)
     curving.select_path(heads[0])
@@ -72,7 +75,7 @@ def test_a_name_is_set_when_selected_edges_complete_a_pair(heads):
     assert curving.listed()[0][0] == "Brow" and len(curving.listed()) == 1
 
 
-def test_add_selected_edges_of_both(heads):
+def test_add_selected_edges_of_both(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     meshes.edit(*heads)
     curving.select_path(source, ROW)
@@ -90,7 +93,7 @@ def test_add_selected_edges_of_both(heads):
     assert curving.listed()[0] == ("Curve 1", ROW, ROW_B, None)
 
 
-def test_selected_edges_complete_the_active_curve(heads):
+def test_selected_edges_complete_the_active_curve(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     meshes.edit(*heads)
     curving.select_path(source, ROW)
@@ -107,7 +110,7 @@ def test_selected_edges_complete_the_active_curve(heads):
     assert curving.listed() == [("Curve 1", ROW, ROW_B, None), ("Curve 2", OTHER, OTHER_B, None)]
 
 
-def test_edges_that_are_selected_still_are_not_added_again(heads):
+def test_edges_that_are_selected_still_are_not_added_again(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     meshes.edit(*heads)
     curving.select_path(target)
@@ -118,7 +121,7 @@ def test_edges_that_are_selected_still_are_not_added_again(heads):
     assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
 
 
-def test_the_target_may_come_first(heads):
+def test_the_target_may_come_first(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     meshes.edit(target, source)
     curving.select_path(source)
@@ -136,7 +139,7 @@ def test_the_target_may_come_first(heads):
 @pytest.mark.parametrize(
     ("active", "first"), [(None, 8), (8, 8), (11, 11), (10, 11), ((9, 8), 8), ((10, 11), 11), ((9, 10), 8)]
 )
-def test_where_a_path_starts(heads, active, first):
+def test_where_a_path_starts(heads: tuple[MeshObject, MeshObject], active: Any, first: int) -> None:
     source, _ = heads
     meshes.edit(source)
     curving.select_path(source, ROW, active=active)
@@ -145,7 +148,9 @@ def test_where_a_path_starts(heads, active, first):
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_a_path_without_an_active_end_runs_as_its_partner(heads, turned):
+def test_a_path_without_an_active_end_runs_as_its_partner(
+    heads: tuple[MeshObject, MeshObject], turned: bool
+) -> None:
     source, target = heads
     curving.add(ROW[::-1])
     if turned:
@@ -170,7 +175,7 @@ def test_a_path_without_an_active_end_runs_as_its_partner(heads, turned):
         ([(8, 9)], "The curve has 1 edge where 2 are the least on Head A"),
     ],
 )
-def test_what_is_no_path(heads, paths, words):
+def test_what_is_no_path(heads: tuple[MeshObject, MeshObject], paths: Any, words: str) -> None:
     meshes.edit(*heads)
     curving.select_path(heads[1])
     curving.select_path(heads[0], *paths)
@@ -178,12 +183,12 @@ def test_what_is_no_path(heads, paths, words):
 
 
 @pytest.mark.parametrize("in_edit", [False, True])
-def test_refusals(heads, in_edit):
+def test_refusals(heads: tuple[MeshObject, MeshObject], in_edit: bool) -> None:
     if in_edit:
         meshes.edit(*heads)
     curving.add(ROW, ROW_B)
 
-    def refused(words, source="22 23 24", target="38 39 40", **options):
+    def refused(words: str, source: str = "22 23 24", target: str = "38 39 40", **options: Any) -> None:
         options |= {"source_vertices": source, "target_vertices": target}
         curving.refused(words, call.landmark_curve_add, **options)
 
@@ -203,14 +208,14 @@ def test_refusals(heads, in_edit):
         call.landmark_curve_add(source_vertices="22 23 24")
 
 
-def test_there_must_be_curves_and_meshes(heads):
+def test_there_must_be_curves_and_meshes(heads: tuple[MeshObject, MeshObject]) -> None:
     for name in ("remove", "clear", "select", "reverse"):
         curving.refused("no landmark curves", getattr(call, f"landmark_curve_{name}"))
     bpy.ops.object.camera_add()
     curving.refused("mesh object", call.landmark_curve_add)
 
 
-def test_open_and_closed_do_not_match(heads):
+def test_open_and_closed_do_not_match(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(LOOP, ROW_B)
     curving.add(ROW, LOOP_B)
     said = [problem for *_, problem in curving.listed()]
@@ -218,7 +223,7 @@ def test_open_and_closed_do_not_match(heads):
     assert said[1] == "is closed on Head B and open on Head A; both must be either"
 
 
-def test_remove_and_clear(heads):
+def test_remove_and_clear(heads: tuple[MeshObject, MeshObject]) -> None:
     for source, target in ((ROW, ROW_B), (OTHER, OTHER_B), ((36, 37, 38), (64, 65, 66))):
         curving.add(source, target)
     call.landmark_curve_remove(index=1)
@@ -231,7 +236,7 @@ def test_remove_and_clear(heads):
         assert not [one.name for one in obj.data.attributes if "authalic" in one.name]
 
 
-def test_reverse(heads):
+def test_reverse(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     call.landmark_curve_reverse()
     assert curving.listed() == [("Curve 1", ROW, ROW_B[::-1], None)]
@@ -245,7 +250,7 @@ def test_reverse(heads):
     curving.refused("Head A: there is no target object", call.landmark_curve_reverse)
 
 
-def test_select(heads):
+def test_select(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP, LOOP_B)
@@ -259,9 +264,10 @@ def test_select(heads):
     assert not any(face.select for face in bmesh.from_edit_mesh(source.data).faces)
 
 
-def test_select_leaves_chords_alone(heads):
+def test_select_leaves_chords_alone(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
-    bpy.context.tool_settings.mesh_select_mode = True, False, False
+    settings: Any = bpy.context.tool_settings
+    settings.mesh_select_mode = True, False, False
     path = (8, 9, 16, 15, 22)  # 8 and 15 have an edge too
     curving.add(path, ROW_B)
     call.landmark_curve_select(index=0, side="SOURCE")
@@ -271,7 +277,7 @@ def test_select_leaves_chords_alone(heads):
     assert curving.selected_edges(source) == [(8, 9), (9, 16), (15, 16), (15, 22)]
 
 
-def test_two_sources_share_paths_of_one_target(heads):
+def test_two_sources_share_paths_of_one_target(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     other = meshes.add_grid("Other")
@@ -284,7 +290,7 @@ def test_two_sources_share_paths_of_one_target(heads):
     assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)]
 
 
-def test_source_and_target_share_a_mesh():
+def test_source_and_target_share_a_mesh() -> None:
     first = meshes.add_grid("Head A")
     second = bpy.data.objects.new("Second", first.data)
     bpy.context.collection.objects.link(second)
@@ -297,19 +303,19 @@ def test_source_and_target_share_a_mesh():
     assert curving.listed(second) == [("Curve 1", OTHER, ROW, None)]
 
 
-def copy_of(source, linked=False):
+def copy_of(source: MeshObject, linked: bool = False) -> MeshObject:
     meshes.select(source)
     bpy.ops.object.duplicate(linked=linked)
     return bpy.context.object
 
 
-def marked(obj):
+def marked(obj: MeshObject) -> Any:
     """The attributes of curves that a mesh has."""
     return [one.name for one in obj.data.attributes if "authalic_curve" in one.name]
 
 
 @pytest.mark.parametrize("linked", [False, True])
-def test_a_copy_of_the_source_goes_its_own_way(heads, linked):
+def test_a_copy_of_the_source_goes_its_own_way(heads: tuple[MeshObject, MeshObject], linked: bool) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP, LOOP_B)
@@ -330,7 +336,7 @@ def test_a_copy_of_the_source_goes_its_own_way(heads, linked):
     assert not [name for obj in (source, target, copy) for name in marked(obj)]
 
 
-def test_a_curve_of_a_copy_takes_no_end_away(heads):
+def test_a_curve_of_a_copy_takes_no_end_away(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     curving.add(ROW, ROW_B)
     copy = copy_of(source)
@@ -340,7 +346,7 @@ def test_a_curve_of_a_copy_takes_no_end_away(heads):
     assert curving.listed(copy) == [("Curve 1", (22, 23, 24), (28, 19, 10), None)]
 
 
-def test_in_edit_mode_a_copy_cannot_take_paths(heads):
+def test_in_edit_mode_a_copy_cannot_take_paths(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     copy = copy_of(source)
@@ -357,7 +363,7 @@ def test_in_edit_mode_a_copy_cannot_take_paths(heads):
     assert curving.listed(source) == [("Curve 1", ROW, ROW_B, None)] and curving.listed(copy) == []
 
 
-def test_undo_of_a_change_of_a_copy(heads):
+def test_undo_of_a_change_of_a_copy(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     copy_of(heads[0])
     pairing.step("Copied")
@@ -372,7 +378,7 @@ def test_undo_of_a_change_of_a_copy(heads):
     assert curving.listed(bpy.data.objects["Head A.001"]) == [own]
 
 
-def test_nothing_is_left_on_meshes(heads):
+def test_nothing_is_left_on_meshes(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     meshes.edit(source)
@@ -389,7 +395,7 @@ def test_nothing_is_left_on_meshes(heads):
     assert not [name for obj in (source, target, third) for name in marked(obj)]
 
 
-def test_a_linked_target_cannot_be_reversed(heads, tmp_path):
+def test_a_linked_target_cannot_be_reversed(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     _, target = heads
     curving.add(ROW, ROW_B)
     path = str(tmp_path / "target.blend")
@@ -400,7 +406,7 @@ def test_a_linked_target_cannot_be_reversed(heads, tmp_path):
     curving.refused("The mesh of Head B is linked from another file", call.landmark_curve_reverse)
 
 
-def test_a_copy_with_its_own_curves_can_be_edited(heads):
+def test_a_copy_with_its_own_curves_can_be_edited(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(OTHER, OTHER_B)
@@ -412,7 +418,7 @@ def test_a_copy_with_its_own_curves_can_be_edited(heads):
     assert [one[3] for one in curving.listed(source)] == [None, None]
 
 
-def test_a_deleted_target_is_told(heads):
+def test_a_deleted_target_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     bpy.data.objects.remove(heads[1])
     bpy.context.view_layer.update()
@@ -420,7 +426,7 @@ def test_a_deleted_target_is_told(heads):
     assert call.landmark_curve_remove() == {"FINISHED"}
 
 
-def test_lines(heads):
+def test_lines(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP)
@@ -443,7 +449,7 @@ def test_lines(heads):
     markers._draw_ends()
 
 
-def test_the_list_shows_edges_and_errors(heads):
+def test_the_list_shows_edges_and_errors(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     curving.add(ROW, ROW_B)
     curving.add(LOOP, LOOP_B)
@@ -463,7 +469,7 @@ def test_the_list_shows_edges_and_errors(heads):
     ]
 
 
-def test_everything_has_words():
+def test_everything_has_words() -> None:
     for name in ("add", "remove", "clear", "select", "reverse"):
         operator = getattr(bpy.ops.authalic, f"landmark_curve_{name}").get_rna_type()
         assert operator.description and not operator.description.endswith(".")
@@ -471,7 +477,7 @@ def test_everything_has_words():
         assert all(p.name and p.description and not p.description.endswith(".") for p in own)
 
 
-def test_unregistering_leaves_nothing(extension):
+def test_unregistering_leaves_nothing(extension: str) -> None:
     names = ("authalic_landmark_curves", "authalic_landmark_curve_index", "authalic_curve_key")
     assert all(hasattr(bpy.types.Object, name) for name in names)
     bpy.ops.preferences.addon_disable(module=extension)

@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmarks are kept through edits of the meshes and through undo, and told where they are lost."""
 
+from typing import Any
+
 import bpy
 import meshes
 import numpy as np
 import pairing
 import pytest
 from installed import part
+from meshes import MeshObject
 
 
 @pytest.fixture
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     return pairing.heads()
 
 
-def test_vertices_are_followed_when_others_are_deleted(heads):
+def test_vertices_are_followed_when_others_are_deleted(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     pairing.add(40, 50)
     source, target = heads
@@ -26,7 +29,7 @@ def test_vertices_are_followed_when_others_are_deleted(heads):
     assert [pair.source_vertex for pair in source.authalic_landmarks] == [17, 37]
 
 
-def test_a_deleted_vertex_is_told(heads):
+def test_a_deleted_vertex_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     pairing.add(40, 50)
     pairing.in_edit_mode(heads[0], 20, do=lambda: bpy.ops.mesh.delete(type="VERT"))
@@ -38,14 +41,14 @@ def test_a_deleted_vertex_is_told(heads):
         bpy.ops.authalic.landmark_jump(index=0)
 
 
-def test_a_copied_vertex_is_told(heads):
+def test_a_copied_vertex_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     pairing.in_edit_mode(heads[0], 20, do=bpy.ops.mesh.duplicate)
     ((_, vertex, goal, problem),) = pairing.listed()
     assert (vertex, goal) == (-1, 30) and problem == "2 vertices of Head A are copies of the chosen one"
 
 
-def test_subdividing_keeps_the_vertices(heads):
+def test_subdividing_keeps_the_vertices(heads: tuple[MeshObject, MeshObject]) -> None:
     for k in range(8):
         pairing.add(5 * k, 6 * k)
     source = heads[0]
@@ -56,7 +59,7 @@ def test_subdividing_keeps_the_vertices(heads):
     assert np.allclose([pairing.position(source, pair[1]) for pair in pairing.listed()], before)
 
 
-def test_edits_are_noticed_before_edit_mode_is_left(heads):
+def test_edits_are_noticed_before_edit_mode_is_left(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     source, find = heads[0], part("landmarks.points").pairs
     meshes.edit(source)
@@ -69,7 +72,7 @@ def test_edits_are_noticed_before_edit_mode_is_left(heads):
     assert find(source, drawing=True)[0].problem.startswith("2 vertices")
 
 
-def test_a_copy_of_the_source_has_landmarks_of_its_own(heads):
+def test_a_copy_of_the_source_has_landmarks_of_its_own(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     meshes.select(heads[0])
     bpy.ops.object.duplicate()
@@ -80,7 +83,7 @@ def test_a_copy_of_the_source_has_landmarks_of_its_own(heads):
     ]
 
 
-def test_undo_and_redo(heads):
+def test_undo_and_redo(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.step("start")
     pairing.add(20, 30)
     pairing.step("first")
@@ -100,18 +103,18 @@ def test_undo_and_redo(heads):
     assert pairing.listed()[0] == ("Landmark 1", 20, 30, None)
 
 
-def both():
+def both() -> Any:
     return bpy.data.objects["Head A"], bpy.data.objects["Head B"]
 
 
-def edit_both():
+def edit_both() -> None:
     pairing.step("objects")
     meshes.edit(*both())
     pairing.step("edit mode")
 
 
 @pytest.mark.parametrize("with_target", [True, False])
-def test_undo_of_adding_in_edit_mode(heads, with_target):
+def test_undo_of_adding_in_edit_mode(heads: tuple[MeshObject, MeshObject], with_target: bool) -> None:
     pairing.add(1, 2)
     pairing.step("objects")
     meshes.edit(*(both() if with_target else both()[:1]))
@@ -126,7 +129,7 @@ def test_undo_of_adding_in_edit_mode(heads, with_target):
 
 
 @pytest.mark.parametrize("with_target", [True, False])
-def test_undo_of_removing_in_edit_mode(heads, with_target):
+def test_undo_of_removing_in_edit_mode(heads: tuple[MeshObject, MeshObject], with_target: bool) -> None:
     pairing.add(1, 2, name="Nose")
     pairing.add(20, 30)
     pairing.step("objects")
@@ -142,7 +145,7 @@ def test_undo_of_removing_in_edit_mode(heads, with_target):
     assert len(pairing.listed()) == 2
 
 
-def test_undo_of_deleting_a_vertex_in_edit_mode(heads):
+def test_undo_of_deleting_a_vertex_in_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     edit_both()
     pairing.add(20, 30)
     pairing.step("added")
@@ -161,7 +164,7 @@ def test_undo_of_deleting_a_vertex_in_edit_mode(heads):
     assert pairing.listed() == []
 
 
-def test_undo_back_into_edit_mode(heads):
+def test_undo_back_into_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     """Blender then starts from the list as it was when edit mode was entered."""
     pairing.add(1, 2)
     pairing.add(3, 4)

@@ -2,18 +2,20 @@
 """Landmarks in .blend files and as JSON."""
 
 import json
+from pathlib import Path
 
 import bpy
 import pairing
 import pytest
+from meshes import MeshObject
 
 
 @pytest.fixture
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     return pairing.heads()
 
 
-def test_saved_with_the_file(heads, tmp_path):
+def test_saved_with_the_file(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     pairing.add(20, 30, name="Nose")
     pairing.add(21, 31)
     path = str(tmp_path / "heads.blend")
@@ -24,7 +26,7 @@ def test_saved_with_the_file(heads, tmp_path):
     assert bpy.data.objects["Head A"].authalic_target == bpy.data.objects["Head B"]
 
 
-def test_export_and_import(heads, tmp_path):
+def test_export_and_import(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     pairing.add(20, 30, name="Nase ü")
     pairing.add(21, 31)
     path = tmp_path / "pairs.json"
@@ -46,7 +48,7 @@ def test_export_and_import(heads, tmp_path):
     assert heads[0].authalic_target == heads[1]
 
 
-def test_export_leaves_out_what_is_lost(heads, tmp_path):
+def test_export_leaves_out_what_is_lost(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     pairing.add(20, 30)
     pairing.add(21, 31)
     pairing.in_edit_mode(heads[0], 20, do=lambda: bpy.ops.mesh.delete(type="VERT"))
@@ -82,7 +84,9 @@ GOOD = {"format": "authalic-landmarks", "version": 1, "source": "Head A", "targe
         ),
     ],
 )
-def test_a_bad_file_changes_nothing(heads, tmp_path, content, words):
+def test_a_bad_file_changes_nothing(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, content: str, words: str
+) -> None:
     pairing.add(20, 30)
     path = tmp_path / "pairs.json"
     path.write_text(content if isinstance(content, str) else json.dumps(content))
@@ -93,7 +97,7 @@ def test_a_bad_file_changes_nothing(heads, tmp_path, content, words):
     assert heads[0].authalic_target is None
 
 
-def test_files_that_cannot_be_read_or_written(heads, tmp_path):
+def test_files_that_cannot_be_read_or_written(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     pairing.add(20, 30)
     pairing.refused(
         "nothing.json: No such file",

@@ -2,17 +2,20 @@
 """The vertex under the cursor by geometry alone, and the picking operator with events that are made up."""
 
 import types
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import MeshObject
 
 WIDTH, HEIGHT = 800, 600
 
 
-def perspective(eye=(0, 0, 10), lens=1.5):
+def perspective(eye: Sequence[float] = (0, 0, 10), lens: float = 1.5) -> Any:
     """A view from the eye straight down, +Y upwards."""
     near, far, aspect = 0.1, 100.0, WIDTH / HEIGHT
     depth = [(far + near) / (near - far), 2 * far * near / (near - far)]
@@ -22,23 +25,23 @@ def perspective(eye=(0, 0, 10), lens=1.5):
     return part("landmarks.picking").View(np.array(projection, float) @ away, WIDTH, HEIGHT)
 
 
-def orthographic(size=3.0):
+def orthographic(size: float = 3.0) -> Any:
     aspect = WIDTH / HEIGHT
     matrix = np.diag([1 / size, aspect / size, -1e-2, 1.0])
     return part("landmarks.picking").View(matrix, WIDTH, HEIGHT)
 
 
-def surface(obj):
+def surface(obj: MeshObject) -> Any:
     seen = part("blender.vertex_positions").surface(obj, bpy.context.evaluated_depsgraph_get())
     return part("landmarks.picking").Pickable(*seen, obj.matrix_world)
 
 
-def pick(surfaces, view, pixel, **options):
+def pick(surfaces: Sequence[Any], view: Any, pixel: Any, **options: Any) -> Any:
     return part("landmarks.picking").pick(surfaces, view, pixel, **options)
 
 
 @pytest.mark.parametrize("view", [perspective, orthographic])
-def test_rays_and_pixels_belong_together(view):
+def test_rays_and_pixels_belong_together(view: Any) -> None:
     seen = view()
     origin, direction = seen.ray((123.0, 456.0))
     along = origin + np.outer([0.5, 5.0], direction)
@@ -46,13 +49,13 @@ def test_rays_and_pixels_belong_together(view):
     assert direction[2] < 0 and np.isclose(np.linalg.norm(direction), 1)
 
 
-def test_what_is_behind_the_eye_has_no_pixel():
+def test_what_is_behind_the_eye_has_no_pixel() -> None:
     assert np.isnan(perspective().project(np.array([[0.0, 0, 11]]))).all()
 
 
 @pytest.mark.parametrize("view", [perspective, orthographic])
 @pytest.mark.parametrize("mode", ["object", "edit", "subdivided"])
-def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view, mode):
+def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view: Any, mode: str) -> None:
     obj = meshes.add_grid(n=5)
     obj.matrix_world = [(0.9, 0.3, 0, 0.5), (-0.3, 1.4, 0, 0.1), (0, 0, 2, -1), (0, 0, 0, 1)]
     if mode == "edit":
@@ -65,7 +68,7 @@ def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view, mode):
     assert [pick([one], seen, pixel + 0.4) for pixel in pixels] == [(0, k) for k in range(36)]
 
 
-def test_the_far_side_is_not_picked():
+def test_the_far_side_is_not_picked() -> None:
     one, seen = surface(meshes.icosphere(3)), perspective()
     points = one.world()
     for pixel in seen.project(points):
@@ -73,7 +76,7 @@ def test_the_far_side_is_not_picked():
         assert which == 0 and points[vertex][2] > -0.1
 
 
-def test_the_nearer_object_is_picked():
+def test_the_nearer_object_is_picked() -> None:
     far, near = meshes.add_grid("Far"), meshes.add_grid("Near")
     near.location.z = 2
     bpy.context.view_layer.update()
@@ -83,7 +86,7 @@ def test_the_nearer_object_is_picked():
     assert pick([surface(far), surface(near)], perspective(), (400, 300), blocked=9.0) == (1, 24)
 
 
-def test_beside_the_surface_the_nearest_vertex_within_some_pixels():
+def test_beside_the_surface_the_nearest_vertex_within_some_pixels() -> None:
     one, seen = surface(meshes.add_grid()), perspective()
     corner = seen.project(one.world([0]))[0]
     assert pick([one], seen, corner - 10) == (0, 0)
@@ -92,7 +95,7 @@ def test_beside_the_surface_the_nearest_vertex_within_some_pixels():
     assert pick([], seen, (5, 5)) is None
 
 
-def test_a_vertex_beside_an_edge_but_behind_another_object_is_not_picked():
+def test_a_vertex_beside_an_edge_but_behind_another_object_is_not_picked() -> None:
     far, near = meshes.add_grid("Far"), meshes.add_grid("Near", n=1)
     near.location.z = 5
     near.scale = (0.2, 0.2, 0.2)
@@ -106,7 +109,7 @@ def test_a_vertex_beside_an_edge_but_behind_another_object_is_not_picked():
     assert (which, vertex) != (0, 24)
 
 
-def test_hidden_faces_are_not_picked():
+def test_hidden_faces_are_not_picked() -> None:
     obj = meshes.add_grid()
     meshes.edit(obj)
     meshes.select_faces(obj, lambda index: False, {14, 15, 20, 21})
@@ -116,13 +119,14 @@ def test_hidden_faces_are_not_picked():
 class Session:
     """The operator on two grids in one view, with events that are made up."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.source, self.target = meshes.add_grid("Head A"), meshes.add_grid("Head B")
         self.source.location.x, self.target.location.x = -1.5, 1.5
         self.source.authalic_target = self.target
         meshes.select(self.source, self.target)
         bpy.context.view_layer.update()
-        self.view, self.said = perspective(), []
+        self.view = perspective()
+        self.said: list[str] = []
         module = part("operators.landmark_pick")
         own = {
             name: value for name, value in vars(module.AUTHALIC_OT_landmark_pick).items() if callable(value)
@@ -141,43 +145,43 @@ class Session:
             evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
         )
 
-    def close(self):
+    def close(self) -> None:
         self.module._view_under = self.seen
         part("overlay.points").hints.clear()
 
-    def _report(self, kinds, text):
+    def _report(self, kinds: set[str], text: str) -> None:
         self.said.append(text)
 
-    def _under(self, event):
+    def _under(self, event: Any) -> Any:
         data = types.SimpleNamespace(perspective_matrix=self.view.matrix)
         region = types.SimpleNamespace(data=data, width=WIDTH, height=HEIGHT)
         area = types.SimpleNamespace(spaces=types.SimpleNamespace(active=None))
         return None if event.pixel is None else (area, region, event.pixel)
 
-    def send(self, kind, pixel=None, value="PRESS", ctrl=False):
+    def send(self, kind: str, pixel: Any = None, value: str = "PRESS", ctrl: bool = False) -> set[str]:
         event = types.SimpleNamespace(
             type=kind, value=value, ctrl=ctrl, oskey=False, alt=False, shift=False, pixel=pixel
         )
         return self.operator.modal(self.context, event)
 
-    def at(self, obj, vertex):
+    def at(self, obj: MeshObject, vertex: int) -> Any:
         return self.view.project(np.array([obj.matrix_world @ obj.data.vertices[vertex].co]))[0]
 
-    def click(self, obj, vertex):
+    def click(self, obj: MeshObject, vertex: int) -> set[str]:
         return self.send("LEFTMOUSE", self.at(obj, vertex))
 
-    def listed(self):
+    def listed(self) -> list[Any]:
         return [pair[1:] for pair in part("landmarks.points").pairs(self.source)]
 
 
 @pytest.fixture
-def session():
+def session() -> Iterator[Session]:
     made = Session()
     yield made
     made.close()
 
 
-def test_clicks_make_pairs(session):
+def test_clicks_make_pairs(session: Session) -> None:
     assert session.click(session.source, 10) == {"RUNNING_MODAL"}
     assert session.listed() == []
     session.click(session.target, 11)
@@ -189,14 +193,14 @@ def test_clicks_make_pairs(session):
     assert session.said == ["Picked 2 landmarks of Head A and Head B"]
 
 
-def test_nothing_picked_is_nothing_done(session):
+def test_nothing_picked_is_nothing_done(session: Session) -> None:
     session.click(session.source, 10)
     session.send("LEFTMOUSE", (2.0, 2.0))
     assert session.send("RIGHTMOUSE", (2.0, 2.0)) == {"CANCELLED"} and session.listed() == []
 
 
 @pytest.mark.parametrize("key", [{"kind": "BACK_SPACE"}, {"kind": "Z", "ctrl": True}])
-def test_taking_back(session, key):
+def test_taking_back(session: Session, key: dict[str, Any]) -> None:
     for k in (10, 20):
         session.click(session.source, k)
         session.click(session.target, k)
@@ -211,14 +215,14 @@ def test_taking_back(session, key):
     assert session.listed() == [] and session.send("ESC") == {"FINISHED"}
 
 
-def test_a_vertex_is_not_picked_twice(session):
+def test_a_vertex_is_not_picked_twice(session: Session) -> None:
     for k in (10, 11):
         session.click(session.source, 10)
         session.click(session.target, k)
     assert session.listed() == [(10, 10, None)]
 
 
-def test_hovering_shows_the_vertex(session):
+def test_hovering_shows_the_vertex(session: Session) -> None:
     assert session.send("MOUSEMOVE", session.at(session.target, 12)) == {"PASS_THROUGH"}
     ((name, vertex, *_),) = part("overlay.points").shown(bpy.context)
     assert (name, vertex) == ("Head B", 12)
@@ -226,7 +230,7 @@ def test_hovering_shows_the_vertex(session):
     assert part("overlay.points").hints == []
 
 
-def test_navigation_and_panels_are_left_to_blender(session):
+def test_navigation_and_panels_are_left_to_blender(session: Session) -> None:
     for kind in ("MIDDLEMOUSE", "WHEELUPMOUSE", "NUMPAD_1", "TRACKPADPAN", "NDOF_MOTION", "TIMER"):
         assert session.send(kind, (400, 300)) == {"PASS_THROUGH"}
     assert session.send("LEFTMOUSE", None) == {"PASS_THROUGH"}
@@ -235,7 +239,7 @@ def test_navigation_and_panels_are_left_to_blender(session):
 
 
 @pytest.mark.parametrize("lost", ["source", "target"])
-def test_a_deleted_object_ends_it(session, lost):
+def test_a_deleted_object_ends_it(session: Session, lost: str) -> None:
     session.click(session.source, 10)
     bpy.data.objects.remove(getattr(session, lost))
     bpy.context.view_layer.update()

@@ -10,14 +10,15 @@ import numpy as np
 import pairing
 import pytest
 from installed import part
+from meshes import MeshObject
 
 
 @pytest.fixture
-def heads():
+def heads() -> tuple[MeshObject, MeshObject]:
     return pairing.heads()
 
 
-def test_add_by_numbers(heads):
+def test_add_by_numbers(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(3, 5)
     pairing.add(7, 9, name="Nose")
     pairing.add(8, 10)
@@ -27,12 +28,12 @@ def test_add_by_numbers(heads):
     assert heads[0].authalic_landmark_index == 2
 
 
-def test_numbers_are_not_remembered_for_the_next_use(heads):
+def test_numbers_are_not_remembered_for_the_next_use(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(3, 5, name="Nose")
     pairing.refused("not in Edit Mode", bpy.ops.authalic.landmark_add)
 
 
-def test_add_the_selected_vertices_in_edit_mode(heads):
+def test_add_the_selected_vertices_in_edit_mode(heads: tuple[MeshObject, MeshObject]) -> None:
     meshes.edit(*heads)
     for vertices in ((4, 60), (5, 61)):
         for obj, vertex in zip(heads, vertices, strict=True):
@@ -43,7 +44,7 @@ def test_add_the_selected_vertices_in_edit_mode(heads):
     assert pairing.listed() == [("Landmark 1", 4, 60, None), ("Landmark 2", 5, 61, None)]
 
 
-def test_the_source_is_known_from_its_target_too(heads):
+def test_the_source_is_known_from_its_target_too(heads: tuple[MeshObject, MeshObject]) -> None:
     """In edit mode of both, whichever of them was made active last."""
     meshes.edit(heads[1], heads[0])
     pairing.select_vertices(heads[0], 4)
@@ -53,7 +54,7 @@ def test_the_source_is_known_from_its_target_too(heads):
 
 
 @pytest.mark.parametrize("count", [0, 2])
-def test_one_vertex_must_be_selected(heads, count):
+def test_one_vertex_must_be_selected(heads: tuple[MeshObject, MeshObject], count: int) -> None:
     meshes.edit(*heads)
     pairing.select_vertices(heads[0], 1)
     pairing.select_vertices(heads[1], *range(count))
@@ -62,7 +63,7 @@ def test_one_vertex_must_be_selected(heads, count):
 
 
 @pytest.mark.parametrize("in_edit", [False, True])
-def test_refusals(heads, in_edit):
+def test_refusals(heads: tuple[MeshObject, MeshObject], in_edit: bool) -> None:
     if in_edit:
         meshes.edit(*heads)
     pairing.add(3, 5)
@@ -80,7 +81,7 @@ def test_refusals(heads, in_edit):
         call(source_vertex=1, target_vertex=1)
 
 
-def test_there_must_be_landmarks_and_meshes(heads):
+def test_there_must_be_landmarks_and_meshes(heads: tuple[MeshObject, MeshObject]) -> None:
     for name in ("remove", "clear", "jump"):
         pairing.refused("no landmarks", getattr(bpy.ops.authalic, f"landmark_{name}"))
     bpy.ops.object.camera_add()
@@ -88,14 +89,14 @@ def test_there_must_be_landmarks_and_meshes(heads):
         pairing.refused("mesh object", getattr(bpy.ops.authalic, f"landmark_{name}"))
 
 
-def test_an_object_is_no_target_of_itself(heads):
+def test_an_object_is_no_target_of_itself(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     source.authalic_target = source  # a script can, the panel does not offer it
     with pytest.raises(RuntimeError, match="Head A cannot be the target"):
         bpy.ops.authalic.landmark_add(source_vertex=1, target_vertex=2)
 
 
-def test_remove_and_clear(heads):
+def test_remove_and_clear(heads: tuple[MeshObject, MeshObject]) -> None:
     for k in range(4):
         pairing.add(k, k + 10)
     bpy.ops.authalic.landmark_remove(index=1)
@@ -112,13 +113,13 @@ def test_remove_and_clear(heads):
         assert not values.any()
 
 
-def test_renaming_keeps_the_pair(heads):
+def test_renaming_keeps_the_pair(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(3, 5)
     heads[0].authalic_landmarks[0].name = "Nose"
     assert pairing.listed() == [("Nose", 3, 5, None)]
 
 
-def test_scripts_may_write_the_list_itself(heads):
+def test_scripts_may_write_the_list_itself(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     source.authalic_target = None
     pair = source.authalic_landmarks.add()
@@ -135,7 +136,7 @@ def test_scripts_may_write_the_list_itself(heads):
     assert pairing.listed()[1][3] == 'has vertex 4 of Head A, as "Nose" has'
 
 
-def test_another_target_has_not_the_vertices_of_the_first(heads):
+def test_another_target_has_not_the_vertices_of_the_first(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     pairing.add(20, 30)
     other = meshes.add_grid("Other")
@@ -150,7 +151,7 @@ def test_another_target_has_not_the_vertices_of_the_first(heads):
     assert pairing.listed(other) == [("Landmark 1", 7, 30, None)]
 
 
-def test_two_objects_aim_at_each_other_and_share_a_mesh():
+def test_two_objects_aim_at_each_other_and_share_a_mesh() -> None:
     first = meshes.add_grid("Head A")
     second = bpy.data.objects.new("Second", first.data)
     bpy.context.collection.objects.link(second)
@@ -168,14 +169,14 @@ def test_two_objects_aim_at_each_other_and_share_a_mesh():
     assert pairing.listed(first)[0] == ("Landmark 1", 3, 4, None) and pairing.listed(second)[0][1:3] == (4, 3)
 
 
-def test_a_deleted_target_is_told(heads):
+def test_a_deleted_target_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     bpy.data.objects.remove(heads[1])
     bpy.context.view_layer.update()
     assert pairing.listed() == [("Landmark 1", 20, -1, "there is no target object, choose one")]
 
 
-def test_a_target_that_left_the_scene_is_told(heads):
+def test_a_target_that_left_the_scene_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     meshes.select(heads[1])
     bpy.ops.object.delete()
@@ -185,7 +186,7 @@ def test_a_target_that_left_the_scene_is_told(heads):
         bpy.ops.authalic.landmark_add(source_vertex=1, target_vertex=1)
 
 
-def test_jump_selects_the_vertex(heads):
+def test_jump_selects_the_vertex(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     pairing.add(21, 31)
     source, target = heads
@@ -199,7 +200,7 @@ def test_jump_selects_the_vertex(heads):
     assert edit.select_history.active.index == 21 and not any(f.select for f in edit.faces)
 
 
-def test_markers(heads):
+def test_markers(heads: tuple[MeshObject, MeshObject]) -> None:
     source, target = heads
     pairing.add(20, 30)
     pairing.add(21, 31)
@@ -222,7 +223,7 @@ def test_markers(heads):
     markers._draw()  # without a window nothing is drawn
 
 
-def test_markers_ride_on_what_is_seen(heads):
+def test_markers_ride_on_what_is_seen(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     source.shape_key_add(name="Basis")
     key = source.shape_key_add(name="Up")
@@ -247,7 +248,7 @@ def test_markers_ride_on_what_is_seen(heads):
     assert np.allclose(point, 2 * flat + [0, 0, 5], atol=1e-5)
 
 
-def test_the_list_shows_the_errors_that_are_known(heads):
+def test_the_list_shows_the_errors_that_are_known(heads: tuple[MeshObject, MeshObject]) -> None:
     source, _ = heads
     pairing.add(20, 30)
     pairing.add(21, 31)
@@ -263,13 +264,13 @@ def test_the_list_shows_the_errors_that_are_known(heads):
     assert said == [["1", "0.12 %", "20 → 30"], ["2", "21 → 31"]]
 
 
-def test_picking_without_a_window_adds_numbers(heads):
+def test_picking_without_a_window_adds_numbers(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.refused("needs a window", bpy.ops.authalic.landmark_pick)
     bpy.ops.authalic.landmark_pick("INVOKE_DEFAULT", source_vertex=3, target_vertex=4)
     assert pairing.listed() == [("Landmark 1", 3, 4, None)]
 
 
-def test_everything_has_words():
+def test_everything_has_words() -> None:
     for name in ("add", "pick", "remove", "clear", "jump", "export", "import"):
         operator = getattr(bpy.ops.authalic, f"landmark_{name}").get_rna_type()
         assert operator.description and not operator.description.endswith(".")
@@ -277,7 +278,7 @@ def test_everything_has_words():
         assert all(p.name and p.description and not p.description.endswith(".") for p in own)
 
 
-def test_unregistering_leaves_nothing(extension):
+def test_unregistering_leaves_nothing(extension: str) -> None:
     names = ("authalic_landmarks", "authalic_target", "authalic_landmark_index")
     assert all(hasattr(bpy.types.Object, name) for name in names)
     bpy.ops.preferences.addon_disable(module=extension)

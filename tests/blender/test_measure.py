@@ -2,17 +2,19 @@
 """authalic.measure against formulas of its own in numpy."""
 
 import re
+from typing import Any
 
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 ATTRIBUTE = "authalic_log2_area_ratio"
 
 
-def figures():
+def figures() -> dict[str, float]:
     """The numbers of the line, by their names."""
     line = bpy.context.window_manager.authalic_figures
     number = r"(-?[\d.]+(?:e[+-]?\d+)?)"
@@ -25,11 +27,11 @@ def figures():
     return dict(zip(keys, (float(x or 0) for x in re.search(pattern, line).groups()), strict=True))
 
 
-def attribute(obj):
+def attribute(obj: MeshObject) -> Array:
     return np.array([item.value for item in obj.data.attributes[ATTRIBUTE].data])
 
 
-def stretched_grid():
+def stretched_grid() -> MeshObject:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="UVMap")
     corner = [loop.vertex_index for loop in obj.data.loops]
@@ -38,7 +40,7 @@ def stretched_grid():
     return obj
 
 
-def sigma_ratio(points, image):
+def sigma_ratio(points: Array, image: Array) -> Any:
     """σ₁/σ₂ of each triangle by numpy's own singular values."""
     a, b = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     x = np.linalg.norm(a, axis=1)
@@ -50,7 +52,7 @@ def sigma_ratio(points, image):
     return sigma[:, 0] / sigma[:, 1]
 
 
-def test_figures_and_attribute():
+def test_figures_and_attribute() -> None:
     obj = stretched_grid()
     assert bpy.ops.authalic.measure() == {"FINISHED"}
     ratios, found = meshes.area_ratios(obj), figures()
@@ -69,7 +71,7 @@ def test_figures_and_attribute():
     assert (kind.domain, kind.data_type) == ("FACE", "FLOAT")
 
 
-def test_folded_face_has_a_finite_extreme():
+def test_folded_face_has_a_finite_extreme() -> None:
     obj = stretched_grid()
     uv = meshes.uv(obj)
     uv[:4] = uv[3::-1]
@@ -79,7 +81,7 @@ def test_folded_face_has_a_finite_extreme():
     assert attribute(obj)[0] == -20 and (np.abs(attribute(obj)[1:]) < 19).all()
 
 
-def test_faces_without_area_are_left_out():
+def test_faces_without_area_are_left_out() -> None:
     vertices, faces = meshes.grid()
     obj = meshes.add([*vertices, (5, 0, 0), (6, 0, 0), (7, 0, 0)], [*faces, [49, 50, 51]])
     obj.data.uv_layers.new(name="UVMap")
@@ -88,7 +90,7 @@ def test_faces_without_area_are_left_out():
     assert attribute(obj)[36] == 0 and np.isfinite(attribute(obj)).all()
 
 
-def test_several_objects_share_one_scale():
+def test_several_objects_share_one_scale() -> None:
     first, second = stretched_grid(), stretched_grid()
     meshes.set_uv(second, meshes.uv(second) / 2)
     meshes.select(first, second)
@@ -96,7 +98,7 @@ def test_several_objects_share_one_scale():
     np.testing.assert_allclose(attribute(first) - attribute(second), 2, atol=1e-5)
 
 
-def test_edit_mode_gives_the_same():
+def test_edit_mode_gives_the_same() -> None:
     obj = stretched_grid()
     bpy.ops.authalic.measure()
     line, values = bpy.context.window_manager.authalic_figures, attribute(obj)
@@ -108,14 +110,14 @@ def test_edit_mode_gives_the_same():
     np.testing.assert_array_equal(attribute(obj), values)
 
 
-def test_measuring_twice_keeps_one_attribute():
+def test_measuring_twice_keeps_one_attribute() -> None:
     obj = stretched_grid()
     bpy.ops.authalic.measure()
     bpy.ops.authalic.measure()
     assert [a.name for a in obj.data.attributes].count(ATTRIBUTE) == 1
 
 
-def test_uvs_in_one_point_and_no_uvs():
+def test_uvs_in_one_point_and_no_uvs() -> None:
     obj = meshes.add_grid()
     with pytest.raises(RuntimeError, match="no faces with a UV map"):
         bpy.ops.authalic.measure()
@@ -127,7 +129,7 @@ def test_uvs_in_one_point_and_no_uvs():
 
 
 @pytest.mark.parametrize("reverse", [1, 3])
-def test_unwrap_and_measure_agree_where_normals_differ(reverse):
+def test_unwrap_and_measure_agree_where_normals_differ(reverse: bool) -> None:
     vertices, faces = meshes.grid()
     faces[::reverse] = faces[::reverse, ::-1]
     meshes.add(vertices, faces)
@@ -140,7 +142,7 @@ def test_unwrap_and_measure_agree_where_normals_differ(reverse):
         assert getattr(report.figures, name) == getattr(again, name)
 
 
-def test_mirrored_island_counts_as_flipped():
+def test_mirrored_island_counts_as_flipped() -> None:
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(n=4, offset=(4, 0, 0))))
     bpy.ops.authalic.unwrap()
     uv = meshes.uv(obj)
@@ -154,7 +156,7 @@ def test_mirrored_island_counts_as_flipped():
 @pytest.mark.parametrize(
     ("kind", "domain"), [("FLOAT_COLOR", "POINT"), ("INT", "FACE"), ("FLOAT", "EDGE"), ("FLOAT2", "POINT")]
 )
-def test_attribute_of_another_kind_is_replaced(mode, kind, domain):
+def test_attribute_of_another_kind_is_replaced(mode: str, kind: str, domain: str) -> None:
     obj = stretched_grid()
     bpy.ops.authalic.measure()
     expected = attribute(obj)

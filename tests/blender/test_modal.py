@@ -3,49 +3,52 @@
 
 import time
 import types
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import bpy
 import meshes
 import numpy as np
 import pytest
 from installed import part
+from meshes import Array, MeshObject
 
 
 class Recorder:
     """Takes any call and remembers its name and arguments."""
 
-    def __init__(self):
-        self.calls = []
+    def __init__(self) -> None:
+        self.calls: list[tuple[Any, ...]] = []
 
-    def __getattr__(self, name):
-        def call(*arguments, **_options):
+    def __getattr__(self, name: str) -> Callable[..., str]:
+        def call(*arguments: Any, **_options: Any) -> str:
             self.calls.append((name, *arguments))
             return name
 
         return call
 
-    def named(self, name):
+    def named(self, name: str) -> list[tuple[Any, ...]]:
         return [call for call in self.calls if call[0] == name]
 
 
-def operator(job, context):
+def operator(job: Any, context: Any) -> Any:
     """An operator of the mixin, which Blender itself would not let be made, with a context that records."""
     modal = part("operators.modal").Modal
 
-    class Plain(modal):
+    class Plain(modal):  # type: ignore[misc, valid-type]
         bl_label = "Plain"
         refused = (part("jobs.unwrap").CannotUnwrap,)
 
-        def __init__(self):
-            self.said = []
+        def __init__(self) -> None:
+            self.said: list[Any] = []
 
-        def job(self, _context):
+        def job(self, _context: Any) -> Any:
             return job()
 
-        def line(self, report):
+        def line(self, report: Any) -> str:
             return str(report)
 
-        def report(self, kinds, text):
+        def report(self, kinds: set[str], text: str) -> None:
             self.said.append((*kinds, text))
 
     made = Plain()
@@ -53,11 +56,11 @@ def operator(job, context):
     return made
 
 
-def event(kind, value="PRESS"):
+def event(kind: str, value: str = "PRESS") -> Any:
     return types.SimpleNamespace(type=kind, value=value)
 
 
-def run(made, context, events=()):
+def run(made: Any, context: Any, events: Sequence[Any] = ()) -> Any:
     """Sends events, then timer ticks until the operator has ended; returns how it ended."""
     assert made._start(context) == {"RUNNING_MODAL"}
     for one in events:
@@ -71,7 +74,7 @@ def run(made, context, events=()):
     raise AssertionError("the operator did not end")
 
 
-def suzanne_job(**solver):
+def suzanne_job(**solver: Any) -> Any:
     unwrap, bridge = part("jobs.unwrap"), part("bridge")
     mapping = bridge.UnwrapSettings(solver=bridge.Solver(**solver))
     return unwrap.job(bpy.context, unwrap.Settings(uv_layer="New", mapping=mapping))
@@ -80,7 +83,7 @@ def suzanne_job(**solver):
 LONG = {"method": "GRADIENT_DESCENT", "iterations": 100000}
 
 
-def test_a_run_to_its_end_writes_what_execute_writes():
+def test_a_run_to_its_end_writes_what_execute_writes() -> None:
     obj, context = meshes.suzanne(1), types.SimpleNamespace()
     made = operator(suzanne_job, context)
     assert run(made, context) == {"FINISHED"}
@@ -90,7 +93,7 @@ def test_a_run_to_its_end_writes_what_execute_writes():
     assert (meshes.uv(obj, "New") == modal).all()
 
 
-def test_esc_discards():
+def test_esc_discards() -> None:
     obj, context = meshes.suzanne(), types.SimpleNamespace()
     before = [layer.name for layer in obj.data.uv_layers]
     made = operator(lambda: suzanne_job(**LONG), context)
@@ -100,7 +103,7 @@ def test_esc_discards():
 
 
 @pytest.mark.parametrize("key", ["RET", "NUMPAD_ENTER"])
-def test_enter_keeps_the_best_so_far(key):
+def test_enter_keeps_the_best_so_far(key: str) -> None:
     obj, context = meshes.suzanne(), types.SimpleNamespace()
     made = operator(lambda: suzanne_job(**LONG), context)
     assert made._start(context) == {"RUNNING_MODAL"}
@@ -113,21 +116,21 @@ def test_enter_keeps_the_best_so_far(key):
     assert (meshes.area_ratios(obj, "New")[_written(obj)] > 0).all()
 
 
-def _written(obj):
+def _written(obj: MeshObject) -> Array:
     """Triangles whose UVs differ from the first layer's."""
     corners, _, _ = meshes.triangles(obj)
     changed = (meshes.uv(obj, "New") != meshes.uv(obj, obj.data.uv_layers[0].name)).any(axis=1)
     return changed[corners].any(axis=1)
 
 
-def test_what_was_not_reached_before_enter_is_named_and_left_alone():
+def test_what_was_not_reached_before_enter_is_named_and_left_alone() -> None:
     obj = meshes.add(*meshes.together(*(meshes.grid(offset=(4 * k, 0, 0)) for k in range(3))))
     obj.data.uv_layers.new(name="UVMap")
     before, islands, unwrap = meshes.uv(obj), part("bridge.islands"), part("jobs.unwrap")
     job = unwrap.job(bpy.context, unwrap.Settings())
     map_ = islands._map
 
-    def first_only(*arguments):
+    def first_only(*arguments: Any) -> Any:
         job.end_early()
         return map_(*arguments)
 
@@ -144,7 +147,7 @@ def test_what_was_not_reached_before_enter_is_named_and_left_alone():
     assert (after[144:] == before[144:]).all() and (after[:144] != before[:144]).any()
 
 
-def test_the_last_island_kept_early_is_said_too():
+def test_the_last_island_kept_early_is_said_too() -> None:
     meshes.suzanne()
     job = suzanne_job(**LONG)
     job.start()
@@ -153,7 +156,7 @@ def test_the_last_island_kept_early_is_said_too():
     assert "ended early, more time makes areas more even" in str(job.apply())
 
 
-def test_a_shape_key_can_be_kept_early():
+def test_a_shape_key_can_be_kept_early() -> None:
     obj = meshes.bumpy(meshes.icosphere(5))
     key, bridge = part("jobs.sphere_shape_key"), part("bridge")
     job = key.job(bpy.context, key.Settings(bridge.Solver(**LONG))).start()
@@ -163,7 +166,7 @@ def test_a_shape_key_can_be_kept_early():
     assert obj.data.shape_keys.key_blocks["Authalic Sphere"].value == 0
 
 
-def test_other_keys_are_held_back_and_looking_around_is_not():
+def test_other_keys_are_held_back_and_looking_around_is_not() -> None:
     meshes.suzanne(1)
     context = types.SimpleNamespace()
     made = operator(suzanne_job, context)
@@ -178,7 +181,7 @@ def test_other_keys_are_held_back_and_looking_around_is_not():
     made._running._thread.join(10)
 
 
-def test_the_header_and_the_timer_are_cleared():
+def test_the_header_and_the_timer_are_cleared() -> None:
     meshes.suzanne(1)
     context = types.SimpleNamespace()
     made = operator(suzanne_job, context)
@@ -195,7 +198,7 @@ def test_the_header_and_the_timer_are_cleared():
 
 
 @pytest.mark.parametrize("change", ["remove", "subdivide"])
-def test_a_mesh_that_changed_meanwhile_is_left_alone(change):
+def test_a_mesh_that_changed_meanwhile_is_left_alone(change: Any) -> None:
     obj, context = meshes.add_grid(), types.SimpleNamespace()
     job = suzanne_job().start()
     job._thread.join()
@@ -210,7 +213,7 @@ def test_a_mesh_that_changed_meanwhile_is_left_alone(change):
     assert made.said == [("ERROR", "Grid has changed meanwhile; nothing was written")]
 
 
-def test_without_a_window_invoke_runs_to_the_end():
+def test_without_a_window_invoke_runs_to_the_end() -> None:
     obj = meshes.add_grid()
     assert bpy.ops.authalic.unwrap("INVOKE_DEFAULT") == {"FINISHED"}
     assert np.ptp(meshes.uv(obj), axis=0).min() > 0.9

@@ -3,22 +3,24 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 import meshes
 import numpy as np
 import pytest
 import spheres
 from installed import part
+from meshes import Array
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
 DATA = Path(os.environ.get("AUTHALIC_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data")
 
 
-def project(*arguments, **options):
+def project(*arguments: Any, **options: Any) -> Array:
     return part("sphere_layout.projection").project(*arguments, **options)
 
 
-def small_triangles(count=2000, size=1e-4):
+def small_triangles(count: int = 2000, size: float = 1e-4) -> Array:
     """Random triangles (count, 3, 3) of the sphere, away from where the octahedral map has its creases."""
     random = np.random.default_rng(5)
     centres = spheres.unit(random.normal(size=(3 * count, 3)))
@@ -28,13 +30,13 @@ def small_triangles(count=2000, size=1e-4):
     return spheres.unit(centres[:, None] + size * np.stack(corners, axis=1))
 
 
-def uneven_sphere(subdivisions=4, seed=3):
+def uneven_sphere(subdivisions: int = 4, seed: int = 3) -> tuple[Array, Array]:
     vertices, faces = spheres.icosphere(subdivisions, turned=seed)
     return spheres.uneven(vertices), faces
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_places_keep_areas(name):
+def test_places_keep_areas(name: str) -> None:
     layout, triangles = part("sphere_layout.layouts").LAYOUTS[name], small_triangles()
     places = layout.places(triangles.reshape(-1, 3)).reshape(-1, 3, 2)
     whole = (np.ptp(places[..., 0], axis=1) < 1) & (np.ptp(places[..., 1], axis=1) < 1)
@@ -44,7 +46,7 @@ def test_places_keep_areas(name):
     assert np.median(np.abs(ratios - 1)) < 1e-4
 
 
-def test_octahedral_square():
+def test_octahedral_square() -> None:
     places = part("sphere_layout.layouts").Octahedral.places
     points = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0.6, 0.64, -0.48]], float)
     np.testing.assert_allclose(places(points)[:5], [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1]], atol=1e-15)
@@ -55,7 +57,7 @@ def test_octahedral_square():
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.parametrize("turned", [None, 1, 2])
-def test_faces_fit_together_and_fill_the_plane(name, turned):
+def test_faces_fit_together_and_fill_the_plane(name: str, turned: int | None) -> None:
     vertices, faces = spheres.icosphere(3, turned)
     uv = project(vertices, faces, layout=name)
     assert spheres.exactly_folded(uv) == []
@@ -70,7 +72,7 @@ def test_faces_fit_together_and_fill_the_plane(name, turned):
     assert sides < 6 * np.sqrt(len(faces))
 
 
-def edges_joined(faces, uv, half_turns):
+def edges_joined(faces: Array, uv: Array, half_turns: bool) -> Any:
     """For each edge if its two images are congruent, and how many edges lie apart in the plane."""
     ends = np.stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()])
     images = np.stack([uv.reshape(-1, 2), np.roll(uv, -1, axis=1).reshape(-1, 2)])
@@ -85,11 +87,11 @@ def edges_joined(faces, uv, half_turns):
     return same, apart.sum()
 
 
-def poles_valence(uv, faces):
+def poles_valence(uv: Array, faces: Array) -> Any:
     return np.count_nonzero(np.abs(np.abs(uv[..., 1]) - 1) < 1e-12)
 
 
-def test_lambert_rectangle():
+def test_lambert_rectangle() -> None:
     vertices, faces = uneven_sphere()
     uv = project(vertices, faces)
     low, high = uv.min(axis=(0, 1)), uv.max(axis=(0, 1))
@@ -106,7 +108,7 @@ def test_lambert_rectangle():
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.parametrize("turned", [None, 4])
-def test_areas_come_out_even(name, turned):
+def test_areas_come_out_even(name: str, turned: int | None) -> None:
     vertices, faces = spheres.icosphere(4, turned)
     wanted = spheres.areas(vertices[faces])
     ratios = meshes.uv_areas(project(vertices, faces, areas=wanted, layout=name)) / wanted
@@ -115,7 +117,7 @@ def test_areas_come_out_even(name, turned):
 
 @pytest.mark.parametrize(("axis", "seam"), [("X", (0, 1, 0)), ("Y", (0, 0, -1)), ("Z", (0, 1, 0))])
 @pytest.mark.parametrize("angle", [0.0, 1.0])
-def test_pole_axis_and_seam_direction(axis, seam, angle):
+def test_pole_axis_and_seam_direction(axis: str, seam: Any, angle: float) -> None:
     vertices, faces = spheres.icosphere(4)
     uv = project(vertices, faces, axis=axis, seam=angle)
     pole, seam = np.eye(3)["XYZ".index(axis)], np.array(seam, float)
@@ -129,9 +131,9 @@ def test_pole_axis_and_seam_direction(axis, seam, angle):
     np.testing.assert_allclose(np.sin(uv[middle][..., 0]), quarter, atol=0.25)
 
 
-def test_uv_sphere_keeps_its_poles():
+def test_uv_sphere_keeps_its_poles() -> None:
     obj = meshes.uv_sphere(24, 12)
-    vertices = np.array([vertex.co for vertex in obj.data.vertices], float)
+    vertices = np.array([vertex.co for vertex in obj.data.vertices], np.float64)
     obj.data.calc_loop_triangles()
     faces = np.array([tuple(triangle.vertices) for triangle in obj.data.loop_triangles])
     polygons = np.array([triangle.polygon_index for triangle in obj.data.loop_triangles])
@@ -143,12 +145,12 @@ def test_uv_sphere_keeps_its_poles():
     assert len(rows) == 13
 
 
-def turn(points, pole):
+def turn(points: Array, pole: Array) -> Array:
     return spheres.unit(points - (points @ pole)[..., None] * pole)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_inside_out_is_mirrored(name):
+def test_inside_out_is_mirrored(name: str) -> None:
     vertices, faces = uneven_sphere(3)
     uv = project(vertices, faces[:, ::-1], layout=name)
     assert spheres.exactly_folded(uv) == []
@@ -156,7 +158,7 @@ def test_inside_out_is_mirrored(name):
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.parametrize("seed", range(4))
-def test_random_triangulations_have_no_folds(name, seed):
+def test_random_triangulations_have_no_folds(name: str, seed: int) -> None:
     vertices, faces = spheres.icosphere(3, turned=seed)
     random = np.random.default_rng(seed)
     moved = spheres.unit(vertices + 0.025 * random.normal(size=vertices.shape))
@@ -167,13 +169,13 @@ def test_random_triangulations_have_no_folds(name, seed):
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.parametrize("subdivisions", [0, 1, 2])
-def test_coarse_spheres(name, subdivisions):
+def test_coarse_spheres(name: str, subdivisions: int) -> None:
     uv = project(*spheres.icosphere(subdivisions, turned=7), layout=name)
     assert spheres.exactly_folded(uv) == []
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_cube_of_quads(name):
+def test_cube_of_quads(name: str) -> None:
     corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
     faces = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
@@ -185,7 +187,7 @@ def test_cube_of_quads(name):
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_tetrahedron_is_refused(name):
+def test_tetrahedron_is_refused(name: str) -> None:
     vertices, faces = meshes.tetrahedron()
     projection = part("sphere_layout.projection")
     with pytest.raises(projection.CannotProject) as refusal:
@@ -194,7 +196,7 @@ def test_tetrahedron_is_refused(name):
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_polygons_keep_together(name):
+def test_polygons_keep_together(name: str) -> None:
     vertices, faces = spheres.icosphere(3, turned=9)
     polygons = pairs(faces)
     uv = project(vertices, faces, polygons=polygons, layout=name)
@@ -209,9 +211,10 @@ def test_polygons_keep_together(name):
     assert corner.max() + 1 < 0.8 * faces.size
 
 
-def pairs(faces):
+def pairs(faces: Array) -> Any:
     """Numbers (m,) that two neighbouring triangles have in common wherever possible."""
-    owner, found = {}, np.full(len(faces), -1)
+    owner: dict[tuple[int, ...], int] = {}
+    found = np.full(len(faces), -1)
     for face, (a, b, c) in enumerate(faces):
         for edge in ((a, b), (b, c), (c, a)):
             other = owner.setdefault(tuple(sorted(edge)), face)
@@ -220,7 +223,7 @@ def pairs(faces):
     return np.where(found < 0, np.arange(len(faces)), found)
 
 
-def test_vertices_that_may_not_move_are_at_no_pole():
+def test_vertices_that_may_not_move_are_at_no_pole() -> None:
     vertices, faces = spheres.icosphere(2)
     may = vertices[:, 2] < 0.9
     uv = project(vertices, faces, movable=may)
@@ -228,7 +231,7 @@ def test_vertices_that_may_not_move_are_at_no_pole():
     assert len(at_pole) == 2 and may[at_pole].all()
 
 
-def test_twist_keeps_areas_and_fixed_points():
+def test_twist_keeps_areas_and_fixed_points() -> None:
     twist, triangles = part("sphere_layout.twist").twist, small_triangles()
     start, goal = spheres.unit(np.array([[1, 0.05, 0.08], [1, 0, 0]]))
     fixed = np.array([[0.0, 1, 0], [0, -1, 0], [-1, 0, 0]])
@@ -241,7 +244,7 @@ def test_twist_keeps_areas_and_fixed_points():
     np.testing.assert_allclose(np.linalg.norm(moved, axis=2), 1, atol=1e-14)
 
 
-def test_untangling_unfolds_and_leaves_the_rest():
+def test_untangling_unfolds_and_leaves_the_rest() -> None:
     layouts, charts, untangle = (
         part("sphere_layout.layouts"),
         part("sphere_layout.charts"),
@@ -270,7 +273,7 @@ def test_untangling_unfolds_and_leaves_the_rest():
         assert far.sum() > len(faces) / 4 and (uv[far] == before[far]).mean() > 0.9
 
 
-def test_map_of_an_inside_out_surface_lies_over_it():
+def test_map_of_an_inside_out_surface_lies_over_it() -> None:
     spherical = part("surfaces.spherical")
     vertices, faces = spheres.icosphere(3)
     surface = vertices * [1, 2, 3] + [5, 6, 7]
@@ -286,7 +289,7 @@ def test_map_of_an_inside_out_surface_lies_over_it():
 
 @pytest.mark.skipif(not (DATA / "brain").is_dir(), reason="no folder of real meshes")
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_a_sphere_of_a_cortex(name):
+def test_a_sphere_of_a_cortex(name: str) -> None:
     with np.load(DATA / "brain" / "fsaverage5_left_10242.npz") as file:
         key = next(key for key in file if key in ("F", "faces"))
         vertices, faces = spheres.unit(file["V_sphere"].astype(float)), file[key]

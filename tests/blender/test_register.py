@@ -4,6 +4,8 @@
 import re
 import time
 import types
+from collections.abc import Callable
+from typing import Any
 
 import bpy
 import meshes
@@ -14,6 +16,7 @@ import spheres
 from installed import part
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
+from meshes import MeshObject
 from pairs import SQUEEZED, TILTED
 
 KEY = "Morph → Twin"
@@ -21,25 +24,25 @@ UV_MAP = "Authalic Registered"
 CORNERS = [(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0), (0, 0, 1)]
 
 
-def register(**options):
+def register(**options: Any) -> set[str]:
     return bpy.ops.authalic.register(**options)
 
 
-def sheets(matrix=None, n=8):
+def sheets(matrix: Matrix | None = None, n: int = 8) -> tuple[MeshObject, MeshObject]:
     """A bumpy grid and its copy, with landmarks on the bump."""
     source = meshes.add_grid("Sheet", n=n)
     target = pairs.twin(source, matrix)
     return pairs.pair(source, target, pairs.nearest(source, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)]))
 
 
-def balls(matrix=None):
+def balls(matrix: Matrix | None = None) -> tuple[MeshObject, MeshObject]:
     """A bumpy sphere and its copy, with landmarks all around."""
     source = meshes.bumpy(meshes.icosphere(3))
     target = pairs.twin(source, matrix)
     return pairs.pair(source, target, pairs.nearest(source, CORNERS))
 
 
-def onto_another_sphere():
+def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
     """A cube's sphere of quads and a bumpy one of triangles."""
     source, target = meshes.cube_sphere(3), meshes.bumpy(meshes.icosphere(4), 0.15)
     target.name = "Twin"
@@ -48,13 +51,13 @@ def onto_another_sphere():
     return pairs.pair(source, target, {f"Corner {number}": both for number, both in enumerate(ends)})
 
 
-def assert_near(points, expected):
+def assert_near(points: Any, expected: Any) -> None:
     """As near as maps of surfaces that differ in more than rounding come to each other."""
     np.testing.assert_allclose(points, expected, atol=0.02 * pairs.size(expected))
 
 
 @pytest.mark.parametrize("make", [sheets, balls])
-def test_a_copy_is_found_again(make):
+def test_a_copy_is_found_again(make: Callable[..., tuple[MeshObject, MeshObject]]) -> None:
     source, target = make()
     before = pairs.positions(source)
     assert register() == {"FINISHED"}
@@ -66,7 +69,9 @@ def test_a_copy_is_found_again(make):
 
 @pytest.mark.parametrize("make", [sheets, balls])
 @pytest.mark.parametrize("matrix", [TILTED, Matrix.Scale(-1, 4, (1, 0, 0)) @ TILTED])
-def test_a_copy_that_is_moved_turned_and_scaled_is_found_exactly(make, matrix):
+def test_a_copy_that_is_moved_turned_and_scaled_is_found_exactly(
+    make: Callable[..., tuple[MeshObject, MeshObject]], matrix: Matrix | None
+) -> None:
     source, target = make(matrix)
     source.matrix_world = (
         Matrix.Scale(matrix.determinant() / abs(matrix.determinant()), 4, (0, 1, 0)) @ TILTED
@@ -79,7 +84,9 @@ def test_a_copy_that_is_moved_turned_and_scaled_is_found_exactly(make, matrix):
 
 @pytest.mark.parametrize("make", [sheets, balls])
 @pytest.mark.parametrize("source_matrix", [Matrix.Identity(4), SQUEEZED])
-def test_the_morph_ends_where_the_target_is(make, source_matrix):
+def test_the_morph_ends_where_the_target_is(
+    make: Callable[..., tuple[MeshObject, MeshObject]], source_matrix: Matrix
+) -> None:
     source, target = make(TILTED)
     source.matrix_world = TILTED @ source_matrix
     target.data.transform(source_matrix)
@@ -90,7 +97,7 @@ def test_the_morph_ends_where_the_target_is(make, source_matrix):
 
 
 @pytest.mark.parametrize("make", [sheets, balls])
-def test_mirrored_by_its_scale(make):
+def test_mirrored_by_its_scale(make: Callable[..., tuple[MeshObject, MeshObject]]) -> None:
     source, target = make()
     mirror = Matrix.Scale(-1, 4, (1, 0, 0))
     target.data.transform(mirror)
@@ -101,7 +108,7 @@ def test_mirrored_by_its_scale(make):
     assert_near(pairs.positions(source, KEY), pairs.positions(source))
 
 
-def test_align_does_not_travel():
+def test_align_does_not_travel() -> None:
     source, _ = balls(TILTED)
     before = pairs.positions(source)
     register(align=True)
@@ -110,7 +117,7 @@ def test_align_does_not_travel():
     assert np.linalg.norm(pairs.positions(source, KEY) - before, axis=1).min() > 0.5
 
 
-def test_another_surface(capfd):
+def test_another_surface(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = onto_another_sphere()
     assert register() == {"FINISHED"}
     said = capfd.readouterr().out
@@ -130,7 +137,7 @@ def test_another_surface(capfd):
     assert not source.data.uv_layers.get(UV_MAP)
 
 
-def test_disks_get_the_registered_map():
+def test_disks_get_the_registered_map() -> None:
     source, target = sheets()
     source.data.uv_layers.new(name="Own")
     assert register(target_uv=True) == {"FINISHED"}
@@ -143,13 +150,13 @@ def test_disks_get_the_registered_map():
     assert [layer.name for layer in source.data.uv_layers] == ["Own", UV_MAP]
 
 
-def test_the_target_gets_no_uv_map_by_default():
+def test_the_target_gets_no_uv_map_by_default() -> None:
     _, target = sheets()
     register()
     assert not target.data.uv_layers
 
 
-def test_no_room_for_the_uv_map(capfd):
+def test_no_room_for_the_uv_map(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = sheets()
     for number in range(8):
         source.data.uv_layers.new(name=f"Map {number}")
@@ -158,7 +165,7 @@ def test_no_room_for_the_uv_map(capfd):
     assert KEY in source.data.shape_keys.key_blocks
 
 
-def test_again_replaces_the_key():
+def test_again_replaces_the_key() -> None:
     source, target = balls()
     register()
     source.data.shape_keys.key_blocks[KEY].value = 0.5
@@ -170,7 +177,7 @@ def test_again_replaces_the_key():
     assert pairs.positions(source, KEY)[:, 0].mean() > 4
 
 
-def test_long_names():
+def test_long_names() -> None:
     source, target = balls()
     target.name = "A head with a name as long as a name may be in Blender, so long"
     register()
@@ -178,7 +185,7 @@ def test_long_names():
     assert len(source.data.shape_keys.key_blocks) == 2
 
 
-def test_first_shape_keys_count():
+def test_first_shape_keys_count() -> None:
     source, target = balls()
     expected = pairs.positions(target)
     for obj in (source, target):
@@ -190,7 +197,7 @@ def test_first_shape_keys_count():
     np.testing.assert_allclose(pairs.positions(source, KEY), expected, atol=1e-5)
 
 
-def test_loose_vertices_stay():
+def test_loose_vertices_stay() -> None:
     vertices, faces = meshes.grid()
     source = meshes.add([(9, 9, 9), *vertices, (5, 5, 5)], np.asarray(faces) + 1, "Dusty")
     pairs.pair(source, pairs.twin(source, TILTED), [17, 25, 33])
@@ -200,7 +207,7 @@ def test_loose_vertices_stay():
     assert_near(key[1:-1], pairs.moved(vertices, TILTED))
 
 
-def test_n_gons():
+def test_n_gons() -> None:
     bpy.ops.mesh.primitive_cylinder_add(vertices=12)
     source = bpy.context.object
     pairs.pair(source, pairs.twin(source, TILTED), [0, 9, 16])
@@ -208,14 +215,14 @@ def test_n_gons():
     assert_near(pairs.positions(source, KEY), pairs.moved(pairs.positions(source), TILTED))
 
 
-def curve_points(obj):
+def curve_points(obj: MeshObject) -> Any:
     """(frame, value) of the key frames of the morph."""
     curves = [curve for found in part("blender.animation")._curves(obj.data.shape_keys) for curve in found]
     assert [curve.data_path for curve in curves] == [f'key_blocks["{KEY}"].value']
     return [tuple(point.co) for point in curves[0].keyframe_points]
 
 
-def test_animate():
+def test_animate() -> None:
     source, _ = balls()
     assert register(animate=True, frame_start=10, frame_end=50) == {"FINISHED"}
     assert curve_points(source) == [(10, 0), (50, 1)]
@@ -230,7 +237,7 @@ def test_animate():
     assert curve_points(source) == [(1, 0), (20, 1)] and key.value == 1
 
 
-def test_animation_of_other_keys_stays():
+def test_animation_of_other_keys_stays() -> None:
     source, _ = balls()
     source.shape_key_add(name="Basis")
     other = source.shape_key_add(name="Other")
@@ -243,12 +250,12 @@ def test_animation_of_other_keys_stays():
     ]
 
 
-def test_frames_in_the_wrong_order():
+def test_frames_in_the_wrong_order() -> None:
     balls()
     refusal("The morph has to end after frame 20", animate=True, frame_start=20, frame_end=20)
 
 
-def test_the_registration_is_kept(monkeypatch):
+def test_the_registration_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     source, target = balls()
     register()
     registrations, made = part("bridge.registrations"), []
@@ -265,7 +272,7 @@ def test_the_registration_is_kept(monkeypatch):
     assert made
 
 
-def refusal(pattern, obj=None, **options):
+def refusal(pattern: str, obj: MeshObject | None = None, **options: Any) -> None:
     """The operator changes nothing, and its message matches."""
     obj = obj or bpy.context.object
     with pytest.raises(RuntimeError, match=pattern):
@@ -273,7 +280,7 @@ def refusal(pattern, obj=None, **options):
     assert obj.data.shape_keys is None and not obj.data.uv_layers.get(UV_MAP)
 
 
-def test_poll():
+def test_poll() -> None:
     source, target = balls()
     source.authalic_target = None
     refusal("there is no target object, choose one")
@@ -283,7 +290,7 @@ def test_poll():
         register()
 
 
-def test_open_and_closed():
+def test_open_and_closed() -> None:
     source, target = meshes.add_grid("Sail"), meshes.icosphere(2)
     pairs.pair(source, target, {"One": (24, 1), "Two": (25, 2)})
     refusal("Sail is open and Icosphere is closed; both must be open or both closed: fill the hole of Sail")
@@ -296,12 +303,12 @@ def test_open_and_closed():
         (balls, "DISK", "Icosphere: is closed, a disk has a boundary; set Domain to Automatic"),
     ],
 )
-def test_wanted_domain(make, domain, pattern):
+def test_wanted_domain(make: Callable[..., tuple[MeshObject, MeshObject]], domain: str, pattern: str) -> None:
     make()
     refusal(pattern, domain=domain)
 
 
-def test_holes_are_named():
+def test_holes_are_named() -> None:
     vertices, faces = meshes.grid(n=8)
     holed = meshes.add(
         vertices, [face for number, face in enumerate(faces) if number not in (18, 45)], "Holed"
@@ -313,13 +320,13 @@ def test_holes_are_named():
     )
 
 
-def test_handle():
+def test_handle() -> None:
     torus = meshes.torus()
     pairs.pair(torus, pairs.twin(torus), [0, 50])
     refusal("Torus: has a handle, like a torus; close it up or remesh it")
 
 
-def test_several_pieces_of_the_target():
+def test_several_pieces_of_the_target() -> None:
     first, second = spheres.icosphere(1), spheres.icosphere(1)
     target = meshes.add(*meshes.together(first, (second[0] + [4, 0, 0], second[1])), "Couple")
     source = meshes.add(*spheres.icosphere(1), "One")
@@ -327,33 +334,33 @@ def test_several_pieces_of_the_target():
     refusal("Couple: consists of 2 pieces where one is allowed")
 
 
-def test_surfaces_that_meet():
+def test_surfaces_that_meet() -> None:
     vertices, faces = meshes.tetrahedron()
     fin = meshes.add([*vertices, (3, 3, -3)], [*faces, [0, 1, 4]], "Fin")
     pairs.pair(fin, meshes.icosphere(1), [0, 1])
     refusal("Fin: has edges or vertices where surfaces meet", fin)
 
 
-def test_empty_target():
+def test_empty_target() -> None:
     source = meshes.icosphere(1)
     source.authalic_target = meshes.add([], [], "Empty")
     meshes.select(source)
     refusal("Empty has no faces")
 
 
-def test_faces_without_area():
+def test_faces_without_area() -> None:
     _, target = balls()
     target.data.vertices.foreach_set("co", np.zeros(3 * len(target.data.vertices), np.float32))
     refusal("Twin: .*area")
 
 
-def test_bad_coordinate_of_the_target():
+def test_bad_coordinate_of_the_target() -> None:
     _, target = balls()
     target.data.vertices[7].co.y = float("nan")
     refusal("Twin: .*vertex 7")
 
 
-def test_flattened_object():
+def test_flattened_object() -> None:
     source, _ = balls()
     source.scale = (1, 1, 0)
     bpy.context.view_layer.update()
@@ -364,26 +371,28 @@ def test_flattened_object():
     ("make", "count", "pattern"),
     [(sheets, 0, "Sheet needs a landmark pair"), (balls, 1, "Icosphere needs at least two landmark pairs")],
 )
-def test_too_few_landmarks(make, count, pattern):
+def test_too_few_landmarks(
+    make: Callable[..., tuple[MeshObject, MeshObject]], count: int, pattern: str
+) -> None:
     source, _ = make()
     while len(source.authalic_landmarks) > count:
         part("landmarks.points").remove(source, 0)
     refusal(pattern)
 
 
-def test_landmark_on_the_boundary():
+def test_landmark_on_the_boundary() -> None:
     source, _ = sheets()
     part("landmarks.points").add(source, 3, 40, "Rim")
     refusal('Landmark "Rim" is on the boundary of Sheet, which becomes a circle; pick a vertex inside')
 
 
-def test_landmark_on_a_loose_vertex():
+def test_landmark_on_a_loose_vertex() -> None:
     source = meshes.add([*spheres.icosphere(1)[0], (5, 0, 0)], spheres.icosphere(1)[1], "Dusty")
     pairs.pair(source, meshes.icosphere(2), {"Dust": (42, 1), "Nose": (3, 5)})
     refusal('Landmark "Dust" is on a loose vertex of Dusty')
 
 
-def test_lost_landmark():
+def test_lost_landmark() -> None:
     source, target = balls()
     name = source.authalic_landmarks[1].name
     meshes.edit(target)
@@ -397,7 +406,7 @@ def test_lost_landmark():
     refusal(f'Landmark "{name}": its vertex on Twin is gone')
 
 
-def test_pairs_that_cannot_meet_are_named(capfd):
+def test_pairs_that_cannot_meet_are_named(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = sheets()
     source.data.calc_loop_triangles()
     middle = min(source.data.loop_triangles, key=lambda one: one.center.length)
@@ -413,7 +422,7 @@ def test_pairs_that_cannot_meet_are_named(capfd):
     assert "the normals of the two may face opposite ways" in said
 
 
-def test_absolute_keys():
+def test_absolute_keys() -> None:
     source, _ = balls()
     source.shape_key_add(name="Basis")
     source.data.shape_keys.use_relative = False
@@ -421,14 +430,14 @@ def test_absolute_keys():
         register()
 
 
-def test_shared_mesh(capfd):
+def test_shared_mesh(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = balls()
     bpy.context.collection.objects.link(bpy.data.objects.new("Second", source.data))
     assert register() == {"FINISHED"}
     assert "shares its mesh, all 2 users have the key" in capfd.readouterr().out
 
 
-def test_worst_pairs_are_named():
+def test_worst_pairs_are_named() -> None:
     one = part("registration.registered").Registered(
         *[None] * 6,
         names=list("ABCDE"),
@@ -446,14 +455,15 @@ def test_worst_pairs_are_named():
     assert part("jobs.register_report")._worst(one) == ""
 
 
-def test_the_larger_energy_is_reported():
+def test_the_larger_energy_is_reported() -> None:
     class Figures:
-        def __init__(self, energy, folded):
+        def __init__(self, energy: float, folded: Any) -> None:
             self.authalic_energy, self.folded = energy, folded
 
     class Native:
         positions, registered, target_registered = (np.zeros((1, 3)) for _ in range(3))
-        distortion, missed, status, seconds = Figures(0.25, []), [], "converged", 0.0
+        distortion, status, seconds = Figures(0.25, []), "converged", 0.0
+        missed: tuple[int, ...] = ()
 
     sheets()
     sides = part("jobs.register").chosen(bpy.context).sides
@@ -464,7 +474,7 @@ def test_the_larger_energy_is_reported():
     assert (found.energy, found.folds) == (0.5, 1)
 
 
-def test_what_is_seen_but_not_registered_is_named(capfd):
+def test_what_is_seen_but_not_registered_is_named(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = balls()
     register()
     assert "was registered without" not in capfd.readouterr().out
@@ -482,7 +492,7 @@ def test_what_is_seen_but_not_registered_is_named(capfd):
     assert 'Twin was registered without shape key "Fat", which it is seen with' in said
 
 
-def test_undo_and_redo():
+def test_undo_and_redo() -> None:
     source, _ = sheets()
     bpy.ops.ed.undo_push(message="Start")
     name = source.name
@@ -494,7 +504,7 @@ def test_undo_and_redo():
     assert KEY in bpy.data.objects[name].data.shape_keys.key_blocks
 
 
-def test_cancelled_writes_nothing():
+def test_cancelled_writes_nothing() -> None:
     source, _ = balls()
     registration = part("jobs.register")
     job = registration.job(bpy.context, registration.Settings()).start()
@@ -504,7 +514,7 @@ def test_cancelled_writes_nothing():
     assert source.data.shape_keys is None
 
 
-def test_what_there_is_can_be_kept():
+def test_what_there_is_can_be_kept() -> None:
     source, target = meshes.bumpy(meshes.icosphere(5)), meshes.bumpy(meshes.cube_sphere(6), 0.2)
     ends = zip(pairs.nearest(source, CORNERS), pairs.nearest(target, CORNERS), strict=True)
     pairs.pair(source, target, {f"Corner {number}": both for number, both in enumerate(ends)})
@@ -519,7 +529,7 @@ def test_what_there_is_can_be_kept():
 
 
 @pytest.mark.parametrize("change", ["remove", "subdivide", "landmarks"])
-def test_changed_meanwhile(change):
+def test_changed_meanwhile(change: Any) -> None:
     source, target = balls()
     registration = part("jobs.register")
     job = registration.job(bpy.context, registration.Settings()).start()
@@ -537,12 +547,12 @@ def test_changed_meanwhile(change):
     assert source.data.shape_keys is None
 
 
-def test_progress_rises_and_says_what_it_does():
+def test_progress_rises_and_says_what_it_does() -> None:
     balls()
     registration, seen = part("jobs.register"), []
     couple = registration.chosen(bpy.context)
 
-    def listen(fraction, message):
+    def listen(fraction: float, message: str) -> bool:
         seen.append((fraction, message))
         return True
 
@@ -551,11 +561,11 @@ def test_progress_rises_and_says_what_it_does():
     assert len(seen) > 3 and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1
 
 
-def test_options_reach_the_library(monkeypatch):
+def test_options_reach_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
     balls()
     registrations, given = part("bridge.registrations"), {}
 
-    def stop(*_, **options):
+    def stop(*_: Any, **options: Any) -> None:
         given.update(options)
         raise registrations.Unsuitable("seen")
 

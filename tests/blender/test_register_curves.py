@@ -3,6 +3,8 @@
 
 import contextlib
 import re
+from pathlib import Path
+from typing import Any
 
 import bpy
 import curving
@@ -13,6 +15,7 @@ import pytest
 import spheres
 from installed import part
 from mathutils import Matrix
+from meshes import Array, MeshObject
 from pairs import TILTED
 
 KEY = "Morph → Twin"
@@ -24,11 +27,11 @@ ROUTES = (
 )
 
 
-def register(**options):
+def register(**options: Any) -> set[str]:
     return bpy.ops.authalic.register(method="CURVES", **options)
 
 
-def couple(source, target, curves):
+def couple(source: MeshObject, target: MeshObject, curves: Any) -> tuple[MeshObject, MeshObject]:
     """Gives the source a target and curves (source path, target path)."""
     source.authalic_target = target
     meshes.select(source)
@@ -38,7 +41,7 @@ def couple(source, target, curves):
     return source, target
 
 
-def balls(matrix=None, count=4):
+def balls(matrix: Matrix | None = None, count: int = 4) -> tuple[MeshObject, MeshObject]:
     """A bumpy sphere and its copy, with curves all around."""
     source = meshes.bumpy(meshes.icosphere(3))
     target = pairs.twin(source, matrix)
@@ -46,7 +49,7 @@ def balls(matrix=None, count=4):
     return couple(source, target, [(path, path) for path in paths])
 
 
-def sheets():
+def sheets() -> tuple[MeshObject, MeshObject]:
     """A bumpy grid and its copy, with two curves inside."""
     source = meshes.add_grid("Sheet", n=10)
     target = pairs.twin(source)
@@ -54,7 +57,7 @@ def sheets():
     return couple(source, target, [(path, path) for path in paths])
 
 
-def onto_another_sphere():
+def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
     """A cube's sphere of quads and a bumpy one of triangles."""
     source, target = meshes.cube_sphere(4), meshes.bumpy(meshes.icosphere(4), 0.1)
     target.name = "Twin"
@@ -63,7 +66,7 @@ def onto_another_sphere():
     return couple(source, target, curves)
 
 
-def from_polyline(points, corners):
+def from_polyline(points: Array, corners: Any) -> Array:
     """How far points (k, 3) are from a polyline (n, 3)."""
     a, along = corners[:-1], np.diff(corners, axis=0)
     place = np.einsum("knd,nd->kn", points[:, None] - a, along) / (along**2).sum(axis=1)
@@ -71,7 +74,7 @@ def from_polyline(points, corners):
     return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
 
 
-def test_a_copy_is_found_again():
+def test_a_copy_is_found_again() -> None:
     source, target = balls()
     before = pairs.positions(source)
     assert register() == {"FINISHED"}
@@ -81,7 +84,7 @@ def test_a_copy_is_found_again():
     np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.01 * pairs.size(before))
 
 
-def test_a_copy_that_is_moved_turned_and_scaled():
+def test_a_copy_that_is_moved_turned_and_scaled() -> None:
     mirror = Matrix.Scale(-1, 4, (1, 0, 0)) @ TILTED
     source, target = balls(mirror)
     source.matrix_world = Matrix.Scale(-1, 4, (0, 1, 0)) @ TILTED
@@ -91,7 +94,7 @@ def test_a_copy_that_is_moved_turned_and_scaled():
     np.testing.assert_allclose(pairs.positions(source, KEY), expected, atol=0.01 * pairs.size(expected))
 
 
-def test_another_surface(capfd):
+def test_another_surface(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = onto_another_sphere()
     assert register() == {"FINISHED"}
     said = capfd.readouterr().out
@@ -108,14 +111,14 @@ def test_another_surface(capfd):
     assert not source.data.uv_layers.get("Authalic Registered")
 
 
-def test_open_surfaces():
+def test_open_surfaces() -> None:
     source, _ = sheets()
     before = pairs.positions(source)
     assert register() == {"FINISHED"}
     np.testing.assert_allclose(pairs.positions(source, KEY), before, atol=0.02 * pairs.size(before))
 
 
-def test_loops():
+def test_loops() -> None:
     """Around the waists of two spheres, and a curve on either side of it."""
     source = meshes.uv_sphere(24, 12)
     target = pairs.twin(source)
@@ -131,7 +134,7 @@ def test_loops():
     np.testing.assert_allclose(key, points, atol=0.05 * pairs.size(points))
 
 
-def test_align_and_animate():
+def test_align_and_animate() -> None:
     source, _ = balls(TILTED)
     before = pairs.positions(source)
     register(align=True, animate=True, frame_end=20)
@@ -139,7 +142,7 @@ def test_align_and_animate():
     assert source.data.shape_keys.animation_data is not None
 
 
-def test_points_are_not_needed_and_do_not_count():
+def test_points_are_not_needed_and_do_not_count() -> None:
     source, _ = balls()
     part("landmarks.points").add(source, 5, 7)
     assert register() == {"FINISHED"}
@@ -148,7 +151,7 @@ def test_points_are_not_needed_and_do_not_count():
         bpy.ops.authalic.register()
 
 
-def test_the_registration_is_kept_and_transfers_use_it(monkeypatch):
+def test_the_registration_is_kept_and_transfers_use_it(monkeypatch: pytest.MonkeyPatch) -> None:
     source, target = balls()
     register()
     group = target.vertex_groups.new(name="Top")
@@ -165,7 +168,7 @@ def test_the_registration_is_kept_and_transfers_use_it(monkeypatch):
     assert np.mean((np.array(weights) > 0.5) == (heights > 0)) > 0.97
 
 
-def test_transfer_by_curves_alone():
+def test_transfer_by_curves_alone() -> None:
     source, target = balls()
     target.vertex_groups.new(name="All").add(range(len(target.data.vertices)), 1.0, "REPLACE")
     assert bpy.ops.authalic.transfer() == {"FINISHED"}
@@ -176,12 +179,14 @@ def test_transfer_by_curves_alone():
     assert "All" in source.vertex_groups
 
 
-def layer(target):
+def layer(target: MeshObject) -> None:
     """Gives a target something that can be transferred."""
     target.vertex_groups.new(name="All").add(range(len(target.data.vertices)), 1.0, "REPLACE")
 
 
-def test_transfers_go_by_the_method_of_the_last_registration(capfd, tmp_path):
+def test_transfers_go_by_the_method_of_the_last_registration(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     source, target = balls()
     for vertex in (5, 50):
         part("landmarks.points").add(source, vertex, vertex)
@@ -199,7 +204,7 @@ def test_transfers_go_by_the_method_of_the_last_registration(capfd, tmp_path):
     assert "by landmark points, " in capfd.readouterr().out
 
 
-def test_transfer_by_boundaries_alone(capfd):
+def test_transfer_by_boundaries_alone(capfd: pytest.CaptureFixture[str]) -> None:
     source = meshes.add_grid("Sheet", n=10)
     _, target = couple(source, pairs.twin(source), [])
     layer(target)
@@ -207,19 +212,19 @@ def test_transfer_by_boundaries_alone(capfd):
     assert "from Twin to Sheet by boundaries (registered anew)" in capfd.readouterr().out
 
 
-def refusal(pattern, obj=None, **options):
+def refusal(pattern: str, obj: MeshObject | None = None, **options: Any) -> None:
     obj = obj or bpy.context.object
     with pytest.raises(RuntimeError, match=pattern):
         register(**options)
     assert obj.data.shape_keys is None
 
 
-def test_there_must_be_a_curve_or_a_boundary():
+def test_there_must_be_a_curve_or_a_boundary() -> None:
     balls(count=0)
     refusal("Icosphere needs a landmark curve; select edges that belong together on both and add them")
 
 
-def test_broken_curves_are_named():
+def test_broken_curves_are_named() -> None:
     source, _ = balls(count=2)
     path = part("landmarks.curves").pairs(source)[1].target.vertices
     twin = source.authalic_target
@@ -234,19 +239,19 @@ def test_broken_curves_are_named():
     refusal('Curve "Curve 2": has .* on Twin')
 
 
-def test_a_side_that_is_missing():
+def test_a_side_that_is_missing() -> None:
     source, _ = balls(count=1)
     curving.add(curving.route(source, *ROUTES[1]))
     refusal('Curve "Curve 2": has no edges on Twin')
 
 
-def test_curve_that_meets_the_boundary():
+def test_curve_that_meets_the_boundary() -> None:
     source, _ = sheets()
     curving.add((0, 1, 2), (26, 27, 28), name="Rim")
     refusal(r'Curve "Rim" meets the boundary of Sheet at vertices 0, 1, 2; end it inside', source)
 
 
-def test_other_boundaries():
+def test_other_boundaries() -> None:
     vertices, faces = meshes.grid(n=8)
     holed = meshes.add(vertices, [face for number, face in enumerate(faces) if number != 27], "Holed")
     sheet = meshes.add_grid("Twin", n=8)
@@ -254,7 +259,7 @@ def test_other_boundaries():
     refusal("Holed has 2 open boundaries and Twin 1 open boundary, without those that are curves", holed)
 
 
-def test_edges_without_faces():
+def test_edges_without_faces() -> None:
     vertices, faces = spheres.icosphere(2)
     source = meshes.add([*vertices, (3, 0, 0)], faces, "Dusty")
     far = int(np.argmax(-vertices[:, 0]))
@@ -268,18 +273,18 @@ def test_edges_without_faces():
     refusal(rf'Curve "Curve 1" has the edge \(0, {far}\) of Dusty, which has no face', source)
 
 
-def test_handle_and_pieces():
+def test_handle_and_pieces() -> None:
     torus = meshes.torus()
     couple(torus, pairs.twin(torus), [((0, 1, 2), (0, 1, 2))])
     refusal("Torus: has a handle, like a torus; close it up or remesh it")
 
 
-def test_messages_of_the_library_name_curves_and_vertices():
+def test_messages_of_the_library_name_curves_and_vertices() -> None:
     balls(count=2)
     sides = part("jobs.register").chosen(bpy.context).sides
-    curves = [("Brow", (), ()), ("Jaw", (), ()), ("Ear", (), ())]
+    curves: list[Any] = [("Brow", (), ()), ("Jaw", (), ()), ("Ear", (), ())]
 
-    def said(text):
+    def said(text: str) -> str:
         return part("registration.curves").in_words(text, sides, curves)
 
     assert said("source_curves: curves 0 and 2 meet at vertex 7: shorten one") == (
@@ -299,7 +304,7 @@ def test_messages_of_the_library_name_curves_and_vertices():
     assert "Object > Mirror" in mirrored and "negate" not in mirrored and "Flip" not in mirrored
 
 
-def test_opposite_normals_of_open_surfaces_are_told(capfd):
+def test_opposite_normals_of_open_surfaces_are_told(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = sheets()
     target.data.flip_normals()
     with contextlib.suppress(RuntimeError):
@@ -310,14 +315,14 @@ def test_opposite_normals_of_open_surfaces_are_told(capfd):
     assert source.authalic_target == target
 
 
-def test_a_curve_that_runs_the_other_way_is_told(capfd):
+def test_a_curve_that_runs_the_other_way_is_told(capfd: pytest.CaptureFixture[str]) -> None:
     balls()
     bpy.ops.authalic.landmark_curve_reverse(index=1)
     assert register() == {"FINISHED"}
     assert 'curve "Curve 2" fits far better the other way round' in capfd.readouterr().out
 
 
-def test_undo_and_redo():
+def test_undo_and_redo() -> None:
     source, _ = balls(count=3)
     bpy.ops.ed.undo_push(message="Start")
     name = source.name
@@ -330,7 +335,7 @@ def test_undo_and_redo():
 
 
 @pytest.mark.parametrize("end", ["cancel", "end_early"])
-def test_stopped(end):
+def test_stopped(end: str) -> None:
     """Enter keeps what there is; where nothing is yet, it is an error, and neither writes half a morph."""
     source, _ = balls()
     registration = part("jobs.register")
@@ -345,7 +350,7 @@ def test_stopped(end):
         assert end == "end_early" and report.registered.folds == 0
 
 
-def test_curves_that_changed_meanwhile():
+def test_curves_that_changed_meanwhile() -> None:
     source, _ = balls()
     registration = part("jobs.register")
     settings = registration.Settings(part("registration.settings").Settings(method="CURVES"))
@@ -357,12 +362,12 @@ def test_curves_that_changed_meanwhile():
     assert source.data.shape_keys is None
 
 
-def test_progress_rises():
+def test_progress_rises() -> None:
     source, _ = balls()
     source.data.vertices[0].co.z += 0.01  # not one that is kept
     registration, seen = part("jobs.register"), []
 
-    def listen(fraction, message):
+    def listen(fraction: float, message: str) -> bool:
         seen.append(fraction)
         return True
 

@@ -2,6 +2,8 @@
 """authalic.sphere_shape_key: the key it writes, what it leaves alone, and what it refuses."""
 
 import re
+from pathlib import Path
+from typing import Any
 
 import bpy
 import meshes
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 import spheres
 from mathutils import Matrix
+from meshes import Array, MeshObject
 
 NAME = "Authalic Sphere"
 CLOSED = {
@@ -21,40 +24,40 @@ CLOSED = {
 }
 
 
-def cylinder():
+def cylinder() -> MeshObject:
     bpy.ops.mesh.primitive_cylinder_add(vertices=16)
     return bpy.context.object
 
 
-def add_key(**options):
+def add_key(**options: Any) -> set[str]:
     return bpy.ops.authalic.sphere_shape_key(**options)
 
 
-def key_positions(obj, name=NAME):
+def key_positions(obj: MeshObject, name: str = NAME) -> Array:
     values = np.empty(3 * len(obj.data.vertices), np.float32)
     obj.data.shape_keys.key_blocks[name].points.foreach_get("co", values)
     return values.reshape(-1, 3)
 
 
-def mesh_positions(obj):
+def mesh_positions(obj: MeshObject) -> Array:
     values = np.empty(3 * len(obj.data.vertices), np.float32)
     obj.data.vertices.foreach_get("co", values)
     return values.reshape(-1, 3)
 
 
-def vertex_triangles(obj):
+def vertex_triangles(obj: MeshObject) -> Array:
     obj.data.calc_loop_triangles()
     return np.array([tuple(triangle.vertices) for triangle in obj.data.loop_triangles])
 
 
-def centre_and_radius(points, triangles):
+def centre_and_radius(points: Array, triangles: Array) -> tuple[Array, float]:
     """Of the sphere that has the area of a surface, about the centre of its area."""
     area = meshes.surface_areas(points[triangles])
     return area @ points[triangles].mean(axis=1) / area.sum(), np.sqrt(area.sum() / (4 * np.pi))
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_key_is_the_sphere_of_the_same_area(name, capfd):
+def test_key_is_the_sphere_of_the_same_area(name: str, capfd: pytest.CaptureFixture[str]) -> None:
     obj = CLOSED[name]()
     before = mesh_positions(obj)
     assert add_key() == {"FINISHED"}
@@ -75,7 +78,7 @@ def test_key_is_the_sphere_of_the_same_area(name, capfd):
     assert float(re.search(r"radius ([\d.]+)", said)[1]) == pytest.approx(radius, rel=2e-2)
 
 
-def test_areas_are_kept():
+def test_areas_are_kept() -> None:
     obj = meshes.bumpy(meshes.icosphere(5))
     assert add_key() == {"FINISHED"}
     triangles, before = vertex_triangles(obj), mesh_positions(obj).astype(float)
@@ -84,7 +87,7 @@ def test_areas_are_kept():
     assert ratio.std() < 0.05 and ratio.mean() == pytest.approx(1, abs=0.02)
 
 
-def test_key_lies_over_the_mesh():
+def test_key_lies_over_the_mesh() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.transform(Matrix.Translation((5, 6, 7)))
     add_key()
@@ -94,7 +97,7 @@ def test_key_lies_over_the_mesh():
     assert cosine.mean() > 0.9
 
 
-def test_inside_out_mesh_does_not_turn_inside_out():
+def test_inside_out_mesh_does_not_turn_inside_out() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.flip_normals()
     assert add_key() == {"FINISHED"}
@@ -106,7 +109,7 @@ def test_inside_out_mesh_does_not_turn_inside_out():
     assert cosine.mean() > 0.9
 
 
-def test_inconsistent_normals():
+def test_inconsistent_normals() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.polygons[7].flip()
     assert add_key() == {"FINISHED"}
@@ -115,7 +118,7 @@ def test_inconsistent_normals():
     assert np.flatnonzero(volumes < 0).tolist() == [7]
 
 
-def test_slider_morphs():
+def test_slider_morphs() -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     add_key()
     obj.data.shape_keys.key_blocks[NAME].value = 1
@@ -124,7 +127,7 @@ def test_slider_morphs():
     np.testing.assert_allclose(mesh_positions(evaluated), key_positions(obj), atol=1e-6)
 
 
-def test_again_replaces_the_key():
+def test_again_replaces_the_key() -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     add_key(iterations=1)
     first = key_positions(obj)
@@ -138,7 +141,7 @@ def test_again_replaces_the_key():
     assert (key_positions(obj) == second).all()
 
 
-def test_other_keys_stay_and_the_first_one_counts():
+def test_other_keys_stay_and_the_first_one_counts() -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     points = mesh_positions(obj)
     obj.shape_key_add(name="First", from_mix=False)
@@ -160,7 +163,7 @@ def test_other_keys_stay_and_the_first_one_counts():
     assert np.linalg.norm(key_positions(obj) - centre, axis=1).mean() == pytest.approx(radius, rel=0.05)
 
 
-def test_object_scale_does_not_matter(capfd):
+def test_object_scale_does_not_matter(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     obj.scale = (1, 5, 2)
     bpy.context.view_layer.update()
@@ -171,7 +174,7 @@ def test_object_scale_does_not_matter(capfd):
     np.testing.assert_allclose(size, 2 * radius, rtol=0.05)
 
 
-def refusal(pattern, *objects):
+def refusal(pattern: str, *objects: MeshObject) -> None:
     """Nothing is changed by the operator, whose message matches."""
     if objects:
         meshes.select(*objects)
@@ -181,58 +184,58 @@ def refusal(pattern, *objects):
     assert obj.data.shape_keys is None
 
 
-def test_open_mesh():
+def test_open_mesh() -> None:
     meshes.add_grid("Sail")
     refusal(r"Sail: has 1 open boundary, which a sphere has not; fill the holes")
 
 
-def test_handle():
+def test_handle() -> None:
     meshes.torus()
     refusal(r"Torus: has a handle, like a torus")
 
 
-def test_several_pieces():
+def test_several_pieces() -> None:
     second = spheres.icosphere(1)
     meshes.add(*meshes.together(spheres.icosphere(1), (second[0] + [4, 0, 0], second[1])), "Pair")
     refusal(r"Pair: consists of 2 pieces")
 
 
-def test_loose_vertices():
+def test_loose_vertices() -> None:
     vertices, faces = spheres.icosphere(1)
     meshes.add([*vertices, (5, 0, 0), (6, 0, 0)], faces, "Dusty")
     refusal(r"Dusty: has 2 loose vertices without a face \(42, 43\); delete loose geometry")
 
 
-def test_surfaces_that_meet_at_an_edge():
+def test_surfaces_that_meet_at_an_edge() -> None:
     vertices, faces = meshes.tetrahedron()
     meshes.add([*vertices, (3, 3, -3)], [*faces, [0, 1, 4]], "Fin")
     refusal(r"Fin: has edges or vertices where surfaces meet")
 
 
-def test_one_sided():
+def test_one_sided() -> None:
     meshes.add(*meshes.moebius(), "Band")
     refusal(r"Band: is one-sided")
 
 
-def test_face_without_area():
+def test_face_without_area() -> None:
     vertices, faces = spheres.icosphere(0)
     vertices[faces[3]] = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
     meshes.add(vertices, faces, "Flat")
     refusal(r"Flat: .*no area in face 3")
 
 
-def test_bad_coordinate():
+def test_bad_coordinate() -> None:
     obj = meshes.icosphere(1)
     obj.data.vertices[3].co.x = float("nan")
     refusal(r"Icosphere: .*vertex 3")
 
 
-def test_empty_mesh():
+def test_empty_mesh() -> None:
     meshes.add([], [], "Empty")
     refusal(r"Empty: has no faces")
 
 
-def test_absolute_keys():
+def test_absolute_keys() -> None:
     obj = meshes.icosphere(1)
     obj.shape_key_add(name="Basis")
     obj.data.shape_keys.use_relative = False
@@ -241,7 +244,7 @@ def test_absolute_keys():
     assert len(obj.data.shape_keys.key_blocks) == 1
 
 
-def test_first_key_with_the_name():
+def test_first_key_with_the_name() -> None:
     obj = meshes.icosphere(1)
     obj.shape_key_add(name=NAME)
     before = key_positions(obj)
@@ -250,7 +253,7 @@ def test_first_key_with_the_name():
     assert (key_positions(obj) == before).all()
 
 
-def test_linked_mesh(tmp_path):
+def test_linked_mesh(tmp_path: Path) -> None:
     obj = meshes.icosphere(1)
     path = str(tmp_path / "library.blend")
     bpy.data.libraries.write(path, {obj.data}, fake_user=True)
@@ -262,7 +265,7 @@ def test_linked_mesh(tmp_path):
     refusal(r"Linked: its mesh is linked from another file; make it local", linked)
 
 
-def test_shared_mesh_gets_one_key(capfd):
+def test_shared_mesh_gets_one_key(capfd: pytest.CaptureFixture[str]) -> None:
     first = meshes.bumpy(meshes.icosphere(2))
     second = bpy.data.objects.new("Second", first.data)
     bpy.context.collection.objects.link(second)
@@ -272,7 +275,7 @@ def test_shared_mesh_gets_one_key(capfd):
     assert "shares its mesh" in capfd.readouterr().out
 
 
-def test_several_objects_with_one_that_is_refused(capfd):
+def test_several_objects_with_one_that_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
     good, bad = meshes.bumpy(meshes.icosphere(3)), meshes.add_grid("Sail")
     other = meshes.cube_sphere(2)
     meshes.select(good, bad, other)
@@ -284,7 +287,7 @@ def test_several_objects_with_one_that_is_refused(capfd):
         assert NAME in obj.data.shape_keys.key_blocks
 
 
-def test_modes_and_selection():
+def test_modes_and_selection() -> None:
     meshes.icosphere(2)
     bpy.ops.object.mode_set(mode="EDIT")
     with pytest.raises(RuntimeError, match="Only in Object Mode"):
@@ -296,7 +299,7 @@ def test_modes_and_selection():
 
 
 @pytest.mark.parametrize("had_keys", [False, True])
-def test_undo(had_keys):
+def test_undo(had_keys: bool) -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     if had_keys:
         obj.shape_key_add(name="Basis")

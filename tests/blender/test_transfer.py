@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.transfer: what it copies from the target, how well, and what it leaves alone."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bpy
 import meshes
 import numpy as np
@@ -8,27 +11,29 @@ import pairs
 import pytest
 from installed import part
 from mathutils import Matrix
+from meshes import Array, MeshObject
+from numpy.typing import ArrayLike
 from pairs import TILTED
 
 KINDS = ("uv_maps", "vertex_groups", "colour_attributes", "shape_keys")
 
 
-def transfer(**options):
+def transfer(**options: Any) -> set[str]:
     return bpy.ops.authalic.transfer(**options)
 
 
-def only(kind, **options):
+def only(kind: str, **options: Any) -> set[str]:
     return transfer(**{name: name == kind for name in KINDS}, **options)
 
 
-def copies(matrix=None):
+def copies(matrix: Matrix | None = None) -> tuple[MeshObject, MeshObject]:
     """A bumpy grid and its copy, tied by landmarks."""
     source = meshes.add_grid("Sheet", n=8)
     target = pairs.twin(source, matrix)
     return pairs.pair(source, target, pairs.nearest(source, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)]))
 
 
-def coarse_and_fine(more=()):
+def coarse_and_fine(more: Sequence[Any] = ()) -> tuple[MeshObject, MeshObject]:
     """Two grids of one shape, the target with three times as many vertices along a side."""
     source, target = meshes.add_grid("Sheet", n=10), meshes.add_grid("Twin", n=30)
     spots = [(0.4, 0.4, 0.4), (-0.4, 0, 0.4), (0.2, -0.6, 0), (-0.6, 0.6, 0), *more]
@@ -36,27 +41,27 @@ def coarse_and_fine(more=()):
     return pairs.pair(source, target, {f"Spot {number}": both for number, both in enumerate(ends)})
 
 
-def random_uv(obj, name, seed=1):
+def random_uv(obj: MeshObject, name: str, seed: int = 1) -> Array:
     obj.data.uv_layers.new(name=name)
     values = np.random.default_rng(seed).random((len(obj.data.loops), 2))
     meshes.set_uv(obj, values, name)
     return values
 
 
-def colours(obj, name):
+def colours(obj: MeshObject, name: str) -> Array:
     values = np.empty(4 * len(obj.data.color_attributes[name].data), np.float32)
     obj.data.color_attributes[name].data.foreach_get("color", values)
     return values.reshape(-1, 4)
 
 
-def add_colours(obj, name, kind, domain):
+def add_colours(obj: MeshObject, name: str, kind: str, domain: str) -> Array:
     attribute = obj.data.color_attributes.new(name, kind, domain)
     values = np.random.default_rng(2).random((len(attribute.data), 4), np.float32)
     attribute.data.foreach_set("color", values.ravel())
     return colours(obj, name)
 
 
-def weights(obj, name):
+def weights(obj: MeshObject, name: str) -> Array:
     group = obj.vertex_groups[name].index
     found = np.full(len(obj.data.vertices), np.nan)
     for vertex in obj.data.vertices:
@@ -66,14 +71,14 @@ def weights(obj, name):
     return found
 
 
-def add_group(obj, name, values):
+def add_group(obj: MeshObject, name: str, values: Any) -> None:
     group = obj.vertex_groups.new(name=name)
     for vertex, weight in enumerate(values):
         if weight > 0:
             group.add([vertex], float(weight), "REPLACE")
 
 
-def add_key(obj, name, displacement, relative_to=None):
+def add_key(obj: MeshObject, name: str, displacement: ArrayLike, relative_to: str | None = None) -> Any:
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
     key = obj.shape_key_add(name=name, from_mix=False)
@@ -83,7 +88,7 @@ def add_key(obj, name, displacement, relative_to=None):
     return key
 
 
-def test_uv_maps_of_a_copy(capfd):
+def test_uv_maps_of_a_copy(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = copies()
     first, second = random_uv(target, "First", 1), random_uv(target, "Second", 2)
     assert only("uv_maps") == {"FINISHED"}
@@ -95,7 +100,7 @@ def test_uv_maps_of_a_copy(capfd):
     assert "Transferred 2 UV maps (First; Second) from Twin to Sheet" in said
 
 
-def test_only_the_active_uv_map():
+def test_only_the_active_uv_map() -> None:
     source, target = copies()
     random_uv(target, "First")
     random_uv(target, "Second")
@@ -104,7 +109,7 @@ def test_only_the_active_uv_map():
     assert [layer.name for layer in source.data.uv_layers] == ["Second"]
 
 
-def test_an_existing_map_is_replaced_and_others_stay():
+def test_an_existing_map_is_replaced_and_others_stay() -> None:
     source, target = copies()
     own, _ = random_uv(source, "Own", 5), random_uv(source, "Shared", 6)
     wanted = random_uv(target, "Shared", 7)
@@ -116,7 +121,7 @@ def test_an_existing_map_is_replaced_and_others_stay():
     assert source.data.uv_layers.active.name == "Own"
 
 
-def test_linear_uvs_between_tessellations():
+def test_linear_uvs_between_tessellations() -> None:
     """They are the registered positions seen from above, with landmarks in the corners near the true ones."""
     source, target = coarse_and_fine([(0.8, 0.8, 0), (-0.8, 0.8, 0), (0.8, -0.8, 0), (-0.8, -0.8, 0)])
     angles = {"angle_weight": 0.545}
@@ -131,7 +136,7 @@ def test_linear_uvs_between_tessellations():
     np.testing.assert_allclose(uv, pairs.positions(source)[corner, :2], atol=0.12)
 
 
-def test_a_seam_stays_a_seam():
+def test_a_seam_stays_a_seam() -> None:
     """The halves of a sheet apart by 5: no face of the source has corners on both sides."""
     source, target = copies()
     target.data.uv_layers.new(name="Halves")
@@ -146,7 +151,7 @@ def test_a_seam_stays_a_seam():
 
 
 @pytest.mark.parametrize("cut", ["halves", "slit"])
-def test_faces_across_a_seam_stay_on_one_side(cut):
+def test_faces_across_a_seam_stay_on_one_side(cut: str) -> None:
     """The target's UVs jump by 5 along a line that runs through faces of the source."""
     source, target = coarse_and_fine()
     target.data.uv_layers.new(name="Map")
@@ -167,7 +172,7 @@ def test_faces_across_a_seam_stay_on_one_side(cut):
 
 
 @pytest.mark.parametrize("matrix", [None, TILTED])
-def test_vertex_groups(matrix):
+def test_vertex_groups(matrix: Matrix | None) -> None:
     source, target = copies(matrix)
     values = np.clip(pairs.positions(target)[:, 0], 0, 1)
     add_group(target, "Right", values)
@@ -184,7 +189,7 @@ def test_vertex_groups(matrix):
 
 @pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
 @pytest.mark.parametrize("domain", ["POINT", "CORNER"])
-def test_colours(kind, domain):
+def test_colours(kind: str, domain: str) -> None:
     source, target = copies()
     wanted = add_colours(target, "Paint", kind, domain)
     assert only("colour_attributes") == {"FINISHED"}
@@ -193,7 +198,7 @@ def test_colours(kind, domain):
     np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5 if kind == "FLOAT_COLOR" else 0.01)
 
 
-def test_colours_of_another_kind_are_replaced():
+def test_colours_of_another_kind_are_replaced() -> None:
     source, target = copies()
     wanted = add_colours(target, "Paint", "FLOAT_COLOR", "CORNER")
     add_colours(source, "Paint", "BYTE_COLOR", "POINT")
@@ -201,7 +206,7 @@ def test_colours_of_another_kind_are_replaced():
     np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5)
 
 
-def test_shape_keys_turn_with_the_spaces():
+def test_shape_keys_turn_with_the_spaces() -> None:
     source, target = copies(TILTED)
     source.matrix_world = Matrix.Rotation(0.7, 4, "X")
     bpy.context.view_layer.update()
@@ -219,7 +224,7 @@ def test_shape_keys_turn_with_the_spaces():
     )
 
 
-def test_aligned_shape_keys_keep_their_direction_on_the_surface():
+def test_aligned_shape_keys_keep_their_direction_on_the_surface() -> None:
     source, target = copies(TILTED)
     smile = np.outer(pairs.positions(target)[:, 0], [0, 0.1, 0.5])
     add_key(target, "Smile", smile)
@@ -227,7 +232,7 @@ def test_aligned_shape_keys_keep_their_direction_on_the_surface():
     np.testing.assert_allclose(pairs.positions(source, "Smile") - pairs.positions(source), smile, atol=0.03)
 
 
-def test_keys_relative_to_other_keys_and_other_keys_stay():
+def test_keys_relative_to_other_keys_and_other_keys_stay() -> None:
     source, target = copies()
     add_key(target, "Wide", np.full(3, 0.25))
     add_key(target, "Wider", np.full(3, 0.5), "Wide")
@@ -241,7 +246,7 @@ def test_keys_relative_to_other_keys_and_other_keys_stay():
     assert source.active_shape_key_index == 1
 
 
-def test_morphs_between_the_two_are_left_out():
+def test_morphs_between_the_two_are_left_out() -> None:
     source, target = copies()
     add_key(target, "Morph → Sheet", np.ones(3))
     add_key(target, "Smile", np.ones(3))
@@ -249,7 +254,7 @@ def test_morphs_between_the_two_are_left_out():
     assert [key.name for key in source.data.shape_keys.key_blocks] == ["Basis", "Smile"]
 
 
-def test_everything_at_once_and_closed(capfd):
+def test_everything_at_once_and_closed(capfd: pytest.CaptureFixture[str]) -> None:
     source = meshes.bumpy(meshes.cube_sphere(2))
     target = pairs.twin(source)
     while target.data.uv_layers:
@@ -268,7 +273,7 @@ def test_everything_at_once_and_closed(capfd):
     )
 
 
-def test_n_gons_and_loose_vertices():
+def test_n_gons_and_loose_vertices() -> None:
     """Polygons that are divided from their centre, on both sides."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=12)
     made = bpy.context.object
@@ -287,7 +292,7 @@ def test_n_gons_and_loose_vertices():
     assert weights(source, "Group")[24] == 0.5
 
 
-def test_what_cannot_be_written_is_named(capfd):
+def test_what_cannot_be_written_is_named(capfd: pytest.CaptureFixture[str]) -> None:
     source, target = copies()
     for number in range(8):
         source.data.uv_layers.new(name=f"Map {number}")
@@ -301,12 +306,12 @@ def test_what_cannot_be_written_is_named(capfd):
     assert "vertex group Map 4: Sheet has another attribute of this name; rename that" in said
 
 
-def layers(obj):
+def layers(obj: MeshObject) -> list[list[str]]:
     data = obj.data
     return [[one.name for one in kind] for kind in (data.uv_layers, obj.vertex_groups, data.color_attributes)]
 
 
-def test_colour_and_group_of_one_name_on_the_target(capfd):
+def test_colour_and_group_of_one_name_on_the_target(capfd: pytest.CaptureFixture[str]) -> None:
     """A group may take a colour's name, but not the other way round: the second is refused by name."""
     source, target = copies()
     random_uv(target, "Map")
@@ -321,7 +326,7 @@ def test_colour_and_group_of_one_name_on_the_target(capfd):
 
 
 @pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
-def test_colour_and_group_of_one_name_on_both(kind, capfd):
+def test_colour_and_group_of_one_name_on_both(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
     """What is there already is written in place, but no other type can take its place."""
     source, target = copies()
     wanted = add_colours(target, "Col", "FLOAT_COLOR", "POINT")
@@ -336,7 +341,9 @@ def test_colour_and_group_of_one_name_on_both(kind, capfd):
 
 
 @pytest.mark.parametrize("kind", ["UV map", "vertex group", "colour attribute"])
-def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch):
+def test_what_blender_names_otherwise_is_left_out_whole(
+    kind: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Should a name turn out to be taken only when a layer is added, the object keeps what it had."""
     source, target = copies()
     random_uv(target, "Map")
@@ -350,7 +357,7 @@ def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch
     module = part("blender.layers")
     really = module._added
 
-    def elsewhere(layers, item, **options):
+    def elsewhere(layers: Any, item: Any, **options: Any) -> Any:
         if item.name == "Col":
             layers.new(name=item.name, **options)  # takes the name
             made = really(layers, item, **options)
@@ -368,14 +375,14 @@ def test_what_blender_names_otherwise_is_left_out_whole(kind, capfd, monkeypatch
         assert (colours(source, "Col") == before).all()
 
 
-def test_nothing_to_transfer(capfd):
+def test_nothing_to_transfer(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = copies()
     assert transfer() == {"CANCELLED"}
     assert "Twin has nothing of what is to be transferred" in capfd.readouterr().out
     assert source.data.shape_keys is None
 
 
-def test_the_registration_is_used_again(monkeypatch):
+def test_the_registration_is_used_again(monkeypatch: pytest.MonkeyPatch) -> None:
     source, target = copies()
     random_uv(target, "Map")
     bpy.ops.authalic.register(angle_weight=0.8)
@@ -392,7 +399,7 @@ def test_the_registration_is_used_again(monkeypatch):
     assert len(made) == 2 and made[1].angle_weight == 0
 
 
-def test_problems_are_those_of_registration():
+def test_problems_are_those_of_registration() -> None:
     source, target = copies()
     random_uv(target, "Map")
     part("landmarks.points").clear(source)
@@ -404,7 +411,7 @@ def test_problems_are_those_of_registration():
     assert not source.data.uv_layers
 
 
-def test_cancelled_writes_nothing():
+def test_cancelled_writes_nothing() -> None:
     source, target = copies()
     random_uv(target, "Map")
     job = part("jobs.transfer").job(bpy.context, part("jobs.transfer").Settings()).start()
@@ -414,7 +421,7 @@ def test_cancelled_writes_nothing():
     assert not source.data.uv_layers
 
 
-def test_undo():
+def test_undo() -> None:
     source, target = copies()
     random_uv(target, "Map")
     before = random_uv(source, "Map", 9)

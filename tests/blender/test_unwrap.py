@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.unwrap in object mode: the UVs it writes, measured from the mesh by numpy alone."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import bpy
 import meshes
 import numpy as np
 import pytest
+from meshes import Array, MeshObject
 
 
-def unwrap(**options):
+def unwrap(**options: Any) -> set[str]:
     return bpy.ops.authalic.unwrap(**options)
 
 
-def assert_sound(obj, deviation=0.1, layer=None):
+def assert_sound(obj: MeshObject, deviation: float = 0.1, layer: str | None = None) -> None:
     """UVs in the unit square, without flips, with areas as even as a coarse mesh allows."""
     uv, ratios = meshes.uv(obj, layer), meshes.area_ratios(obj, layer)
     assert np.isfinite(uv).all() and uv.min() >= 0 and uv.max() <= 1
@@ -19,7 +23,7 @@ def assert_sound(obj, deviation=0.1, layer=None):
     assert ratios.std() <= deviation
 
 
-def assert_no_overlap(*objects, resolution=512):
+def assert_no_overlap(*objects: MeshObject, resolution: int = 512) -> None:
     """No pixel centre of the unit square lies strictly inside triangles of two islands."""
     found = np.zeros((resolution, resolution), int)
     for obj in objects:
@@ -30,7 +34,7 @@ def assert_no_overlap(*objects, resolution=512):
     assert found.max() == 1
 
 
-def _coverage(triangles, resolution):
+def _coverage(triangles: Array, resolution: int) -> Array:
     covered = np.zeros((resolution, resolution), bool)
     for triangle in triangles * resolution - 0.5:
         low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
@@ -42,7 +46,7 @@ def _coverage(triangles, resolution):
     return covered
 
 
-def test_suzanne_reaches_the_bar():
+def test_suzanne_reaches_the_bar() -> None:
     obj = meshes.suzanne()
     assert unwrap() == {"FINISHED"}
     assert_sound(obj, deviation=0.03)
@@ -52,7 +56,7 @@ def test_suzanne_reaches_the_bar():
     assert_no_overlap(obj)
 
 
-def test_seam_cut_sphere():
+def test_seam_cut_sphere() -> None:
     obj = meshes.seam_sphere()
     assert unwrap() == {"FINISHED"}
     assert_sound(obj)
@@ -60,9 +64,10 @@ def test_seam_cut_sphere():
 
 
 @pytest.mark.parametrize("fill", ["NOTHING", "NGON", "TRIFAN"])
-def test_ngons_and_fans(fill):
+def test_ngons_and_fans(fill: Any) -> None:
     bpy.ops.mesh.primitive_cylinder_add(vertices=24, end_fill_type=fill)
     obj = bpy.context.object
+    edge: Any
     for edge in obj.data.edges:  # the rims, and one line down the side
         z = [obj.data.vertices[vertex].co.z for vertex in edge.vertices]
         vertical = z[0] * z[1] < 0
@@ -76,7 +81,7 @@ def test_ngons_and_fans(fill):
     assert_no_overlap(obj)
 
 
-def test_ngon_with_corners_in_a_line():
+def test_ngon_with_corners_in_a_line() -> None:
     outline = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0), (3, 1, 0), (2, 1, 0), (0, 1, 0)]
     obj = meshes.add([*outline, (0, 2, 0), (3, 2, 0)], [range(7), [6, 5, 4, 8, 7]])
     assert unwrap() == {"FINISHED"}
@@ -84,7 +89,7 @@ def test_ngon_with_corners_in_a_line():
     assert len(np.unique(uv, axis=0)) == 9 and meshes.uv_areas(uv[None, :7]).item() > 0
 
 
-def test_quads_that_share_a_diagonal_stay_whole():
+def test_quads_that_share_a_diagonal_stay_whole() -> None:
     # Two quads with two edges in common: one way of halving them makes their diagonals coincide.
     vertices = [(0, 0, 0), (1, -1, 0.2), (2, 0, 0), (1, 0.3, 0), (1, 1, 0.2)]
     obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
@@ -92,7 +97,7 @@ def test_quads_that_share_a_diagonal_stay_whole():
     assert len(np.unique(meshes.uv(obj), axis=0)) == 5
 
 
-def test_a_bow_of_quads_over_one_diagonal():
+def test_a_bow_of_quads_over_one_diagonal() -> None:
     # Both quads can only be halved along 0-2, which the mesh also has as an edge of the triangle.
     vertices = [(0, 0, 0), (1, -1, 0), (2, 0, 0), (1, -0.1, 0), (1, 1, 0)]
     obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
@@ -103,7 +108,7 @@ def test_a_bow_of_quads_over_one_diagonal():
         assert len({tuple(uv[i]) for i in range(8) if corner[i] == vertex}) == 1
 
 
-def test_one_density_over_objects_in_the_world():
+def test_one_density_over_objects_in_the_world() -> None:
     first, second = meshes.add_grid("First"), meshes.add_grid("Second", n=5, bump=0.3, offset=(4, 0, 0))
     second.scale = (3, 3, 3)
     bpy.context.view_layer.update()
@@ -114,7 +119,7 @@ def test_one_density_over_objects_in_the_world():
     assert_no_overlap(first, second)
 
 
-def test_shared_mesh_is_unwrapped_once():
+def test_shared_mesh_is_unwrapped_once() -> None:
     first = meshes.add_grid()
     second = bpy.data.objects.new("Second", first.data)
     bpy.context.collection.objects.link(second)
@@ -126,7 +131,7 @@ def test_shared_mesh_is_unwrapped_once():
 
 
 @pytest.mark.parametrize("scale", [(-1, 1, 1), (-2, -2, -2)])
-def test_mirrored_object_is_not_flipped(scale):
+def test_mirrored_object_is_not_flipped(scale: Sequence[float]) -> None:
     obj = meshes.add_grid()
     obj.scale = scale
     bpy.context.view_layer.update()
@@ -134,7 +139,7 @@ def test_mirrored_object_is_not_flipped(scale):
     assert_sound(obj)
 
 
-def test_new_layer_is_added_and_active():
+def test_new_layer_is_added_and_active() -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="Old")
     before = meshes.uv(obj, "Old")
@@ -146,7 +151,7 @@ def test_new_layer_is_added_and_active():
     assert_sound(obj, layer="New")
 
 
-def test_named_layer_is_written_again():
+def test_named_layer_is_written_again() -> None:
     obj = meshes.add_grid()
     for name in ("First", "Second"):
         obj.data.uv_layers.new(name=name)
@@ -156,13 +161,13 @@ def test_named_layer_is_written_again():
     assert_sound(obj, layer="Second")
 
 
-def test_layer_is_added_where_there_is_none():
+def test_layer_is_added_where_there_is_none() -> None:
     obj = meshes.add_grid()
     assert unwrap() == {"FINISHED"}
     assert [layer.name for layer in obj.data.uv_layers] == ["UVMap"]
 
 
-def test_long_layer_name_is_found_again():
+def test_long_layer_name_is_found_again() -> None:
     obj, name = meshes.add_grid(), "é" * 40
     unwrap(uv_layer=name)
     unwrap(uv_layer=name)
@@ -170,7 +175,7 @@ def test_long_layer_name_is_found_again():
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_ninth_layer_is_refused(mode):
+def test_ninth_layer_is_refused(mode: str) -> None:
     obj = meshes.add_grid()
     for index in range(8):
         obj.data.uv_layers.new(name=f"Layer {index}")
@@ -183,7 +188,7 @@ def test_ninth_layer_is_refused(mode):
     assert all((meshes.uv(obj, f"Layer {i}") == before[i]).all() for i in range(8))
 
 
-def test_holes_need_fill_holes():
+def test_holes_need_fill_holes() -> None:
     bpy.ops.mesh.primitive_cylinder_add(vertices=12, end_fill_type="NOTHING")
     with pytest.raises(RuntimeError, match="2 boundaries; turn on Fill Holes"):
         unwrap(fill_holes=False)
@@ -191,7 +196,7 @@ def test_holes_need_fill_holes():
     assert_sound(bpy.context.object)
 
 
-def refused_with_others():
+def refused_with_others() -> Any:
     """An object of a grid (36 quads), a one-sided strip, a torus (16 quads) and a face without area."""
     flat = (np.array([[9, 0, 0], [10, 0, 0], [11, 0, 0]]), [[0, 1, 2]])
     parts = [meshes.grid(), meshes.moebius(offset=(4, 0, 0)), meshes.ring((0, 5, 0)), flat]
@@ -201,7 +206,7 @@ def refused_with_others():
     return obj
 
 
-def test_refused_islands_are_named_and_left_alone(capfd):
+def test_refused_islands_are_named_and_left_alone(capfd: pytest.CaptureFixture[str]) -> None:
     obj = refused_with_others()
     before = meshes.uv(obj)
     assert unwrap() == {"FINISHED"}
@@ -214,7 +219,7 @@ def test_refused_islands_are_named_and_left_alone(capfd):
     assert "face 64" in said and "no area" in said
 
 
-def test_pinned_island_is_left_alone(capfd):
+def test_pinned_island_is_left_alone(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     obj.data.uv_layers.new(name="UVMap")
     obj.data.attributes.new(".pn.UVMap", "BOOLEAN", "CORNER").data[150].value = True
@@ -225,7 +230,7 @@ def test_pinned_island_is_left_alone(capfd):
     assert obj.data.attributes[".pn.UVMap"].data[150].value
 
 
-def test_island_with_a_bad_coordinate_is_left_alone(capfd):
+def test_island_with_a_bad_coordinate_is_left_alone(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     obj.data.vertices[60].co.x = float("nan")
     assert unwrap() == {"FINISHED"}
@@ -233,7 +238,7 @@ def test_island_with_a_bad_coordinate_is_left_alone(capfd):
     assert "face 36" in said and "vertex 60" in said
 
 
-def test_branching_edge_acts_as_a_seam():
+def test_branching_edge_acts_as_a_seam() -> None:
     vertices, faces = meshes.grid(n=2, bump=0)
     fin = [*vertices, (0, -1, 1), (0, 0, 1)]
     obj = meshes.add(fin, [*faces, [1, 4, 10, 9]])
@@ -241,7 +246,7 @@ def test_branching_edge_acts_as_a_seam():
     assert np.isfinite(meshes.uv(obj)).all() and (meshes.area_ratios(obj) > 0).all()
 
 
-def test_empty_mesh_and_no_mesh(capfd):
+def test_empty_mesh_and_no_mesh(capfd: pytest.CaptureFixture[str]) -> None:
     empty = meshes.add([], [], "Empty")
     assert unwrap() == {"CANCELLED"}
     assert "no faces" in capfd.readouterr().out
@@ -252,7 +257,7 @@ def test_empty_mesh_and_no_mesh(capfd):
         unwrap()
 
 
-def test_other_data_is_untouched():
+def test_other_data_is_untouched() -> None:
     obj = meshes.add_grid()
     mesh = obj.data
     mesh.uv_layers.new(name="First")
@@ -265,7 +270,7 @@ def test_other_data_is_untouched():
     normals = np.random.default_rng(2).normal(size=(len(mesh.loops), 3))
     mesh.normals_split_custom_set(normals / np.linalg.norm(normals, axis=1)[:, None])
 
-    def state():
+    def state() -> Any:
         keys = [[tuple(point.co) for point in block.data] for block in mesh.shape_keys.key_blocks]
         corner = [tuple(normal.vector) for normal in mesh.corner_normals]
         return (
@@ -281,12 +286,12 @@ def test_other_data_is_untouched():
     assert_sound(obj, layer="First")
 
 
-def test_scene_is_as_it_was():
+def test_scene_is_as_it_was() -> None:
     first, second = meshes.add_grid("First"), meshes.add_grid("Second")
     other = meshes.add_grid("Other")
     meshes.select(second, first)
 
-    def state():
+    def state() -> Any:
         data = [
             sorted(block.name for block in getattr(bpy.data, kind))
             for kind in ("meshes", "objects", "scenes")
@@ -309,7 +314,7 @@ def test_scene_is_as_it_was():
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_undo(mode):
+def test_undo(mode: str) -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="UVMap")
     bpy.ops.object.mode_set(mode=mode)
@@ -324,7 +329,7 @@ def test_undo(mode):
     assert (meshes.uv(bpy.context.object) == before).all()
 
 
-def test_inconsistent_normals_are_no_folds(capfd):
+def test_inconsistent_normals_are_no_folds(capfd: pytest.CaptureFixture[str]) -> None:
     vertices, faces = meshes.grid()
     faces[[3, 20]] = faces[[3, 20]][:, ::-1]
     obj = meshes.add(vertices, faces)
@@ -337,7 +342,7 @@ def test_inconsistent_normals_are_no_folds(capfd):
     assert np.abs(meshes.area_ratios(obj)).std() < 0.1
 
 
-def test_packing_options():
+def test_packing_options() -> None:
     obj = meshes.add(*meshes.together(meshes.grid(), meshes.grid(offset=(4, 0, 0))))
     fill = []
     for options in ({"margin": 0.0}, {"margin": 0.1}, {"margin": 0.1, "margin_method": "FRACTION"}):
@@ -347,7 +352,7 @@ def test_packing_options():
     assert fill[0] > fill[1] and fill[0] > fill[2]
 
 
-def test_non_uniform_scale_is_said(capfd):
+def test_non_uniform_scale_is_said(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.add_grid()
     obj.scale = (1, 2, 1)
     bpy.context.view_layer.update()
@@ -357,7 +362,7 @@ def test_non_uniform_scale_is_said(capfd):
 
 @pytest.mark.parametrize("taken", ["attribute", "vertex group"])
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
-def test_layer_name_that_is_taken_is_refused(taken, mode):
+def test_layer_name_that_is_taken_is_refused(taken: str, mode: str) -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="Old")
     before = meshes.uv(obj)
@@ -376,7 +381,9 @@ def test_layer_name_that_is_taken_is_refused(taken, mode):
 
 @pytest.mark.parametrize(("rings", "around"), [(20, 8), (40, 8), (50, 8), (60, 8), (100, 6)])
 @pytest.mark.parametrize("closed", [True, False])
-def test_long_tubes_have_no_flips_or_are_refused(rings, around, closed, capfd):
+def test_long_tubes_have_no_flips_or_are_refused(
+    rings: int, around: int, closed: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
     obj = meshes.add(*meshes.tube(rings, around, closed), "Tube")
     try:
         unwrap()
@@ -391,7 +398,7 @@ def test_long_tubes_have_no_flips_or_are_refused(rings, around, closed, capfd):
         assert "Warning" in said and "Tube at face 0: uneven" in said
 
 
-def test_good_island_beside_one_that_cannot_be_mapped():
+def test_good_island_beside_one_that_cannot_be_mapped() -> None:
     for rings in (39, 41, 60):
         parts = meshes.tube(rings, 3, False), meshes.grid(offset=(9, 0, 0))
         obj = meshes.add(*meshes.together(*parts))
@@ -401,7 +408,7 @@ def test_good_island_beside_one_that_cannot_be_mapped():
         assert (meshes.uv_areas(meshes.uv(obj)[corners[grid]]) > 0).all()
 
 
-def test_whole_mesh_that_cannot_be_cut_is_refused_in_its_own_numbers():
+def test_whole_mesh_that_cannot_be_cut_is_refused_in_its_own_numbers() -> None:
     vertices, faces = meshes.grid()
     # Face 36 has one vertex twice; there are 72 triangles of quads before it.
     obj = meshes.add([*vertices, (5, 0, 0), (6, 0, 0)], [*faces, [49, 50, 50]])

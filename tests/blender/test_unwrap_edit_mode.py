@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.unwrap in edit mode: the selected faces, of all objects being edited, and nothing else."""
 
+from collections.abc import Collection
+
 import bmesh
 import bpy
 import meshes
 import numpy as np
+import pytest
+from meshes import Array, MeshObject
 
 
-def corner_mask(obj, polygons):
+def corner_mask(obj: MeshObject, polygons: Collection[int]) -> Array:
     return np.repeat(np.isin(np.arange(len(obj.data.polygons)), list(polygons)), 4)
 
 
-def test_only_selected_faces_change():
+def test_only_selected_faces_change() -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="UVMap")
     before, chosen = meshes.uv(obj), set(range(12))
@@ -34,7 +38,7 @@ def test_only_selected_faces_change():
     assert np.ptp(after[mask], axis=0).max() > 0.9
 
 
-def test_hidden_faces_are_not_touched():
+def test_hidden_faces_are_not_touched() -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="UVMap")
     before, hidden = meshes.uv(obj), {0, 1, 2, 6, 7, 8}
@@ -47,7 +51,7 @@ def test_hidden_faces_are_not_touched():
     assert {face.index for face in bmesh.from_edit_mesh(obj.data).faces if face.hide} == hidden
 
 
-def test_several_objects_in_edit_mode():
+def test_several_objects_in_edit_mode() -> None:
     first, second = meshes.add_grid("First"), meshes.add_grid("Second", n=4)
     third = meshes.add_grid("Third")
     meshes.edit(first, second)
@@ -63,7 +67,7 @@ def test_several_objects_in_edit_mode():
     assert np.ptp(density) < 1e-4 * density.max()
 
 
-def test_nothing_selected(capfd):
+def test_nothing_selected(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.add_grid()
     meshes.edit(obj)
     meshes.select_faces(obj, lambda index: False)
@@ -72,7 +76,7 @@ def test_nothing_selected(capfd):
     assert len(obj.data.uv_layers) == 0
 
 
-def test_new_layer_keeps_the_other_faces():
+def test_new_layer_keeps_the_other_faces() -> None:
     obj = meshes.add_grid()
     obj.data.uv_layers.new(name="Old")
     old, mask = meshes.uv(obj), corner_mask(obj, range(12))
@@ -86,7 +90,7 @@ def test_new_layer_keeps_the_other_faces():
     assert (meshes.uv(obj, "New")[mask] != old[mask]).any(axis=1).all()
 
 
-def test_same_as_in_object_mode():
+def test_same_as_in_object_mode() -> None:
     obj = meshes.seam_sphere()
     bpy.ops.authalic.unwrap(uv_layer="A")
     meshes.edit(obj)
@@ -96,7 +100,7 @@ def test_same_as_in_object_mode():
     assert (meshes.uv(obj, "A") == meshes.uv(obj, "B")).all()
 
 
-def test_shape_keys_in_edit_mode():
+def test_shape_keys_in_edit_mode() -> None:
     obj = meshes.add_grid()
     obj.shape_key_add(name="Basis")
     key = obj.shape_key_add(name="Key")
@@ -109,7 +113,7 @@ def test_shape_keys_in_edit_mode():
     assert points == [[tuple(point.co) for point in block.data] for block in obj.data.shape_keys.key_blocks]
 
 
-def test_other_modes_say_what_is_missing():
+def test_other_modes_say_what_is_missing() -> None:
     meshes.add_grid()
     bpy.ops.object.mode_set(mode="SCULPT")
     assert not bpy.ops.authalic.unwrap.poll() and not bpy.ops.authalic.measure.poll()

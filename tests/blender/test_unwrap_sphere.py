@@ -3,7 +3,9 @@
 
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import bpy
 import meshes
@@ -11,12 +13,13 @@ import numpy as np
 import pytest
 import spheres
 from installed import part
+from meshes import Array, MeshObject
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "tests" / "data", Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
 MOST_VERTICES = 15_000
-CLOSED = {
+CLOSED: dict[str, Callable[[], MeshObject]] = {
     "icosphere": lambda: meshes.icosphere(4),
     "bumpy icosphere": lambda: meshes.bumpy(meshes.icosphere(5)),
     "UV sphere": meshes.uv_sphere,
@@ -27,11 +30,11 @@ CLOSED = {
 }
 
 
-def unwrap(**options):
+def unwrap(**options: Any) -> set[str]:
     return bpy.ops.authalic.unwrap(**options)
 
 
-def assert_sound(obj, deviation):
+def assert_sound(obj: MeshObject, deviation: float) -> Any:
     """UVs in the unit square, exactly without flips, with areas as even as the layout allows."""
     uv, (corners, _, _) = meshes.uv(obj), meshes.triangles(obj)
     assert np.isfinite(uv).all() and uv.min() >= 0 and uv.max() <= 1
@@ -41,7 +44,7 @@ def assert_sound(obj, deviation):
     return ratios
 
 
-def assert_no_overlap(obj, resolution=700):
+def assert_no_overlap(obj: MeshObject, resolution: int = 700) -> None:
     """No pixel's middle lies in two triangles of the UVs."""
     corners, _, _ = meshes.triangles(obj)
     found = np.zeros((resolution, resolution), int)
@@ -57,7 +60,7 @@ def assert_no_overlap(obj, resolution=700):
 
 @pytest.mark.parametrize("name", CLOSED)
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_closed_meshes(name, layout, capfd):
+def test_closed_meshes(name: str, layout: str, capfd: pytest.CaptureFixture[str]) -> None:
     obj = CLOSED[name]()
     assert unwrap(sphere_layout=layout) == {"FINISHED"}
     ratios = assert_sound(obj, deviation=2 if name == "cube" else 0.3)
@@ -68,14 +71,14 @@ def test_closed_meshes(name, layout, capfd):
 
 
 @pytest.mark.parametrize("domain", ["AUTO", "SPHERE"])
-def test_domain(domain):
+def test_domain(domain: str) -> None:
     obj = meshes.icosphere(3)
     assert unwrap(domain=domain) == {"FINISHED"}
     assert_sound(obj, 0.2)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_as_even_as_the_map_onto_the_sphere(layout):
+def test_as_even_as_the_map_onto_the_sphere(layout: str) -> None:
     obj = meshes.bumpy(meshes.icosphere(6))
     unwrap(sphere_layout=layout)
     ratios = meshes.area_ratios(obj)
@@ -83,13 +86,13 @@ def test_as_even_as_the_map_onto_the_sphere(layout):
     assert np.percentile(ratios, 1) > 0.9 and np.percentile(ratios, 99) < 1.1
 
 
-def aspect(obj):
+def aspect(obj: MeshObject) -> float:
     """Width over height of the UVs."""
     size = np.ptp(meshes.uv(obj), axis=0)
     return size[0] / size[1]
 
 
-def test_lambert_has_its_true_aspect_and_fills_the_width():
+def test_lambert_has_its_true_aspect_and_fills_the_width() -> None:
     obj = meshes.icosphere(5)
     unwrap()
     # The faces at the seam stand out on the right, at the poles by up to a sixth or a fifth of a turn.
@@ -97,7 +100,7 @@ def test_lambert_has_its_true_aspect_and_fills_the_width():
     assert np.ptp(meshes.uv(obj)[:, 0]) > 0.99
 
 
-def test_octahedral_is_a_square():
+def test_octahedral_is_a_square() -> None:
     obj = meshes.icosphere(5)
     unwrap(sphere_layout="OCTAHEDRAL")
     assert aspect(obj) == pytest.approx(1, abs=0.05)
@@ -105,12 +108,12 @@ def test_octahedral_is_a_square():
     assert meshes.uv_areas(meshes.uv(obj)[corners]).sum() > 0.9
 
 
-def corner_positions(obj):
+def corner_positions(obj: MeshObject) -> Array:
     return np.array([obj.data.vertices[loop.vertex_index].co for loop in obj.data.loops])
 
 
 @pytest.mark.parametrize("axis", ["X", "Y", "Z"])
-def test_pole_axis(axis):
+def test_pole_axis(axis: str) -> None:
     obj = meshes.icosphere(5)
     unwrap(pole_axis=axis)
     height = corner_positions(obj)[:, "XYZ".index(axis)]
@@ -120,7 +123,7 @@ def test_pole_axis(axis):
 
 
 @pytest.mark.parametrize(("turned", "back"), [(0.0, (0, 1)), (np.pi / 2, (-1, 0)), (np.pi, (0, -1))])
-def test_seam_direction(turned, back):
+def test_seam_direction(turned: float, back: Any) -> None:
     obj = meshes.icosphere(5)
     unwrap(seam_direction=turned)
     uv, position = meshes.uv(obj), corner_positions(obj)
@@ -134,7 +137,7 @@ def test_seam_direction(turned, back):
     assert (spheres.unit(position[quarter][:, :2]) @ (-back[1], back[0]) > 0.9).all()
 
 
-def test_default_seam_is_at_the_back():
+def test_default_seam_is_at_the_back() -> None:
     obj = meshes.uv_sphere()
     unwrap()
     left = meshes.uv(obj)[:, 0] < 1e-4
@@ -143,14 +146,14 @@ def test_default_seam_is_at_the_back():
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_corners_of_a_polygon_keep_together(layout):
+def test_corners_of_a_polygon_keep_together(layout: str) -> None:
     obj = meshes.bumpy(meshes.cube_sphere(3), 0.2)
     unwrap(sphere_layout=layout)
     uv = meshes.uv(obj).reshape(-1, 4, 2)
     assert np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2).max() < 0.25
 
 
-def test_inside_out_mesh_has_no_flips():
+def test_inside_out_mesh_has_no_flips() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.flip_normals()
     assert unwrap() == {"FINISHED"}
@@ -160,7 +163,7 @@ def test_inside_out_mesh_has_no_flips():
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_inconsistent_normals(layout, capfd):
+def test_inconsistent_normals(layout: str, capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.icosphere(4)
     for index in (5, 50):
         obj.data.polygons[index].flip()
@@ -171,7 +174,7 @@ def test_inconsistent_normals(layout, capfd):
     assert set(polygons[meshes.uv_areas(meshes.uv(obj)[corners]) < 0]) == {5, 50}
 
 
-def test_open_and_closed_islands_share_one_density():
+def test_open_and_closed_islands_share_one_density() -> None:
     sphere = meshes.icosphere(4)
     grid = meshes.add_grid(n=12, offset=(4, 0, 0))
     obj = meshes.join(sphere, grid)
@@ -179,19 +182,19 @@ def test_open_and_closed_islands_share_one_density():
     assert_sound(obj, 0.1)
     corners, _, points = meshes.triangles(obj)
     image, area = meshes.uv_areas(meshes.uv(obj)[corners]), meshes.surface_areas(points)
-    sphere = points[..., 0].max(axis=1) < 2
-    assert image[sphere].sum() / area[sphere].sum() == pytest.approx(
-        image[~sphere].sum() / area[~sphere].sum(), rel=1e-3
+    ball = points[..., 0].max(axis=1) < 2
+    assert image[ball].sum() / area[ball].sum() == pytest.approx(
+        image[~ball].sum() / area[~ball].sum(), rel=1e-3
     )
 
 
-def two_parts():
+def two_parts() -> Any:
     """A grid (36 quads) and an icosphere."""
     sphere = spheres.icosphere(2)
     return meshes.add(*meshes.together(meshes.grid(), (sphere[0] + [4, 0, 0], sphere[1])), "Mixed")
 
 
-def test_disk_leaves_closed_islands(capfd):
+def test_disk_leaves_closed_islands(capfd: pytest.CaptureFixture[str]) -> None:
     obj = two_parts()
     assert unwrap(domain="DISK") == {"FINISHED"}
     said = capfd.readouterr().out
@@ -200,7 +203,7 @@ def test_disk_leaves_closed_islands(capfd):
     assert (meshes.uv(obj)[144:] == 0).all() or len(np.unique(meshes.uv(obj)[144:], axis=0)) < 5
 
 
-def test_sphere_leaves_open_islands(capfd):
+def test_sphere_leaves_open_islands(capfd: pytest.CaptureFixture[str]) -> None:
     obj = two_parts()
     obj.data.uv_layers.new(name="UVMap")
     before = meshes.uv(obj)
@@ -211,7 +214,7 @@ def test_sphere_leaves_open_islands(capfd):
     assert (meshes.uv(obj)[:144] == before[:144]).all()
 
 
-def test_sphere_cut_open_by_seams_goes_to_the_disk_or_is_refused():
+def test_sphere_cut_open_by_seams_goes_to_the_disk_or_is_refused() -> None:
     obj = meshes.seam_sphere()
     assert unwrap(outline="CIRCLE") == {"FINISHED"}
     assert aspect(obj) == pytest.approx(1, abs=0.02)
@@ -219,7 +222,7 @@ def test_sphere_cut_open_by_seams_goes_to_the_disk_or_is_refused():
         unwrap(domain="SPHERE")
 
 
-def test_handles_have_their_own_message():
+def test_handles_have_their_own_message() -> None:
     meshes.torus()
     for domain in ("AUTO", "SPHERE"):
         with pytest.raises(RuntimeError, match="is closed and has a handle, like a torus; mark seams"):
@@ -229,7 +232,7 @@ def test_handles_have_their_own_message():
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_mesh_too_coarse_is_refused_and_left_alone(layout):
+def test_mesh_too_coarse_is_refused_and_left_alone(layout: str) -> None:
     obj = meshes.add(*meshes.tetrahedron())
     with pytest.raises(
         RuntimeError, match=r"Mesh at face 0: \d triangles? would fold.*another Layout, Pole Axis"
@@ -238,7 +241,7 @@ def test_mesh_too_coarse_is_refused_and_left_alone(layout):
     assert len(obj.data.uv_layers) == 0
 
 
-def test_edit_mode_gives_the_same():
+def test_edit_mode_gives_the_same() -> None:
     obj = meshes.bumpy(meshes.uv_sphere(16, 8), 0.2)
     unwrap(uv_layer="A")
     meshes.edit(obj)
@@ -248,7 +251,7 @@ def test_edit_mode_gives_the_same():
     assert (meshes.uv(obj, "A") == meshes.uv(obj, "B")).all()
 
 
-def test_world_scale_and_place_do_not_matter():
+def test_world_scale_and_place_do_not_matter() -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     unwrap()
     before = assert_sound(obj, 0.1).std()
@@ -261,7 +264,7 @@ def test_world_scale_and_place_do_not_matter():
     assert np.corrcoef(spheres.unit(position)[:, 2], v)[0, 1] > 0.8
 
 
-def test_undo():
+def test_undo() -> None:
     obj = meshes.icosphere(3)
     obj.data.uv_layers.active.name = "UVMap"
     bpy.ops.ed.undo_push(message="Start")
@@ -272,7 +275,7 @@ def test_undo():
     assert (meshes.uv(bpy.context.object) == before).all()
 
 
-def test_cancelling():
+def test_cancelling() -> None:
     meshes.icosphere(4)
     obj = bpy.context.object
     before = meshes.uv(obj)
@@ -284,7 +287,7 @@ def test_cancelling():
     assert (meshes.uv(obj) == before).all()
 
 
-def real_meshes():
+def real_meshes() -> list[Any]:
     """A parameter for each closed mesh of the data folders; its name ends with its number of vertices."""
     paths = {path.stem: path for folder in reversed(DATA) for path in (folder / "sphere").glob("*.npz")}
     names = sorted(name for name in paths if int(name.rpartition("_")[2]) <= MOST_VERTICES)
@@ -292,15 +295,17 @@ def real_meshes():
 
 
 @pytest.mark.parametrize("path", real_meshes())
-def test_real_meshes(path, monkeypatch):
+def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with np.load(path) as file:
         vertices, faces = file["V"], file["F"]
     names = "bridge", "bridge.islands", "blender.meshes"
     bridge, islands, mesh_io = (part(name) for name in names)
     surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
-    bridge_map, cache, last = islands.sphere_map, {}, []
+    bridge_map = islands.sphere_map
+    cache: dict[float, Any] = {}
+    last: list[Any] = []
 
-    def remembered(points, faces, solver, progress):
+    def remembered(points: Array, faces: Array, solver: Any, progress: Callable[[float, str], Any]) -> Any:
         last[:] = [cache.get(solver.angle_weight) or bridge_map(points, faces, solver, progress)]
         cache[solver.angle_weight] = last[0]
         return last[0]

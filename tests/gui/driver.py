@@ -9,6 +9,8 @@ import os
 import subprocess
 import time
 import traceback
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
@@ -18,11 +20,11 @@ _log = open(os.path.join(_OUT, "checks.log"), "w")  # noqa: SIM115 (open until B
 _PAUSE, _LONGEST = 0.4, 380.0
 
 
-def say(*words):
+def say(*words: object) -> None:
     print(*words, file=_log, flush=True)
 
 
-def view():
+def view() -> dict[str, Any]:
     """What operators need to be called as if from the 3D view."""
     window = bpy.context.window_manager.windows[0]
     area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
@@ -30,31 +32,31 @@ def view():
     return {"window": window, "area": area, "region": region}
 
 
-def call(operator, *arguments, **options):
+def call(operator: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
     """Calls an operator in the 3D view."""
     with bpy.context.temp_override(**view()):
         return operator(*arguments, **options)
 
 
-def pixel(name, vertex):
+def pixel(name: str, vertex: int) -> tuple[float, float]:
     """Where a vertex of an object is in the window."""
     found, obj = view(), bpy.data.objects[name]
     point = obj.matrix_world @ obj.data.vertices[vertex].co
     space = found["area"].spaces.active
-    x, y = location_3d_to_region_2d(found["region"], space.region_3d, point)
-    return int(found["region"].x + x), int(found["region"].y + y)
+    place = location_3d_to_region_2d(found["region"], space.region_3d, point)
+    return int(found["region"].x + place.x), int(found["region"].y + place.y)
 
 
-def send(kind, value, at=(500, 400), **modifiers):
+def send(kind: str, value: str, at: tuple[float, float] = (500, 400), **modifiers: Any) -> None:
     view()["window"].event_simulate(kind, value, x=at[0], y=at[1], **modifiers)
 
 
-def move(where):
+def move(where: Callable[[], tuple[float, float]]) -> Callable[[], None]:
     """A step that moves the mouse to what `where()` returns."""
     return lambda: send("MOUSEMOVE", "NOTHING", where())
 
 
-def click(where, **modifiers):
+def click(where: Callable[[], tuple[float, float]], **modifiers: Any) -> list[Callable[[], None]]:
     """Steps that click there."""
     return [
         move(where),
@@ -63,24 +65,24 @@ def click(where, **modifiers):
     ]
 
 
-def key(kind, **modifiers):
+def key(kind: str, **modifiers: Any) -> list[Callable[[], None]]:
     """Steps that strike a key over the 3D view."""
     return [lambda: send(kind, "PRESS", **modifiers), lambda: send(kind, "RELEASE", **modifiers)]
 
 
-def picture(name):
+def picture(name: str) -> Callable[[], None]:
     """A step that takes a picture of the screen (Blender's own are black here)."""
 
-    def take():
+    def take() -> None:
         subprocess.run(["import", "-window", "root", os.path.join(_OUT, f"{name}.png")], check=True)
 
     return take
 
 
-def check(what, found, expected):
+def check(what: str, found: Callable[[], object], expected: object) -> Callable[[], None]:
     """A step that compares what `found()` returns."""
 
-    def compare():
+    def compare() -> None:
         value = found()
         assert value == expected, f"{what}: {value!r} instead of {expected!r}"
         say("ok", what)
@@ -88,12 +90,12 @@ def check(what, found, expected):
     return compare
 
 
-def run(steps):
+def run(steps: Iterable[Callable[[], object]]) -> None:
     """Runs the steps one after the other; the last line of checks.log says how it went."""
     bpy.context.preferences.view.show_splash = False
     started, waiting = time.monotonic(), iter(steps)
 
-    def tick():
+    def tick() -> float | None:
         step = next(waiting, None)
         if step is None:
             return _end("PASSED")
@@ -107,6 +109,6 @@ def run(steps):
     bpy.app.timers.register(tick, first_interval=1.0)
 
 
-def _end(word):
+def _end(word: str) -> None:
     say(word)
     bpy.ops.wm.quit_blender()

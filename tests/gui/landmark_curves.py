@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmark curves are added, drawn and registered in a real window; see README.md beside this file."""
 
+from collections.abc import Callable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import bmesh
 import bpy
 from bl_ext.user_default.authalic.landmarks import curves as landmark_curves
 from driver import call, check, click, picture, run, view
+from mathutils import Vector
 
 A, B = "Ball", "Egg"
 _REGISTRATION = (860, 800 - 579)  # the head of the closed panel
@@ -14,7 +17,7 @@ _CURVES = (860, 800 - 427)  # the head of the list of curves in the open one
 ROWS = (0.45, -0.05, -0.55)  # heights of the curves
 
 
-def scene():
+def scene() -> None:
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     for name, x in ((A, -1.4), (B, 1.4)):
@@ -22,7 +25,7 @@ def scene():
         bpy.context.object.name = name
     target, source = bpy.data.objects[B], bpy.data.objects[A]
     for vertex in target.data.vertices:
-        x, y, z = vertex.co
+        x, y, z = vertex.co.x, vertex.co.y, vertex.co.z
         vertex.co = (x * (0.8 - 0.2 * z), y * (0.8 - 0.2 * z), 1.2 * z)
     source.authalic_target = target
     source.select_set(True)
@@ -34,15 +37,18 @@ def scene():
     space.show_region_ui = True
 
 
-def tab():
+def tab() -> None:
     region = next(region for region in view()["area"].regions if region.type == "UI")
     region.active_panel_category = "Authalic"
     view()["area"].tag_redraw()
 
 
-def route(edit, start, end):
+def route(edit: bmesh.types.BMesh, start: Sequence[float], end: Sequence[float]) -> list[Any]:
     """Vertices along edges from near one point to near another, always on to what is nearest to the end."""
-    nearest = lambda place: min(edit.verts, key=lambda one: sum((a - b) ** 2 for a, b in zip(one.co, place)))  # noqa: B905, E731
+
+    def nearest(place: Sequence[float]) -> Any:
+        return min(edit.verts, key=lambda vertex: (vertex.co - Vector(place)).length)
+
     path, last = [nearest(start)], nearest(end)
     while path[-1] != last:
         around = [edge.other_vert(path[-1]) for edge in path[-1].link_edges]
@@ -50,10 +56,10 @@ def route(edit, start, end):
     return path
 
 
-def select(name, height):
+def select(name: str, height: float | None) -> Callable[[], None]:
     """A step that selects the edges of a path across the front and nothing else of an object."""
 
-    def chosen():
+    def chosen() -> None:
         mesh = bpy.data.objects[name].data
         edit = bmesh.from_edit_mesh(mesh)
         for elements in (edit.faces, edit.edges, edit.verts):
@@ -71,34 +77,34 @@ def select(name, height):
     return chosen
 
 
-def add():
+def add() -> None:
     assert call(bpy.ops.authalic.landmark_curve_add, "INVOKE_DEFAULT") == {"FINISHED"}
 
 
-def step(message):
+def step(message: str) -> Callable[[], Any]:
     """A step of undo, which operators that are called from a timer do not make."""
     return lambda: call(bpy.ops.ed.undo_push, message=message)
 
 
-def mode(name):
+def mode(name: str) -> Callable[[], Any]:
     return lambda: call(bpy.ops.object.mode_set, mode=name)
 
 
-def curves():
+def curves() -> list[tuple[bool, bool, str | None]]:
     found = landmark_curves.pairs(bpy.data.objects[A])
     return [(bool(one.source.vertices), bool(one.target.vertices), one.problem) for one in found]
 
 
-def register():
+def register() -> None:
     assert call(bpy.ops.authalic.register, "INVOKE_DEFAULT", method="CURVES") == {"RUNNING_MODAL"}
 
 
-def keys():
+def keys() -> list[str]:
     found = bpy.data.objects[A].data.shape_keys
     return [key.name for key in found.key_blocks] if found else []
 
 
-def half():
+def half() -> None:
     bpy.data.objects[A].data.shape_keys.key_blocks[-1].value = 1.0
 
 

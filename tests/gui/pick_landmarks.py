@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmarks are picked by clicking on two heads in a real window; see README.md beside this file."""
 
+from collections.abc import Callable
+from typing import Any
+
 import bmesh
 import bpy
 from bl_ext.user_default.authalic.landmarks import points as landmark_points
@@ -11,7 +14,7 @@ A, B = "Suzanne", "Her Sister"
 _REGISTRATION = (860, 800 - 579)  # the head of the closed panel
 
 
-def scene():
+def scene() -> None:
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     for name, x in ((A, -1.5), (B, 1.5)):
@@ -30,38 +33,38 @@ def scene():
     space.show_region_ui = True
 
 
-def tab():
+def tab() -> None:
     region = next(region for region in view()["area"].regions if region.type == "UI")
     region.active_panel_category = "Authalic"
     view()["area"].tag_redraw()
 
 
-def open_panel():
+def open_panel() -> list[Callable[[], None]]:
     """A click with Ctrl closes all other panels."""
     return click(lambda: _REGISTRATION, ctrl=True)
 
 
-def start():
+def start() -> None:
     assert call(bpy.ops.authalic.landmark_pick, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
 
-def at(name, vertex):
+def at(name: str, vertex: int) -> Callable[[], tuple[float, float]]:
     return lambda: pixel(name, vertex)
 
 
-def pairs():
+def pairs() -> list[Any]:
     return [pair[1:] for pair in landmark_points.pairs(bpy.data.objects[A])]
 
 
-def running():
+def running() -> bool:
     return "AUTHALIC_OT_landmark_pick" in [one.bl_idname for one in view()["window"].modal_operators]
 
 
-def hints():
+def hints() -> list[Any]:
     return [marker[:2] for marker in overlay_points.hints]
 
 
-def delete_first_vertex():
+def delete_first_vertex() -> None:
     mesh = bpy.data.objects[A].data
     edit = bmesh.from_edit_mesh(mesh)
     edit.verts.ensure_lookup_table()

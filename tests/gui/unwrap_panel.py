@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The unwrap's panel, its presets, and Fix Flips behind a living window; see README.md beside this file."""
 
+from collections.abc import Callable
+from typing import Any
+
 import bpy
 import numpy as np
 from driver import call, check, picture, run, view
@@ -8,7 +11,7 @@ from driver import call, check, picture, run, view
 NAME = "Suzanne"
 
 
-def scene():
+def scene() -> None:
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     call(bpy.ops.mesh.primitive_monkey_add)
@@ -22,48 +25,48 @@ def scene():
     view()["area"].spaces.active.show_region_ui = True
 
 
-def tab():
+def tab() -> None:
     region = next(region for region in view()["area"].regions if region.type == "UI")
     region.active_panel_category = "Authalic"
     view()["area"].tag_redraw()
 
 
-def options():
+def options() -> Any:
     return bpy.context.window_manager.operator_properties_last("authalic.unwrap")
 
 
-def choose(name):
+def choose(name: str) -> Callable[[], None]:
     """A step that chooses a preset in the panel."""
 
-    def act():
+    def act() -> None:
         options().angle_preset = name
         view()["area"].tag_redraw()
 
     return act
 
 
-def start(name):
+def start(name: str) -> Callable[[], None]:
     """A step that starts an operator as its button does."""
 
-    def act():
+    def act() -> None:
         operator = getattr(bpy.ops.authalic, name)
         assert call(operator, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
     return act
 
 
-def running():
+def running() -> list[str]:
     return [one.bl_idname for one in view()["window"].modal_operators]
 
 
-def uv():
+def uv() -> Any:
     mesh = bpy.data.objects[NAME].data
     values = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers.active.uv.foreach_get("vector", values)
     return values.reshape(-1, 2)
 
 
-def flips():
+def flips() -> Any:
     """How many triangles of the UV map are flipped."""
     mesh = bpy.data.objects[NAME].data
     mesh.calc_loop_triangles()
@@ -72,7 +75,7 @@ def flips():
     return int(np.count_nonzero(areas <= 0))
 
 
-def tangle():
+def tangle() -> None:
     """Moves the UVs of one inner vertex of the largest island across its neighbors."""
     mesh = bpy.data.objects[NAME].data
     vertices, values = np.array([loop.vertex_index for loop in mesh.loops]), uv()
@@ -83,24 +86,24 @@ def tangle():
     mesh.update()
 
 
-def uv_editor():
+def uv_editor() -> None:
     """Turns the 3D view into a UV editor of the mesh in edit mode."""
     call(bpy.ops.object.mode_set, mode="EDIT")
     call(bpy.ops.mesh.select_all, action="SELECT")
     view()["area"].ui_type = "UV"
 
 
-def editor():
+def editor() -> Any:
     areas = bpy.context.window_manager.windows[0].screen.areas
     return next(area for area in areas if area.ui_type == "UV")
 
 
-def sidebar_of_the_uv_editor():
+def sidebar_of_the_uv_editor() -> None:
     editor().spaces.active.show_region_ui = True
     editor().tag_redraw()
 
 
-def tab_of_the_uv_editor():
+def tab_of_the_uv_editor() -> None:
     region = next(region for region in editor().regions if region.type == "UI")
     region.active_panel_category = "Authalic"
     editor().tag_redraw()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Key frames of a shape key's value, in Blender's old and new layout of actions."""
+"""Key frames of a shape key's value, in Blender's old actions and in those with layers."""
 
 from typing import Any
 

@@ -16,7 +16,7 @@ class NoEdge(Exception):
 
 
 def ends_of_edges(mesh: bpy.types.Mesh, edges: Sequence[int]) -> list[Edge]:
-    """The two vertices of each of some edges."""
+    """The two vertices of each edge."""
     if not mesh.is_editmode:
         ends: list[Any] = [mesh.edges[edge].vertices for edge in edges]
         return [(first, second) for first, second in ends]

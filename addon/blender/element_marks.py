@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whole numbers that mark vertices or edges of a mesh, in an integer attribute that edits carry along.
 
-A mark is a random number: what Blender mixes of marks when it subdivides or merges is then not taken for
-another one, and no two meshes agree by chance.
+A mark is a random number. Where Blender subdivides or merges, it mixes marks; the result is then no mark of
+another element. And no two meshes have the same mark by chance.
 """
 
 import random
@@ -18,7 +18,7 @@ _random = random.SystemRandom()
 
 
 def new(bits: int = 31) -> int:
-    """A mark that nothing has. One of 24 bits is exact in single precision, in which some edits mix marks."""
+    """A new mark. Marks of 24 bits are exact in single precision, in which some edits mix them."""
     return _random.randrange(1, 2**bits)
 
 
@@ -31,10 +31,10 @@ def element_counts(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
 
 
 def hold(mesh: bpy.types.Mesh) -> bmesh.types.BMesh | None:
-    """What is to be kept while a mesh in edit mode is read piece by piece.
+    """A reference to keep while a mesh in edit mode is read piece by piece.
 
-    With the last thing that Python knows of it, Blender gives up what it keeps for all its elements, and
-    makes it anew for the next.
+    When Python drops its last reference, Blender frees the tables of all elements and builds them anew for
+    the next access.
     """
     return bmesh.from_edit_mesh(mesh) if mesh.is_editmode else None
 
@@ -50,12 +50,12 @@ class Marks:
         return self.name in mesh.attributes
 
     def all(self, mesh: bpy.types.Mesh) -> dict[int, int]:
-        """{element: mark} of all elements that have one, in the order of the elements."""
+        """{element: mark} of all marked elements, in the order of the elements."""
         if mesh.is_editmode:
             elements, layer = self._edited(mesh)
             if layer is None:
                 return {}
-            return {number: one[layer] for number, one in enumerate(elements) if one[layer]}
+            return {number: element[layer] for number, element in enumerate(elements) if element[layer]}
         attribute = self._attribute(mesh)
         if attribute is None:
             return {}
@@ -64,7 +64,7 @@ class Marks:
         return dict(zip(marked.tolist(), values[marked].tolist(), strict=True))
 
     def of(self, mesh: bpy.types.Mesh, elements: Sequence[int]) -> list[int]:
-        """What some elements have for a mark, 0 for none."""
+        """The marks of some elements, 0 where there is none."""
         if not mesh.is_editmode:
             attribute = self._attribute(mesh)
             return [attribute.data[element].value if attribute else 0 for element in elements]
@@ -73,7 +73,7 @@ class Marks:
         return [edited[element][layer] if layer else 0 for element in elements]
 
     def write(self, mesh: bpy.types.Mesh, elements: Sequence[int], mark: int) -> None:
-        """Gives some elements a mark, or with 0 takes it off."""
+        """Gives some elements a mark; 0 removes theirs."""
         if not len(elements):
             return
         if not mesh.is_editmode:
@@ -94,7 +94,7 @@ class Marks:
         bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
     def drop(self, mesh: bpy.types.Mesh) -> None:
-        """Takes the attribute off a mesh."""
+        """Removes the attribute from a mesh."""
         if mesh.is_editmode:
             elements, layer = self._edited(mesh)
             if layer is not None:

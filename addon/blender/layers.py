@@ -22,7 +22,7 @@ _ASIDE = "authalic replaced"  # what a color attribute is called while another t
 class Layer:
     """A layer of a mesh: values (n, d) of its vertices, or (c, d) of its corners if `of_corners`.
 
-    Those of a shape key are displacements. `detail` is what else there is to know of its kind.
+    The values of a shape key are displacements. `detail` depends on the kind.
     """
 
     kind: str
@@ -33,14 +33,14 @@ class Layer:
 
 
 def read_uv_maps(obj: MeshObject, active_only: bool) -> list[Layer]:
-    """All of an object's mesh, or the active one."""
+    """All UV maps of an object, or the active one."""
     maps = obj.data.uv_layers
     names = [uv_map.name for uv_map in maps if not active_only or uv_map == maps.active]
     return [Layer(UV_MAP, name, uv_maps.read(obj.data, name), True) for name in names]
 
 
 def read_vertex_groups(obj: MeshObject) -> list[Layer]:
-    """All of an object, 0 for vertices that are not in them."""
+    """All vertex groups of an object; vertices outside have the weight 0."""
     weights = np.zeros((len(obj.vertex_groups), len(obj.data.vertices), 1), np.float32)
     for vertex in obj.data.vertices if len(weights) else ():
         for entry in vertex.groups:
@@ -50,8 +50,8 @@ def read_vertex_groups(obj: MeshObject) -> list[Layer]:
 
 
 def read_color_attributes(obj: MeshObject) -> list[Layer]:
-    """Those of a mesh's vertices and of its corners, linear; `detail` is the type and the domain."""
-    found = []
+    """The color attributes of vertices and of corners, linear; `detail` is the type and the domain."""
+    layers = []
     attribute: Any
     for attribute in obj.data.color_attributes:
         if attribute.domain in ("POINT", "CORNER"):
@@ -59,12 +59,12 @@ def read_color_attributes(obj: MeshObject) -> list[Layer]:
             attribute.data.foreach_get("color", values)
             detail = attribute.data_type, attribute.domain
             of_corners = attribute.domain == "CORNER"
-            found.append(Layer(COLOR, attribute.name, values.reshape(-1, 4), of_corners, detail))
-    return found
+            layers.append(Layer(COLOR, attribute.name, values.reshape(-1, 4), of_corners, detail))
+    return layers
 
 
 def read_shape_keys(obj: MeshObject, but: Collection[str]) -> list[Layer]:
-    """An object's shape keys, but those named, as displacements; `detail` is the slider's range."""
+    """An object's shape keys without those named, as displacements; `detail` is the slider's range."""
     blocks = obj.data.shape_keys
     if blocks is None or not blocks.use_relative:
         return []
@@ -101,9 +101,9 @@ def writable(obj: MeshObject, layers: Sequence[Layer]) -> tuple[list[Layer], lis
 
 
 def write(obj: MeshObject, layer: Layer, elements: Integers, values: Floats) -> str | None:
-    """Writes values (k, d) of vertices or corners (k,) into the layer of an layer; others keep theirs.
+    """Writes values (k, d) of vertices or corners (k,) into a layer of an object; other elements keep theirs.
 
-    Returns None, or a line that says why nothing of the layer was written.
+    Returns None, or a line that says why nothing was written.
     """
     if _WRITERS[layer.kind](obj, layer, elements, values):
         return None
@@ -120,11 +120,11 @@ def _why_not(obj: MeshObject, layer: Layer, taken: dict[str, str]) -> str | None
     if layer.kind == KEY:
         return shape_keys.why_not(mesh, layer.name)
     collections = {GROUP: obj.vertex_groups, UV_MAP: mesh.uv_layers, COLOR: mesh.color_attributes}
-    own = collections[layer.kind].get(layer.name)
-    if own is not None and (layer.kind != COLOR or _is_alike(own, layer)):
+    existing = collections[layer.kind].get(layer.name)
+    if existing is not None and (layer.kind != COLOR or _is_alike(existing, layer)):
         return None
     # UV maps, colors and vertex groups share their names; a color of another type is replaced.
-    if layer.name in obj.vertex_groups or (own is None and layer.name in mesh.attributes):
+    if layer.name in obj.vertex_groups or (existing is None and layer.name in mesh.attributes):
         return f"{obj.name} has another attribute of this name; rename that"
     if layer.name in taken:
         return f"{obj.name} gets a {taken[layer.name]} of this name; rename one of them on the target"
@@ -136,7 +136,7 @@ def _is_alike(attribute: bpy.types.Attribute, layer: Layer) -> bool:
 
 
 def _added(collection: Any, layer: Layer, **kind: str) -> Any:
-    """A new layer of the same name in a collection of Blender's, or None, and then none was added."""
+    """A new layer of the same name in a collection; None if Blender adds none of this name."""
     made = None
     with suppress(RuntimeError):  # how bpy passes on an error report
         made = collection.new(name=layer.name, **kind)
@@ -169,21 +169,21 @@ def _write_group(obj: MeshObject, layer: Layer, vertices: Integers, weights: Flo
 
 def _write_color(obj: MeshObject, layer: Layer, elements: Integers, colors: Floats) -> bool:
     attributes = obj.data.color_attributes
-    found: Any = attributes.get(layer.name)
-    if found is None or not _is_alike(found, layer):
-        found = _added_color(attributes, layer)
-    if found is None:
+    attribute: Any = attributes.get(layer.name)
+    if attribute is None or not _is_alike(attribute, layer):
+        attribute = _added_color(attributes, layer)
+    if attribute is None:
         return False
-    values = np.empty((len(found.data), 4), np.float32)
-    found.data.foreach_get("color", values.ravel())
+    values = np.empty((len(attribute.data), 4), np.float32)
+    attribute.data.foreach_get("color", values.ravel())
     values[elements] = np.maximum(colors, 0)
-    found.data.foreach_set("color", values.ravel())
+    attribute.data.foreach_set("color", values.ravel())
     obj.data.update()
     return True
 
 
 def _added_color(attributes: Any, layer: Layer) -> Any:
-    """A new color attribute in place of one of another type, or None, and then that one stays."""
+    """A new color attribute in place of one of another type; if Blender adds none, None."""
     aside: str | None = None
     old: Any = attributes.get(layer.name)
     if old is not None:

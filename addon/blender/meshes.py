@@ -45,12 +45,12 @@ def read(obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None =
 
 
 def has_faces(obj: MeshObject) -> bool:
-    """Whether an object's mesh has faces, but for those that edit mode has added."""
+    """Whether an object's mesh had faces when edit mode was last left."""
     return len(obj.data.polygons) > 0
 
 
 def has_corners(obj: MeshObject, count: int) -> bool:
-    """Whether an object is there still and its mesh has so many corners."""
+    """Whether an object still exists and its mesh has this number of corners."""
     try:
         mesh = obj.data
     except ReferenceError:
@@ -86,7 +86,7 @@ def has_uniform_scale(obj: MeshObject) -> bool:
 
 @contextmanager
 def _readable(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
-    """The mesh; in edit mode, where its arrays are empty, a passing copy of what is being edited."""
+    """The mesh; in edit mode, where its arrays are empty, a temporary copy of what is being edited."""
     if not mesh.is_editmode:
         yield mesh
         return
@@ -152,7 +152,7 @@ def _seams(mesh: bpy.types.Mesh, corner_chosen: Booleans) -> Integers:
 
 
 def _world_size(obj: MeshObject, surface: Surface) -> float:
-    """How much larger than its mesh an object is in the world, as the root of the ratio of the areas."""
+    """The size of an object in the world over that of its mesh: the root of the ratio of their areas."""
     points = surface.positions[surface.triangles]
     matrix = np.array(obj.matrix_world)[:3, :3]
     local, world = _total_area(points), _total_area(points @ matrix.T)

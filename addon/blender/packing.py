@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's own packer, on the bounding boxes of islands in a passing scene of their own.
+"""Blender's own packer, on the bounding boxes of islands in a temporary scene.
 
-Nothing of the user's is selected, entered or moved, so there is nothing to restore; and an island of a
-million faces packs as fast as one of ten. Islands are disks, rectangles and squares: following their outlines
-would gain next to nothing, turning them little, and either takes Blender's packer seconds for a few islands.
+The user's selection and mode stay untouched, and an island of a million faces packs as fast as one of ten.
+Islands are disks, rectangles and squares: to follow their outlines would gain next to nothing, to turn them
+little, and Blender's packer needs seconds for either.
 """
 
 from collections.abc import Iterator, Sequence

@@ -8,12 +8,12 @@ _count = 0
 
 
 def count() -> int:
-    """A number that is another one after every change of a mesh, its shape keys or modifiers."""
+    """A number that changes with every change of a mesh, its shape keys or modifiers."""
     return _count
 
 
 def note() -> None:
-    """A change that Blender tells of later, if at all."""
+    """Counts a change that Blender reports later, if at all."""
     global _count
     _count += 1
 

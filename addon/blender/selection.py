@@ -42,8 +42,8 @@ def select_vertex(obj: MeshObject, vertex: int) -> None:
         mesh.vertices[vertex].select = True
         return
     edit = bmesh.from_edit_mesh(mesh)
-    for each in edit.verts:
-        each.select = False
+    for element in edit.verts:
+        element.select = False
     edit.select_flush(False)
     edit.verts.ensure_lookup_table()
     edit.verts[vertex].hide_set(False)

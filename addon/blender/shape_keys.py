@@ -25,7 +25,7 @@ def read(obj: MeshObject) -> Surface:
 
 
 def coordinates(key: bpy.types.ShapeKey) -> Floats:
-    """Those of a shape key, (n, 3)."""
+    """The coordinates (n, 3) of a shape key."""
     values = np.empty(3 * len(key.points), np.float32)
     key.points.foreach_get("co", values)
     return values.reshape(-1, 3).astype(float)
@@ -44,7 +44,7 @@ def why_not(mesh: bpy.types.Mesh, name: str) -> str | None:
 def write(obj: MeshObject, name: str, positions: Reals) -> None:
     """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0, and selects it.
 
-    A mesh without shape keys gets its first one too. All other shape keys stay as they are, bit for bit.
+    A mesh without shape keys also gets its first one. All other shape keys stay as they are, bit for bit.
     """
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)

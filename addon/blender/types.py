@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The types of Blender's data with what the extension adds to them. Known to the type checker alone."""
+"""Types of Blender's data with the properties that the extension adds; the type checker alone knows these."""
 
 from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 

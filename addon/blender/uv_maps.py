@@ -34,7 +34,7 @@ def names(obj: MeshObject) -> list[str]:
 
 @contextmanager
 def active_stays(mesh: bpy.types.Mesh, first: str) -> Iterator[None]:
-    """Keeps the active UV map the active one; where there is none, `first` becomes it."""
+    """Keeps the active UV map active while another is written; if there is none, `first` becomes active."""
     before = mesh.uv_layers.active.name if mesh.uv_layers.active else first
     yield
     if before in mesh.uv_layers:
@@ -62,7 +62,7 @@ def write(mesh: bpy.types.Mesh, layer: str, corners: Integers, uv: Singles) -> N
 
 
 def name_of(mesh: bpy.types.Mesh, wanted: str) -> str:
-    """The name the UV layer `wanted` has or will have; empty is the active one, or else "UVMap"."""
+    """The name that the UV map `wanted` has or will have. Empty means the active one, or else "UVMap"."""
     if wanted:
         return wanted.encode()[:_NAME_BYTES].decode(errors="ignore")
     return mesh.uv_layers.active.name if mesh.uv_layers.active else "UVMap"

@@ -33,7 +33,7 @@ def in_world(obj: MeshObject, vertex: int, depsgraph: bpy.types.Depsgraph) -> tu
 
 
 def to_world(obj: MeshObject, point: Vector, normal: Vector) -> tuple[Vector, Vector]:
-    """The same of a point and a normal in the coordinates of the object."""
+    """A point and a normal in the coordinates of an object, moved into the world."""
     matrix = obj.matrix_world
     turned = matrix.to_3x3().inverted_safe().transposed() @ normal
     return matrix @ point, turned.normalized()
@@ -45,10 +45,10 @@ def local(obj: MeshObject, vertex: int, depsgraph: bpy.types.Depsgraph) -> tuple
     if mesh.is_editmode:
         edit = bmesh.from_edit_mesh(mesh)
         edit.verts.ensure_lookup_table()
-        found: Any = edit.verts[vertex]
+        element: Any = edit.verts[vertex]
     else:
-        found = _shown_mesh(obj, depsgraph).vertices[vertex]
-    return found.co.copy(), found.normal.copy()
+        element = _shown_mesh(obj, depsgraph).vertices[vertex]
+    return element.co.copy(), element.normal.copy()
 
 
 def many(obj: MeshObject, vertices: Sequence[int], depsgraph: bpy.types.Depsgraph) -> Floats:
@@ -74,10 +74,9 @@ def undeformed(obj: MeshObject, vertices: Sequence[int]) -> Floats:
 
 
 def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Booleans, Cast]:
-    """What is seen of an object, in its own coordinates, for finding vertices.
+    """The visible surface of an object, in its own coordinates, for finding vertices.
 
-    Points (n, 3) of all vertices; which of them (n,) belong to a face that is seen; and a function of the
-    origin and the direction of a ray, which returns the point it hits first and the face's vertices, or None.
+    Returns the points (n, 3) of all vertices, a mask (n,) of those on a visible face, and a `Cast`.
     """
     mesh = obj.data
     if mesh.is_editmode:
@@ -98,9 +97,9 @@ def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Bo
 
 
 def _shown_mesh(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
-    """The mesh with shape keys and modifiers where its vertices begin with the object's own, else that."""
+    """The evaluated mesh if its first vertices are those of the object's mesh; else the object's mesh."""
     mesh, shown = obj.data, obj.evaluated_get(depsgraph).data
-    renumbered = any(each.show_viewport and each.type in _RENUMBERING for each in obj.modifiers)
+    renumbered = any(modifier.show_viewport and modifier.type in _RENUMBERING for modifier in obj.modifiers)
     added = len(shown.vertices) - len(mesh.vertices)
     return shown if added == 0 or (added > 0 and not renumbered) else mesh
 

@@ -56,15 +56,15 @@ def job(context: bpy.types.Context) -> Job[bridge.Unflipped, Report]:
     def work(progress: Progress) -> bridge.Unflipped:
         return bridge.fix_flips([surface for _, _, surface in chosen], progress)
 
-    def finish(found: bridge.Unflipped) -> Report:
+    def finish(unflipped: bridge.Unflipped) -> Report:
         _check_unchanged(chosen)
-        if found.refusals and not found.faces:
-            raise CannotFix(f"No flipped face could be fixed: {messages.listed(found.refusals)}")
-        for index, corners, uv in found.writes:
+        if unflipped.refusals and not unflipped.faces:
+            raise CannotFix(f"No flipped face could be fixed: {messages.listed(unflipped.refusals)}")
+        for index, corners, uv in unflipped.writes:
             obj, layer, _ = chosen[index]
             uv_maps.write(obj.data, layer, corners, uv)
-        notes = [messages.ENDED_EARLY_FIXING] if found.ended_early else []
-        return Report(found, [*refusals, *found.refusals], notes)
+        notes = [messages.ENDED_EARLY_FIXING] if unflipped.ended_early else []
+        return Report(unflipped, [*refusals, *unflipped.refusals], notes)
 
     return Job(work, finish)
 
@@ -75,7 +75,7 @@ def _chosen(objects: Sequence[MeshObject], selected_only: bool) -> list[Chosen]:
     read = [
         (obj, layer, meshes.read(obj, selected_only=selected_only, uv_layer=layer)) for obj, layer in layers
     ]
-    return [part for part in read if len(part[2].triangles)]
+    return [entry for entry in read if len(entry[2].triangles)]
 
 
 def _why_nothing(objects: Sequence[MeshObject], selected_only: bool, refusals: list[bridge.Refusal]) -> str:

@@ -55,8 +55,8 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
         registered = registration(couple, settings.registration, progress)
         return registered, _positions(couple, registered, settings.align)
 
-    def finish(found: tuple[Registered, Floats]) -> Report:
-        registered, positions = found
+    def finish(computed: tuple[Registered, Floats]) -> Report:
+        registered, positions = computed
         check_unchanged(couple)
         shape_keys.write(couple.source, key, positions)
         notes = _write_uv_maps(couple, registered, settings.target_uv)
@@ -88,26 +88,26 @@ def key_name(target: MeshObject) -> str:
 
 def _positions(couple: Couple, registered: Registered, align: bool) -> Floats:
     """All vertices (n, 3) of the source's mesh where the morph ends; loose ones stay."""
-    positions, own = couple.surfaces[0].positions.copy(), registered.source.vertices
+    positions, vertices = couple.surfaces[0].positions.copy(), registered.source.vertices
     images = moved(bridge.morphed(registered, *couple.sides, align), couple.to_source)
-    positions[own[own >= 0]] = images[own >= 0]
+    positions[vertices[vertices >= 0]] = images[vertices >= 0]
     if not np.isfinite(positions.astype(np.float32)).all():
         raise CannotRegister("The morph is not finite; nothing was changed")
     return positions
 
 
 def _write_uv_maps(couple: Couple, registered: Registered, on_target: bool) -> list[str]:
-    """Disks: the maps under which both surfaces coincide, as UV maps that do not become active ones."""
+    """For disks: writes the maps under which both surfaces coincide as UV maps that do not become active."""
     if registered.domain != "DISK":
         return []
     wanted = [(couple.source, registered.source, registered.places[:, :2])]
     if on_target:
         wanted.append((couple.target, registered.target, registered.target_places[:, :2]))
-    return [note for note in (_write_uv_map(*part) for part in wanted) if note is not None]
+    return [note for note in (_write_uv_map(*layer) for layer in wanted) if note is not None]
 
 
 def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
-    """Writes one, the unit disk filling the square; returns why not, or None."""
+    """Writes a UV map in which the unit disk fills the square; returns why not, or None."""
     mesh = obj.data
     if mesh.library is not None:
         return f"{obj.name} has no UV map, its mesh is linked from another file"
@@ -122,7 +122,7 @@ def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
 
 
 def _remarks(couple: Couple, key: str) -> list[str]:
-    """What else is affected, and what is seen of the two that was not registered."""
+    """Which other objects are affected, and which modifiers and shape keys were ignored."""
     users = couple.source.data.users
     notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
     for obj in (couple.source, couple.target):

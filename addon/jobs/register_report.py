@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of a registration."""
+"""The report of a registration."""
 
 from dataclasses import dataclass
 
@@ -20,15 +20,15 @@ class Report:
     refusals: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        one = self.registered
-        figures = _figures_of_curves(one) if one.by_curves else _figures_of_points(one)
-        ending = [one.status.replace("_", " "), f"{self.seconds:.2f} s"]
+        registered = self.registered
+        figures = _figures_of_curves(registered) if registered.by_curves else _figures_of_points(registered)
+        ending = [registered.status.replace("_", " "), f"{self.seconds:.2f} s"]
         line = ", ".join([*figures, *ending])
-        return "; ".join([f"{self.key} on {one.source.name}: {line}", *self.notes])
+        return "; ".join([f"{self.key} on {registered.source.name}: {line}", *self.notes])
 
 
 def warnings(registered: Registered) -> list[str]:
-    """What is not as it was asked for."""
+    """What is not as requested, in words."""
     early = messages.ENDED_EARLY_BY_CURVES if registered.by_curves else messages.ENDED_EARLY
     notes = [early] if registered.ended_early else []
     if registered.missed and registered.by_curves and not registered.ended_early:
@@ -40,24 +40,24 @@ def warnings(registered: Registered) -> list[str]:
     return [*notes, *registered.remarks]
 
 
-def _figures_of_points(one: Registered) -> list[str]:
-    mean, most = 100 * one.errors.mean(), 100 * one.errors.max()
-    error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {one.target.name}"
+def _figures_of_points(registered: Registered) -> list[str]:
+    mean, most = 100 * registered.errors.mean(), 100 * registered.errors.max()
+    error = f"landmark error mean {mean:.3f} % and max {most:.3f} % of the size of {registered.target.name}"
     return [
-        messages.count(len(one.names), "landmark pair"),
-        f"{error}{_worst(one)}",
-        messages.count(one.folds, "fold"),
-        f"authalic energy {one.energy:.3g}",
+        messages.count(len(registered.names), "landmark pair"),
+        f"{error}{_worst(registered)}",
+        messages.count(registered.folds, "fold"),
+        f"authalic energy {registered.energy:.3g}",
     ]
 
 
-def _figures_of_curves(one: Registered) -> list[str]:
-    most = 100 * one.errors.max(initial=0)
-    error = f"curve error max {most:.3f} % of the size of {one.target.name}{_worst(one)}"
+def _figures_of_curves(registered: Registered) -> list[str]:
+    most = 100 * registered.errors.max(initial=0)
+    error = f"curve error max {most:.3f} % of the size of {registered.target.name}{_worst(registered)}"
     return [
-        messages.count(len(one.names), "landmark curve") if one.names else "boundaries alone",
-        *([error] if one.names else []),
-        messages.count(one.folds, "fold"),
+        messages.count(len(registered.names), "landmark curve") if registered.names else "boundaries alone",
+        *([error] if registered.names else []),
+        messages.count(registered.folds, "fold"),
     ]
 
 

@@ -66,14 +66,14 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[list[Shape], Repo
     def work(progress: Progress) -> list[Shape]:
         return _shapes([surface for _, surface in chosen], settings, progress)
 
-    def finish(found: list[Shape]) -> Report:
+    def finish(shapes: list[Shape]) -> Report:
         _check_unchanged(chosen)
         done = [
             (obj, shape)
-            for (obj, _), shape in zip(chosen, found, strict=True)
+            for (obj, _), shape in zip(chosen, shapes, strict=True)
             if not isinstance(shape, bridge.Refusal)
         ]
-        refusals.extend(shape for shape in found if isinstance(shape, bridge.Refusal))
+        refusals.extend(shape for shape in shapes if isinstance(shape, bridge.Refusal))
         if not done:
             raise CannotMap(messages.listed(refusals))
         for obj, shape in done:
@@ -100,16 +100,16 @@ def _why_not(obj: MeshObject) -> str | None:
 
 def _shapes(surfaces: Sequence[Surface], settings: Settings, progress: Progress) -> list[Shape]:
     """A `bridge.SphereShape` for each surface, or the `Refusal` that says why there is none."""
-    found: list[Shape] = []
+    shapes: list[Shape] = []
     total, before = sum(len(surface.triangles) for surface in surfaces), 0
     for surface in surfaces:
         start, share = before / total, len(surface.triangles) / total
         if progress(start, surface.name) is False:
-            found.append(bridge.Refusal(surface.name, None, "was not reached before the end"))
+            shapes.append(bridge.Refusal(surface.name, None, "was not reached before the end"))
         else:
-            found.append(_shape(surface, settings, _part(progress, start, share)))
+            shapes.append(_shape(surface, settings, _part(progress, start, share)))
         before += len(surface.triangles)
-    return found
+    return shapes
 
 
 def _shape(surface: Surface, settings: Settings, progress: Progress) -> Shape:

@@ -14,7 +14,7 @@ class NothingToDo(Exception):
 def meshes(context: bpy.types.Context) -> list[MeshObject]:
     """The mesh objects of the context, those in edit mode or the selected ones, one for each mesh.
 
-    Of several objects with one mesh the active one counts, else the first.
+    Of several objects with one mesh it is the active one, else the first.
     """
     objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
     active = context.view_layer.objects.active if context.view_layer else None
@@ -27,7 +27,7 @@ def meshes(context: bpy.types.Context) -> list[MeshObject]:
 
 
 def editable(context: bpy.types.Context) -> tuple[list[MeshObject], list[Refusal]]:
-    """The same without those that cannot be written, and a refusal for each of those."""
+    """The mesh objects of the context that can be written, and a refusal for each of the others."""
     objects, refusals = [], []
     for obj in meshes(context):
         if obj.data.library is None:

@@ -53,7 +53,7 @@ class Report:
 
     def __str__(self) -> str:
         kinds = dict.fromkeys(kind for kind, _ in self.written)
-        parts = [_listed(kind, [name for own, name in self.written if own == kind]) for kind in kinds]
+        parts = [_listed(kind, [layer[1] for layer in self.written if layer[0] == kind]) for kind in kinds]
         line = f"{', '.join(parts)} from {self.target} to {self.source} {self.by}, {self.seconds:.2f} s"
         left = [f"left out: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
@@ -78,8 +78,8 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[Pulled, Report]:
         pulled = [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
         return registered, is_new, pulled
 
-    def finish(found: Pulled) -> Report:
-        registered, is_new, pulled = found
+    def finish(computed: Pulled) -> Report:
+        registered, is_new, pulled = computed
         check_unchanged(couple)
         problems = [
             layers.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
@@ -124,18 +124,18 @@ def _nothing(couple: Couple, refusals: list[str]) -> Exception:
 def _registration(
     couple: Couple, settings: RegistrationSettings | None, method: str, progress: Progress
 ) -> tuple[Registered, bool]:
-    """The one with the settings, or without any the latest of a method; and whether that had to be made."""
+    """The registration with these settings, without any the latest of a method; and whether it is new."""
     if settings is not None:
         return register.registration(couple, settings, progress), False
-    found = bridge.kept(*couple.sides, couple.pairs, couple.curves, method)
-    if found is not None:
-        return found, False
+    registered = bridge.kept(*couple.sides, couple.pairs, couple.curves, method)
+    if registered is not None:
+        return registered, False
     return register.registration(couple, RegistrationSettings(method=method), progress), True
 
 
 def _method(couple: Couple) -> str:
-    """The method of the last registration with the target, or one that there is something to go by."""
-    boundaries = any(is_open(one) for one in couple.sides)
+    """The method of the last registration with the target, or one for which there are landmarks."""
+    boundaries = any(is_open(side) for side in couple.sides)
     can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
     last = couple.source.authalic_registered_by
     return next((method for method in (last, "POINTS", "CURVES") if can.get(method)), "POINTS")

@@ -75,7 +75,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
         (obj, layer, meshes.read(obj, selected_only=selected_only, uv_layer=layer))
         for obj, layer in zip(objects, layers, strict=True)
     ]
-    chosen = [part for part in read if len(part[2].triangles)]
+    chosen = [entry for entry in read if len(entry[2].triangles)]
     if not chosen:
         raise targets.NothingToDo(_why_nothing(selected_only, refusals))
     surfaces = [surface for _, _, surface in chosen]
@@ -128,7 +128,7 @@ def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSett
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
     _place(mapping, settings)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
-    mapped = [_mapped(surface, *part) for (_, _, surface), part in zip(chosen, parts, strict=True)]
+    mapped = [_mapped(surface, *gathered) for (_, _, surface), gathered in zip(chosen, parts, strict=True)]
     figures = bridge.measure(mapped)
     if figures is None:
         raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
@@ -139,7 +139,7 @@ def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSett
 
 
 def _place(mapping: bridge.Mapping, settings: PackSettings) -> None:
-    """Packs the islands, without those that would fold over where they come to lie: these are refused."""
+    """Packs the islands; those that would fold over where they come to lie are refused."""
     for island in mapping.islands:
         if island.may_turn:
             island.uv = upright(island.uv)
@@ -153,16 +153,16 @@ def _place(mapping: bridge.Mapping, settings: PackSettings) -> None:
             return
         kept = {id(island) for island in sound}
         folded = [island for island in mapping.islands if id(island) not in kept]
-        mapping.refusals += [bridge.Refusal(part.name, part.polygon, _FOLDS) for part in folded]
+        mapping.refusals += [bridge.Refusal(island.name, island.polygon, _FOLDS) for island in folded]
         mapping.islands = sound
     raise CannotUnwrap(f"No island could be unwrapped: {messages.listed(mapping.refusals)}")
 
 
 def _gather(islands: Sequence[bridge.Island], index: int) -> tuple[Integers, Singles]:
-    """Of one surface's islands the corners (k,) and their UVs (k, 2) as Blender will keep them."""
-    own = [island for island in islands if island.surface == index]
-    corners = np.concatenate([np.empty(0, int), *(island.corners for island in own)])
-    uv = np.concatenate([np.empty((0, 2)), *(island.uv[island.corner_point] for island in own)])
+    """The corners (k,) of the islands of one surface, and their UVs (k, 2) as Blender will keep them."""
+    of_surface = [island for island in islands if island.surface == index]
+    corners = np.concatenate([np.empty(0, int), *(island.corners for island in of_surface)])
+    uv = np.concatenate([np.empty((0, 2)), *(island.uv[island.corner_point] for island in of_surface)])
     return corners, uv.astype(np.float32)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Copies of a source object, which list the same curves under the same key until one of them is changed.
+"""Copies of a source object: they list the same curves under the same key until one of them changes.
 
-A copy that changes gets a key of its own, and its paths marks under that. In edit mode it stays as it is:
-undo would take back the marks there but not the key, which is a part of the object.
+A copy that changes gets a new key, and its paths get marks under the new key. In edit mode a copy keeps the
+old key: undo would take back the marks there but not the key, which is a part of the object.
 """
 
 import uuid
@@ -23,39 +23,39 @@ def ensure_key(source: MeshObject) -> None:
 def others(source: MeshObject, side: str) -> Iterator[tuple[MeshObject, LandmarkCurve]]:
     """(object, curve) of copies of the source with the same mesh on a side: these share paths with it."""
     obj, key = side_object(source, side), source.authalic_curve_key
-    for other in mesh_objects():
-        if key and obj is not None and other != source and other.authalic_curve_key == key:
-            theirs = side_object(other, side)
-            if theirs is not None and theirs.data == obj.data:
-                yield from ((other, curve) for curve in other.authalic_landmark_curves)
+    for copy in mesh_objects():
+        if key and obj is not None and copy != source and copy.authalic_curve_key == key:
+            copy_object = side_object(copy, side)
+            if copy_object is not None and copy_object.data == obj.data:
+                yield from ((copy, curve) for curve in copy.authalic_landmark_curves)
 
 
 def sharing(source: MeshObject, curve: LandmarkCurve, side: str) -> MeshObject | None:
     """An object that has a path of the source's curve too, or None."""
-    return next((other for other, own in others(source, side) if own.mark == curve.mark), None)
+    return next((copy for copy, copy_curve in others(source, side) if copy_curve.mark == curve.mark), None)
 
 
 def can_part(source: MeshObject) -> bool:
-    """Whether a source can get a key of its own now."""
+    """Whether a source can get a new key now."""
     objects = [side_object(source, side) for side in SIDES]
     return all(_is_free(obj.data) for obj in objects if obj is not None and obj.type == "MESH")
 
 
 def part(source: MeshObject) -> None:
-    """Gives a source that shares paths with copies a key of its own, where it can."""
+    """Gives a source that shares paths with copies a new key, if possible."""
     if not can_part(source) or not any(True for side in SIDES for _ in others(source, side)):
         return
     before, source.authalic_curve_key = source.authalic_curve_key, _new_key()
-    own = {curve.mark for curve in source.authalic_landmark_curves}
+    marks = {curve.mark for curve in source.authalic_landmark_curves}
     for side in SIDES:
         obj = side_object(source, side)
         if obj is not None and obj.type == "MESH":
-            curve_marks.copy(obj.data, f"{side}_{before}", curve_marks.key(source, side), own)
+            curve_marks.copy(obj.data, f"{side}_{before}", curve_marks.key(source, side), marks)
     tidy(before, but=source)
 
 
 def tidy(key: str, but: MeshObject | None = None) -> None:
-    """Takes marks of a key that no object lists off all meshes; not while meshes of that key are edited."""
+    """Removes marks of a key that no object lists from all meshes; not while a mesh of that key is edited."""
     users = [obj for obj in mesh_objects() if obj.authalic_curve_key == key and obj != but]
     if not key or not all(can_part(user) for user in users):
         return

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Paths along edges that can be found again after a mesh was edited, by marks (see `element_marks`).
+"""Paths along edges that are found again after a mesh was edited, by marks (see `element_marks`).
 
-All edges of a path have its mark, and so have the parts into which they are divided. Its first vertex has the
-mark too, its last one the negative of it. The attributes are those of a key: no two paths of the same key
-share an edge on one mesh.
+All edges of a path have its mark, and so have the parts into which edits divide them. The first vertex has
+the mark too, the last one its negative. Each key has a pair of attributes: no two paths of the same key share
+an edge on one mesh.
 """
 
 from collections.abc import Collection, Sequence
@@ -27,11 +27,10 @@ _true: dict[tuple[int, str], int] = {}
 
 
 class MarkedPath(NamedTuple):
-    """A marked path as it is today.
+    """A marked path as the mesh has it now.
 
-    `vertices` are from its start to its end, a loop's first one again at the end; none if it is not certain,
-    and then the problem in words, to be read behind the name of the curve and before that of the object.
-    `edges` are pairs of vertices.
+    `vertices` run from start to end; a loop ends with its first vertex. If the path is not certain there are
+    none, and `problem` says why; it is read behind the name of the curve and before that of the object.
     """
 
     vertices: Path
@@ -47,7 +46,7 @@ ABSENT = MarkedPath((), (), "has no edges")
 
 
 class _Found(NamedTuple):
-    """A path, the numbers of its edges, and what its ends had for marks."""
+    """A path, the numbers of its edges, and its end vertices with their marks."""
 
     path: MarkedPath
     edges: list[int]
@@ -61,12 +60,12 @@ def new() -> int:
 
 def key(source: MeshObject, side: str) -> str:
     """The key of the curves of a source object on its "source" or "target" mesh; "" if it has none yet."""
-    own = source.authalic_curve_key
-    return f"{side}_{own}" if own else ""
+    source_key = source.authalic_curve_key
+    return f"{side}_{source_key}" if source_key else ""
 
 
 def put(mesh: bpy.types.Mesh, key: str, mark: int, path: Path) -> None:
-    """Gives the edges of a path (vertices) a mark in place of those that have it. Raises `NoEdge`."""
+    """Moves a mark to the edges of a path. Raises `NoEdge`."""
     edges = edges_between(mesh, paths.edges(path))
     clear(mesh, key, mark)
     _of_edges(key).write(mesh, edges, mark)
@@ -81,18 +80,18 @@ def reverse(mesh: bpy.types.Mesh, key: str, mark: int) -> None:
 
 
 def clear(mesh: bpy.types.Mesh, key: str, mark: int) -> None:
-    """Takes a mark off a mesh; with the last one go the attributes."""
+    """Removes a mark from a mesh, and the attributes with the last mark."""
     _drop(mesh, key)
     for kind in _kinds(key):
-        there = kind.all(mesh)
-        own = [element for element, value in there.items() if abs(value) == mark]
-        kind.write(mesh, own, 0)
-        if len(own) == len(there):
+        marked = kind.all(mesh)
+        cleared = [element for element, value in marked.items() if abs(value) == mark]
+        kind.write(mesh, cleared, 0)
+        if len(cleared) == len(marked):
             kind.drop(mesh)
 
 
 def copy(mesh: bpy.types.Mesh, key: str, new_key: str, wanted: Collection[int]) -> None:
-    """Gives what has wanted marks of a key the same under a new one."""
+    """Copies the wanted marks of a key to a new key."""
     for kind, new_kind in zip(_kinds(key), _kinds(new_key), strict=True):
         for value, elements in _by_value(kind, mesh).items():
             if abs(value) in wanted:
@@ -101,37 +100,37 @@ def copy(mesh: bpy.types.Mesh, key: str, new_key: str, wanted: Collection[int]) 
 
 
 def keep(mesh: bpy.types.Mesh, key: str, wanted: Collection[int]) -> None:
-    """Takes all marks of a key off a mesh but the wanted ones; with the last one go the attributes."""
+    """Removes all but the wanted marks of a key from a mesh, and the attributes with the last mark."""
     for kind in _kinds(key):
         if kind.is_on(mesh):
             by_value = _by_value(kind, mesh)
-            others = [one for value, own in by_value.items() if abs(value) not in wanted for one in own]
-            if others:
-                kind.write(mesh, others, 0)
+            unwanted = [value for value in by_value if abs(value) not in wanted]
+            if unwanted:
+                kind.write(mesh, [element for value in unwanted for element in by_value[value]], 0)
                 _drop(mesh, key)
-            if all(abs(value) not in wanted for value in by_value):
+            if len(unwanted) == len(by_value):
                 kind.drop(mesh)
 
 
 def find(mesh: bpy.types.Mesh, key: str, *, drawing: bool = False) -> dict[int, MarkedPath]:
     """{mark: `MarkedPath`} of the paths of a key on a mesh.
 
-    With `drawing`, what was found before is taken for true unless geometry has changed, and then if the paths
-    are where they were and the mesh has as many elements: fast enough for drawing.
+    With `drawing`, paths that were found before are not searched again while no geometry has changed, nor
+    while they have their marks and the mesh its number of elements: fast enough for drawing.
     """
-    held, own = element_marks.hold(mesh), (mesh.session_uid, key)
-    counts, found = _seen.get(own, (None, {}))
-    if not drawing or _true.get(own) != scene_changes.count():
-        if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, found):
-            found = _search(mesh, key)
-            _seen[own] = element_counts(mesh), found
-        _true[own] = scene_changes.count()
+    held, place = element_marks.hold(mesh), (mesh.session_uid, key)
+    counts, by_mark = _seen.get(place, (None, {}))
+    if not drawing or _true.get(place) != scene_changes.count():
+        if not drawing or counts != element_counts(mesh) or not _holds(mesh, key, by_mark):
+            by_mark = _search(mesh, key)
+            _seen[place] = element_counts(mesh), by_mark
+        _true[place] = scene_changes.count()
     del held
-    return {mark: one.path for mark, one in found.items()}
+    return {mark: result.path for mark, result in by_mark.items()}
 
 
 def forget() -> None:
-    """What was found before counts no longer, as after undo."""
+    """Forgets all paths that were found before, as undo may have moved them."""
     _seen.clear()
     _true.clear()
 
@@ -167,10 +166,10 @@ def _kinds(key: str) -> tuple[element_marks.Marks, element_marks.Marks]:
 
 def _by_value(kind: element_marks.Marks, mesh: bpy.types.Mesh) -> dict[int, list[int]]:
     """{mark: elements} of a kind of marks."""
-    found: dict[int, list[int]] = {}
+    by_value: dict[int, list[int]] = {}
     for element, value in kind.all(mesh).items():
-        found.setdefault(value, []).append(element)
-    return found
+        by_value.setdefault(value, []).append(element)
+    return by_value
 
 
 def _search(mesh: bpy.types.Mesh, key: str) -> dict[int, _Found]:
@@ -180,12 +179,14 @@ def _search(mesh: bpy.types.Mesh, key: str) -> dict[int, _Found]:
         edges.setdefault(mark, []).append(edge)
     for vertex, mark in _of_ends(key).all(mesh).items():
         ends.setdefault(mark, []).append(vertex)
-    found = {}
-    for mark, own in edges.items():
-        path = _path(ends_of_edges(mesh, own), ends.get(mark, []), ends.get(-mark, []))
+    by_mark = {}
+    for mark, marked in edges.items():
+        path = _path(ends_of_edges(mesh, marked), ends.get(mark, []), ends.get(-mark, []))
         terminal = [path.vertices[0], path.vertices[-1]] if path.vertices else []
-        found[mark] = _Found(path, own, list(zip(terminal, _of_ends(key).of(mesh, terminal), strict=True)))
-    return found
+        by_mark[mark] = _Found(
+            path, marked, list(zip(terminal, _of_ends(key).of(mesh, terminal), strict=True))
+        )
+    return by_mark
 
 
 def _path(edges: Sequence[Edge], starts: Sequence[int], ends: Sequence[int]) -> MarkedPath:
@@ -213,22 +214,22 @@ def _lost(first: int | None, last: int | None) -> str:
     return "its start" if first is None else "its end"
 
 
-def _holds(mesh: bpy.types.Mesh, key: str, found: dict[int, _Found]) -> bool:
-    """Whether the paths that were found have their marks, edges and ends still."""
-    edges = [edge for one in found.values() for edge in one.edges]
-    values = [mark for mark, one in found.items() for _ in one.edges]
-    ends = [end for one in found.values() for end in one.ends]
+def _holds(mesh: bpy.types.Mesh, key: str, by_mark: dict[int, _Found]) -> bool:
+    """Whether paths that were found before still have their marks, edges and ends."""
+    edges = [edge for result in by_mark.values() for edge in result.edges]
+    values = [mark for mark, result in by_mark.items() for _ in result.edges]
+    ends = [end for result in by_mark.values() for end in result.ends]
     return (
         _of_edges(key).of(mesh, edges) == values
-        and ends_of_edges(mesh, edges) == [pair for one in found.values() for pair in one.path.edges]
+        and ends_of_edges(mesh, edges) == [pair for result in by_mark.values() for pair in result.path.edges]
         and _of_ends(key).of(mesh, [vertex for vertex, _ in ends]) == [value for _, value in ends]
     )
 
 
 def _mark_ends(mesh: bpy.types.Mesh, key: str, mark: int, path: Path) -> None:
     _drop(mesh, key)
-    own = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
-    _of_ends(key).write(mesh, own, 0)
+    marked = [element for element, value in _of_ends(key).all(mesh).items() if abs(value) == mark]
+    _of_ends(key).write(mesh, marked, 0)
     _of_ends(key).write(mesh, [path[0]], mark)
     if not paths.is_closed(path):
         _of_ends(key).write(mesh, [path[-1]], -mark)

@@ -11,17 +11,17 @@ from .objects import NONE, SIDES, side_object
 
 
 def place_for(source: MeshObject, selected: dict[str, Path]) -> tuple[int, dict[str, Path]]:
-    """The index of the pair to which selected paths {side: path} belong, -1 for a new one; and these paths.
+    """The index of the pair to which selected paths {side: path} belong, -1 for a new pair; and these paths.
 
-    Alone, a path completes the active pair if that lacks its side, or else the first one that does. Of two,
-    one that the active pair has already is not meant.
+    A single path completes the active pair if that lacks its side, or else the first pair that does. Of two
+    paths, one that the active pair already has is ignored.
     """
     listed, active = pairs(source), source.authalic_landmark_curve_index
     if len(selected) == 2 and active < len(listed):
-        others = {side: path for side, path in selected.items() if not _has(listed[active], side, path)}
-        missing = [side for side in others if getattr(listed[active], side).problem]
-        if len(others) == 1 and missing:
-            return active, others
+        new = {side: path for side, path in selected.items() if not _has(listed[active], side, path)}
+        missing = [side for side in new if getattr(listed[active], side).problem]
+        if len(new) == 1 and missing:
+            return active, new
     if len(selected) != 1:
         return NONE, selected
     (side,) = selected
@@ -32,16 +32,16 @@ def place_for(source: MeshObject, selected: dict[str, Path]) -> tuple[int, dict[
 def directed(
     source: MeshObject, index: int, selected: dict[str, Path], loose: Collection[str]
 ) -> dict[str, Path]:
-    """Selected paths {side: path}, those of the sides `loose` turned to run as their partners do."""
+    """Selected paths {side: path}; on the sides `loose` they are turned to run as their partners do."""
     partners: dict[str, Path] = dict.fromkeys(SIDES, ())
     if index != NONE:
         pair = pairs(source)[index]
         partners = {side: getattr(pair, side).vertices for side in SIDES}
     partners |= selected
-    for side, other in (SIDES, SIDES[::-1]):
-        if side in loose and partners[other]:
-            objects = side_object(source, side), side_object(source, other)
-            partners[side] = curve_selection.like(objects[0], partners[side], objects[1], partners[other])
+    for side, partner in (SIDES, SIDES[::-1]):
+        if side in loose and partners[partner]:
+            objects = side_object(source, side), side_object(source, partner)
+            partners[side] = curve_selection.like(objects[0], partners[side], objects[1], partners[partner])
     return {side: partners[side] for side in selected}
 
 

@@ -18,8 +18,8 @@ _WHAT = "select the edges of one open path or of one closed loop"
 def path(obj: MeshObject) -> tuple[Path, bool] | None:
     """The path along the selected edges of an object, from the end that is nearer to the active element.
 
-    Returns also whether that says where it starts. None where no edge is selected in edit mode. Raises
-    `CannotPair` where the edges are no single path.
+    Also returns whether an active element says where it starts. None where no edge is selected in edit mode.
+    Raises `CannotPair` where the edges are no single path.
     """
     if not obj.data.is_editmode:
         return None

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of landmark curves: a path along edges of a source object and the one of its target it belongs to.
+"""Pairs of landmark curves: a path along edges of a source object and the corresponding path of its target.
 
 They live on the source object, as `authalic_landmark_curves`, beside the landmark points and for the same
-target. What a curve keeps is a mark, and the edges of both meshes have it (see `curve_marks`), so that its
-paths are found again after the meshes were edited. `pairs` is the one truth on which vertices those are
-today, in which order, and where a path is missing or broken.
+target. A curve keeps a mark, and so do the edges of both meshes (see `curve_marks`), so that its paths are
+found again after the meshes were edited. `pairs` alone says which vertices these are now, in which order, and
+where a path is missing or broken.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -24,7 +24,7 @@ _FEWEST = 2, 3  # edges of an open and of a closed curve
 
 
 class Curve(NamedTuple):
-    """A pair of curves as it is today: two `curve_marks.MarkedPath`, and the problem in words or None."""
+    """A pair of curves as it is now: two `curve_marks.MarkedPath`, and the problem in words or None."""
 
     name: str
     source: curve_marks.MarkedPath
@@ -37,7 +37,7 @@ def _numbers(side: str) -> Callable[[LandmarkCurve], str]:
 
 
 class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
-    """One pair of curves. Its vertices are numbers of today, whatever was edited since they were set."""
+    """One pair of curves. Its vertices have their current numbers, whatever was edited."""
 
     name: StringProperty(name="Name", description="The name of this pair of curves")
     source_vertices: StringProperty(
@@ -60,19 +60,19 @@ class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
 
 
 def pairs(source: MeshObject, *, drawing: bool = False) -> list[Curve]:
-    """All pairs of curves of a source object, as a list of `Curve`, with what is wrong with each in words.
+    """All pairs of curves of a source object, with the problem of each in words.
 
     With `drawing`, large meshes are not searched anew unless they have changed visibly.
     """
     without_target = target_problem(source)
     objects = _objects(source)
-    found = [_found(source, side, drawing) for side in SIDES]
+    by_mark = [_found(source, side, drawing) for side in SIDES]
     listed: list[Curve] = []
     taken: dict[tuple[str, int], tuple[int, str]] = {}
     for index, curve in enumerate(source.authalic_landmark_curves):
-        own = [on_side.get(curve.mark, curve_marks.ABSENT) for on_side in found]
-        problem = without_target or _problem(taken, (index, curve.name), own, objects)
-        listed.append(Curve(curve.name, own[0], own[1], problem))
+        marked = [on_side.get(curve.mark, curve_marks.ABSENT) for on_side in by_mark]
+        problem = without_target or _problem(taken, (index, curve.name), marked, objects)
+        listed.append(Curve(curve.name, marked[0], marked[1], problem))
     return listed
 
 
@@ -84,10 +84,10 @@ def add(
     name: str = "",
     index: int = NONE,
 ) -> LandmarkCurve:
-    """Adds a pair, or sets the paths of the pair of an index, and makes it the active one; returns it.
+    """Adds a pair, or sets the paths of an existing one, makes it the active pair and returns it.
 
-    Paths are vertices from start to end, those of a loop end with the first one again; None leaves a side as
-    it is. Raises `CannotPair` and then changes nothing.
+    Paths are vertices from start to end; a loop ends with its first vertex; None leaves a side as it is.
+    Raises `CannotPair` and then changes nothing.
     """
     check_target(source)
     given = {side: tuple(path) for side, path in zip(SIDES, (source_path, target_path), strict=True) if path}
@@ -131,7 +131,7 @@ def reverse(source: MeshObject, index: int, side: str) -> None:
 
 
 def remove(source: MeshObject, index: int) -> None:
-    """Removes the pair of an index; the one that takes its place is the active one."""
+    """Removes a pair; the next one becomes the active pair."""
     curve_copies.part(source)
     undo.remember(source, index, undo.CURVES)
     curve = source.authalic_landmark_curves[index]
@@ -157,7 +157,7 @@ def clear(source: MeshObject) -> None:
 
 
 def replace(source: MeshObject, wanted: Sequence[tuple[str, Path, Path]]) -> None:
-    """Puts pairs (name, source path, target path) in place of all there are, or of none of them.
+    """Replaces all pairs by pairs (name, source path, target path), or none of them.
 
     Raises `CannotPair` and then changes nothing.
     """
@@ -179,9 +179,9 @@ def check_all(source: MeshObject, wanted: Sequence[tuple[str, Path, Path]]) -> N
             _check_path(obj, path)
             _check_copies(source, side, path)
             for vertex in path:
-                other = taken.setdefault(vertex, number)
-                if other != number:
-                    names = f'"{wanted[other][0]}" and "{pair[0]}"'
+                earlier = taken.setdefault(vertex, number)
+                if earlier != number:
+                    names = f'"{wanted[earlier][0]}" and "{pair[0]}"'
                     raise CannotPair(f"the curves {names} meet at vertex {vertex} of {obj.name}")
 
 
@@ -208,38 +208,38 @@ def _worded(path: curve_marks.MarkedPath, obj: MeshObject) -> str:
 def _problem(
     taken: dict[tuple[str, int], tuple[int, str]],
     numbered: tuple[int, str],
-    own: Sequence[curve_marks.MarkedPath],
+    marked: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
     """What is wrong with a pair whose paths are on two objects; `taken` are the vertices of earlier ones."""
-    broken = [_worded(*part) for part in zip(own, objects, strict=True) if part[0].problem]
-    touching = _touching(taken, numbered, own, objects)
-    return broken[0] if broken else touching or _unlike(own, objects)
+    broken = [_worded(path, obj) for path, obj in zip(marked, objects, strict=True) if path.problem]
+    touching = _touching(taken, numbered, marked, objects)
+    return broken[0] if broken else touching or _unlike(marked, objects)
 
 
 def _touching(
     taken: dict[tuple[str, int], tuple[int, str]],
     numbered: tuple[int, str],
-    own: Sequence[curve_marks.MarkedPath],
+    marked: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
     """What is wrong if an earlier curve has a vertex of a path; else remembers them in `taken`."""
-    for side, path, obj in zip(SIDES, own, objects, strict=True):
+    for side, path, obj in zip(SIDES, marked, objects, strict=True):
         for vertex in path.vertices:
-            other = taken.setdefault((side, vertex), numbered)
-            if other != numbered:
-                return f'meets "{other[1]}" at vertex {vertex} of {obj.name}; curves must not meet'
+            earlier = taken.setdefault((side, vertex), numbered)
+            if earlier != numbered:
+                return f'meets "{earlier[1]}" at vertex {vertex} of {obj.name}; curves must not meet'
     return None
 
 
-def _unlike(own: Sequence[curve_marks.MarkedPath], objects: Sequence[MeshObject]) -> str | None:
+def _unlike(marked: Sequence[curve_marks.MarkedPath], objects: Sequence[MeshObject]) -> str | None:
     """What is wrong with two paths that are fine by themselves."""
-    for path, obj in zip(own, objects, strict=True):
+    for path, obj in zip(marked, objects, strict=True):
         few = _too_few(path.vertices)
         if few:
             return f"{few} on {obj.name}"
-    if own[0].is_closed != own[1].is_closed:
-        closed, opened = objects if own[0].is_closed else objects[::-1]
+    if marked[0].is_closed != marked[1].is_closed:
+        closed, opened = objects if marked[0].is_closed else objects[::-1]
         return f"is closed on {closed.name} and open on {opened.name}; both must be either"
     return None
 
@@ -250,28 +250,28 @@ def _too_few(path: Path) -> str | None:
 
 
 def _check(source: MeshObject, side: str, path: Path, index: int) -> None:
-    """Raises `CannotPair` unless a path can be that of the pair of an index, or of a new one."""
+    """Raises `CannotPair` unless a path can be that of an existing pair, or of a new one."""
     obj, curves = side_object(source, side), source.authalic_landmark_curves
     _check_path(obj, path)
-    own = curves[index] if index != NONE else None
+    replaced = curves[index] if index != NONE else None
     for curve, pair in zip(curves, pairs(source), strict=True):
         shared = {vertex for edge in getattr(pair, side).edges for vertex in edge}.intersection(path)
-        if shared and curve != own:
+        if shared and curve != replaced:
             raise CannotPair(
                 f'the curve "{pair.name}" has {_vertices(shared)} of {obj.name} already; curves must not meet'
             )
-    _check_copies(source, side, path, own)
+    _check_copies(source, side, path, replaced)
 
 
-def _check_copies(source: MeshObject, side: str, path: Path, own: LandmarkCurve | None = None) -> None:
-    """Raises `CannotPair` if a path of a pair, or of a new one, would take what is a copy's, too."""
+def _check_copies(source: MeshObject, side: str, path: Path, replaced: LandmarkCurve | None = None) -> None:
+    """Raises `CannotPair` if a path of a pair, or of a new one, would take edges that a copy shares."""
     if curve_copies.can_part(source):
         return
     obj, owners = side_object(source, side), _owners(source, side, path)
-    for other, curve in curve_copies.others(source, side):
-        if curve.mark in owners or (own is not None and curve.mark == own.mark):
+    for copy, curve in curve_copies.others(source, side):
+        if curve.mark in owners or (replaced is not None and curve.mark == replaced.mark):
             raise CannotPair(
-                f'edges or ends on {obj.name} are those of the curve "{curve.name}" of {other.name} '
+                f'edges or ends on {obj.name} are those of the curve "{curve.name}" of {copy.name} '
                 f"too; remove or reverse one of the copy {source.name} in Object Mode first"
             )
 

@@ -11,11 +11,11 @@ SIDES = ("source", "target")
 
 
 class CannotPair(Exception):
-    """The landmarks are as they were; says why."""
+    """Says why landmarks cannot be changed; they are as before."""
 
 
 def active_source(context: bpy.types.Context) -> MeshObject | None:
-    """The object whose landmarks are meant: the active one, or the one selected whose target that is."""
+    """The object whose landmarks are meant: the active object, or the selected object whose target it is."""
     active: MeshObject | None = context.object  # type: ignore[assignment]
     if not is_mesh(active) or active.authalic_target is not None:
         return active

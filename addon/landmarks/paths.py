@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edges, as pairs of vertices, that make up one path or one closed loop. Plain logic, no bpy.
 
-A path is a tuple of vertices from its start to its end; that of a loop ends with its first vertex again.
+A path is a tuple of vertices from its start to its end; a loop ends with its first vertex.
 """
 
 from collections.abc import Sequence
@@ -25,10 +25,10 @@ def ordered(edges: Sequence[Edge]) -> Path:
         near.setdefault(first, []).append(second)
         near.setdefault(second, []).append(first)
     pieces = _pieces(near)
-    branches = sorted(vertex for vertex, others in near.items() if len(others) > 2)
+    branches = sorted(vertex for vertex, neighbors in near.items() if len(neighbors) > 2)
     if not edges or pieces > 1 or branches:
         raise NoPath(_reason(pieces, branches))
-    ends = sorted(vertex for vertex, others in near.items() if len(others) == 1)
+    ends = sorted(vertex for vertex, neighbors in near.items() if len(neighbors) == 1)
     return _walk(near, ends[0] if ends else min(near))
 
 
@@ -44,7 +44,7 @@ def edges(path: Path) -> list[Edge]:
 def along(path: Path, first: int | None, last: int | None) -> Path | None:
     """The path from its end `first` to its end `last`; a loop begins at `first`. None where that is no end.
 
-    Either may be None, for an end that is not known.
+    An unknown end is None.
     """
     if is_closed(path):
         return started(path, first) if first in path else None
@@ -62,7 +62,7 @@ def started(path: Path, vertex: int) -> Path:
 
 
 def repeated(path: Path) -> int | None:
-    """A vertex that the path comes to twice, or None; that of a closed loop's start is none."""
+    """A vertex that the path visits twice, or None; the start of a loop does not count."""
     seen = set()
     for vertex in path[:-1] if is_closed(path) else path:
         if vertex in seen:
@@ -85,15 +85,15 @@ def _walk(near: dict[int, list[int]], start: int) -> Path:
 
 
 def _pieces(near: dict[int, list[int]]) -> int:
-    """How many pieces hang together by edges."""
+    """The number of connected components."""
     count, left = 0, set(near)
     while left:
         count += 1
         border = [left.pop()]
         while border:
-            found = left.intersection(near[border.pop()])
-            left -= found
-            border.extend(found)
+            reached = left.intersection(near[border.pop()])
+            left -= reached
+            border.extend(reached)
     return count
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The vertex that the cursor is on, by the geometry of a view. Needs no window.
+"""The vertex under the cursor, by the geometry of a view. Needs no window.
 
-Under the cursor lies a face, and the nearest of its vertices is meant; beside the surface, the nearest
-vertex some pixels away. Vertices behind a surface are never meant.
+On a surface it is the nearest vertex of the face under the cursor, beside the surface the nearest vertex
+within some pixels; never a vertex behind a surface.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class View:
         return (flat + 1) / 2 * (self.width, self.height)
 
     def ray(self, pixel: ArrayLike) -> tuple[Floats, Floats]:
-        """The origin, on the near side of what is seen, and the direction of the ray through a pixel."""
+        """The origin, on the near clipping plane, and the direction of the ray through a pixel."""
         x, y = 2 * np.asarray(pixel, float) / (self.width, self.height) - 1
         ends = np.array([[x, y, -1, 1], [x, y, 1, 1]]) @ np.linalg.inv(self.matrix).T
         near, far = ends[:, :3] / ends[:, 3:]
@@ -45,10 +45,9 @@ class View:
 
 
 class Pickable:
-    """Points (n, 3), of which those `used` (n,) count, under a matrix (4, 4) to the world.
+    """A surface with vertices to pick: those `used` (n,) of points (n, 3), with a matrix into the world.
 
-    `cast` is a function of the origin and the direction of a ray among the points, and returns the point
-    that it hits first with the vertices of the face there, or None.
+    `cast` casts a ray in the coordinates of the points.
     """
 
     def __init__(self, points: Floats, used: Booleans, cast: Cast, matrix: Matrix) -> None:
@@ -68,7 +67,7 @@ class Pickable:
         return self._moved(self.points[vertices])
 
     def candidates(self, view: View, pixel: Floats, radius: float) -> tuple[Integers, Floats]:
-        """The vertices that count at most so many pixels away, the nearest first, and how far they are."""
+        """The vertices within a radius in pixels, nearest first, and their distances."""
         if self._is_far(view, pixel, radius):
             return np.empty(0, int), np.empty(0)
         away = np.linalg.norm(view.project(self.world()) - pixel, axis=1)
@@ -79,10 +78,10 @@ class Pickable:
     def hit(self, origin: Floats, direction: Floats) -> tuple[float, Integers | None]:
         """The distance and the vertices of the face that a ray hits first, or infinity and None."""
         start = self._inverse @ Vector(origin.tolist())
-        found = self._cast(start, self._inverse.to_3x3() @ Vector(direction.tolist()))
-        if found is None:
+        cast = self._cast(start, self._inverse.to_3x3() @ Vector(direction.tolist()))
+        if cast is None:
             return np.inf, None
-        point, face = found
+        point, face = cast
         return (self.matrix @ point - Vector(origin.tolist())).length, np.array(face)
 
     def _is_far(self, view: View, pixel: Floats, radius: float) -> bool:
@@ -104,7 +103,7 @@ def pick(
     radius: float = 20.0,
     blocked: float = np.inf,
 ) -> tuple[int, int] | None:
-    """(which of the surfaces, vertex) at a pixel, or None; `blocked` is how far away what hides them is."""
+    """(number of a surface, vertex) at a pixel, or None; `blocked` is the distance of what hides them."""
     pixel = np.asarray(pixel, float)
     origin, direction = view.ray(pixel)
     hits = [surface.hit(origin, direction) for surface in surfaces]
@@ -128,11 +127,11 @@ def _corner(
 
 def _beside(surfaces: Sequence[Pickable], view: View, pixel: Floats, radius: float) -> tuple[int, int] | None:
     """The nearest visible vertex, where no surface is under the cursor."""
-    found: list[tuple[float, int, int]] = []
+    candidates: list[tuple[float, int, int]] = []
     for which, surface in enumerate(surfaces):
         vertices, away = surface.candidates(view, pixel, radius)
-        found.extend((d, which, int(vertex)) for d, vertex in zip(away, vertices, strict=True))
-    for _, which, vertex in sorted(found):
+        candidates.extend((d, which, int(vertex)) for d, vertex in zip(away, vertices, strict=True))
+    for _, which, vertex in sorted(candidates):
         if _is_visible(surfaces, which, vertex, view):
             return which, vertex
     return None
@@ -146,9 +145,9 @@ def _is_visible(surfaces: Sequence[Pickable], which: int, vertex: int, view: Vie
     origin, _ = view.ray(pixel)
     distance = np.linalg.norm(point[0] - origin)
     direction = (point[0] - origin) / max(distance, 1e-30)
-    for other, surface in enumerate(surfaces):
+    for number, surface in enumerate(surfaces):
         reached, face = surface.hit(origin, direction)
-        own = other == which and face is not None and vertex in face
-        if reached < distance * (1 - _HIDING) and not own:
+        is_at_vertex = number == which and face is not None and vertex in face
+        if reached < distance * (1 - _HIDING) and not is_at_vertex:
             return False
     return True

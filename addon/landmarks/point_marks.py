@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertices that can be found again after a mesh was edited, by marks (see `element_marks`).
+"""Vertices that are found again after a mesh was edited, by marks (see `element_marks`).
 
 Deleting a vertex renumbers those behind it, but their marks go with them. Duplicating or extruding a vertex
 copies its mark; the vertex is then no longer certain.
@@ -19,7 +19,7 @@ _seen: dict[int, tuple[tuple[int, int, int], dict[int, list[int]]]] = {}
 
 
 def put(mesh: bpy.types.Mesh, vertex: int) -> int:
-    """The mark of a vertex, which gets one if it has none that is its own."""
+    """The mark of a vertex; it gets a new one if it has none, or shares its mark."""
     (old,) = _MARKS.of(mesh, [vertex])
     if old > 0 and len(find(mesh).get(old, ())) == 1:
         return old
@@ -29,23 +29,23 @@ def put(mesh: bpy.types.Mesh, vertex: int) -> int:
 
 
 def clear(mesh: bpy.types.Mesh, mark: int) -> None:
-    """Takes a mark off all vertices that have it."""
+    """Removes a mark from all vertices that have it."""
     _write(mesh, find(mesh).get(mark, ()), 0)
 
 
 def find(mesh: bpy.types.Mesh, *, wanted: Sequence[int] | None = None) -> dict[int, list[int]]:
     """The vertices, a list of numbers, for each mark on a mesh.
 
-    With `wanted`, some marks, what was found before is taken for true unless one of these is not where it
-    was or the mesh has more or fewer elements: fast enough for drawing.
+    With `wanted`, some marks, vertices that were found before are not searched again while these marks are
+    where they were and the mesh has its number of elements: fast enough for drawing.
     """
-    counts, found = _seen.get(mesh.session_uid, (None, {}))
-    if wanted is None or counts != element_counts(mesh) or not _holds(mesh, found, wanted):
-        found = {}
+    counts, by_mark = _seen.get(mesh.session_uid, (None, {}))
+    if wanted is None or counts != element_counts(mesh) or not _holds(mesh, by_mark, wanted):
+        by_mark = {}
         for vertex, mark in _MARKS.all(mesh).items():
-            found.setdefault(mark, []).append(vertex)
-        _seen[mesh.session_uid] = element_counts(mesh), found
-    return found
+            by_mark.setdefault(mark, []).append(vertex)
+        _seen[mesh.session_uid] = element_counts(mesh), by_mark
+    return by_mark
 
 
 def vertex_count(mesh: bpy.types.Mesh) -> int:
@@ -53,11 +53,11 @@ def vertex_count(mesh: bpy.types.Mesh) -> int:
     return element_counts(mesh)[0]
 
 
-def _holds(mesh: bpy.types.Mesh, found: dict[int, list[int]], wanted: Sequence[int]) -> bool:
+def _holds(mesh: bpy.types.Mesh, by_mark: dict[int, list[int]], wanted: Sequence[int]) -> bool:
     """Whether the wanted marks are there, and on the vertices where they were found."""
-    if any(mark not in found for mark in wanted):
+    if any(mark not in by_mark for mark in wanted):
         return False
-    placed = [(mark, vertex) for mark in wanted for vertex in found[mark]]
+    placed = [(mark, vertex) for mark in wanted for vertex in by_mark[mark]]
     return _MARKS.of(mesh, [vertex for _, vertex in placed]) == [mark for mark, _ in placed]
 
 

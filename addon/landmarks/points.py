@@ -2,8 +2,8 @@
 """Landmark pairs: a vertex of a source object and the vertex of its target object that it corresponds to.
 
 They live on the source object, as `authalic_landmarks` with the target in `authalic_target`, and are saved
-with it. What a pair keeps are marks (see `point_marks`), so that its vertices are found again after the
-meshes were edited. `pairs` is the one truth on which vertices those are today, and where they are lost.
+with it. A pair keeps marks (see `point_marks`), so that its vertices are found again after the meshes were
+edited. `pairs` alone says which vertices these are now, and where they are lost.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +18,7 @@ from .objects import NONE, CannotPair, check_target, check_vertex, target_proble
 
 
 class Pair(NamedTuple):
-    """A landmark pair as it is today; -1 for a vertex that is not certain, and then the problem in words."""
+    """A landmark pair as it is now; -1 for a vertex that is not certain, and then the problem in words."""
 
     name: str
     source_vertex: int
@@ -35,7 +35,7 @@ def _setter(side: str) -> Callable[[Landmark, int], None]:
 
 
 class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
-    """One pair. Its vertices are numbers of today, whatever was edited since they were set."""
+    """One pair. Its vertices have their current numbers, whatever was edited."""
 
     name: StringProperty(name="Name", description="The name of this pair of landmarks")
     source_vertex: IntProperty(
@@ -63,7 +63,7 @@ class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
 
 
 def pairs(source: MeshObject, *, drawing: bool = False) -> list[Pair]:
-    """All pairs of a source object, as a list of `Pair`, with what is wrong with each in words.
+    """All pairs of a source object, with the problem of each in words.
 
     With `drawing`, large meshes in edit mode are not searched anew unless they have changed visibly.
     """
@@ -94,7 +94,7 @@ def add(source: MeshObject, source_vertex: int, target_vertex: int, name: str = 
 
 
 def replace(source: MeshObject, wanted: Sequence[tuple[str, int, int]]) -> None:
-    """Puts pairs (name, source vertex, target vertex) in place of all there are, or of none of them.
+    """Replaces all pairs by pairs (name, source vertex, target vertex), or none of them.
 
     Raises `CannotPair` and then changes nothing.
     """
@@ -115,7 +115,7 @@ def replace(source: MeshObject, wanted: Sequence[tuple[str, int, int]]) -> None:
 
 
 def remove(source: MeshObject, index: int) -> None:
-    """Removes the pair of an index; the one that takes its place is the active one."""
+    """Removes a pair; the next one becomes the active pair."""
     undo.remember(source, index)
     gone = source.authalic_landmarks[index]
     source_mark, target_mark = gone.source_mark, gone.target_mark
@@ -138,12 +138,12 @@ def clear(source: MeshObject) -> None:
 
 def _check_new(source: MeshObject, source_vertex: int, target_vertex: int) -> None:
     check_target(source)
-    there = pairs(source)
+    existing = pairs(source)
     for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
         check_vertex(obj, vertex)
-        other = next((pair for pair in there if pair[side] == vertex), None)
-        if other is not None:
-            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{other.name}" already')
+        taken = next((pair for pair in existing if pair[side] == vertex), None)
+        if taken is not None:
+            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{taken.name}" already')
 
 
 def _free_name(source: MeshObject) -> str:
@@ -159,9 +159,9 @@ def _found(source: MeshObject, obj: MeshObject, side: str, drawing: bool) -> dic
     return point_marks.find(obj.data, wanted=wanted if drawing else None)
 
 
-def _where(mark: int, found: dict[int, list[int]], obj: MeshObject) -> tuple[int, str | None]:
+def _where(mark: int, by_mark: dict[int, list[int]], obj: MeshObject) -> tuple[int, str | None]:
     """The vertex that has a mark, or -1 and the problem."""
-    vertices = found.get(mark, ())
+    vertices = by_mark.get(mark, ())
     if len(vertices) == 1:
         return vertices[0], None
     if vertices:
@@ -184,9 +184,9 @@ def _repeated(
 
 
 def _release(obj: MeshObject, mark: int) -> bool:
-    """Takes a mark off a mesh if no pair of any object needs it; whether that was so."""
-    for other in mesh_objects():
-        for landmark in other.authalic_landmarks:
+    """Removes a mark from a mesh if no pair of any object needs it; returns whether it did."""
+    for obj_with_pairs in mesh_objects():
+        for landmark in obj_with_pairs.authalic_landmarks:
             if mark in (landmark.source_mark, landmark.target_mark):
                 return False
     if obj.type == "MESH" and obj.data.is_editable:
@@ -211,7 +211,7 @@ def _vertex(landmark: Landmark, side: str) -> int:
 
 
 def _bind(landmark: Landmark, side: str, vertex: int) -> None:
-    """Marks the vertex; one that the mesh does not have is no vertex."""
+    """Marks the vertex, if the mesh has it."""
     obj, mark = _object(landmark, side), 0
     if side == "target":
         landmark.waiting = vertex if obj is None else NONE

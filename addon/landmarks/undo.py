@@ -2,10 +2,10 @@
 """Undo of landmarks in edit mode, where Blender takes back changes of meshes alone.
 
 The lists of pairs of points and of curves are a part of the object: when a step of edit mode is undone or
-redone, they stay as they are, or become what they were when edit mode was entered. The marks on the meshes
-come and go with the steps. So the lists are made to follow the marks: a pair returns whose mark is there
-again, and one leaves whose mark went away, or that has come without. A pair whose vertices or edges were
-deleted, which changes their number, stays.
+redone, they stay, or become what they were when edit mode was entered. The marks on the meshes come and go
+with the steps. So the lists follow the marks: a pair returns when its mark does, and a pair leaves when its
+mark goes or when it has come without. A pair whose vertices or edges were deleted stays; such a step changes
+the number of elements.
 """
 
 from collections.abc import Iterable
@@ -40,14 +40,14 @@ _before: dict[tuple[str, int], tuple[set[int], Any, set[tuple[str, int]]]] = {}
 
 
 def remember(source: MeshObject, index: int, listed: Listed = POINTS) -> None:
-    """To be called before a pair is removed, the mark of which goes too."""
+    """Keeps the values of a pair that is about to be removed with its mark."""
     pair = getattr(source, listed.name)[index]
     values = {name: getattr(pair, name) for name in listed.kept}
     _known[listed.name, source.session_uid, getattr(pair, listed.mark)] = index, values
 
 
 def forget(source: MeshObject, mark: int) -> None:
-    """The same if the mark of a point stays, for the sake of another pair: it says nothing about this one."""
+    """Forgets a removed pair whose mark stays for another pair and so does not say that it is back."""
     _known.pop((POINTS.name, source.session_uid, mark), None)
 
 
@@ -86,15 +86,15 @@ def _follow(is_redone: bool) -> None:
 
 def _update(source: MeshObject, listed: Listed, is_redone: bool) -> None:
     """Makes a list follow the marks that a step has brought or taken away."""
-    in_list, size, there = _before.get((listed.name, source.session_uid), (set(), None, set()))
-    new_size, found = _state(source, listed)
-    present = _only_marks(found)
+    in_list, size, before = _before.get((listed.name, source.session_uid), (set(), None, set()))
+    new_size, after = _state(source, listed)
+    present = _only_marks(after)
     # A pair can have lost one of its two marks because it was removed, or because that was added later.
-    gone = _only_marks(there - found) if is_redone else _only_marks(there) - present
+    gone = _only_marks(before - after) if is_redone else _only_marks(before) - present
     went = gone if size == new_size else set()
     came = _marks(source, listed) - in_list - present
     _drop(source, listed, went | came)
-    back = present & (in_list | _only_marks(found - there))
+    back = present & (in_list | _only_marks(after - before))
     _restore(source, listed, back - went)
 
 
@@ -133,8 +133,8 @@ def _of_curves(source: MeshObject, side: str) -> Iterable[int]:
     return curve_marks.find(obj.data, curve_marks.key(source, side))
 
 
-def _only_marks(found: set[tuple[str, int]]) -> set[int]:
-    return {mark for _, mark in found}
+def _only_marks(sides_and_marks: set[tuple[str, int]]) -> set[int]:
+    return {mark for _, mark in sides_and_marks}
 
 
 def _drop(source: MeshObject, listed: Listed, gone: set[int]) -> None:
@@ -149,7 +149,7 @@ def _restore(source: MeshObject, listed: Listed, wanted: set[int]) -> None:
     pairs = getattr(source, listed.name)
     missing = [(listed.name, source.session_uid, mark) for mark in wanted - _marks(source, listed)]
     back = [_known[key] for key in missing if key in _known]
-    for index, values in sorted(back, key=lambda one: one[0]):
+    for index, values in sorted(back, key=lambda index_and_values: index_and_values[0]):
         pair = pairs.add()
         for name, value in values.items():
             setattr(pair, name, value)

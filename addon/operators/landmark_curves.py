@@ -169,16 +169,16 @@ def _numbers(text: str) -> Path:
 
 def _selected(source: MeshObject, index: int) -> tuple[dict[str, Path], int]:
     """The paths {side: path} of selected edges, and the index of their pair, -1 for a new one."""
-    found = {side: path for side in SIDES if (path := curve_selection.path(side_object(source, side)))}
-    if not found:
+    selected = {side: path for side in SIDES if (path := curve_selection.path(side_object(source, side)))}
+    if not selected:
         raise CannotPair(
             f"Select edges of {source.name} or of {source.authalic_target.name} in Edit Mode: one open path "
             "or one closed loop"
         )
-    chosen = {side: path for side, (path, _) in found.items()}
+    chosen = {side: path for side, (path, _) in selected.items()}
     if index == NONE:
         index, chosen = curve_pairing.place_for(source, chosen)
-    loose = [side for side in chosen if not found[side][1]]
+    loose = [side for side in chosen if not selected[side][1]]
     return curve_pairing.directed(source, index, chosen, loose), index
 
 

@@ -59,9 +59,8 @@ class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):  # t
     def run(self, source: MeshObject, path: FilePath) -> Status:
         pairs, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
         sound = [pair[:3] for pair in pairs if pair.problem is None]
-        whole = [
-            (one.name, one.source.vertices, one.target.vertices) for one in curves if one.problem is None
-        ]
+        usable = [curve for curve in curves if curve.problem is None]
+        whole = [(curve.name, curve.source.vertices, curve.target.vertices) for curve in usable]
         unsound: list[Pair | Curve] = [*pairs, *curves]
         left = [f"{pair.name}: {pair.problem}" for pair in unsound if pair.problem is not None]
         if not sound and not whole:
@@ -90,23 +89,23 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # t
         return poll.has_source(cls, context)
 
     def run(self, source: MeshObject, path: FilePath) -> Status:
-        found = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))
-        named: bpy.types.Object | None = bpy.data.objects.get(found.target)
+        content = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))
+        named: bpy.types.Object | None = bpy.data.objects.get(content.target)
         before = source.authalic_target
         if before is None and is_mesh(named) and named != source:
             source.authalic_target = named
         try:
-            landmark_curves.check_all(source, found.curves or [])
-            landmark_points.replace(source, found.pairs)
-            if found.curves is not None:
-                landmark_curves.replace(source, found.curves)
+            landmark_curves.check_all(source, content.curves or [])
+            landmark_points.replace(source, content.pairs)
+            if content.curves is not None:
+                landmark_curves.replace(source, content.curves)
         except CannotPair:
             source.authalic_target = before
             raise
         target = source.authalic_target.name
-        done = f"Read {_counted(found.pairs, found.curves)} of {source.name} and {target}"
-        others = (found.source, found.target) != (source.name, target)
-        note = f', in the file those of "{found.source}" and "{found.target}"' if others else ""
+        done = f"Read {_counted(content.pairs, content.curves)} of {source.name} and {target}"
+        is_for_others = (content.source, content.target) != (source.name, target)
+        note = f', in the file those of "{content.source}" and "{content.target}"' if is_for_others else ""
         self.report({"INFO"}, done + note)
         return {"FINISHED"}
 
@@ -114,7 +113,7 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # t
 def _counted(pairs: Sized | None, curves: Sized | None) -> str:
     """ "3 landmarks", "2 landmark curves", or both."""
     counted = ((pairs, "landmark"), (curves, "landmark curve"))
-    parts = [messages.count(len(found), noun) for found, noun in counted if found]
+    parts = [messages.count(len(entries), noun) for entries, noun in counted if entries]
     return " and ".join(parts) or "no landmarks"
 
 

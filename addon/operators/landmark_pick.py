@@ -124,8 +124,8 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
 
     def _objects(self, context: bpy.types.Context) -> list[MeshObject] | None:
         """The source and its target, or None if one is gone or is another one now."""
-        found: list[Any] = [context.view_layer.objects.get(name) for name in self._names]
-        return found if None not in found and found[0].authalic_target == found[1] else None
+        objects: list[Any] = [context.view_layer.objects.get(name) for name in self._names]
+        return objects if None not in objects and objects[0].authalic_target == objects[1] else None
 
     def _under(
         self, context: bpy.types.Context, objects: Sequence[MeshObject], view: Seen
@@ -141,17 +141,17 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._surfaces[k].place(objects[k].matrix_world)
         matrix = np.array(region.data.perspective_matrix)
         seen = picking.View(matrix, region.width, region.height)
-        found = picking.pick(
+        picked = picking.pick(
             [self._surfaces[k] for k in shown], seen, pixel, blocked=_blocked(context, objects, seen, pixel)
         )
-        return found and (_SIDES[shown[found[0]]], found[1])
+        return picked and (_SIDES[shown[picked[0]]], picked[1])
 
-    def _hover(self, context: bpy.types.Context, found: tuple[str, int] | None) -> None:
+    def _hover(self, context: bpy.types.Context, picked: tuple[str, int] | None) -> None:
         source: Any = context.view_layer.objects.get(self._names[0])
         number = str(len(source.authalic_landmarks) + 1) if source else ""
         hints = [self._hint(side, vertex, number) for side, vertex in self._chosen.items()]
-        if found is not None:
-            hints.append(self._hint(*found, number))
+        if picked is not None:
+            hints.append(self._hint(*picked, number))
         if hints != shown_hints:
             shown_hints[:] = hints
             redraw(context)
@@ -160,12 +160,12 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         return Marker(self._names[_SIDES.index(side)], vertex, text, side, is_active=True)
 
     def _click(
-        self, context: bpy.types.Context, objects: Sequence[MeshObject], found: tuple[str, int] | None
+        self, context: bpy.types.Context, objects: Sequence[MeshObject], picked: tuple[str, int] | None
     ) -> None:
-        if found is None:
+        if picked is None:
             self._say(context, "No vertex of the two objects is there")
             return
-        side, vertex = found
+        side, vertex = picked
         self._chosen[side] = vertex
         if len(self._chosen) == 2:
             self._pair(context, objects[0])
@@ -265,7 +265,7 @@ def _surface(obj: MeshObject, context: bpy.types.Context) -> picking.Pickable:
 
 
 def _state(obj: MeshObject) -> tuple[object, ...]:
-    """Changes where the surface of an object has to be looked at again."""
+    """A state that changes when the surface of an object must be read again."""
     mesh = obj.data
     return obj.as_pointer(), mesh.session_uid, mesh.is_editmode, point_marks.vertex_count(mesh)
 
@@ -273,7 +273,7 @@ def _state(obj: MeshObject) -> tuple[object, ...]:
 def _blocked(
     context: bpy.types.Context, objects: Sequence[MeshObject], view: picking.View, pixel: ArrayLike
 ) -> float:
-    """How far away another object lies that hides what is behind it."""
+    """The distance of another object that hides what is behind it."""
     origin, direction = view.ray(pixel)
     start = origin
     for _ in range(_SKIPPED):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that run a `Job`: at once for scripts and the redo panel, behind a living window for people."""
+"""Operators that run a `Job`: at once for scripts and the redo panel, else while the window stays alive."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -71,7 +71,7 @@ class Modal(OperatorMixin):
 
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             header.layout.label(text="Cancel", icon="EVENT_ESC")
-            header.layout.label(text="Keep What There Is", icon="EVENT_RETURN")
+            header.layout.label(text="Keep Current Result", icon="EVENT_RETURN")
             header.layout.progress(factor=fraction, text=title)
 
         if context.workspace is not None:
@@ -84,7 +84,7 @@ class Modal(OperatorMixin):
             context.workspace.status_text_set(None)
 
     def _attempt(self, step: Callable[[], Status]) -> Status:
-        """What a step returns; where the job was refused, the reason is told and nothing has changed."""
+        """The result of a step; where the job was refused, reports the reason, and nothing has changed."""
         try:
             return step()
         except targets.NothingToDo as problem:

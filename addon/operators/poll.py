@@ -50,7 +50,7 @@ def has_source(operator: "type[bpy.types.Operator]", context: bpy.types.Context)
 
 
 def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """The same, and a target for it."""
+    """Object or edit mode with an active mesh that has a target."""
     if not has_source(operator, context):
         return False
     problem = target_problem(active_source(context))

@@ -21,7 +21,7 @@ class Registering(OperatorMixin):
 
     method: EnumProperty(
         name="Method",
-        description="What of the two surfaces comes to lie over each other",
+        description="What is matched between the two meshes",
         items=(
             (
                 "POINTS",

@@ -110,7 +110,7 @@ class Solving(OperatorMixin):
     )
 
     def solver(self) -> bridge.Solver:
-        """The settings; of a preset that a script names, those values count that it does not give itself."""
+        """The settings. If a script names a preset, its values count unless the script sets them."""
         is_set = self.properties.is_property_set
         if is_set("angle_preset") and solver.is_preset(self.angle_preset):
             name = self.angle_preset

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.transfer: UV maps, vertex groups, colours and shape keys from the target to the active object."""
+"""authalic.transfer: UV maps, vertex groups, colors and shape keys from the target to the active object."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ _KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "sh
 
 
 class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
-    """Copy UV maps, vertex groups, colours and shape keys from the target to the active object.
+    """Copy UV maps, vertex groups, colors and shape keys from the target to the active object.
 
     Through their registration, landmarks onto landmarks. Layers of the same names are replaced"""
 

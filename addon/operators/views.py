@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What brings a place on an object into view."""
+"""Moves the 3D view to a place on an object."""
 
 import bpy
 from mathutils import Vector

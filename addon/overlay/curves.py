@@ -61,12 +61,12 @@ _made: int | None = None
 
 
 def icon(number: int) -> Any:
-    """The icon with the color of the curve of a number, from 0."""
+    """The icon in the color of a curve, by its number from 0."""
     return f"COLORSET_{_COLOR_SETS[number % len(_COLOR_SETS)]:02}_VEC"
 
 
 def shown(context: bpy.types.Context) -> list[Line]:
-    """The lines for what is selected: of sources and of those whose target is."""
+    """The lines of the selected sources, and of those whose target is selected."""
     scene: Any = context.scene
     if not scene.authalic_show_landmarks:
         return []
@@ -144,7 +144,7 @@ def _end_edges(line: Line) -> tuple[Edge, Edge]:
 
 
 def _towards_eye(context: bpy.types.Context) -> Matrix:
-    """What brings points in the space of the view nearer to the eye, at the same pixels."""
+    """The matrix that moves points of the view nearer to the eye, at the same pixels."""
     view = context.region_data
     if view.is_perspective:
         return Matrix.Diagonal((*[1 - _NEARER] * 3, 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Discs and labels drawn over a 3D view, and when and for what they are drawn."""
+"""Discs and labels drawn over a 3D view, and the objects that they are drawn for."""
 
 import math
 from collections.abc import Sequence
@@ -73,7 +73,7 @@ def _circle(center: Sequence[float] | Vector, radius: float) -> list[tuple[float
 
 
 def label(text: str, pixel: Sequence[float] | Vector, size: float, color: Sequence[float]) -> None:
-    """A text of a size to the right of a pixel, on a dark ground."""
+    """A text to the right of a pixel, on a dark ground."""
     font, scale = 0, bpy.context.preferences.system.ui_scale
     blf.size(font, size)
     left, bottom = pixel[0] + 11 * scale, pixel[1] + 4 * scale

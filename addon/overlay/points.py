@@ -37,7 +37,7 @@ hints: list[Marker] = []
 
 
 def shown(context: bpy.types.Context) -> list[Marker]:
-    """The markers for what is selected: of sources and of those whose target is."""
+    """The markers of the selected sources, of those whose target is selected, and the hints of picking."""
     scene: Any = context.scene
     if not scene.authalic_show_landmarks:
         return list(hints)
@@ -61,9 +61,9 @@ def _draw() -> None:
         return
     scale = context.preferences.system.ui_scale
     held = [element_marks.hold(obj.data) for obj in sources(context)]
-    placed = [found for marker in shown(context) if (found := _place(marker, context))]
+    placed = [place for marker in shown(context) if (place := _place(marker, context))]
     del held
-    placed.sort(key=lambda found: (found[2], found[0].is_active))  # those in front over the others
+    placed.sort(key=lambda place: (place[2], place[0].is_active))  # those in front over the others
     gpu.state.blend_set("ALPHA")
     for marker, pixel, is_front in placed:
         _draw_disc(marker, pixel, scale, 1.0 if is_front else BEHIND)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The types of arrays, whose shapes stand in the docstrings of those who take or give them, and of paths."""
+"""Types of arrays and of paths. Shapes of arrays stand in the docstrings of functions."""
 
 from typing import Any
 

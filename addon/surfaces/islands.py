@@ -46,7 +46,7 @@ def upright(uv: Floats) -> Floats:
 
 
 def _tightest(points: Floats, angles: Floats) -> float:
-    """The one of the angles (k,) by which points are turned into the smallest bounding box."""
+    """The angle, of (k,), by which points must be turned for the smallest bounding box."""
     sizes = [np.ptp(_turned(points, angle), axis=0).prod() for angle in angles]
     return angles[int(np.argmin(sizes))]
 
@@ -57,7 +57,7 @@ def _turned(points: Floats, angle: float) -> Floats:
 
 
 def _outline(uv: Floats) -> Floats:
-    """The outermost of the points (n, 2) in a good many directions."""
+    """The outermost points, of (n, 2), in `_DIRECTIONS` directions."""
     u, v = np.ascontiguousarray(uv.T)
     angles = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)
     return uv[np.unique([np.argmax(np.cos(angle) * u + np.sin(angle) * v) for angle in angles])]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures of triangles as figures of the polygons they are parts of. Plain numpy, no bpy."""
+"""From figures of triangles to figures of polygons. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
 
@@ -16,13 +16,13 @@ LOG2_LIMIT = 20.0
 def log2_area_ratios(
     surfaces: Sequence[Surface], log2: Floats, areas: Floats, folded: Booleans
 ) -> list[Floats]:
-    """log2 of each polygon's own area ratio, for each surface (polygons,), from those of all triangles (t,).
+    """For each surface log2 of the area ratio of its polygons (p,), from `log2` of all triangles (t,).
 
-    The mean over its triangles, weighted by their areas, which are 0 for triangles that do not count.
+    A polygon has the mean of its triangles, weighted by `areas`, which are 0 for triangles that do not count.
     """
     ends = np.cumsum([len(surface.triangles) for surface in surfaces])[:-1]
     parts = zip(surfaces, *(np.split(values, ends) for values in (np.exp2(log2), areas, folded)), strict=True)
-    return [_of_surface(*part) for part in parts]
+    return [_of_surface(*values) for values in parts]
 
 
 def _of_surface(surface: Surface, ratios: Floats, weights: Floats, folded: Booleans) -> Floats:

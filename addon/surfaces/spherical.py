@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps onto the sphere beside the surfaces they are of. Plain numpy, no bpy."""
+"""Maps from a surface onto the unit sphere, compared with the surface. Plain numpy, no bpy."""
 
 import numpy as np
 
@@ -11,13 +11,13 @@ _ROUNDING = 8 * float(np.finfo(np.float32).eps)
 
 
 def centroid(points: Floats, faces: Integers) -> Floats:
-    """The centre (3,) of the area of a surface."""
+    """The center (3,) of the area of a surface."""
     weights = triangulation.areas(points[faces])
     return weights @ points[faces].mean(axis=1) / weights.sum()
 
 
 def radius(points: Floats, faces: Integers) -> float:
-    """That of the sphere with a surface's area."""
+    """The radius of the sphere that has the area of a surface."""
     return np.sqrt(triangulation.areas(points[faces]).sum() / (4 * np.pi))
 
 
@@ -52,6 +52,6 @@ def is_thin(positions: Floats, faces: Integers) -> bool:
 
 
 def turned(faces: Integers, oriented: Integers) -> Booleans:
-    """Which faces (m, 3) are turned over in `oriented` (m, 3), which is one orientation for all, (m,)."""
+    """A mask (m,) of the faces (m, 3) that `oriented` (m, 3), in which all are oriented alike, turns over."""
     turns = np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)
     return ~(oriented[:, None, :] == turns).all(axis=2).any(axis=1)

@@ -24,7 +24,7 @@ class Patch(Protocol):
 
 
 class Unsuitable(Exception):
-    """A surface that no map of the wanted kind exists for, and what to do about it."""
+    """There is no map of the wanted kind for a surface; says why and what to do about it."""
 
 
 def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
@@ -37,8 +37,8 @@ def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
             "Automatic"
         )
     if domain == "DISK" and patch.is_closed:
-        other = ", or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
-        raise Unsuitable(f"is closed; mark seams to cut it open{other}")
+        remedy = ", or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
+        raise Unsuitable(f"is closed; mark seams to cut it open{remedy}")
     if patch.genus > 0:
         closed = "is closed and " if patch.is_closed else ""
         raise Unsuitable(f"{closed}has {handles(patch)}, like a torus; mark seams to cut it open")
@@ -67,7 +67,7 @@ def handles(patch: Patch) -> str:
 def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> None:
     """Raises `Unsuitable` unless a mesh is one closed surface without handles.
 
-    `used` (u,) are the vertices that have faces, of the mesh's `count` and of centres beyond these; `patches`
+    `used` (u,) are the vertices that have faces, of the mesh's `count` and of centers beyond these; `patches`
     are the pieces that the mesh is cut into without seams.
     """
     loose = np.setdiff1d(np.arange(count), used)

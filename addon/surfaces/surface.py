@@ -39,5 +39,5 @@ class Surface:
 
     def restricted(self, triangles: Booleans, uv: Singles) -> "Surface":
         """The part of the surface given by a mask (t,) of its triangles, with other UVs."""
-        part = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
-        return replace(self, uv=uv, **part)
+        kept = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}
+        return replace(self, uv=uv, **kept)

@@ -15,7 +15,7 @@ _FLAT = 2 * float(np.finfo(np.float32).eps)
 
 @dataclass
 class Triangles:
-    """Triangles with the mesh corner of each of their corners, -1 at the centre of a divided polygon."""
+    """Triangles with the mesh corner of each of their corners, -1 at the center of a divided polygon."""
 
     positions: Floats
     triangles: Integers
@@ -56,10 +56,10 @@ def has_area(triangles: Floats) -> Booleans:
 
 
 def sound(surface: Surface) -> Triangles:
-    """The triangles of a surface, with polygons that triangles would harm divided from their centre.
+    """The triangles of a surface, with bad polygons divided from their center.
 
-    Harm is a diagonal that coincides with an edge or another polygon's diagonal, where the surface would
-    seem to branch, or a triangle without area, as corners in a line give.
+    A polygon is bad if one of its diagonals is also an edge or a diagonal of another polygon, where the
+    surface would seem to branch, or if one of its triangles has no area, as corners in a line give.
     """
     bad = _branching(surface) | _with_flat_triangle(surface)
     bad &= surface.polygon_size > 3
@@ -83,13 +83,13 @@ def _branching(surface: Surface) -> Booleans:
         np.stack([surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()]), axis=0
     )
     key = ends[0].astype(np.int64) * len(surface.positions) + ends[1]
-    own = polygon[is_diagonal]
+    polygons = polygon[is_diagonal]
     diagonals, index = np.unique(key[is_diagonal], return_inverse=True)
     lowest = np.full(len(diagonals), surface.polygon_count)
-    np.minimum.at(lowest, index, own)
+    np.minimum.at(lowest, index, polygons)
     shared = np.zeros(len(diagonals), bool)
-    shared[index[own != lowest[index]]] = True
-    bad[own[shared[index] | np.isin(diagonals, key[~is_diagonal])[index]]] = True
+    shared[index[polygons != lowest[index]]] = True
+    bad[polygons[shared[index] | np.isin(diagonals, key[~is_diagonal])[index]]] = True
     return bad
 
 
@@ -107,15 +107,15 @@ def _divided(surface: Surface, polygons: Integers, kept: Triangles) -> Triangles
     size, start = surface.polygon_size[polygons], surface.polygon_start[polygons]
     which = np.repeat(np.arange(len(polygons)), size)
     turn = np.arange(len(which)) - np.repeat(np.cumsum(size) - size, size)
-    here = start[which] + turn
-    there = start[which] + (turn + 1) % size[which]
-    vertex = surface.corner_vertex[here]
-    centres = np.zeros((len(polygons), 3))
-    np.add.at(centres, which, surface.positions[vertex] / size[which][:, None])
-    fans = np.stack([vertex, surface.corner_vertex[there], len(surface.positions) + which], axis=1)
-    corners = np.stack([here, there, np.full(len(which), -1)], axis=1)
+    corner = start[which] + turn
+    next_corner = start[which] + (turn + 1) % size[which]
+    vertex = surface.corner_vertex[corner]
+    centers = np.zeros((len(polygons), 3))
+    np.add.at(centers, which, surface.positions[vertex] / size[which][:, None])
+    fans = np.stack([vertex, surface.corner_vertex[next_corner], len(surface.positions) + which], axis=1)
+    corners = np.stack([corner, next_corner, np.full(len(which), -1)], axis=1)
     return Triangles(
-        np.concatenate([kept.positions, centres]),
+        np.concatenate([kept.positions, centers]),
         np.concatenate([kept.triangles, fans]),
         np.concatenate([kept.corners, corners]),
         np.concatenate([kept.polygons, polygons[which]]),

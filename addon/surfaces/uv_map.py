@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The UV map of a surface as triangles in the plane, and what of it may move. Plain numpy, no bpy."""
+"""The UV map of a surface as triangles in the plane, and which points must stay. Plain numpy, no bpy."""
 
 from dataclasses import dataclass
 
@@ -15,10 +15,10 @@ from .surface import Surface
 class UvMap:
     """The triangles of a surface (`Surface`), joined where they share UVs at a vertex.
 
-    `points` (n, 3) in space and `uv` (n, 2) are those of UV vertices, `vertices` (n,) the mesh's, -1 at the
-    centers of divided polygons. `faces` (m, 3) are UV vertices, `corners` (m, 3) mesh corners, -1 at such
-    centers, `polygons` (m,) polygons. UV vertices stay that are `pinned` (n,), or `shared` (n,) with faces
-    that are left out.
+    Each UV vertex has a point in space, `points` (n, 3), one in the plane, `uv` (n, 2), and a vertex of the
+    mesh, `vertices` (n,), -1 at the centers of divided polygons. `faces` (m, 3) are UV vertices, `corners`
+    (m, 3) mesh corners, -1 at such centers, `polygons` (m,) polygons. UV vertices must stay if they are
+    `pinned` (n,), or `shared` (n,) with faces that are left out.
     """
 
     points: Floats
@@ -74,21 +74,21 @@ def _corner_uvs(surface: Surface, mesh: triangulation.Triangles) -> Singles:
 
 def _pinned(surface: Surface, mesh: triangulation.Triangles, faces: Integers, count: int) -> Booleans:
     """Which UV vertices (n,) have a pin at one of their corners."""
-    found = np.zeros(count, bool)
+    pinned = np.zeros(count, bool)
     if surface.pinned is not None:
         real = mesh.corners >= 0
-        found[faces[real][surface.pinned[mesh.corners[real]]]] = True
-    return found
+        pinned[faces[real][surface.pinned[mesh.corners[real]]]] = True
+    return pinned
 
 
 def _shared(surface: Surface, vertices: Integers, uv: Singles) -> Booleans:
     """Which UV vertices (n,) are also those of faces that are left out."""
-    others = np.ones(len(surface.corner_vertex), bool)
-    others[_corners_of(surface, np.unique(surface.polygons))] = False
-    if not others.any():
+    left_out = np.ones(len(surface.corner_vertex), bool)
+    left_out[_corners_of(surface, np.unique(surface.polygons))] = False
+    if not left_out.any():
         return np.zeros(len(vertices), bool)
-    theirs = _keys(surface.corner_vertex[others], surface.uvs[others])
-    return np.isin(_keys(vertices, uv), theirs)
+    left_out_keys = _keys(surface.corner_vertex[left_out], surface.uvs[left_out])
+    return np.isin(_keys(vertices, uv), left_out_keys)
 
 
 def _corners_of(surface: Surface, polygons: Integers) -> Integers:
@@ -99,7 +99,7 @@ def _corners_of(surface: Surface, polygons: Integers) -> Integers:
 
 
 def _keys(vertices: Integers, uv: Singles) -> NDArray[np.void]:
-    """A number or record for each vertex with UVs; equal ones agree in both."""
+    """A key for each vertex with UVs; keys are equal where vertex and UVs are."""
     places = (np.ascontiguousarray(uv, np.float32) + np.float32(0)).view(np.uint64).ravel()
     keys = np.empty(len(vertices), [("vertex", np.int64), ("place", np.uint64)])
     keys["vertex"], keys["place"] = vertices, places

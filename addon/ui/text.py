@@ -12,11 +12,11 @@ _EXACT = 5e-4  # percent
 
 
 def draw_aside(row: bpy.types.UILayout, text: str) -> None:
-    """A figure at the right end of a row of a list, greyed out."""
-    part = row.row()
-    part.alignment = "RIGHT"
-    part.active = False
-    part.label(text=text, translate=False)
+    """A figure at the right end of a row of a list, grayed out."""
+    column = row.row()
+    column.alignment = "RIGHT"
+    column.active = False
+    column.label(text=text, translate=False)
 
 
 def draw_error(layout: bpy.types.UILayout, pairs: Any, index: int) -> None:

@@ -11,7 +11,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::geometry::{area, triangle};
 use crate::parallel;
-use crate::vector::{Vector, distance, dot, sub};
+use crate::vector::Vector3;
 
 /// The least density allowed, beside the largest.
 const SMALLEST_DENSITY: f64 = 1e-12;
@@ -46,7 +46,25 @@ pub enum Image<'a> {
     Plane(&'a [[f64; 2]]),
     /// (n, 3) positions around the origin; a face is positive where it is seen counter-clockwise from
     /// outside.
-    Sphere(&'a [[f64; 3]]),
+    Sphere(&'a [Vector3]),
+}
+
+impl Image<'_> {
+    /// How many vertices there are.
+    fn len(self) -> usize {
+        match self {
+            Self::Plane(map) => map.len(),
+            Self::Sphere(map) => map.len(),
+        }
+    }
+
+    /// The image of a vertex as a point in space, where the plane is z = 0.
+    pub(crate) fn point(self, vertex: usize) -> Vector3 {
+        match self {
+            Self::Plane(map) => Vector3([map[vertex][0], map[vertex][1], 0.0]),
+            Self::Sphere(map) => map[vertex],
+        }
+    }
 }
 
 /// An image scaled by a power of two to coordinates of size 1: exact, and safe from over- and underflow.
@@ -59,38 +77,29 @@ struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     /// Refuses coordinates that are not finite.
     fn new(image: Image<'a>) -> Result<Self, Error> {
-        let coordinates: &[f64] = match image {
-            Image::Plane(map) => map.as_flattened(),
-            Image::Sphere(map) => map.as_flattened(),
-        };
-        let width = if matches!(image, Image::Plane(_)) { 2 } else { 3 };
-        let not_finite =
-            coordinates.chunks(width).enumerate().filter(|(_, row)| !row.iter().all(|x| x.is_finite()));
-        if let Some(vertices) = Elements::collect(not_finite.map(|(vertex, _)| vertex)) {
+        let not_finite = (0..image.len()).filter(|&vertex| !image.point(vertex).is_finite());
+        if let Some(vertices) = Elements::collect(not_finite) {
             return Err(MapError::NonFinite { name: "image", vertices }.into());
         }
-        let largest = coordinates.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let largest =
+            (0..image.len()).fold(0.0, |most, vertex| f64::max(most, image.point(vertex).max_abs()));
         let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0) } else { 0.0 };
         Ok(Self { image, factor: (-exponent).exp2() })
     }
 
-    fn corners(&self, face: [u32; 3]) -> [Vector; 3] {
-        let corners = match self.image {
-            Image::Plane(map) => face.map(|v| [map[v as usize][0], map[v as usize][1], 0.0]),
-            Image::Sphere(map) => triangle(map, face),
-        };
-        corners.map(|corner| corner.map(|x| x * self.factor))
+    fn corners(&self, face: [u32; 3]) -> [Vector3; 3] {
+        face.map(|vertex| self.image.point(vertex as usize) * self.factor)
     }
 
     fn is_folded(&self, face: [u32; 3]) -> bool {
         let corners = self.corners(face);
         match self.image {
             Image::Plane(_) => {
-                let [a, b, c] = corners.map(|[x, y, _]| Coord { x, y });
+                let [a, b, c] = corners.map(|Vector3([x, y, _])| Coord { x, y });
                 orient2d(a, b, c) <= 0.0
             }
             Image::Sphere(_) => {
-                let [a, b, c] = corners.map(|[x, y, z]| Coord3D { x, y, z });
+                let [a, b, c] = corners.map(|Vector3([x, y, z])| Coord3D { x, y, z });
                 // positive where the origin lies below the plane through a, b, c
                 orient3d(a, b, c, Coord3D { x: 0.0, y: 0.0, z: 0.0 }) <= 0.0
             }
@@ -106,7 +115,7 @@ pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
 
 /// Faces whose exact orientation around the origin is not positive, ascending: those that an outward oriented
 /// map onto the sphere folds. Coordinates must be finite and moderate.
-pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
+pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector3]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
 
@@ -119,7 +128,7 @@ pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector]) -> Vec<usize> {
 /// [`MapError::NonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
 /// has no area.
 pub fn distortion(
-    points: &[Vector],
+    points: &[Vector3],
     faces: &[[u32; 3]],
     image: Image<'_>,
     targets: &[f64],
@@ -133,9 +142,9 @@ pub fn distortion(
 /// # Errors
 /// As [`distortion`].
 pub(crate) fn distortion_in_space(
-    points: &[Vector],
+    points: &[Vector3],
     faces: &[[u32; 3]],
-    image: &[Vector],
+    image: &[Vector3],
     folded: Vec<usize>,
     targets: &[f64],
 ) -> Result<Distortion, Error> {
@@ -143,7 +152,7 @@ pub(crate) fn distortion_in_space(
 }
 
 fn figures(
-    points: &[Vector],
+    points: &[Vector3],
     faces: &[[u32; 3]],
     image: Scaled<'_>,
     folded: Vec<usize>,
@@ -261,7 +270,7 @@ fn signed_areas(faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<
     areas
 }
 
-fn angle_distortion(points: &[Vector], faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
+fn angle_distortion(points: &[Vector3], faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
     let mut ratios = parallel::map(faces.len(), |face| {
         singular_value_ratio(triangle(points, faces[face]), image.corners(faces[face]))
     });
@@ -274,7 +283,7 @@ fn angle_distortion(points: &[Vector], faces: &[[u32; 3]], image: Scaled<'_>, fo
 /// σ₁/σ₂ of the linear map from one triangle to another, both laid into the plane.
 ///
 /// σ₁ ± σ₂ come from the conformal and the anticonformal part of the map, which does not cancel near σ₁ = σ₂.
-fn singular_value_ratio(rest: [Vector; 3], image: [Vector; 3]) -> f64 {
+fn singular_value_ratio(rest: [Vector3; 3], image: [Vector3; 3]) -> f64 {
     let ([base, x, height], [to_base, to_x, to_height]) = (laid_flat(rest), laid_flat(image));
     let (a, d) = (to_base / base, to_height / height);
     let b = (to_x - x * a) / height;
@@ -286,9 +295,9 @@ fn singular_value_ratio(rest: [Vector; 3], image: [Vector; 3]) -> f64 {
 }
 
 /// A triangle as (0, 0), (base, 0), (x, height).
-fn laid_flat([a, b, c]: [Vector; 3]) -> [f64; 3] {
-    let base = distance(a, b);
-    [base, dot(sub(c, a), sub(b, a)) / base, 2.0 * area([a, b, c]) / base]
+fn laid_flat([a, b, c]: [Vector3; 3]) -> [f64; 3] {
+    let base = a.distance(b);
+    [base, (c - a).dot(b - a) / base, 2.0 * area([a, b, c]) / base]
 }
 
 /// Mean, 99th percentile and maximum.
@@ -310,7 +319,12 @@ fn summary(values: &[f64]) -> (f64, f64, f64) {
 mod tests {
     use super::*;
 
-    const SQUARE: [Vector; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    const SQUARE: [Vector3; 4] = [
+        Vector3([0.0, 0.0, 0.0]),
+        Vector3([1.0, 0.0, 0.0]),
+        Vector3([1.0, 1.0, 0.0]),
+        Vector3([0.0, 1.0, 0.0]),
+    ];
     const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
     fn measured(map: &[[f64; 2]]) -> Distortion {
@@ -356,7 +370,7 @@ mod tests {
 
     #[test]
     fn faces_of_the_sphere_are_positive_seen_from_outside() {
-        let octant = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let octant = [0, 1, 2].map(Vector3::unit);
         let figures = |face| distortion(&octant, &[face], Image::Sphere(&octant), &[1.0]).unwrap();
         assert!(figures([0, 1, 2]).folded.is_empty());
         assert_eq!(figures([0, 2, 1]).folded, [0]);

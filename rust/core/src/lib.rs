@@ -47,3 +47,4 @@ pub use error::{
 };
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, UntangledImage, untangle};
+pub use vector::Vector3;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Arrays in and out: any real dtype and memory layout in, C-contiguous float64 and int64 out.
 
-use authalic::Elements;
+use authalic::{Elements, Vector3};
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
@@ -17,6 +17,11 @@ pub type Pairs = Py<PyArray2<f64>>;
 /// Real numbers of shape (n, N).
 pub fn points<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<[f64; N]>> {
     rows(object, name, "float64", "iufb", "real numbers")
+}
+
+/// Points in space: real numbers of shape (n, 3).
+pub fn vectors(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<Vector3>> {
+    Ok(points(object, name)?.into_iter().map(Vector3).collect())
 }
 
 /// Faces or seams: integers of shape (n, N) that fit a vertex index. Reals are taken where they are whole.
@@ -118,9 +123,9 @@ pub fn width(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
     }
 }
 
-/// Rows to a (n, N) float64 array.
-pub fn from_points<const N: usize>(py: Python<'_>, rows: &[[f64; N]]) -> Pairs {
-    let array = PyArray1::from_slice(py, rows.as_flattened());
+/// Points of a (n, N) float64 array.
+pub fn from_points<const N: usize>(py: Python<'_>, rows: &[impl Copy + Into<[f64; N]>]) -> Pairs {
+    let array = PyArray1::from_iter(py, rows.iter().flat_map(|&row| row.into()));
     array.reshape([rows.len(), N]).expect("the lengths agree").unbind()
 }
 

@@ -2,11 +2,11 @@
 //! Bindings of `authalic::distortion`.
 
 use authalic::mesh::TriangleSoup;
-use authalic::{Image, normalized_density};
+use authalic::{Image, Vector3, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, indices, points, values, width};
+use crate::arrays::{from_index_list, indices, points, values, vectors, width};
 use crate::errors::bad_array;
 use crate::run::run;
 
@@ -65,14 +65,14 @@ impl Distortion {
 /// A map of the vertices, owned.
 pub(crate) enum OwnedImage {
     Plane(Vec<[f64; 2]>),
-    Sphere(Vec<[f64; 3]>),
+    Sphere(Vec<Vector3>),
 }
 
 impl OwnedImage {
     pub(crate) fn extract(image: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Self> {
         let owned = match width(image, "image")? {
             2 => Self::Plane(points(image, "image")?),
-            _ => Self::Sphere(points(image, "image")?),
+            _ => Self::Sphere(vectors(image, "image")?),
         };
         match owned.rows() {
             rows if rows == n_vertices => Ok(owned),

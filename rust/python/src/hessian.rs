@@ -7,7 +7,7 @@ use authalic::{Elements, Error, MapError, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, indices, points, values};
+use crate::arrays::{from_index_list, indices, points, values, vectors};
 use crate::errors::bad_array;
 use crate::run::run;
 
@@ -60,7 +60,7 @@ pub fn stretch_hessian(
 ) -> PyResult<Columns> {
     let vertices = points::<3>(vertices, "vertices")?;
     let faces = indices::<3>(faces, "faces", vertices.len())?;
-    let image = points::<3>(image, "image")?;
+    let image = vectors(image, "image")?;
     if image.len() != vertices.len() {
         let expected = format!("of shape ({}, 3), one row per vertex", vertices.len());
         return Err(bad_array(py, "image", format!("of {} rows", image.len()), expected));
@@ -68,7 +68,7 @@ pub fn stretch_hessian(
     let density = density.map(|density| values(density, "density")).transpose()?;
     let matrix = run(py, None, move |_| {
         let mesh = TriangleMesh::new(&vertices, &faces)?;
-        let not_finite = |v: &usize| !image[*v].iter().all(|x| x.is_finite());
+        let not_finite = |v: &usize| !image[*v].is_finite();
         if let Some(vertices) = Elements::collect((0..image.len()).filter(not_finite)) {
             return Err(MapError::NonFinite { name: "image", vertices }.into());
         }

@@ -7,7 +7,7 @@ use authalic::{SphereMapOptions, SphereMethod};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, from_indices, from_points, indices, points, values};
+use crate::arrays::{from_index_list, from_indices, from_points, indices, points, values, vectors};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
 use crate::options::{history, parse_iterations};
@@ -223,7 +223,7 @@ pub fn sphere_map(
     let vertices = points::<3>(vertices, "vertices")?;
     let faces = indices::<3>(faces, "faces", vertices.len())?;
     let density = density.map(|density| values(density, "density")).transpose()?;
-    let initial = initial.map(|initial| points::<3>(initial, "initial")).transpose()?;
+    let initial = initial.map(|initial| vectors(initial, "initial")).transpose()?;
     // 2. The run
     let (map, vertices, faces) = run(py, progress, move |observer| {
         let mesh = TriangleMesh::new(&vertices, &faces)?;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::hyperbolic`'s structure of a surface: Fuchsian group, pants and hexagons.
 
+use authalic::Vector3;
 use authalic::hyperbolic as core;
 use authalic::hyperbolic::moebius::{Complex, Moebius};
 use authalic::mesh::TriangleMesh;
@@ -122,7 +123,7 @@ pub struct HyperbolicStructure {
 type Sides = (Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 
 impl HyperbolicStructure {
-    fn new(py: Python<'_>, found: core::HyperbolicStructure, vertices: &[[f64; 3]]) -> PyResult<Self> {
+    fn new(py: Python<'_>, found: core::HyperbolicStructure, vertices: &[Vector3]) -> PyResult<Self> {
         let list = |values: &[u32]| from_index_list(py, values.iter().map(|&i| i as usize));
         let sides = |sides: &[[Vec<u32>; 2]]| -> Vec<Sides> {
             sides.iter().map(|[left, right]| (list(left), list(right))).collect()
@@ -275,5 +276,6 @@ pub fn hyperbolic_structure(
         let mesh = TriangleMesh::new(&vertices, &faces)?;
         Ok((core::hyperbolic_structure(&mesh, &curves, metric, observer)?, vertices))
     })?;
+    let vertices: Vec<Vector3> = vertices.into_iter().map(Vector3).collect();
     HyperbolicStructure::new(py, found, &vertices)
 }

@@ -6,16 +6,16 @@
 
 use crate::parallel;
 use crate::sparse::top_eigenvector;
-use crate::vector::{Vector, dot};
+use crate::vector::Vector3;
 
 /// The rotation R, by rows, that maximises Σ w_i (R x_i)·y_i, `from` x and `to` y.
 ///
 /// With y less its [`centroid`], it is the one that minimises Σ w_i |R x_i + b − y_i|² over all R and b; with both
 /// on the sphere, the one that minimises Σ w_i |R x_i − y_i|².
-pub(crate) fn best_rotation(from: &[Vector], to: &[Vector], weights: &[f64]) -> [Vector; 3] {
+pub(crate) fn best_rotation(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> [Vector3; 3] {
     let total = parallel::sum(weights.len(), |v| weights[v]);
     // S_ab = Σ w x_a y_b
-    let s: [Vector; 3] = std::array::from_fn(|a| {
+    let s: [[f64; 3]; 3] = std::array::from_fn(|a| {
         std::array::from_fn(|b| parallel::sum(from.len(), |v| weights[v] / total * from[v][a] * to[v][b]))
     });
     let trace = s[0][0] + s[1][1] + s[2][2];
@@ -31,51 +31,49 @@ pub(crate) fn best_rotation(from: &[Vector], to: &[Vector], weights: &[f64]) -> 
 }
 
 /// Σ w_i x_i / Σ w_i.
-pub(crate) fn centroid(points: &[Vector], weights: &[f64]) -> Vector {
+pub(crate) fn centroid(points: &[Vector3], weights: &[f64]) -> Vector3 {
     let total = parallel::sum(weights.len(), |v| weights[v]);
-    std::array::from_fn(|axis| parallel::sum(points.len(), |v| weights[v] * points[v][axis]) / total)
+    Vector3::from_fn(|axis| parallel::sum(points.len(), |v| weights[v] * points[v][axis]) / total)
 }
 
 /// The rotation of a unit quaternion w + xi + yj + zk, by rows.
-pub(crate) fn rotation_of([w, x, y, z]: [f64; 4]) -> [Vector; 3] {
+pub(crate) fn rotation_of([w, x, y, z]: [f64; 4]) -> [Vector3; 3] {
     [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        Vector3([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)]),
+        Vector3([2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)]),
+        Vector3([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]),
     ]
 }
 
 /// `x` rotated.
-pub(crate) fn rotate(rotation: [Vector; 3], x: Vector) -> Vector {
-    rotation.map(|row| dot(row, x))
+pub(crate) fn rotate(rotation: [Vector3; 3], x: Vector3) -> Vector3 {
+    Vector3(rotation.map(|row| row.dot(x)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::{distance, sub};
 
     #[test]
     fn rotated_points_are_turned_back() {
-        let points: Vec<Vector> = (0..40)
+        let points: Vec<Vector3> = (0..40)
             .map(|i| {
                 let (a, h) = (2.4 * i as f64, -1.0 + (2 * i + 1) as f64 / 40.0);
                 let r = (1.0 - h * h).sqrt();
-                [r * a.cos(), r * a.sin(), h]
+                Vector3([r * a.cos(), r * a.sin(), h])
             })
             .collect();
         let weights: Vec<f64> = (0..40).map(|i| 1.0 + 0.1 * (i as f64).sin()).collect();
         let unit = [0.5, -0.1, 0.7, 0.5];
         for turn in [unit, [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.6, 0.0, 0.8]] {
             let rotation = rotation_of(turn);
-            let turned: Vec<Vector> = points.iter().map(|&x| rotate(rotation, x)).collect();
-            let shifted: Vec<Vector> =
-                points.iter().map(|x| [3.0 * x[0] + 1.0, 3.0 * x[1], 3.0 * x[2] - 7.0]).collect();
+            let turned: Vec<Vector3> = points.iter().map(|&x| rotate(rotation, x)).collect();
+            let shifted: Vec<Vector3> = points.iter().map(|&x| x * 3.0 + Vector3([1.0, 0.0, -7.0])).collect();
             let centre = centroid(&shifted, &weights);
-            let centred: Vec<Vector> = shifted.iter().map(|&y| sub(y, centre)).collect();
+            let centred: Vec<Vector3> = shifted.iter().map(|&y| y - centre).collect();
             let back = best_rotation(&turned, &centred, &weights);
             for (&moved, &point) in turned.iter().zip(&points) {
-                assert!(distance(rotate(back, moved), point) < 1e-12);
+                assert!(rotate(back, moved).distance(point) < 1e-12);
             }
         }
     }

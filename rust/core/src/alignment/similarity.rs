@@ -3,7 +3,7 @@
 
 use super::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
-use crate::vector::{Vector, add, dot, scaled, sub};
+use crate::vector::Vector3;
 
 /// A motion of space with a change of scale: x ↦ s R x + b.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,15 +11,15 @@ pub struct Similarity {
     /// s ≥ 0.
     pub scale: f64,
     /// R by rows, never a reflection.
-    pub rotation: [Vector; 3],
+    pub rotation: [Vector3; 3],
     /// b.
-    pub translation: Vector,
+    pub translation: Vector3,
 }
 
 impl Similarity {
     /// s R x + b.
-    pub fn apply(&self, x: Vector) -> Vector {
-        add(scaled(rotate(self.rotation, x), self.scale), self.translation)
+    pub fn apply(&self, x: Vector3) -> Vector3 {
+        rotate(self.rotation, x) * self.scale + self.translation
     }
 }
 
@@ -30,7 +30,7 @@ impl Similarity {
 ///
 /// # Panics
 /// Where the lengths differ.
-pub fn similarity(from: &[Vector], to: &[Vector], weights: &[f64]) -> Similarity {
+pub fn similarity(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> Similarity {
     assert!(from.len() == to.len() && from.len() == weights.len(), "as many points as weights");
     // 1. Both about their centroids, and of size 1: no square over- or underflows.
     let (x, centre, size) = centred(from, weights);
@@ -38,19 +38,19 @@ pub fn similarity(from: &[Vector], to: &[Vector], weights: &[f64]) -> Similarity
     // 2. The best rotation does not depend on the scale; the best scale for it is a quotient.
     let rotation = best_rotation(&x, &y, weights);
     let [along, square] = parallel::sums(x.len(), |v| {
-        [weights[v] * dot(rotate(rotation, x[v]), y[v]), weights[v] * dot(x[v], x[v])]
+        [weights[v] * rotate(rotation, x[v]).dot(y[v]), weights[v] * x[v].dot(x[v])]
     });
     let scale = if square > 0.0 { along.max(0.0) / square * (to_size / size) } else { 1.0 };
     // 3. Centroid to centroid.
-    let translation = sub(to_centre, scaled(rotate(rotation, centre), scale));
+    let translation = to_centre - rotate(rotation, centre) * scale;
     Similarity { scale, rotation, translation }
 }
 
 /// Points about their centroid divided by their largest coordinate there, with both.
-fn centred(points: &[Vector], weights: &[f64]) -> (Vec<Vector>, Vector, f64) {
+fn centred(points: &[Vector3], weights: &[f64]) -> (Vec<Vector3>, Vector3, f64) {
     let centre = centroid(points, weights);
-    let about = parallel::map(points.len(), |v| sub(points[v], centre));
-    let size = about.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let about = parallel::map(points.len(), |v| points[v] - centre);
+    let size = about.iter().fold(0.0, |most, x| f64::max(most, x.max_abs()));
     let size = if size > 0.0 { size } else { 1.0 };
     (parallel::map(about.len(), |v| about[v].map(|x| x / size)), centre, size)
 }
@@ -59,7 +59,6 @@ fn centred(points: &[Vector], weights: &[f64]) -> (Vec<Vector>, Vector, f64) {
 pub(crate) mod tests {
     use super::*;
     use crate::alignment::rotation::rotation_of;
-    use crate::vector::distance;
 
     /// Numbers in [-1, 1) without order.
     fn number(i: usize) -> f64 {
@@ -67,8 +66,8 @@ pub(crate) mod tests {
     }
 
     /// Points without order.
-    pub(crate) fn cloud(n: usize) -> Vec<Vector> {
-        (0..n).map(|i| [number(3 * i), 2.0 * number(3 * i + 1), 0.5 * number(3 * i + 2)]).collect()
+    pub(crate) fn cloud(n: usize) -> Vec<Vector3> {
+        (0..n).map(|i| Vector3([number(3 * i), 2.0 * number(3 * i + 1), 0.5 * number(3 * i + 2)])).collect()
     }
 
     #[test]
@@ -78,15 +77,16 @@ pub(crate) mod tests {
         for (scale, translation) in
             [(2.5, [3.0, -1.0, 7.0]), (1e-200, [0.0; 3]), (1e200, [1e201, 0.0, 0.0]), (1.0, [1e6, 2e6, 0.0])]
         {
+            let translation = Vector3(translation);
             for turn in [[0.5, -0.1, 0.7, 0.5], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]] {
                 let known = Similarity { scale, rotation: rotation_of(turn), translation };
-                let moved: Vec<Vector> = points.iter().map(|&x| known.apply(x)).collect();
+                let moved: Vec<Vector3> = points.iter().map(|&x| known.apply(x)).collect();
                 let found = similarity(&points, &moved, &weights);
-                let lost = 1e-15 * translation.iter().fold(scale, |most: f64, x| most.max(x.abs()));
+                let lost = 1e-15 * translation.max_abs().max(scale);
                 assert!((found.scale / scale - 1.0).abs() < 1e-12 + 10.0 * lost / scale);
                 for (&x, &y) in points.iter().zip(&moved) {
-                    let apart = sub(found.apply(x), y).map(|d| d / scale);
-                    assert!(distance(apart, [0.0; 3]) < 1e-12 + 10.0 * lost / scale);
+                    let apart = (found.apply(x) - y).map(|d| d / scale);
+                    assert!(apart.distance(Vector3::ZERO) < 1e-12 + 10.0 * lost / scale);
                 }
             }
         }
@@ -97,7 +97,7 @@ pub(crate) mod tests {
         let (from, to) = (cloud(30), cloud(60).split_off(30));
         let weights: Vec<f64> = (0..30).map(|i| 1.5 + number(i + 7)).collect();
         let cost = |s: &Similarity| -> f64 {
-            (0..30).map(|v| weights[v] * distance(s.apply(from[v]), to[v]).powi(2)).sum()
+            (0..30).map(|v| weights[v] * s.apply(from[v]).distance(to[v]).powi(2)).sum()
         };
         let best = similarity(&from, &to, &weights);
         let least = cost(&best);
@@ -106,9 +106,9 @@ pub(crate) mod tests {
             let [x, y, z] = [angle(0), angle(1), angle(2)];
             let nudge = rotation_of([(1.0 - x * x - y * y - z * z).sqrt(), x, y, z]);
             let rotation = std::array::from_fn(|row| {
-                std::array::from_fn(|column| (0..3).map(|k| nudge[row][k] * best.rotation[k][column]).sum())
+                Vector3::from_fn(|column| (0..3).map(|k| nudge[row][k] * best.rotation[k][column]).sum())
             });
-            let translation = add(best.translation, [angle(3), angle(4), angle(5)]);
+            let translation = best.translation + Vector3([angle(3), angle(4), angle(5)]);
             let nearby = Similarity { scale: best.scale * (1.0 + angle(6)), rotation, translation };
             assert!(cost(&nearby) > least);
         }
@@ -117,12 +117,12 @@ pub(crate) mod tests {
     #[test]
     fn a_reflection_is_not_found() {
         let points = cloud(40);
-        let mirrored: Vec<Vector> = points.iter().map(|&[x, y, z]| [-x, y, z]).collect();
+        let mirrored: Vec<Vector3> = points.iter().map(|&Vector3([x, y, z])| Vector3([-x, y, z])).collect();
         let rows = similarity(&points, &mirrored, &[1.0; 40]).rotation;
-        let determinant = dot(rows[0], crate::vector::cross(rows[1], rows[2]));
+        let determinant = rows[0].dot(rows[1].cross(rows[2]));
         assert!((determinant - 1.0).abs() < 1e-12);
-        let collapsed = similarity(&points, &[[1.0, 2.0, 3.0]; 40], &[1.0; 40]);
-        assert_eq!((collapsed.scale, collapsed.translation), (0.0, [1.0, 2.0, 3.0]));
-        assert_eq!(similarity(&[[1.0; 3]; 2], &[[3.0; 3]; 2], &[1.0; 2]).scale, 1.0);
+        let collapsed = similarity(&points, &[Vector3([1.0, 2.0, 3.0]); 40], &[1.0; 40]);
+        assert_eq!((collapsed.scale, collapsed.translation), (0.0, Vector3([1.0, 2.0, 3.0])));
+        assert_eq!(similarity(&[Vector3([1.0; 3]); 2], &[Vector3([3.0; 3]); 2], &[1.0; 2]).scale, 1.0);
     }
 }

@@ -5,11 +5,11 @@ pub(crate) mod motion;
 pub(crate) mod planar;
 pub(crate) mod spherical;
 
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use motion::Motion;
 
 /// A map of the vertices in space, (n, 3): onto the unit sphere, or into the plane z = 1.
-pub(crate) type SpatialMap = Vec<Vector>;
+pub(crate) type SpatialMap = Vec<Vector3>;
 
 /// Where a map goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,7 +6,7 @@
 //! coordinates along the [`Frame`] at its place; [`Motion::moved`] takes them back to the domain.
 
 use crate::parallel;
-use crate::vector::{Vector, add, norm, scaled};
+use crate::vector::Vector3;
 
 /// What one vertex may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,15 +24,15 @@ pub(crate) enum Motion {
 }
 
 /// The axes of the plane.
-const UNITS: [Vector; 2] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+const UNITS: [Vector3; 2] = [Vector3([1.0, 0.0, 0.0]), Vector3([0.0, 1.0, 0.0])];
 
 /// The directions in which a vertex may leave its place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Frame {
     /// Unit vectors; zero where the vertex cannot move.
-    pub axes: [Vector; 2],
+    pub axes: [Vector3; 2],
     /// Where its path bends away from: moving by ξ, its acceleration is −|ξ|² times this.
-    pub outward: Vector,
+    pub outward: Vector3,
 }
 
 impl Motion {
@@ -46,59 +46,61 @@ impl Motion {
     }
 
     /// The frame at `x`.
-    pub(crate) fn frame(self, x: Vector) -> Frame {
+    pub(crate) fn frame(self, x: Vector3) -> Frame {
         match self {
             Self::Held => Frame::default(),
-            Self::Circle => Frame { axes: [[-x[1], x[0], 0.0], [0.0; 3]], outward: [x[0], x[1], 0.0] },
-            Self::Side(along) => Frame { axes: [UNITS[along], [0.0; 3]], outward: [0.0; 3] },
-            Self::Plane => Frame { axes: UNITS, outward: [0.0; 3] },
+            Self::Circle => Frame {
+                axes: [Vector3([-x[1], x[0], 0.0]), Vector3::ZERO],
+                outward: Vector3([x[0], x[1], 0.0]),
+            },
+            Self::Side(along) => Frame { axes: [UNITS[along], Vector3::ZERO], outward: Vector3::ZERO },
+            Self::Plane => Frame { axes: UNITS, outward: Vector3::ZERO },
             Self::Sphere => Frame { axes: tangent_axes(x), outward: x },
         }
     }
 
     /// The place reached from `x` by `unknowns` along its frame: straight in the plane, by a true rotation on the
     /// circle, by the normalising retraction on the sphere.
-    pub(crate) fn moved(self, x: Vector, frame: &Frame, unknowns: [f64; 2]) -> Vector {
+    pub(crate) fn moved(self, x: Vector3, frame: &Frame, unknowns: [f64; 2]) -> Vector3 {
         let [a, b] = unknowns;
         match self {
             Self::Held => x,
             Self::Circle => rotated(x, a),
-            Self::Side(0) => [x[0] + a, x[1], 1.0],
-            Self::Side(_) => [x[0], x[1] + a, 1.0],
-            Self::Plane => [x[0] + a, x[1] + b, 1.0],
+            Self::Side(0) => Vector3([x[0] + a, x[1], 1.0]),
+            Self::Side(_) => Vector3([x[0], x[1] + a, 1.0]),
+            Self::Plane => Vector3([x[0] + a, x[1] + b, 1.0]),
             Self::Sphere => {
-                let moved = add(x, add(scaled(frame.axes[0], a), scaled(frame.axes[1], b)));
-                scaled(moved, 1.0 / norm(moved))
+                let moved = x + (frame.axes[0] * a + frame.axes[1] * b);
+                moved * (1.0 / moved.norm())
             }
         }
     }
 }
 
 /// The frames of all vertices.
-pub(crate) fn frames(motions: &[Motion], map: &[Vector]) -> Vec<Frame> {
+pub(crate) fn frames(motions: &[Motion], map: &[Vector3]) -> Vec<Frame> {
     parallel::map(map.len(), |vertex| motions[vertex].frame(map[vertex]))
 }
 
 /// A point of the circle rotated by an angle.
-pub(crate) fn rotated([u, v, _]: Vector, angle: f64) -> Vector {
+pub(crate) fn rotated(Vector3([u, v, _]): Vector3, angle: f64) -> Vector3 {
     let (sine, cosine) = angle.sin_cos();
     let (u, v) = (u * cosine - v * sine, u * sine + v * cosine);
     let length = (u * u + v * v).sqrt();
-    [u / length, v / length, 1.0]
+    Vector3([u / length, v / length, 1.0])
 }
 
 /// Two unit vectors that make an orthonormal frame with the unit vector `x` (Duff et al. 2017).
-fn tangent_axes([x, y, z]: Vector) -> [Vector; 2] {
+fn tangent_axes(Vector3([x, y, z]): Vector3) -> [Vector3; 2] {
     let sign = 1f64.copysign(z);
     let a = -1.0 / (sign + z);
     let b = x * y * a;
-    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
+    [Vector3([1.0 + sign * x * x * a, sign * b, -sign * x]), Vector3([b, sign + y * y * a, -y])]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::{cross, dot, sub};
 
     #[test]
     fn paths_start_along_the_frame_and_bend_away_from_outward() {
@@ -110,6 +112,7 @@ mod tests {
             (Motion::Sphere, [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0], [0.6, 0.8]),
         ];
         for (motion, x, along) in places {
+            let x = Vector3(x);
             let frame = motion.frame(x);
             let at = |t: f64| motion.moved(x, &frame, along.map(|a| t * a));
             let (h, back, here, there) = (1e-4, at(-1e-4), at(0.0), at(1e-4));
@@ -125,10 +128,10 @@ mod tests {
 
     #[test]
     fn tangent_axes_are_orthonormal() {
-        for x in [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.48, 0.6, 0.64]] {
+        for x in [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.48, 0.6, 0.64]].map(Vector3) {
             let [a, b] = tangent_axes(x);
-            assert!(dot(a, b).abs() < 1e-15 && dot(a, x).abs() < 1e-15 && dot(b, x).abs() < 1e-15);
-            assert!(norm(sub(cross(a, b), x)) < 1e-12 || norm(add(cross(a, b), x)) < 1e-12);
+            assert!(a.dot(b).abs() < 1e-15 && a.dot(x).abs() < 1e-15 && b.dot(x).abs() < 1e-15);
+            assert!((a.cross(b) - x).norm() < 1e-12 || (a.cross(b) + x).norm() < 1e-12);
         }
     }
 }

@@ -4,7 +4,6 @@
 use std::f64::consts::TAU;
 
 use crate::mesh::TriangleMesh;
-use crate::vector::distance;
 
 /// Places the boundary loop on the unit circle, counter-clockwise, arcs proportional to the edge lengths;
 /// the loop's smallest vertex goes to (1, 0). Interior vertices go to the origin.
@@ -25,7 +24,7 @@ pub(super) fn arc_length(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
 /// Length of the edge that leaves each vertex of a loop.
 fn edge_lengths(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
     let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
-    (0..boundary.len()).map(|k| distance(point(k + 1), point(k))).collect()
+    (0..boundary.len()).map(|k| point(k + 1).distance(point(k))).collect()
 }
 
 /// The arc from each vertex of the loop to the next, or `None` where the loop does not run once around the

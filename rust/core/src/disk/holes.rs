@@ -8,7 +8,7 @@
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area, area_vector};
-use crate::vector::{Vector, add, cross, dot, norm, scaled, sub};
+use crate::vector::{Vector3, coordinates};
 
 /// A hole's faces get at least this part of the mean target, so that a slit without area stays solvable.
 const SMALLEST_SHARE: f64 = 0.05;
@@ -30,12 +30,12 @@ pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled,
     let scale = targets.iter().sum::<f64>() / mesh.face_areas().iter().sum::<f64>();
     let least = SMALLEST_SHARE * targets.iter().sum::<f64>() / targets.len() as f64;
     for hole in &mesh.boundary_loops()[1..] {
-        let corners: Vec<Vector> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
+        let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
         let share = (scale * spanned_area(&corners) / hole.len() as f64).max(least);
         fill(hole, &mut points, &mut faces);
         targets.resize(faces.len(), share);
     }
-    Ok(Filled { mesh: TriangleMesh::new(&points, &faces)?, targets })
+    Ok(Filled { mesh: TriangleMesh::new(&coordinates(points), &faces)?, targets })
 }
 
 /// The closed surface with all loops filled; the original vertices and faces come first.
@@ -45,12 +45,12 @@ pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled,
 pub(crate) fn closed(mesh: &TriangleMesh) -> Result<TriangleMesh, Error> {
     let (mut points, mut faces) = (mesh.points().to_vec(), mesh.faces().to_vec());
     mesh.boundary_loops().iter().for_each(|hole| fill(hole, &mut points, &mut faces));
-    TriangleMesh::new(&points, &faces)
+    TriangleMesh::new(&coordinates(points), &faces)
 }
 
 /// Fills one hole by a fan to a new vertex.
-fn fill(hole: &[u32], points: &mut Vec<Vector>, faces: &mut Vec<[u32; 3]>) {
-    let corners: Vec<Vector> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
+fn fill(hole: &[u32], points: &mut Vec<Vector3>, faces: &mut Vec<[u32; 3]>) {
+    let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
     let apex = points.len() as u32;
     points.push(apex_of(&corners));
     for k in 0..hole.len() {
@@ -60,40 +60,41 @@ fn fill(hole: &[u32], points: &mut Vec<Vector>, faces: &mut Vec<[u32; 3]>) {
 }
 
 /// Area of the flat polygon nearest to a loop: the length of its area vector.
-fn spanned_area(corners: &[Vector]) -> f64 {
-    norm(loop_normal(corners))
+fn spanned_area(corners: &[Vector3]) -> f64 {
+    loop_normal(corners).norm()
 }
 
 /// Σ of the area vectors of the fan around the centroid.
-fn loop_normal(corners: &[Vector]) -> Vector {
+fn loop_normal(corners: &[Vector3]) -> Vector3 {
     let centre = centroid(corners);
-    edges(corners).fold([0.0; 3], |sum, (from, to)| add(sum, area_vector([centre, from, to])))
+    edges(corners).fold(Vector3::ZERO, |sum, (from, to)| sum + area_vector([centre, from, to]))
 }
 
 /// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
 /// is fattest.
-fn apex_of(corners: &[Vector]) -> Vector {
+fn apex_of(corners: &[Vector3]) -> Vector3 {
     let (centre, normal) = (centroid(corners), loop_normal(corners));
-    let length: f64 = edges(corners).map(|(from, to)| norm(sub(to, from))).sum();
-    let mut directions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    if norm(normal) > 0.0 {
-        let unit = scaled(normal, 1.0 / norm(normal));
+    let length: f64 = edges(corners).map(|(from, to)| (to - from).norm()).sum();
+    let mut directions = vec![Vector3::ZERO];
+    directions.extend([0, 1, 2].map(Vector3::unit));
+    if normal.norm() > 0.0 {
+        let unit = normal * (1.0 / normal.norm());
         directions.push(unit);
-        directions.extend(edges(corners).take(1).map(|(from, to)| cross(unit, sub(to, from))));
+        directions.extend(edges(corners).take(1).map(|(from, to)| unit.cross(to - from)));
     }
-    let candidates = directions.into_iter().map(|direction| add(centre, scaled(direction, 0.1 * length)));
-    let thinnest = |apex: &Vector| {
+    let candidates = directions.into_iter().map(|direction| centre + direction * (0.1 * length));
+    let thinnest = |apex: &Vector3| {
         edges(corners)
-            .map(|(from, to)| area([from, to, *apex]) / dot(sub(to, from), sub(to, from)))
+            .map(|(from, to)| area([from, to, *apex]) / (to - from).dot(to - from))
             .fold(f64::INFINITY, f64::min)
     };
     candidates.max_by(|a, b| thinnest(a).total_cmp(&thinnest(b))).expect("there are candidates")
 }
 
-fn centroid(corners: &[Vector]) -> Vector {
-    scaled(corners.iter().fold([0.0; 3], |sum, &corner| add(sum, corner)), 1.0 / corners.len() as f64)
+fn centroid(corners: &[Vector3]) -> Vector3 {
+    corners.iter().fold(Vector3::ZERO, |sum, &corner| sum + corner) * (1.0 / corners.len() as f64)
 }
 
-fn edges(corners: &[Vector]) -> impl Iterator<Item = (Vector, Vector)> {
+fn edges(corners: &[Vector3]) -> impl Iterator<Item = (Vector3, Vector3)> {
     (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]))
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Room for a vertex inside the polygon of its neighbours.
 
-use crate::vector::{Vector, cross, dot, norm, sub};
+use crate::vector::Vector3;
 
 /// The centroid of the kernel of a polygon, in coordinates along `basis` from `centre`: of the points from
 /// which all its edges, given by their ends, are seen to run counter-clockwise.
@@ -9,20 +9,20 @@ use crate::vector::{Vector, cross, dot, norm, sub};
 /// `centre` is a corner of the polygon from which all its edges are seen so, but for the two at it. `room` is
 /// a buffer.
 pub(super) fn kernel_centroid(
-    centre: Vector,
-    basis: [Vector; 2],
-    edges: impl Iterator<Item = [Vector; 2]> + Clone,
+    centre: Vector3,
+    basis: [Vector3; 2],
+    edges: impl Iterator<Item = [Vector3; 2]> + Clone,
     room: &mut [Vec<[f64; 2]>; 2],
 ) -> [f64; 2] {
-    let reach = edges.clone().map(|[one, _]| norm(sub(one, centre))).fold(0.0, f64::max);
+    let reach = edges.clone().map(|[one, _]| (one - centre).norm()).fold(0.0, f64::max);
     let [polygon, next] = room;
     polygon.clear();
     polygon.extend([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]]);
     for [one, two] in edges {
-        let normal = cross(one, sub(two, one));
+        let normal = one.cross(two - one);
         // exactly 0 for the two edges that end at the centre itself
-        let constant = dot(centre, cross(sub(one, centre), sub(two, centre)));
-        let [a, b] = basis.map(|axis| dot(axis, normal));
+        let constant = centre.dot((one - centre).cross(two - centre));
+        let [a, b] = basis.map(|axis| axis.dot(normal));
         clip(polygon, |z| constant + a * z[0] + b * z[1], next);
         std::mem::swap(polygon, next);
     }
@@ -71,9 +71,9 @@ mod tests {
     #[test]
     fn the_kernel_of_a_notched_square_lies_beyond_the_notch() {
         // a square whose lower side is pushed in to the origin: both halves of that side must be seen
-        let corners = [[-1., -1., 1.], [0., 0., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]];
+        let corners = [[-1., -1., 1.], [0., 0., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]].map(Vector3);
         let edges = (0..5).map(|k| [corners[k], corners[(k + 1) % 5]]);
-        let basis = [[1., 0., 0.], [0., 1., 0.]];
+        let basis = [0, 1].map(Vector3::unit);
         let [x, y] = kernel_centroid(corners[1], basis, edges, &mut Default::default());
         // the kernel is the triangle (0, 0), (1, 1), (−1, 1)
         assert!(x.abs() < 1e-15 && (y - 2.0 / 3.0).abs() < 1e-15, "{x} {y}");

@@ -19,7 +19,7 @@ use super::star::{Star, angle};
 use crate::codomain::motion::{Motion, rotated};
 use crate::control::{Observer, Phase, Status};
 use crate::mesh::TriangleMesh;
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// λ, the weight of the shape in the energy.
 const SHAPE: f64 = 0.3;
@@ -65,7 +65,7 @@ pub fn progressive_sphere(
     mesh: &TriangleMesh,
     targets: &[f64],
     observer: &mut dyn Observer,
-) -> Result<Vec<Vector>, Stop> {
+) -> Result<Vec<Vector3>, Stop> {
     let mut embedding = Embedding::new(mesh, targets);
     embedding.build(observer)?;
     Ok(embedding.places)
@@ -85,7 +85,7 @@ pub fn progressive_disk(
 ) -> Result<Vec<[f64; 2]>, Stop> {
     let mut embedding = Embedding::new(mesh, targets);
     embedding.build(observer)?;
-    Ok(embedding.places.into_iter().map(|[u, v, _]| [u, v]).collect())
+    Ok(embedding.places.into_iter().map(|Vector3([u, v, _])| [u, v]).collect())
 }
 
 /// A map without folds onto the sphere relaxed by sweeps of one-vertex Newton steps, none of which folds a
@@ -95,9 +95,9 @@ pub fn progressive_disk(
 pub fn relaxed(
     mesh: &TriangleMesh,
     targets: &[f64],
-    map: Vec<Vector>,
+    map: Vec<Vector3>,
     observer: &mut dyn Observer,
-) -> (Vec<Vector>, Status) {
+) -> (Vec<Vector3>, Status) {
     let mut embedding = Embedding::new(mesh, targets);
     embedding.places = map;
     embedding.placed = (0..mesh.n_vertices() as u32).collect();
@@ -118,7 +118,7 @@ struct Embedding<'a> {
     mesh: &'a TriangleMesh,
     decimation: Decimation<'a>,
     /// Where the vertices are: on the unit sphere, or in the disk at z = 1.
-    places: Vec<Vector>,
+    places: Vec<Vector3>,
     /// How far along the boundary each of its vertices is, 2π in all; empty on the sphere.
     travelled: Vec<f64>,
     /// λ, the weight of the shape in the energy.
@@ -137,7 +137,7 @@ impl<'a> Embedding<'a> {
         Self {
             mesh,
             decimation: Decimation::new(mesh, targets.iter().map(|target| scale * target).collect()),
-            places: vec![[0.0; 3]; mesh.n_vertices()],
+            places: vec![Vector3::ZERO; mesh.n_vertices()],
             travelled: boundary.map_or(Vec::new(), |boundary| travelled(mesh, boundary)),
             shape: SHAPE,
             star: Star::default(),
@@ -181,11 +181,11 @@ impl<'a> Embedding<'a> {
         self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
         let (c, s) = (-0.5, 0.75f64.sqrt());
-        let corners: &[Vector] = match self.travelled.is_empty() {
+        let corners: &[Vector3] = match self.travelled.is_empty() {
             true => {
-                &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| x.map(|x| third * x))
+                &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| Vector3(x) * third)
             }
-            false => &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]],
+            false => &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]].map(Vector3),
         };
         if base.len() != corners.len() {
             return None;
@@ -233,7 +233,7 @@ impl<'a> Embedding<'a> {
     }
 
     /// A place inside the polygon around a vertex that went onto the one at `centre`.
-    fn place_in_kernel(&mut self, centre: Vector, motion: Motion) -> Option<Vector> {
+    fn place_in_kernel(&mut self, centre: Vector3, motion: Motion) -> Option<Vector3> {
         let frame = motion.frame(centre);
         let centroid = kernel_centroid(centre, frame.axes, self.star.edges(), &mut self.room);
         // towards the vertex it went onto, where the kernel is
@@ -242,7 +242,7 @@ impl<'a> Embedding<'a> {
     }
 
     /// The best place on the arc between the neighbours of a vertex of the boundary.
-    fn place_on_arc(&self) -> Option<Vector> {
+    fn place_on_arc(&self) -> Option<Vector3> {
         let [(before, _), (behind, _)] = self.star.arcs?;
         let arc = angle(before, behind);
         let places =
@@ -312,7 +312,7 @@ fn polygon_area(n: usize) -> f64 {
 /// The way along the boundary to each of its vertices, 2π in all; 0 elsewhere.
 fn travelled(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
     let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
-    let lengths: Vec<f64> = (0..boundary.len()).map(|k| distance(point(k), point(k + 1))).collect();
+    let lengths: Vec<f64> = (0..boundary.len()).map(|k| point(k).distance(point(k + 1))).collect();
     let total: f64 = lengths.iter().sum();
     let (mut travelled, mut so_far) = (vec![0.0; mesh.n_vertices()], 0.0);
     for (&vertex, length) in boundary.iter().zip(lengths) {

@@ -14,7 +14,7 @@
 //! Cost: about a hundred operations for each face and step.
 
 use crate::codomain::motion::{Frame, Motion};
-use crate::vector::{Vector, add, cross, dot, scaled, sub};
+use crate::vector::Vector3;
 
 /// D counts as positive where it is larger than this times the size of the products it is made of; their
 /// rounding is a tenth of that.
@@ -35,7 +35,7 @@ pub(super) struct Star {
     faces: Vec<Face>,
     /// For a vertex on the circle, its neighbours before and behind it, counter-clockwise, each with the
     /// share of the arc to it.
-    pub arcs: Option<[(Vector, f64); 2]>,
+    pub arcs: Option<[(Vector3, f64); 2]>,
     measure: f64,
 }
 
@@ -43,12 +43,12 @@ pub(super) struct Star {
 #[derive(Debug, Clone, Copy)]
 struct Face {
     /// The ends of the edge opposite to the vertex.
-    ends: [Vector; 2],
-    middle: Vector,
+    ends: [Vector3; 2],
+    middle: Vector3,
     /// Three halves of the squared length of that edge.
     length: f64,
     /// ∇D.
-    normal: Vector,
+    normal: Vector3,
     /// Times the 1-norm of x − p: as much as rounding may do to D, and more.
     rounding: f64,
     target: f64,
@@ -62,31 +62,31 @@ struct Derivatives {
 }
 
 impl Face {
-    fn new(one: Vector, two: Vector, target: f64) -> Self {
-        let edge = sub(two, one);
+    fn new(one: Vector3, two: Vector3, target: f64) -> Self {
+        let edge = two - one;
         let product = |i: usize, j: usize| (one[i] * edge[j]).abs() + (one[j] * edge[i]).abs();
         Self {
             ends: [one, two],
-            middle: scaled(add(one, two), 0.5),
-            length: 1.5 * dot(edge, edge),
-            normal: cross(one, edge),
+            middle: (one + two) * 0.5,
+            length: 1.5 * edge.dot(edge),
+            normal: one.cross(edge),
             rounding: CLEARLY * product(1, 2).max(product(2, 0)).max(product(0, 1)),
             target,
         }
     }
 
     /// D where it is clearly positive.
-    fn determinant(&self, x: Vector) -> Option<f64> {
-        let spoke = sub(x, self.ends[0]);
-        let determinant = dot(self.normal, spoke);
+    fn determinant(&self, x: Vector3) -> Option<f64> {
+        let spoke = x - self.ends[0];
+        let determinant = self.normal.dot(spoke);
         let size = spoke[0].abs() + spoke[1].abs() + spoke[2].abs();
         (determinant > self.rounding * size).then_some(determinant)
     }
 
     /// Q and half its gradient by x times √3, which is x less the middle of the edge, doubled.
-    fn size(&self, x: Vector) -> (f64, Vector) {
-        let spoke = sub(x, self.middle);
-        ((2.0 * dot(spoke, spoke) + self.length) / (2.0 * SQRT_3), spoke)
+    fn size(&self, x: Vector3) -> (f64, Vector3) {
+        let spoke = x - self.middle;
+        ((2.0 * spoke.dot(spoke) + self.length) / (2.0 * SQRT_3), spoke)
     }
 }
 
@@ -101,18 +101,18 @@ impl Star {
     }
 
     /// Adds the face between the vertex and two neighbours, which follow it counter-clockwise.
-    pub(super) fn push(&mut self, one: Vector, two: Vector, target: f64) {
+    pub(super) fn push(&mut self, one: Vector3, two: Vector3, target: f64) {
         self.faces.push(Face::new(one, two, target));
         self.measure += target;
     }
 
     /// The edges of the polygon.
-    pub(super) fn edges(&self) -> impl Iterator<Item = [Vector; 2]> + Clone {
+    pub(super) fn edges(&self) -> impl Iterator<Item = [Vector3; 2]> + Clone {
         self.faces.iter().map(|face| face.ends)
     }
 
     /// The energy with the vertex at x; `None` where a face is not clearly positive.
-    pub(super) fn energy(&self, x: Vector, shape: f64) -> Option<f64> {
+    pub(super) fn energy(&self, x: Vector3, shape: f64) -> Option<f64> {
         let mut sum = self.arcs.map_or(0.0, |arcs| arc_energy(x, arcs)[0]);
         for face in &self.faces {
             let d = face.determinant(x)?;
@@ -123,7 +123,7 @@ impl Star {
 
     /// The place of the vertex after one Newton step from x that lowers its energy and folds no face; `None`
     /// where there is no such step or it is not worth it.
-    pub(super) fn improved(&self, x: Vector, motion: Motion, shape: f64) -> Option<Vector> {
+    pub(super) fn improved(&self, x: Vector3, motion: Motion, shape: f64) -> Option<Vector3> {
         let frame = motion.frame(x);
         let (energy, derivatives) = self.derivatives(x, motion, &frame, shape)?;
         let (direction, slope) = derivatives.newton_direction()?;
@@ -143,12 +143,12 @@ impl Star {
 
     fn derivatives(
         &self,
-        x: Vector,
+        x: Vector3,
         motion: Motion,
         frame: &Frame,
         shape: f64,
     ) -> Option<(f64, Derivatives)> {
-        let (mut energy, mut gradient, mut hessian) = (0.0, [0.0; 3], [0.0; 3]);
+        let (mut energy, mut gradient, mut hessian) = (0.0, Vector3::ZERO, [0.0; 3]);
         for face in &self.faces {
             let d = face.determinant(x)?;
             let (q, spoke) = face.size(x);
@@ -160,22 +160,20 @@ impl Star {
             let on_q = 2.0 / SQRT_3 * weight * inverse;
             let (on_d, on_dd, on_dq) =
                 (0.5 - over * inverse, 2.0 * over * inverse * inverse, -on_q * inverse);
-            for k in 0..3 {
-                gradient[k] += on_d * face.normal[k] + on_q * spoke[k];
-            }
-            let [n, s] = [face.normal, spoke].map(|z| frame.axes.map(|axis| dot(axis, z)));
+            gradient += face.normal * on_d + spoke * on_q;
+            let [n, s] = [face.normal, spoke].map(|z| frame.axes.map(|axis| axis.dot(z)));
             hessian[0] += (on_dd * n[0] + 2.0 * on_dq * s[0]) * n[0] + on_q;
             hessian[1] += on_dd * n[0] * n[1] + on_dq * (n[0] * s[1] + s[0] * n[1]);
             hessian[2] += (on_dd * n[1] + 2.0 * on_dq * s[1]) * n[1] + on_q;
         }
-        let along = frame.axes.map(|axis| dot(axis, gradient));
+        let along = frame.axes.map(|axis| axis.dot(gradient));
         let mut sum = (energy, Derivatives { gradient: along, hessian });
-        self.bend(x, motion, dot(gradient, frame.outward), &mut sum);
+        self.bend(x, motion, gradient.dot(frame.outward), &mut sum);
         Some(sum)
     }
 
     /// Adds what a step along the sphere or the circle bends towards its centre, and the arcs.
-    fn bend(&self, x: Vector, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
+    fn bend(&self, x: Vector3, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
         match motion {
             Motion::Held | Motion::Side(_) | Motion::Plane => {}
             Motion::Sphere => {
@@ -211,13 +209,13 @@ impl Derivatives {
 }
 
 /// The angle from one point of the circle to another, counter-clockwise, in (0, 2π].
-pub(super) fn angle(from: Vector, to: Vector) -> f64 {
+pub(super) fn angle(from: Vector3, to: Vector3) -> f64 {
     let angle = (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
     if angle > 0.0 { angle } else { angle + std::f64::consts::TAU }
 }
 
 /// The energy of the arcs beside x and its two derivatives by the angle of x.
-fn arc_energy(x: Vector, [(before, share), (behind, other)]: [(Vector, f64); 2]) -> [f64; 3] {
+fn arc_energy(x: Vector3, [(before, share), (behind, other)]: [(Vector3, f64); 2]) -> [f64; 3] {
     let (one, two) = (1.0 / angle(before, x), 1.0 / angle(x, behind));
     let (share, other) = (ARC * share * share, ARC * other * other);
     [
@@ -231,31 +229,32 @@ fn arc_energy(x: Vector, [(before, share), (behind, other)]: [(Vector, f64); 2])
 mod tests {
     use super::*;
     use crate::codomain::motion::rotated;
-    use crate::vector::norm;
 
     /// A polygon around the vertex at x: on the sphere and in the plane closed, on the circle a fan.
-    fn star(motion: Motion) -> (Star, Vector) {
+    fn star(motion: Motion) -> (Star, Vector3) {
         let corner = |k: usize| match motion {
             Motion::Sphere => {
                 let angle = 1.2 * k as f64;
-                let x = [0.3 * angle.cos(), 0.5 * angle.sin(), 1.0];
-                scaled(x, 1.0 / norm(x))
+                let x = Vector3([0.3 * angle.cos(), 0.5 * angle.sin(), 1.0]);
+                x * (1.0 / x.norm())
             }
             Motion::Held | Motion::Side(_) | Motion::Plane => {
-                [0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0]
+                Vector3([0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0])
             }
-            Motion::Circle => [[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k],
+            Motion::Circle => {
+                Vector3([[0.6, -0.8, 1.0], [0.3, -0.2, 1.0], [-0.3, -0.4, 1.0], [-0.8, -0.6, 1.0]][k])
+            }
         };
         let mut star = Star::default();
         let n = if motion == Motion::Circle { 3 } else { 5 };
         let next = |k: usize| if motion == Motion::Circle { k + 1 } else { (k + 1) % n };
         (0..n).for_each(|k| star.push(corner(k), corner(next(k)), 0.02 + 0.01 * k as f64));
         match motion {
-            Motion::Sphere => (star, [0.0, 0.0, 1.0]),
-            Motion::Held | Motion::Side(_) | Motion::Plane => (star, [0.2, 0.05, 1.0]),
+            Motion::Sphere => (star, Vector3([0.0, 0.0, 1.0])),
+            Motion::Held | Motion::Side(_) | Motion::Plane => (star, Vector3([0.2, 0.05, 1.0])),
             Motion::Circle => {
                 star.arcs = Some([(corner(3), 0.4), (corner(0), 0.9)]);
-                (star, rotated([0.0, -1.0, 1.0], -0.1))
+                (star, rotated(Vector3([0.0, -1.0, 1.0]), -0.1))
             }
         }
     }

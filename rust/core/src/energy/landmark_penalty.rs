@@ -6,7 +6,7 @@
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;
-use crate::vector::{Vector, distance, dot, scaled, sub};
+use crate::vector::Vector3;
 
 /// Vertices that are wanted at places.
 #[derive(Debug, Clone, Default)]
@@ -14,14 +14,19 @@ pub(crate) struct LandmarkPenalty {
     /// λ.
     pub weight: f64,
     vertices: Vec<u32>,
-    places: Vec<Vector>,
+    places: Vec<Vector3>,
     /// One corner of each landmark with its number, in ascending order: where its Hessian goes.
     corners: Vec<(u32, u32)>,
 }
 
 impl LandmarkPenalty {
     /// The penalty on `vertices` away from `places`, in maps of the energy's surface.
-    pub(crate) fn new(energy: &AuthalicEnergy, vertices: Vec<u32>, places: Vec<Vector>, weight: f64) -> Self {
+    pub(crate) fn new(
+        energy: &AuthalicEnergy,
+        vertices: Vec<u32>,
+        places: Vec<Vector3>,
+        weight: f64,
+    ) -> Self {
         let corner =
             |(landmark, &vertex): (usize, &u32)| (energy.vertex_corners(vertex as usize)[0], landmark as u32);
         let mut corners: Vec<(u32, u32)> = vertices.iter().enumerate().map(corner).collect();
@@ -35,34 +40,34 @@ impl LandmarkPenalty {
     }
 
     /// How far each landmark is from its place.
-    pub(crate) fn gaps(&self, map: &[Vector]) -> Vec<f64> {
-        let gap = |(&vertex, &place): (&u32, &Vector)| distance(map[vertex as usize], place);
+    pub(crate) fn gaps(&self, map: &[Vector3]) -> Vec<f64> {
+        let gap = |(&vertex, &place): (&u32, &Vector3)| map[vertex as usize].distance(place);
         self.vertices.iter().zip(&self.places).map(gap).collect()
     }
 
     /// λ Σ |x_i − q_i|².
-    pub(crate) fn value(&self, map: &[Vector]) -> f64 {
+    pub(crate) fn value(&self, map: &[Vector3]) -> f64 {
         self.weight * self.gaps(map).iter().map(|gap| gap * gap).sum::<f64>()
     }
 
     /// Adds the gradient by the unknowns of every vertex.
-    pub(crate) fn add_gradient(&self, map: &[Vector], frames: &[Frame], gradient: &mut [[f64; 2]]) {
+    pub(crate) fn add_gradient(&self, map: &[Vector3], frames: &[Frame], gradient: &mut [[f64; 2]]) {
         for (&vertex, &place) in self.vertices.iter().zip(&self.places) {
             let vertex = vertex as usize;
-            let pull = scaled(sub(map[vertex], place), 2.0 * self.weight);
-            let slopes = frames[vertex].axes.map(|axis| dot(pull, axis));
+            let pull = (map[vertex] - place) * (2.0 * self.weight);
+            let slopes = frames[vertex].axes.map(|axis| pull.dot(axis));
             gradient[vertex] = [gradient[vertex][0] + slopes[0], gradient[vertex][1] + slopes[1]];
         }
     }
 
     /// Adds the Hessian of the landmarks at corners of a face to its element.
-    pub(crate) fn add_element(&self, map: &[Vector], frames: &[Frame], face: usize, element: &mut Element) {
+    pub(crate) fn add_element(&self, map: &[Vector3], frames: &[Frame], face: usize, element: &mut Element) {
         let first = self.corners.partition_point(|&(corner, _)| (corner as usize) < 3 * face);
         let here = self.corners[first..].iter().take_while(|&&(corner, _)| (corner as usize) < 3 * face + 3);
         for &(corner, landmark) in here {
             let (k, vertex) = (corner as usize % 3, self.vertices[landmark as usize] as usize);
-            let away = sub(map[vertex], self.places[landmark as usize]);
-            let bend = 1.0 - dot(away, frames[vertex].outward);
+            let away = map[vertex] - self.places[landmark as usize];
+            let bend = 1.0 - away.dot(frames[vertex].outward);
             let curvature = 2.0 * self.weight * bend.max(0.0);
             (0..2).for_each(|axis| element[2 * k + axis][2 * k + axis] += curvature);
         }
@@ -75,17 +80,16 @@ mod tests {
     use crate::codomain::Codomain;
     use crate::codomain::motion::{Motion, frames};
     use crate::mesh::TriangleMesh;
-    use crate::vector::norm;
 
     #[test]
     fn derivatives_are_the_differences_of_the_value() {
         let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
         let mesh = TriangleMesh::new(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]).unwrap();
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 4], Codomain::Sphere, 0.0);
-        let map: Vec<Vector> = corners.iter().map(|&x| scaled(x, 1.0 / norm(x))).collect();
-        let place = [0.6, 0.8, 0.0];
+        let map: Vec<Vector3> = corners.iter().map(|&x| Vector3(x) * (1.0 / Vector3(x).norm())).collect();
+        let place = Vector3([0.6, 0.8, 0.0]);
         let penalty = LandmarkPenalty::new(&energy, vec![2, 0], vec![map[2], place], 0.7);
-        assert!((penalty.value(&map) - 0.7 * distance(map[0], place).powi(2)).abs() < 1e-15);
+        assert!((penalty.value(&map) - 0.7 * map[0].distance(place).powi(2)).abs() < 1e-15);
         let motions = [Motion::Sphere; 4];
         let frames = frames(&motions, &map);
         let at = |step: f64, axis: usize| {

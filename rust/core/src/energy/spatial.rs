@@ -28,7 +28,7 @@ use super::stretch::{Profile, Value};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::parallel;
-use crate::vector::{Vector, cross, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// Stretch energy of maps of one mesh into space, for given target areas.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +64,7 @@ impl<'a> SpatialStretchEnergy<'a> {
     }
 
     /// The energies and the area of the image of `map`.
-    pub fn value(&self, map: &[Vector]) -> Value {
+    pub fn value(&self, map: &[Vector3]) -> Value {
         self.value_of_areas(&self.areas(map))
     }
 
@@ -72,9 +72,9 @@ impl<'a> SpatialStretchEnergy<'a> {
     ///
     /// With c = A/|M| and ρ = a_τ/(c|τ|) the objective Σ c|τ| ψ(ρ) + A has the derivative ψ'(ρ_τ) + (Σ c|τ|
     /// ψ − Σ a ψ')/A + 1 by a_τ; times 4π/A it has 4π/A (ψ'(ρ_τ) − Σ a ψ'/A).
-    pub fn gradient(&self, map: &[Vector]) -> (Value, Vec<Vector>) {
+    pub fn gradient(&self, map: &[Vector3]) -> (Value, Vec<Vector3>) {
         let vectors = parallel::map(self.targets.len(), |face| area_vector(self.corners(map, face)));
-        let areas = parallel::map(vectors.len(), |face| norm(vectors[face]));
+        let areas = parallel::map(vectors.len(), |face| vectors[face].norm());
         let value = self.value_of_areas(&areas);
         let scale = value.area / self.total_target;
         let slope = |face: usize| self.profile.slope(areas[face] / (scale * self.targets[face]));
@@ -85,8 +85,8 @@ impl<'a> SpatialStretchEnergy<'a> {
         };
         // half the unit normal of each face times the derivative by its area; a face without area has none
         let pull = parallel::map(areas.len(), |face| match areas[face] > 0.0 {
-            true => scaled(vectors[face], 0.5 * factor * (slope(face) + shift) / areas[face]),
-            false => [0.0; 3],
+            true => vectors[face] * (0.5 * factor * (slope(face) + shift) / areas[face]),
+            false => Vector3::ZERO,
         });
         (value, self.gather(map, &pull))
     }
@@ -94,14 +94,14 @@ impl<'a> SpatialStretchEnergy<'a> {
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
     ///
     /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, as for planar maps.
-    pub fn laplacian_weights(&self, map: &[Vector]) -> Vec<f64> {
+    pub fn laplacian_weights(&self, map: &[Vector3]) -> Vec<f64> {
         let scale = self.value(map).area / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {
             let (face, k) = (corner / 3, corner % 3);
             let (corners, target) = (self.corners(map, face), scale * self.targets[face]);
             let [i, j, k] = [(k + 1) % 3, (k + 2) % 3, k].map(|c| corners[c]);
-            let stiffness = self.profile.stiffness(norm(area_vector(corners)) / target);
-            stiffness * dot(sub(i, k), sub(j, k)) / (4.0 * target)
+            let stiffness = self.profile.stiffness(area_vector(corners).norm() / target);
+            stiffness * (i - k).dot(j - k) / (4.0 * target)
         })
     }
 
@@ -109,13 +109,13 @@ impl<'a> SpatialStretchEnergy<'a> {
     /// rescaled to the image's area.
     ///
     /// Per face, appendix B: the blocks of 1/(2|τ|) [ … ] made of h^ℓ = (f_j − f_k, f_k − f_i, f_i − f_j)^ℓ.
-    pub fn hessian(&self, map: &[Vector]) -> CsMat<f64> {
+    pub fn hessian(&self, map: &[Vector3]) -> CsMat<f64> {
         let n = map.len();
         let scale = self.value(map).area / self.total_target;
         let mut entries = TriMat::with_capacity((3 * n, 3 * n), 81 * self.targets.len());
         for (face, vertices) in self.mesh.faces().iter().enumerate() {
             let [f_i, f_j, f_k] = self.corners(map, face);
-            let edges = [sub(f_j, f_k), sub(f_k, f_i), sub(f_i, f_j)];
+            let edges = [f_j - f_k, f_k - f_i, f_i - f_j];
             let factor = 0.5 / (scale * self.targets[face]);
             for (p, q) in (0..9).flat_map(|p| (0..9).map(move |q| (p, q))) {
                 let (s, t, corner_p, corner_q) = (p / 3, q / 3, p % 3, q % 3);
@@ -128,8 +128,8 @@ impl<'a> SpatialStretchEnergy<'a> {
     }
 
     /// Area of the image of every face.
-    pub fn areas(&self, map: &[Vector]) -> Vec<f64> {
-        parallel::map(self.targets.len(), |face| norm(area_vector(self.corners(map, face))))
+    pub fn areas(&self, map: &[Vector3]) -> Vec<f64> {
+        parallel::map(self.targets.len(), |face| area_vector(self.corners(map, face)).norm())
     }
 
     fn value_of_areas(&self, areas: &[f64]) -> Value {
@@ -145,19 +145,19 @@ impl<'a> SpatialStretchEnergy<'a> {
         Value { authalic_energy, area, objective: factor * (minimised + area) }
     }
 
-    fn corners(&self, map: &[Vector], face: usize) -> [Vector; 3] {
+    fn corners(&self, map: &[Vector3], face: usize) -> [Vector3; 3] {
         triangle(map, self.mesh.faces()[face])
     }
 
     /// Σ over the faces of each vertex of (f_j − f_k) × `pull`, jk the opposite edge.
-    fn gather(&self, map: &[Vector], pull: &[Vector]) -> Vec<Vector> {
+    fn gather(&self, map: &[Vector3], pull: &[Vector3]) -> Vec<Vector3> {
         parallel::map(map.len(), |vertex| {
-            let mut sum = [0.0; 3];
+            let mut sum = Vector3::ZERO;
             for &corner in self.mesh.vertex_corners(vertex) {
                 let (face, k) = (corner as usize / 3, corner as usize % 3);
                 let points = self.corners(map, face);
-                let force = cross(sub(points[(k + 1) % 3], points[(k + 2) % 3]), pull[face]);
-                (0..3).for_each(|axis| sum[axis] += force[axis]);
+                let force = (points[(k + 1) % 3] - points[(k + 2) % 3]).cross(pull[face]);
+                sum += force;
             }
             sum
         })
@@ -166,9 +166,9 @@ impl<'a> SpatialStretchEnergy<'a> {
 
 /// Entry (s, t) of the 3 × 3 block of two corners with opposite edges `p` and `q`: Σ_{ℓ≠s} p^ℓ q^ℓ on the
 /// diagonal, p^s q^t − 2 p^t q^s off it.
-fn hessian_entry(p: Vector, q: Vector, s: usize, t: usize) -> f64 {
+fn hessian_entry(p: Vector3, q: Vector3, s: usize, t: usize) -> f64 {
     match s == t {
-        true => dot(p, q) - p[s] * q[s],
+        true => p.dot(q) - p[s] * q[s],
         false => p[s] * q[t] - 2.0 * p[t] * q[s],
     }
 }

@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::location::{Location, Locator, points_on};
 use crate::mesh::TriangleMesh;
 use crate::parallel;
-use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.
 const MISSED: f64 = 1e-9;
@@ -53,7 +53,7 @@ pub struct CurveMap {
     pub target_faces: Vec<[u32; 3]>,
     /// (n, 3): the same places on the rough sphere of the other surface, where straight faces may fold a little along the
     /// curves.
-    pub registered: Vec<Vector>,
+    pub registered: Vec<Vector3>,
     /// (B,): the largest distance of the image of each curve from its partner, in parts of the other surface's size.
     pub curve_error: Vec<f64>,
     /// The curves that are farther than 10⁻⁹ from their partners.
@@ -68,7 +68,7 @@ pub struct CurveMap {
 #[derive(Debug, Clone)]
 pub struct RoughSphere {
     /// (n, 3): unit rows.
-    pub positions: Vec<Vector>,
+    pub positions: Vec<Vector3>,
     /// Its figures.
     pub distortion: Distortion,
 }
@@ -88,13 +88,13 @@ impl CurveMap {
     ///
     /// # Panics
     /// Where `vertices` are fewer than the other surface's.
-    pub fn positions(&self, vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub fn positions(&self, vertices: &[Vector3]) -> Vec<Vector3> {
         points_on(&self.locations, vertices, &self.target_faces)
     }
 }
 
 impl RoughSphere {
-    fn new(mesh: &TriangleMesh, positions: &[Vector]) -> Result<Self, Error> {
+    fn new(mesh: &TriangleMesh, positions: &[Vector3]) -> Result<Self, Error> {
         let image = Image::Sphere(positions);
         let distortion = distortion(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
         Ok(Self { positions: positions.to_vec(), distortion })
@@ -144,10 +144,9 @@ impl Assembly {
             let location = cut.given_place(theirs, location);
             match &mut self.locations[vertex] {
                 Some(other) => {
-                    let gap = distance(
-                        other.point_on(target.points(), target.faces()),
-                        location.point_on(target.points(), target.faces()),
-                    );
+                    let gap = other
+                        .point_on(target.points(), target.faces())
+                        .distance(location.point_on(target.points(), target.faces()));
                     self.bank_error = self.bank_error.max(gap);
                 }
                 empty => *empty = Some(location),
@@ -218,7 +217,7 @@ impl Assembly {
     fn inverse_locations(
         &self,
         [source, target]: [&TriangleMesh; 2],
-        registered: &[Vector],
+        registered: &[Vector3],
         placement: &Placement,
     ) -> Vec<Location> {
         let locator = self.inverse.contains(&None).then(|| Locator::new(registered, source.faces()));
@@ -234,7 +233,7 @@ impl Assembly {
         &self,
         target: &TriangleMesh,
         locations: Vec<Location>,
-        registered: Vec<Vector>,
+        registered: Vec<Vector3>,
         curve_error: Vec<f64>,
         distortion: Distortion,
     ) -> CurveMap {
@@ -277,16 +276,16 @@ impl Assembly {
 }
 
 /// Places as points of the unit sphere.
-fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector]) -> Vec<Vector> {
+fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector3]) -> Vec<Vector3> {
     parallel::map(locations.len(), |vertex| {
         let place = locations[vertex].point_on(on_sphere, faces);
-        scaled(place, 1.0 / norm(place))
+        place * (1.0 / place.norm())
     })
 }
 
 /// How far the image of a path's vertices strays from another path at most.
 fn strays(path: &[usize], other: &[usize], locations: &[Location], target: &TriangleMesh) -> f64 {
-    let segments: Vec<[Vector; 2]> =
+    let segments: Vec<[Vector3; 2]> =
         other.windows(2).map(|ends| [target.points()[ends[0]], target.points()[ends[1]]]).collect();
     let strays = |&vertex: &usize| {
         let image = locations[vertex].point_on(target.points(), target.faces());
@@ -296,13 +295,13 @@ fn strays(path: &[usize], other: &[usize], locations: &[Location], target: &Tria
 }
 
 /// The distance of a point from a segment.
-fn to_segment(x: Vector, [from, to]: [Vector; 2]) -> f64 {
-    let along = sub(to, from);
-    let part = (dot(sub(x, from), along) / dot(along, along)).clamp(0.0, 1.0);
-    distance(x, add(from, scaled(along, part)))
+fn to_segment(x: Vector3, [from, to]: [Vector3; 2]) -> f64 {
+    let along = to - from;
+    let part = ((x - from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+    x.distance(from + along * part)
 }
 
 /// The figures of a map of a surface to places in space.
-fn figures(mesh: &TriangleMesh, positions: &[Vector], folded: Vec<usize>) -> Result<Distortion, Error> {
+fn figures(mesh: &TriangleMesh, positions: &[Vector3], folded: Vec<usize>) -> Result<Distortion, Error> {
     distortion_in_space(mesh.points(), mesh.faces(), positions, folded, mesh.face_areas())
 }

@@ -10,6 +10,8 @@
 
 use std::ops::Mul;
 
+use crate::vector::Vector3;
+
 /// A point of the disk, or a tangent vector.
 pub type Complex = num_complex::Complex<f64>;
 
@@ -121,13 +123,13 @@ pub fn exponential(p: Complex, v: Complex) -> Complex {
 }
 
 /// The point on the hyperboloid t² − x² − y² = 1 as (x, y, t).
-pub fn to_hyperboloid(z: Complex) -> [f64; 3] {
-    [2.0 * z.re, 2.0 * z.im, 1.0 + z.norm_sqr()].map(|coordinate| coordinate / beneath_circle(z))
+pub fn to_hyperboloid(z: Complex) -> Vector3 {
+    Vector3([2.0 * z.re, 2.0 * z.im, 1.0 + z.norm_sqr()]).map(|coordinate| coordinate / beneath_circle(z))
 }
 
 /// The point of the disk on the ray of (x, y, t), t > 0; a ray that rounding has put onto the cone or outside
 /// of it gives a point next to the circle.
-pub fn from_hyperboloid([x, y, t]: [f64; 3]) -> Complex {
+pub fn from_hyperboloid(Vector3([x, y, t]): Vector3) -> Complex {
     let radius = x.hypot(y);
     let height = ((t - radius) * (t + radius)).max(0.0).sqrt();
     let z = Complex::new(x, y) / (t + height);
@@ -289,7 +291,7 @@ mod tests {
 
     #[test]
     fn rounding_does_not_leave_the_disk() {
-        let z = from_hyperboloid([3e10, 4e10, 5e10 * (1.0 - 1e-16)]);
+        let z = from_hyperboloid(Vector3([3e10, 4e10, 5e10 * (1.0 - 1e-16)]));
         assert!(z.norm() < 1.0 && (z - Complex::new(0.6, 0.8)).norm() < 1e-7);
     }
 

@@ -3,7 +3,7 @@
 
 use super::metric::MetricMethod;
 use crate::error::Error;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// How the harmonic energy is minimised.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub struct HyperbolicOptions<'a> {
     pub heat_tolerance: f64,
     /// The vertices of source and target on spheres around the origin, from which it is told how the surfaces
     /// lie over each other; conformal maps where `None`. They need not be aligned.
-    pub spheres: Option<[&'a [Vector]; 2]>,
+    pub spheres: Option<[&'a [Vector3]; 2]>,
 }
 
 impl Default for HyperbolicOptions<'_> {

@@ -15,7 +15,7 @@ use crate::control::{History, Observer, Phase, Watch};
 use crate::error::{CurveError, Elements, Error, NumericsError, Side};
 use crate::mesh::TriangleMesh;
 use crate::registration::inside_out;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Registers two surfaces of genus 0, closed or with boundary, by pairs of landmark curves.
 ///
@@ -61,7 +61,7 @@ pub fn register_hyperbolic(
         let sliced = {
             let watch = Watch::new(&mut phase, 0.0, "Cutting open");
             let isotopy = Isotopy::between(ours, theirs, &watch);
-            let carry = |polyline: &[Vector]| isotopy.as_ref().map(|isotopy| isotopy.carry(polyline));
+            let carry = |polyline: &[Vector3]| isotopy.as_ref().map(|isotopy| isotopy.carry(polyline));
             slice_pair(ours, theirs, &carry, &watch)?
         };
         let map = map_piece(&sliced, options, &mut phase);

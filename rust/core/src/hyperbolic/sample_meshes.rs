@@ -6,19 +6,18 @@ use std::collections::{BTreeMap, VecDeque};
 use super::features::parameters::unit;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
-use crate::vector::{Vector, add, dot};
+use crate::vector::{Vector3, coordinates};
 
 /// The vertices and faces of a sphere of 8 · 4^level faces, slightly uneven so that no two faces are alike.
-pub(super) fn sphere(level: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
-    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
-    let mut points: Vec<Vector> = axes.to_vec();
-    points.push([0.0, 0.0, -1.0]);
+pub(super) fn sphere(level: u32) -> (Vec<Vector3>, Vec<[u32; 3]>) {
+    let [x, y, z] = [0, 1, 2].map(Vector3::unit);
+    let mut points = vec![x, y, -x, -y, z, -z];
     let mut faces: Vec<[u32; 3]> = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect();
     for _ in 0..level {
         let mut middles = BTreeMap::new();
         let mut middle = |a: u32, b: u32| {
             *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                points.push(unit(add(points[a as usize], points[b as usize])));
+                points.push(unit(points[a as usize] + points[b as usize]));
                 points.len() as u32 - 1
             })
         };
@@ -28,18 +27,18 @@ pub(super) fn sphere(level: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
         };
         faces = faces.iter().flat_map(split).collect();
     }
-    let uneven = |(k, &x): (usize, &Vector)| {
+    let uneven = |(k, &x): (usize, &Vector3)| {
         let wave = |phase: f64| 0.2 * 0.5f64.powi(level as i32) * (1.7 * k as f64 + phase).sin();
-        unit(add(x, [wave(0.0), wave(1.0), wave(2.0)]))
+        unit(x + Vector3([wave(0.0), wave(1.0), wave(2.0)]))
     };
     (points.iter().enumerate().map(uneven).collect(), faces)
 }
 
 /// What is left without the faces for which `is_hole` holds at their middle.
 pub(super) fn without(
-    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
-    is_hole: impl Fn(Vector) -> bool,
-) -> (Vec<Vector>, Vec<[u32; 3]>) {
+    (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
+    is_hole: impl Fn(Vector3) -> bool,
+) -> (Vec<Vector3>, Vec<[u32; 3]>) {
     let kept: Vec<[u32; 3]> = faces.iter().filter(|face| !is_hole(middle(points, **face))).copied().collect();
     let number: BTreeMap<u32, u32> = {
         let mut used: Vec<u32> = kept.as_flattened().to_vec();
@@ -53,26 +52,27 @@ pub(super) fn without(
 
 /// A mesh with its vertices moved.
 pub(super) fn mesh(
-    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
-    place: impl Fn(Vector) -> Vector,
+    (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
+    place: impl Fn(Vector3) -> Vector3,
 ) -> TriangleMesh {
-    let places: Vec<Vector> = points.iter().map(|&x| place(x)).collect();
-    TriangleMesh::new(&places, faces).unwrap()
+    TriangleMesh::new(&coordinates(points.iter().map(|&x| place(x))), faces).unwrap()
 }
 
-fn middle(points: &[Vector], face: [u32; 3]) -> Vector {
-    unit(triangle(points, face).into_iter().fold([0.0; 3], add))
+fn middle(points: &[Vector3], face: [u32; 3]) -> Vector3 {
+    unit(triangle(points, face).into_iter().sum::<Vector3>())
 }
 
 /// The vertex nearest to a direction.
-pub(super) fn nearest_vertex(points: &[Vector], direction: Vector) -> usize {
-    (0..points.len())
-        .max_by(|&a, &b| dot(points[a], direction).total_cmp(&dot(points[b], direction)))
-        .unwrap()
+pub(super) fn nearest_vertex(points: &[Vector3], direction: Vector3) -> usize {
+    (0..points.len()).max_by(|&a, &b| points[a].dot(direction).total_cmp(&points[b].dot(direction))).unwrap()
 }
 
 /// A path of fewest edges from the vertex nearest to one direction to that nearest to another.
-pub(super) fn path((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), from: Vector, to: Vector) -> Vec<usize> {
+pub(super) fn path(
+    (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
+    from: Vector3,
+    to: Vector3,
+) -> Vec<usize> {
     let [start, end] = [from, to].map(|direction| nearest_vertex(points, unit(direction)));
     let mut neighbours = vec![Vec::new(); points.len()];
     for [a, b, c] in faces.iter().map(|face| face.map(|v| v as usize)) {
@@ -99,11 +99,11 @@ pub(super) fn path((points, faces): &(Vec<Vector>, Vec<[u32; 3]>), from: Vector,
 /// The closed curve around the faces within an angle of a direction, those on its left; its first vertex not
 /// repeated.
 pub(super) fn circle(
-    (points, faces): &(Vec<Vector>, Vec<[u32; 3]>),
-    centre: Vector,
+    (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
+    centre: Vector3,
     angle: f64,
 ) -> Vec<usize> {
-    let inside = faces.iter().filter(|face| dot(middle(points, **face), unit(centre)) > angle.cos());
+    let inside = faces.iter().filter(|face| middle(points, **face).dot(unit(centre)) > angle.cos());
     let edges: Vec<[u32; 2]> = inside.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     let is_border = |edge: &&[u32; 2]| !edges.contains(&[edge[1], edge[0]]);
     let next: BTreeMap<u32, u32> = edges.iter().filter(is_border).map(|&[a, b]| (a, b)).collect();

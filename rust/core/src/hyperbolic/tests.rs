@@ -22,22 +22,22 @@ use super::slice::slice_pair;
 use super::slice::sliced::{Sliced, SlicedPair};
 use crate::control::{Silent, Status, Watch};
 use crate::mesh::NO_CORNER;
-use crate::vector::{Vector, add, scaled};
+use crate::vector::Vector3;
 
 /// Ends of four curves on the sphere.
-const ENDS: [[Vector; 2]; 4] = [
-    [[1.0, 0.1, 0.3], [0.7, 0.7, 0.1]],
-    [[-0.2, 1.0, 0.2], [-0.6, 0.6, 0.6]],
-    [[-1.0, -0.2, -0.3], [-0.5, -0.8, 0.1]],
-    [[0.3, -0.7, -0.8], [0.6, -0.2, -0.9]],
+const ENDS: [[Vector3; 2]; 4] = [
+    [Vector3([1.0, 0.1, 0.3]), Vector3([0.7, 0.7, 0.1])],
+    [Vector3([-0.2, 1.0, 0.2]), Vector3([-0.6, 0.6, 0.6])],
+    [Vector3([-1.0, -0.2, -0.3]), Vector3([-0.5, -0.8, 0.1])],
+    [Vector3([0.3, -0.7, -0.8]), Vector3([0.6, -0.2, -0.9])],
 ];
 
 /// Two spheres with four curves each, those of the target a little farther on, cut open.
 fn slit_spheres(level: u32) -> SlicedPair {
     let grid = sphere(level);
-    let source = mesh(&grid, |x| [1.2 * x[0], x[1], 0.9 * x[2] + 0.1 * x[0] * x[0]]);
-    let target = mesh(&grid, |x| [x[0], 1.1 * x[1] + 0.1 * x[2], x[2]]);
-    let moved = |x: Vector| [x[0] + 0.15 * x[1], x[1] - 0.1 * x[2], x[2] + 0.05];
+    let source = mesh(&grid, |x| Vector3([1.2 * x[0], x[1], 0.9 * x[2] + 0.1 * x[0] * x[0]]));
+    let target = mesh(&grid, |x| Vector3([x[0], 1.1 * x[1] + 0.1 * x[2], x[2]]));
+    let moved = |x: Vector3| Vector3([x[0] + 0.15 * x[1], x[1] - 0.1 * x[2], x[2] + 0.05]);
     let ours = ENDS.map(|[from, to]| path(&grid, from, to)).to_vec();
     let theirs = ENDS.map(|[from, to]| path(&grid, moved(from), moved(to))).to_vec();
     let curves = Curves { source: &ours, target: &theirs };
@@ -48,7 +48,7 @@ fn slit_spheres(level: u32) -> SlicedPair {
     let placement = placed([&source, &target], &divided, None, &watch).unwrap();
     let pieces: Vec<(Piece, Piece)> = pieces(&source, &target, &divided, &placement);
     let isotopy = super::slice::isotopy::Isotopy::between(&pieces[0].0, &pieces[0].1, &watch);
-    let carry = |line: &[Vector]| isotopy.as_ref().map(|isotopy| isotopy.carry(line));
+    let carry = |line: &[Vector3]| isotopy.as_ref().map(|isotopy| isotopy.carry(line));
     slice_pair(&pieces[0].0, &pieces[0].1, &carry, &watch).unwrap()
 }
 
@@ -250,8 +250,8 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
             let images = super::harmonic::certificates::image(&map, &map.input, face);
             let first = map.input.faces[face][0] as usize;
             // the same point of the hyperboloid from the images of the corners
-            let weighted = |k: usize| scaled(moebius::to_hyperboloid(images[k]), location.barycentric[k]);
-            let point = moebius::from_hyperboloid(add(weighted(0), add(weighted(1), weighted(2))));
+            let weighted = |k: usize| moebius::to_hyperboloid(images[k]) * location.barycentric[k];
+            let point = moebius::from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)));
             let walk = map.atlas.walk(map.places.faces[first], point);
             let corners = sliced.target.surface.faces[walk.face as usize];
             let Some(k) = corners.iter().position(|&corner| corner as usize == vertex) else {

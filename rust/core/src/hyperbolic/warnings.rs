@@ -11,7 +11,7 @@ use crate::distortion::Distortion;
 use crate::error::{Elements, Side, kinds};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
-use crate::vector::{Vector, add, dot, norm};
+use crate::vector::Vector3;
 
 /// A harmonic energy of more than this over that of the identity says that the curves hardly fit.
 const STRAINED: f64 = 2.0;
@@ -149,12 +149,12 @@ pub(super) fn warnings(
 /// Whether two open surfaces look to opposite sides as they lie in space.
 fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
     let facing = meshes.map(|mesh| {
-        let sum = |sum: Vector, &face: &[u32; 3]| add(sum, area_vector(triangle(mesh.points(), face)));
+        let vectors = mesh.faces().iter().map(|&face| area_vector(triangle(mesh.points(), face)));
         let area: f64 = mesh.face_areas().iter().sum();
-        mesh.faces().iter().fold([0.0; 3], sum).map(|x| x / area)
+        vectors.sum::<Vector3>().map(|x| x / area)
     });
     let least = FACING * FACING;
-    norm(facing[0]) > FACING && norm(facing[1]) > FACING && dot(facing[0], facing[1]) < -least
+    facing[0].norm() > FACING && facing[1].norm() > FACING && facing[0].dot(facing[1]) < -least
 }
 
 /// The faces whose share of area changes more than tenfold, where they are too much of the surface.

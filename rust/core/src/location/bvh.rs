@@ -4,7 +4,7 @@
 //! Built by halving the elements along the longest side of their centres' box, so that it is as deep as log₂ of their
 //! number whatever their shapes. Cost: O(n log² n) to build, O(log n) for a point in boxes that overlap little.
 
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Elements in a leaf at the most.
 const LEAF: usize = 3;
@@ -15,20 +15,20 @@ const STACK: usize = 40;
 /// A box with sides along the axes, its faces included.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
-    pub low: Vector,
-    pub high: Vector,
+    pub low: Vector3,
+    pub high: Vector3,
 }
 
 impl Default for Bounds {
     /// The empty box.
     fn default() -> Self {
-        Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] }
+        Self { low: Vector3([f64::INFINITY; 3]), high: Vector3([f64::NEG_INFINITY; 3]) }
     }
 }
 
 impl Bounds {
     /// The smallest box that has this one and a point in it.
-    pub(super) fn with(self, point: Vector) -> Self {
+    pub(super) fn with(self, point: Vector3) -> Self {
         self.union(Self { low: point, high: point })
     }
 
@@ -39,13 +39,13 @@ impl Bounds {
 
     fn union(self, other: Self) -> Self {
         Self {
-            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
-            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+            low: Vector3::from_fn(|k| self.low[k].min(other.low[k])),
+            high: Vector3::from_fn(|k| self.high[k].max(other.high[k])),
         }
     }
 
-    fn centre(&self) -> Vector {
-        std::array::from_fn(|k| 0.5 * self.low[k] + 0.5 * self.high[k])
+    fn centre(&self) -> Vector3 {
+        Vector3::from_fn(|k| 0.5 * self.low[k] + 0.5 * self.high[k])
     }
 
     fn longest_axis(&self) -> usize {
@@ -53,12 +53,12 @@ impl Bounds {
         (1..3).fold(0, |longest, k| if side(k) > side(longest) { k } else { longest })
     }
 
-    fn contains(&self, point: Vector) -> bool {
+    fn contains(&self, point: Vector3) -> bool {
         (0..3).all(|k| self.low[k] <= point[k] && point[k] <= self.high[k])
     }
 
     /// The square of the distance of a point; 0 inside.
-    fn squared_distance(&self, point: Vector) -> f64 {
+    fn squared_distance(&self, point: Vector3) -> f64 {
         (0..3).map(|k| (self.low[k] - point[k]).max(point[k] - self.high[k]).max(0.0).powi(2)).sum()
     }
 }
@@ -81,7 +81,7 @@ pub(super) struct Tree {
 impl Tree {
     /// Builds the tree over at least one box.
     pub(super) fn new(boxes: &[Bounds]) -> Self {
-        let centres: Vec<Vector> = boxes.iter().map(Bounds::centre).collect();
+        let centres: Vec<Vector3> = boxes.iter().map(Bounds::centre).collect();
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
         branch(boxes, &centres, &mut order, 0, &mut nodes);
@@ -90,7 +90,7 @@ impl Tree {
 
     /// Calls `visit` with every element whose leaf's box contains the point, in no particular order, until it says
     /// that this is enough.
-    pub(super) fn visit(&self, point: Vector, mut visit: impl FnMut(u32) -> bool) {
+    pub(super) fn visit(&self, point: Vector3, mut visit: impl FnMut(u32) -> bool) {
         let mut waiting = Stack::default();
         let mut next = Some(0);
         while let Some(index) = next {
@@ -111,7 +111,7 @@ impl Tree {
     /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals.
     ///
     /// Element 0 where nothing compares.
-    pub(super) fn nearest(&self, point: Vector, squared_distance: impl Fn(u32) -> f64) -> u32 {
+    pub(super) fn nearest(&self, point: Vector3, squared_distance: impl Fn(u32) -> f64) -> u32 {
         let (mut nearest, mut least) = (0, f64::INFINITY);
         let mut waiting = Stack::default();
         let mut next = Some(0);
@@ -136,7 +136,7 @@ impl Tree {
     }
 
     /// The child nearer to the point; the other one waits.
-    fn nearer_child(&self, index: u32, point: Vector, waiting: &mut Stack) -> u32 {
+    fn nearer_child(&self, index: u32, point: Vector3, waiting: &mut Stack) -> u32 {
         let [one, other] = [index + 1, self.nodes[index as usize].first];
         let distance = |child: u32| self.nodes[child as usize].bounds.squared_distance(point);
         let (near, far) = if distance(other) < distance(one) { (other, one) } else { (one, other) };
@@ -157,7 +157,7 @@ impl Tree {
 /// Adds the nodes over `order`, which begins at `first` in the tree's order; returns their box.
 fn branch(
     boxes: &[Bounds],
-    centres: &[Vector],
+    centres: &[Vector3],
     order: &mut [u32],
     first: usize,
     nodes: &mut Vec<Node>,

@@ -17,7 +17,7 @@ use robust::{Coord3D, orient3d};
 use crate::control::Watch;
 use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::parallel;
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 use bvh::{Bounds, Tree};
 
 /// How many points are located between two questions whether to go on.
@@ -43,24 +43,24 @@ impl Location {
     }
 
     /// The point of the place where its face has these corners.
-    pub(crate) fn point(&self, corners: [Vector; 3]) -> Vector {
-        [0, 1, 2].map(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
+    pub(crate) fn point(&self, corners: [Vector3; 3]) -> Vector3 {
+        Vector3::from_fn(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
     }
 
     /// The point of the place on a surface.
-    pub(crate) fn point_on(&self, points: &[Vector], faces: &[[u32; 3]]) -> Vector {
+    pub(crate) fn point_on(&self, points: &[Vector3], faces: &[[u32; 3]]) -> Vector3 {
         self.point(triangle(points, faces[self.triangle as usize]))
     }
 }
 
 /// The points of places on a surface.
-pub(crate) fn points_on(locations: &[Location], points: &[Vector], faces: &[[u32; 3]]) -> Vec<Vector> {
+pub(crate) fn points_on(locations: &[Location], points: &[Vector3], faces: &[[u32; 3]]) -> Vec<Vector3> {
     parallel::map(locations.len(), |place| locations[place].point_on(points, faces))
 }
 
 /// Finds points in a map.
 pub(crate) struct Locator<'a> {
-    positions: &'a [Vector],
+    positions: &'a [Vector3],
     faces: &'a [[u32; 3]],
     /// Whether the map lies in the plane z = 1.
     in_plane: bool,
@@ -70,7 +70,7 @@ pub(crate) struct Locator<'a> {
 impl<'a> Locator<'a> {
     /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on
     /// the sphere.
-    pub(crate) fn new(positions: &'a [Vector], faces: &'a [[u32; 3]]) -> Self {
+    pub(crate) fn new(positions: &'a [Vector3], faces: &'a [[u32; 3]]) -> Self {
         let in_plane = positions.iter().all(|position| position[2] == 1.0);
         let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
             flat if in_plane => flat.into_iter().fold(Bounds::default(), Bounds::with),
@@ -84,8 +84,8 @@ impl<'a> Locator<'a> {
     ///
     /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction
     /// counts. In a vertex, its coordinates are exactly 1 and 0.
-    pub(crate) fn locate(&self, x: Vector) -> Location {
-        let at = if self.in_plane { x } else { scaled(x, 1.0 / norm(x)) };
+    pub(crate) fn locate(&self, x: Vector3) -> Location {
+        let at = if self.in_plane { x } else { x * (1.0 / x.norm()) };
         let mut found: Option<(u32, [f64; 3])> = None;
         self.tree.visit(at, |face| {
             let Some(weights) = self.weights(face, x) else { return false };
@@ -102,7 +102,7 @@ impl<'a> Locator<'a> {
     }
 
     /// The locations of many points; `None` where the watch was told to stop.
-    pub(crate) fn locate_all(&self, points: &[Vector], watch: &Watch<'_>) -> Option<Vec<Location>> {
+    pub(crate) fn locate_all(&self, points: &[Vector3], watch: &Watch<'_>) -> Option<Vec<Location>> {
         let locations =
             parallel::map(points.len(), |i| match i % BETWEEN_QUESTIONS == 0 && !watch.goes_on() {
                 true => Location::default(),
@@ -112,12 +112,12 @@ impl<'a> Locator<'a> {
     }
 
     /// Whether a triangle, its edges included, contains `x`.
-    pub(super) fn contains(&self, face: u32, x: Vector) -> bool {
+    pub(super) fn contains(&self, face: u32, x: Vector3) -> bool {
         self.weights(face, x).is_some()
     }
 
     /// The place in a given triangle that is meant by `x` near to it: negative coordinates become 0.
-    pub(super) fn clamped(&self, triangle: u32, x: Vector) -> Location {
+    pub(super) fn clamped(&self, triangle: u32, x: Vector3) -> Location {
         let corners = self.corners(triangle);
         let weights = determinants(corners, x).map(|weight| weight.max(0.0));
         let barycentric = match weights.iter().sum::<f64>() > 0.0 {
@@ -130,15 +130,15 @@ impl<'a> Locator<'a> {
     /// The length of the longest edge of a triangle.
     pub(super) fn longest_edge(&self, face: u32) -> f64 {
         let [a, b, c] = self.corners(face);
-        distance(a, b).max(distance(b, c)).max(distance(c, a))
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
     }
 
-    fn corners(&self, face: u32) -> [Vector; 3] {
+    fn corners(&self, face: u32) -> [Vector3; 3] {
         triangle(self.positions, self.faces[face as usize])
     }
 
     /// The coordinates of `x` in a face that contains it, up to a factor.
-    fn weights(&self, face: u32, x: Vector) -> Option<[f64; 3]> {
+    fn weights(&self, face: u32, x: Vector3) -> Option<[f64; 3]> {
         let weights = determinants(self.corners(face), x);
         let is_inside =
             weights.iter().all(|&weight| weight >= 0.0) && weights.iter().any(|&weight| weight > 0.0);
@@ -146,16 +146,16 @@ impl<'a> Locator<'a> {
     }
 
     /// The point nearest to one that lies outside every triangle.
-    fn nearest(&self, x: Vector) -> Location {
+    fn nearest(&self, x: Vector3) -> Location {
         let triangle = self.tree.nearest(x, |face| nearest_on_edges(self.corners(face), x).0);
         Location { triangle, barycentric: nearest_on_edges(self.corners(triangle), x).1 }
     }
 }
 
 /// A box that contains a flat triangle and its central projection onto the unit sphere.
-fn spherical_bounds(corners: [Vector; 3]) -> Bounds {
-    let [a, b, c] = corners.map(|x| scaled(x, 1.0 / norm(x)));
-    let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+fn spherical_bounds(corners: [Vector3; 3]) -> Bounds {
+    let [a, b, c] = corners.map(|x| x * (1.0 / x.norm()));
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     // |q|² = 1 − Σ λ_i λ_j |x_i − x_j|² for q = Σ λ_i x_i, and Σ λ_i λ_j ≤ 1/3: as far as q moves out to the
     // sphere
     let height = 1.0 - (1.0 - longest * longest / 3.0).max(0.0).sqrt();
@@ -163,21 +163,21 @@ fn spherical_bounds(corners: [Vector; 3]) -> Bounds {
 }
 
 /// det(b, c, x), det(c, a, x) and det(a, b, x), each with its exact sign.
-fn determinants([a, b, c]: [Vector; 3], x: Vector) -> [f64; 3] {
+fn determinants([a, b, c]: [Vector3; 3], x: Vector3) -> [f64; 3] {
     [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)]
 }
 
 /// det(p, q, x) with its exact sign: as x · (p − x) × (q − x), whose rounding falls with the distances.
-pub(super) fn determinant(p: Vector, q: Vector, x: Vector) -> f64 {
+pub(super) fn determinant(p: Vector3, q: Vector3, x: Vector3) -> f64 {
     if p == x || q == x {
         return 0.0;
     }
-    let (to_p, to_q) = (sub(p, x), sub(q, x));
-    let rounded = dot(x, cross(to_p, to_q));
+    let (to_p, to_q) = (p - x, q - x);
+    let rounded = x.dot(to_p.cross(to_q));
     if rounded.abs() > determinant_rounding(x, to_p, to_q) {
         return rounded;
     }
-    let [p, q, x] = [p, q, x].map(|[x, y, z]| Coord3D { x, y, z });
+    let [p, q, x] = [p, q, x].map(|Vector3([x, y, z])| Coord3D { x, y, z });
     orient3d(p, q, x, Coord3D { x: 0.0, y: 0.0, z: 0.0 })
 }
 
@@ -187,16 +187,16 @@ fn normalized(weights: [f64; 3]) -> [f64; 3] {
 }
 
 /// The point of a triangle's edges that is nearest to `x`: the square of its distance, and its coordinates.
-fn nearest_on_edges(corners: [Vector; 3], x: Vector) -> (f64, [f64; 3]) {
+fn nearest_on_edges(corners: [Vector3; 3], x: Vector3) -> (f64, [f64; 3]) {
     let on_edges = (0..3).map(|k| {
         let (from, to) = ((k + 1) % 3, (k + 2) % 3);
-        let edge = sub(corners[to], corners[from]);
-        let part = dot(sub(x, corners[from]), edge) / dot(edge, edge);
+        let edge = corners[to] - corners[from];
+        let part = (x - corners[from]).dot(edge) / edge.dot(edge);
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
         let mut barycentric = [0.0; 3];
         (barycentric[from], barycentric[to]) = (1.0 - part, part);
-        let away = sub(x, add(scaled(corners[from], 1.0 - part), scaled(corners[to], part)));
-        (dot(away, away), barycentric)
+        let away = x - (corners[from] * (1.0 - part) + corners[to] * part);
+        (away.dot(away), barycentric)
     });
     on_edges.reduce(|best, other| if other.0 < best.0 { other } else { best }).expect("three edges")
 }

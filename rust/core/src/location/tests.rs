@@ -5,7 +5,7 @@ use super::*;
 use crate::control::Silent;
 
 /// Positions and faces.
-pub(crate) type Map = (Vec<Vector>, Vec<[u32; 3]>);
+pub(crate) type Map = (Vec<Vector3>, Vec<[u32; 3]>);
 
 /// Numbers in [-1, 1) without order.
 pub(crate) fn number(i: usize) -> f64 {
@@ -14,25 +14,25 @@ pub(crate) fn number(i: usize) -> f64 {
     (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-fn unit(x: Vector) -> Vector {
-    scaled(x, 1.0 / norm(x))
+fn unit(x: Vector3) -> Vector3 {
+    x * (1.0 / x.norm())
 }
 
-fn random_direction(i: usize) -> Vector {
-    unit([number(3 * i), number(3 * i + 1), number(3 * i + 2)])
+fn random_direction(i: usize) -> Vector3 {
+    unit(Vector3([number(3 * i), number(3 * i + 1), number(3 * i + 2)]))
 }
 
 /// The octahedron, each face halved along all edges some times, on the sphere.
 pub(crate) fn octasphere(level: usize) -> Map {
-    let mut points =
-        vec![[1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
+    let [x, y, z] = [0, 1, 2].map(Vector3::unit);
+    let mut points = vec![x, y, -x, -y, z, -z];
     let upper = (0..4u32).map(|i| [i, (i + 1) % 4, 4]);
     let mut faces: Vec<[u32; 3]> = upper.clone().chain(upper.map(|[a, b, _]| [b, a, 5])).collect();
     for _ in 0..level {
         let mut middles = HashMap::new();
         let mut middle = |a: u32, b: u32| {
             *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                points.push(unit(add(points[a as usize], points[b as usize])));
+                points.push(unit(points[a as usize] + points[b as usize]));
                 points.len() as u32 - 1
             })
         };
@@ -47,14 +47,14 @@ pub(crate) fn octasphere(level: usize) -> Map {
 
 fn tetrahedron() -> Map {
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
-    (corners.map(unit).to_vec(), vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    (corners.map(Vector3).map(unit).to_vec(), vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
 }
 
 /// Two poles and slivers from each to the equator, a quarter of the sphere long.
 fn spindle(n: u32) -> Map {
     let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
     let equator = (0..n).map(|i| [turn(i).cos(), turn(i).sin(), 0.0]);
-    let points = equator.chain([[0., 0., 1.], [0., 0., -1.]]).collect();
+    let points = equator.chain([[0., 0., 1.], [0., 0., -1.]]).map(Vector3).collect();
     let upper = (0..n).map(|i| [i, (i + 1) % n, n]);
     (points, upper.clone().chain(upper.map(|[a, b, _]| [b, a, n + 1])).collect())
 }
@@ -62,13 +62,13 @@ fn spindle(n: u32) -> Map {
 /// Rings of the unit disk around its centre, `6 j` points in ring j.
 pub(crate) fn rings(n: u32) -> Map {
     let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
-    let mut points = vec![[0., 0., 1.]];
+    let mut points = vec![Vector3([0., 0., 1.])];
     let mut faces = Vec::new();
     for ring in 1..=n {
         for i in 0..6 * ring {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(6 * ring);
             let radius = f64::from(ring) / f64::from(n);
-            points.push([radius * angle.cos(), radius * angle.sin(), 1.0]);
+            points.push(Vector3([radius * angle.cos(), radius * angle.sin(), 1.0]));
             let outer = |i: u32| first(ring) + i % (6 * ring);
             let inner = |i: u32| first(ring - 1) + if ring == 1 { 0 } else { i % (6 * (ring - 1)) };
             let (sector, step) = (i / ring, i % ring);
@@ -86,7 +86,7 @@ pub(crate) fn rings(n: u32) -> Map {
 fn spheres() -> Vec<Map> {
     let (points, faces) = octasphere(3);
     // most of the sphere's vertices drawn to one side: x ↦ the direction of x + 0.95 e
-    let crowded = points.into_iter().map(|x| unit(add(x, [0.0, 0.57, 0.76]))).collect();
+    let crowded = points.into_iter().map(|x| unit(x + Vector3([0.0, 0.57, 0.76]))).collect();
     vec![
         octasphere(0),
         octasphere(1),
@@ -102,25 +102,20 @@ fn spheres() -> Vec<Map> {
 fn disks() -> Vec<Map> {
     let squeezed = |by: f64| {
         let (points, faces) = rings(6);
-        (points.into_iter().map(|[u, v, w]| [u, by * v + 0.3 * u, w]).collect(), faces)
+        (points.into_iter().map(|Vector3([u, v, w])| Vector3([u, by * v + 0.3 * u, w])).collect(), faces)
     };
     vec![rings(1), rings(2), rings(9), squeezed(1e-3), squeezed(1e-9)]
 }
 
 /// The corners, points of the edges, points next to them, and points inside some faces.
-fn hard_points((points, faces): &Map) -> Vec<Vector> {
+fn hard_points((points, faces): &Map) -> Vec<Vector3> {
     let mut hard = points.clone();
     for (i, &face) in faces.iter().enumerate() {
         let [a, b, c] = triangle(points, face);
-        let between = |s: f64| add(scaled(a, 1.0 - s), scaled(b, s));
+        let between = |s: f64| a * (1.0 - s) + b * s;
         let (s, t) = (0.5 + 0.5 * number(i), 0.5 + 0.5 * number(i + 77));
-        hard.extend([
-            between(0.5),
-            between(s),
-            between(1e-9),
-            add(scaled(between(s), 1.0 - 1e-15), scaled(c, 1e-15)),
-        ]);
-        hard.push(add(scaled(between(s), 1.0 - t), scaled(c, t)));
+        hard.extend([between(0.5), between(s), between(1e-9), between(s) * (1.0 - 1e-15) + c * 1e-15]);
+        hard.push(between(s) * (1.0 - t) + c * t);
     }
     // in the plane the third coordinate is no matter of rounding
     if points.iter().all(|x| x[2] == 1.0) {
@@ -130,9 +125,9 @@ fn hard_points((points, faces): &Map) -> Vec<Vector> {
 }
 
 /// All triangles that contain `x`, by exact arithmetic alone.
-fn containing((points, faces): &Map, x: Vector) -> Vec<u32> {
-    let coord = |[x, y, z]: Vector| Coord3D { x, y, z };
-    let sign = |p, q| orient3d(coord(p), coord(q), coord(x), coord([0.0; 3]));
+fn containing((points, faces): &Map, x: Vector3) -> Vec<u32> {
+    let coord = |Vector3([x, y, z]): Vector3| Coord3D { x, y, z };
+    let sign = |p, q| orient3d(coord(p), coord(q), coord(x), coord(Vector3::ZERO));
     let holds = |&face: &u32| {
         let [a, b, c] = triangle(points, faces[face as usize]);
         sign(a, b) >= 0.0 && sign(b, c) >= 0.0 && sign(c, a) >= 0.0
@@ -140,10 +135,10 @@ fn containing((points, faces): &Map, x: Vector) -> Vec<u32> {
     (0..faces.len() as u32).filter(holds).collect()
 }
 
-fn place((points, faces): &Map, location: Location) -> Vector {
+fn place((points, faces): &Map, location: Location) -> Vector3 {
     let [a, b, c] = triangle(points, faces[location.triangle as usize]);
     let [x, y, z] = location.barycentric;
-    add(scaled(a, x), add(scaled(b, y), scaled(c, z)))
+    a * x + (b * y + c * z)
 }
 
 fn is_barycentric(location: Location) -> bool {
@@ -155,12 +150,12 @@ fn is_barycentric(location: Location) -> bool {
 fn every_direction_is_found_where_exact_arithmetic_puts_it() {
     for map in spheres() {
         let locator = Locator::new(&map.0, &map.1);
-        let anywhere = (0..600).map(|i| scaled(random_direction(i), 1.0 + 0.5 * number(i)));
+        let anywhere = (0..600).map(|i| random_direction(i) * (1.0 + 0.5 * number(i)));
         for x in hard_points(&map).into_iter().chain(anywhere) {
             let found = locator.locate(x);
             assert_eq!(Some(&found.triangle), containing(&map, x).first());
             assert!(is_barycentric(found));
-            assert!(distance(unit(place(&map, found)), unit(x)) < 1e-14);
+            assert!(unit(place(&map, found)).distance(unit(x)) < 1e-14);
         }
     }
 }
@@ -175,7 +170,7 @@ fn every_point_of_a_disk_is_found_where_exact_arithmetic_puts_it() {
             // a point of a boundary edge may lie outside by rounding
             assert!(all.is_empty() || found.triangle == all[0]);
             assert!(is_barycentric(found));
-            assert!(distance(place(&map, found), x) < tolerance);
+            assert!(place(&map, found).distance(x) < tolerance);
         }
     }
 }
@@ -198,21 +193,21 @@ fn a_vertex_is_found_exactly() {
 fn beyond_a_chord_the_nearest_point_of_the_boundary_is_meant() {
     let map = rings(3);
     let locator = Locator::new(&map.0, &map.1);
-    let rim: Vec<Vector> = map.0[map.0.len() - 18..].to_vec();
+    let rim: Vec<Vector3> = map.0[map.0.len() - 18..].to_vec();
     for i in 0..500 {
         let angle = std::f64::consts::TAU * (0.5 + 0.5 * number(i));
-        let x = [angle.cos(), angle.sin(), 1.0];
+        let x = Vector3([angle.cos(), angle.sin(), 1.0]);
         let found = place(&map, locator.locate(x));
         // a search along the chords, by steps
         let steps = (0..18).flat_map(|k| (0..=200).map(move |s| (k, f64::from(s) / 200.0)));
-        let on_rim = steps.map(|(k, s)| add(scaled(rim[k], 1.0 - s), scaled(rim[(k + 1) % 18], s)));
-        let least = on_rim.map(|y| distance(x, y)).fold(f64::INFINITY, f64::min);
-        assert!(distance(found, x) <= least && distance(found, x) > least - 1e-3);
+        let on_rim = steps.map(|(k, s)| rim[k] * (1.0 - s) + rim[(k + 1) % 18] * s);
+        let least = on_rim.map(|y| x.distance(y)).fold(f64::INFINITY, f64::min);
+        assert!(found.distance(x) <= least && found.distance(x) > least - 1e-3);
     }
     // far away, past a corner of the rim: between two triangles, the first
-    let beyond = locator.locate([30.0, 0.0, 1.0]);
+    let beyond = locator.locate(Vector3([30.0, 0.0, 1.0]));
     let corner = map.0.len() as u32 - 18;
-    assert_eq!(place(&map, beyond), [1.0, 0.0, 1.0]);
+    assert_eq!(place(&map, beyond), Vector3([1.0, 0.0, 1.0]));
     assert_eq!(beyond.triangle as usize, map.1.iter().position(|face| face.contains(&corner)).unwrap());
 }
 
@@ -221,7 +216,7 @@ fn nothing_is_ever_not_a_number() {
     for map in [octasphere(1), rings(2)] {
         let locator = Locator::new(&map.0, &map.1);
         for x in [[0.0; 3], [f64::NAN; 3], [f64::INFINITY, 0.0, 1.0], [1e-300, 0.0, 0.0], [1e200, 1.0, 1.0]] {
-            assert!(is_barycentric(locator.locate(x)), "{x:?}");
+            assert!(is_barycentric(locator.locate(Vector3(x))), "{x:?}");
         }
     }
 }
@@ -230,7 +225,7 @@ fn nothing_is_ever_not_a_number() {
 fn many_points_at_once_are_those_one_by_one_unless_cancelled() {
     let map = octasphere(2);
     let locator = Locator::new(&map.0, &map.1);
-    let points: Vec<Vector> = (0..10_000).map(random_direction).collect();
+    let points: Vec<Vector3> = (0..10_000).map(random_direction).collect();
     let mut silent = Silent;
     let all = locator.locate_all(&points, &Watch::new(&mut silent, 0.0, "locating")).unwrap();
     assert!(points.iter().zip(&all).all(|(&x, &found)| locator.locate(x) == found));

@@ -109,7 +109,7 @@ impl Midpoints {
 mod tests {
     use super::*;
     use crate::mesh::geometry::{area, triangle};
-    use crate::vector::distance;
+    use crate::vector::coordinates;
 
     /// A bent grid of squares, each of two triangles.
     fn grid(n: u32) -> TriangleMesh {
@@ -134,7 +134,7 @@ mod tests {
         let marked: Vec<bool> = (0..mesh.n_faces()).map(|face| face % 7 == 3).collect();
         let points = mesh.points();
         let split =
-            bisect_longest_edges(&mesh, &marked, |a, b| distance(points[a as usize], points[b as usize]));
+            bisect_longest_edges(&mesh, &marked, |a, b| points[a as usize].distance(points[b as usize]));
         // 1. Every marked face is split, and some follow
         for (face, _) in marked.iter().enumerate().filter(|(_, is_marked)| **is_marked) {
             assert!(split.face_of.iter().filter(|&&of| of as usize == face).count() > 1);
@@ -144,7 +144,7 @@ mod tests {
         let mut all = points.to_vec();
         for [a, b] in &split.parents {
             let [a, b] = [all[*a as usize], all[*b as usize]];
-            all.push(std::array::from_fn(|k| 0.5 * (a[k] + b[k])));
+            all.push((a + b) * 0.5);
         }
         let mut sums = vec![0.0; mesh.n_faces()];
         for ((&part, &face), &parts) in split.faces.iter().zip(&split.face_of).zip(&split.parts) {
@@ -154,7 +154,7 @@ mod tests {
         }
         assert!(sums.iter().zip(mesh.face_areas()).all(|(sum, whole)| (sum - whole).abs() < 1e-12));
         // 3. Still one disk: a vertex on an edge would open a hole
-        let refined = TriangleMesh::new(&all, &split.faces).unwrap();
+        let refined = TriangleMesh::new(&coordinates(all), &split.faces).unwrap();
         refined.require_disk().unwrap();
         assert!(refined.flipped_faces().is_empty());
     }

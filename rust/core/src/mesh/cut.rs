@@ -17,7 +17,6 @@ use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{geometry, validate};
 use crate::error::{Elements, Error, MeshError};
-use crate::vector::Vector;
 
 /// One piece of a cut mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,7 +144,7 @@ fn join_corners(faces: &[[u32; 3]], opposite: &[u32]) -> UnionFind {
 
 /// Numbers the joined corners within their patches by (input vertex, first corner); returns their numbers.
 fn number_vertices(
-    vertices: &[Vector],
+    vertices: &[[f64; 3]],
     faces: &[[u32; 3]],
     mut joined: UnionFind,
     patch_of: &[u32],

@@ -1,93 +1,94 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Lengths, areas and angles of triangles in space.
 //!
-//! Vectors are plain `[f64; 3]`. Areas and cotangents are meant for points in the unit bounding box of
+//! Areas and cotangents are meant for points in the unit bounding box of
 //! [`normalized`], where no square of a length over- or underflows.
 
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// The corners of face `[i, j, k]`.
 #[inline]
-pub fn triangle(points: &[Vector], [i, j, k]: [u32; 3]) -> [Vector; 3] {
+pub fn triangle(points: &[Vector3], [i, j, k]: [u32; 3]) -> [Vector3; 3] {
     [points[i as usize], points[j as usize], points[k as usize]]
 }
 
 /// The vector normal to a triangle, as long as its area; counterclockwise corners see it point at them.
-pub fn area_vector([a, b, c]: [Vector; 3]) -> Vector {
-    scaled(cross(sub(b, a), sub(c, a)), 0.5)
+pub fn area_vector([a, b, c]: [Vector3; 3]) -> Vector3 {
+    (b - a).cross(c - a) * 0.5
 }
 
 /// A bound of the rounding error of det(a, b, c) = a · (p × q) from p = b − a and q = c − a: of the differences, of the
 /// products and of their sum, generously.
 #[inline]
-pub(crate) fn determinant_rounding(a: Vector, p: Vector, q: Vector) -> f64 {
+pub(crate) fn determinant_rounding(a: Vector3, p: Vector3, q: Vector3) -> f64 {
     let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
     2e-15 * (a[0].abs() * products(1, 2) + a[1].abs() * products(2, 0) + a[2].abs() * products(0, 1))
 }
 
 /// The area of a triangle.
-pub fn area(corners: [Vector; 3]) -> f64 {
-    norm(area_vector(corners))
+pub fn area(corners: [Vector3; 3]) -> f64 {
+    area_vector(corners).norm()
 }
 
 /// The lengths of the edges opposite to each corner.
-pub fn edge_lengths([a, b, c]: [Vector; 3]) -> [f64; 3] {
-    [distance(b, c), distance(c, a), distance(a, b)]
+pub fn edge_lengths([a, b, c]: [Vector3; 3]) -> [f64; 3] {
+    [b.distance(c), c.distance(a), a.distance(b)]
 }
 
 /// The cotangents of the angles at the corners of a triangle of positive area.
-pub fn cotangents(corners: [Vector; 3]) -> [f64; 3] {
+pub fn cotangents(corners: [Vector3; 3]) -> [f64; 3] {
     let double_area = 2.0 * area(corners);
     let [a, b, c] = corners;
-    let inner = |p, q, r| dot(sub(q, p), sub(r, p)) / double_area;
+    let inner = |p: Vector3, q: Vector3, r: Vector3| (q - p).dot(r - p) / double_area;
     [inner(a, b, c), inner(b, c, a), inner(c, a, b)]
 }
 
 /// The area of every face, (m,).
-pub fn face_areas(points: &[Vector], faces: &[[u32; 3]]) -> Vec<f64> {
+pub fn face_areas(points: &[Vector3], faces: &[[u32; 3]]) -> Vec<f64> {
     faces.iter().map(|&face| area(triangle(points, face))).collect()
 }
 
 /// The cotangents at the corners of every face, (m, 3).
-pub fn corner_cotangents(points: &[Vector], faces: &[[u32; 3]]) -> Vec<[f64; 3]> {
+pub fn corner_cotangents(points: &[Vector3], faces: &[[u32; 3]]) -> Vec<[f64; 3]> {
     faces.iter().map(|&face| cotangents(triangle(points, face))).collect()
 }
 
 /// The length of a closed polygon through the given points.
-pub fn loop_length(points: &[Vector], vertices: &[u32]) -> f64 {
+pub fn loop_length(points: &[Vector3], vertices: &[u32]) -> f64 {
     let last = vertices.len().saturating_sub(1);
     let next = |i: usize| if i == last { 0 } else { i + 1 };
     (0..vertices.len())
-        .map(|i| distance(points[vertices[i] as usize], points[vertices[next(i)] as usize]))
+        .map(|i| points[vertices[i] as usize].distance(points[vertices[next(i)] as usize]))
         .sum()
 }
 
 /// Centres points on their bounding box and scales its diagonal to one; returns them with the diagonal.
 ///
 /// Finite coordinates of any size are accepted. Points that all coincide come back as zeros with scale 1.
-pub fn normalized(vertices: &[Vector]) -> (Vec<Vector>, f64) {
+pub fn normalized(vertices: &[impl Copy + Into<Vector3>]) -> (Vec<Vector3>, f64) {
     let (centre, half) = bounding_box(vertices);
-    let widest = half.iter().fold(0.0, |widest, &h| f64::max(widest, h));
+    let widest = half.max_abs();
     if widest == 0.0 {
-        return (vec![[0.0; 3]; vertices.len()], 1.0);
+        return (vec![Vector3::ZERO; vertices.len()], 1.0);
     }
     // Dividing by the widest side first keeps every square within range.
-    let diagonal = 2.0 * norm(half.map(|h| h / widest));
-    let points = vertices.iter().map(|&v| sub(v, centre).map(|x| x / widest / diagonal)).collect();
+    let diagonal = 2.0 * half.map(|h| h / widest).norm();
+    let points = vertices.iter().map(|&v| (v.into() - centre).map(|x| x / widest / diagonal)).collect();
     (points, (widest * diagonal).min(f64::MAX))
 }
 
 /// The centre of the bounding box and half its sides.
-fn bounding_box(vertices: &[Vector]) -> (Vector, Vector) {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for vertex in vertices {
+fn bounding_box(vertices: &[impl Copy + Into<Vector3>]) -> (Vector3, Vector3) {
+    let mut low = Vector3([f64::INFINITY; 3]);
+    let mut high = Vector3([f64::NEG_INFINITY; 3]);
+    for &vertex in vertices {
+        let vertex = vertex.into();
         for axis in 0..3 {
             low[axis] = low[axis].min(vertex[axis]);
             high[axis] = high[axis].max(vertex[axis]);
         }
     }
     // Halved before they are added: the full side of a box can overflow.
-    let [low, high] = [scaled(low, 0.5), scaled(high, 0.5)];
-    (add(high, low), sub(high, low))
+    let [low, high] = [low * 0.5, high * 0.5];
+    (high + low, high - low)
 }

@@ -3,13 +3,13 @@
 
 use super::{geometry, orientation, validate};
 use crate::error::Error;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Validated triangles: finite, in range, with area, oriented alike where they hang together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleSoup {
     /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
-    pub points: Vec<Vector>,
+    pub points: Vec<Vector3>,
     /// The faces, (m, 3), turned like most of their component.
     pub faces: Vec<[u32; 3]>,
 }
@@ -20,7 +20,7 @@ impl TriangleSoup {
     /// # Errors
     /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex,
     /// faces without area.
-    pub fn new(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<Self, Error> {
+    pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
         validate::arrays(vertices, faces)?;
         let (points, scale) = geometry::normalized(vertices);
         validate::positive_areas(vertices, &points, scale, faces)?;

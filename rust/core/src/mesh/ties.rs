@@ -11,7 +11,7 @@
 //! index has to decide.
 
 use crate::parallel;
-use crate::vector::{Vector, add, cross, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// By how much at the most a preference changes a value: more than noise does, less than matters.
 const SHARE: f64 = 1e-6;
@@ -20,32 +20,31 @@ const SHARE: f64 = 1e-6;
 const NO_DIRECTION: f64 = 1e-9;
 
 /// What to multiply a value at each of the points (n, 3) by, near 1.
-pub(crate) fn tie_breakers(points: &[Vector]) -> Vec<f64> {
+pub(crate) fn tie_breakers(points: &[Vector3]) -> Vec<f64> {
     let n = points.len();
-    let mean = |value: &(dyn Fn(Vector) -> Vector + Sync)| -> Vector {
-        let sums = parallel::sums(n, |v| value(points[v]));
-        scaled(sums, 1.0 / n as f64)
+    let mean = |value: &(dyn Fn(Vector3) -> Vector3 + Sync)| -> Vector3 {
+        Vector3(parallel::sums(n, |v| value(points[v]).into())) * (1.0 / n as f64)
     };
     // 1. Centered, of unit size
     let center = mean(&|x| x);
-    let size = parallel::sum(n, |v| dot(sub(points[v], center), sub(points[v], center)) / n as f64).sqrt();
-    let local = |x: Vector| scaled(sub(x, center), 1.0 / size.max(f64::MIN_POSITIVE));
+    let size = parallel::sum(n, |v| (points[v] - center).dot(points[v] - center) / n as f64).sqrt();
+    let local = |x: Vector3| (x - center) * (1.0 / size.max(f64::MIN_POSITIVE));
     // 2. The directions of the surface
-    let skewness = mean(&|x| scaled(local(x), dot(local(x), local(x))));
-    let stretched = mean(&|x| scaled(local(x), dot(local(x), skewness)));
-    let across = sub(stretched, scaled(skewness, dot(stretched, skewness) / dot(skewness, skewness)));
-    let directions = [skewness, across, cross(skewness, across)].map(unit);
+    let skewness = mean(&|x| local(x) * local(x).dot(local(x)));
+    let stretched = mean(&|x| local(x) * local(x).dot(skewness));
+    let across = stretched - skewness * (stretched.dot(skewness) / skewness.dot(skewness));
+    let directions = [skewness, across, skewness.cross(across)].map(unit);
     // 3. A generic combination
     let [a, b, c] = directions;
-    let generic = add(scaled(a, 0.5), add(scaled(b, 0.31), scaled(c, 0.19)));
-    parallel::map(n, |v| 1.0 + SHARE * dot(local(points[v]), generic).tanh())
+    let generic = a * 0.5 + (b * 0.31 + c * 0.19);
+    parallel::map(n, |v| 1.0 + SHARE * local(points[v]).dot(generic).tanh())
 }
 
 /// The unit vector along `x`, or none.
-fn unit(x: Vector) -> Vector {
-    let length = norm(x);
+fn unit(x: Vector3) -> Vector3 {
+    let length = x.norm();
     // also where it is no number
-    if length > NO_DIRECTION { scaled(x, 1.0 / length) } else { [0.0; 3] }
+    if length > NO_DIRECTION { x * (1.0 / length) } else { Vector3::ZERO }
 }
 
 #[cfg(test)]
@@ -53,9 +52,9 @@ mod tests {
     use super::*;
 
     /// Pairs of mirrored points, one above the other in the list.
-    fn mirrored() -> Vec<Vector> {
+    fn mirrored() -> Vec<Vector3> {
         let half = (0..20).map(f64::from).map(|k| [1.0 + k.sin().abs(), k.cos() + 0.1 * k, (2.0 * k).sin()]);
-        half.flat_map(|[x, y, z]| [[x, y, z], [-x, y, z]]).collect()
+        half.flat_map(|[x, y, z]| [[x, y, z], [-x, y, z]].map(Vector3)).collect()
     }
 
     #[test]
@@ -71,8 +70,11 @@ mod tests {
     fn preferences_turn_with_the_points_and_do_not_know_their_order() {
         let points = mirrored();
         let values = tie_breakers(&points);
-        let turned: Vec<Vector> =
-            points.iter().rev().map(|&[x, y, z]| [0.6 * x - 0.8 * z + 3.0, 0.8 * x + 0.6 * z, -y]).collect();
+        let turned: Vec<Vector3> = points
+            .iter()
+            .rev()
+            .map(|&Vector3([x, y, z])| Vector3([0.6 * x - 0.8 * z + 3.0, 0.8 * x + 0.6 * z, -y]))
+            .collect();
         // x, y, z ↦ x', z', −y is a rotation
         for (value, turned) in values.iter().rev().zip(tie_breakers(&turned)) {
             assert!((value - turned).abs() < 1e-14, "{value} {turned}");
@@ -81,9 +83,9 @@ mod tests {
 
     #[test]
     fn points_without_directions_are_all_alike() {
-        let octahedron =
-            [[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
+        let [x, y, z] = [0, 1, 2].map(Vector3::unit);
+        let octahedron = [x, -x, y, -y, z, -z];
         assert_eq!(tie_breakers(&octahedron), vec![1.0; 6]);
-        assert_eq!(tie_breakers(&[[1.0; 3]; 4]), vec![1.0; 4]);
+        assert_eq!(tie_breakers(&[Vector3([1.0; 3]); 4]), vec![1.0; 4]);
     }
 }

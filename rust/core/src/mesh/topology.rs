@@ -8,7 +8,7 @@
 use super::corners::{EdgeTable, NO_CORNER, half_edge};
 use super::geometry;
 use super::orientation::Orientation;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// What kind of surface a mesh is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Topology {
     /// Orients faces without non-manifold edges and vertices and describes their surface.
     ///
     /// Every vertex must be used and no coordinate may overflow when squared.
-    pub(crate) fn of_faces(points: &[Vector], faces: &[[u32; 3]]) -> Self {
+    pub(crate) fn of_faces(points: &[Vector3], faces: &[[u32; 3]]) -> Self {
         let mut opposite = EdgeTable::new(points.len(), faces).opposites();
         let mut oriented = faces.to_vec();
         let orientation = Orientation::propagate(faces, &opposite);
@@ -55,7 +55,7 @@ impl Topology {
 
     /// Describes the surface of faces to which `orientation` has been applied.
     pub(crate) fn of_oriented(
-        points: &[Vector],
+        points: &[Vector3],
         faces: &[[u32; 3]],
         opposite: &[u32],
         orientation: Orientation,
@@ -122,7 +122,7 @@ fn trace_loop(start: u32, links: &[[u32; 2]], visited: &mut [bool]) -> Vec<u32> 
 }
 
 /// Puts the longest loop first and keeps the order of equally long ones.
-fn by_length(points: &[Vector], loops: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+fn by_length(points: &[Vector3], loops: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     let mut measured: Vec<_> = loops.into_iter().map(|l| (geometry::loop_length(points, &l), l)).collect();
     measured.sort_by(|a, b| b.0.total_cmp(&a.0));
     measured.into_iter().map(|(_, vertices)| vertices).collect()

@@ -7,7 +7,7 @@ use super::topology::Topology;
 use super::{geometry, validate};
 use crate::error::{Elements, Error, MeshError};
 use crate::parallel;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
 ///
@@ -24,7 +24,7 @@ use crate::vector::Vector;
 /// ```
 #[derive(Debug, Clone)]
 pub struct TriangleMesh {
-    pub(super) points: Vec<Vector>,
+    pub(super) points: Vec<Vector3>,
     pub(super) scale: f64,
     pub(super) faces: Vec<[u32; 3]>,
     pub(super) flipped: Vec<u32>,
@@ -86,7 +86,7 @@ impl TriangleMesh {
 
     /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay
     /// those of the surface.
-    pub(crate) fn at_points(&self, points: Vec<Vector>) -> Self {
+    pub(crate) fn at_points(&self, points: Vec<Vector3>) -> Self {
         Self { points, ..self.clone() }
     }
 
@@ -110,7 +110,7 @@ impl TriangleMesh {
     /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
     ///
     /// All geometry is computed on these, so that huge and tiny coordinates neither over- nor underflow.
-    pub fn points(&self) -> &[[f64; 3]] {
+    pub fn points(&self) -> &[Vector3] {
         &self.points
     }
 

@@ -5,7 +5,7 @@ use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
 use super::geometry;
 use super::geometry::triangle;
 use crate::error::{Elements, MeshError};
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Corner indices must fit into 32 bits with one value to spare.
 const MOST_FACES: usize = (u32::MAX / 3) as usize;
@@ -17,7 +17,7 @@ const ROUNDINGS: f64 = 4.0;
 const SMALLEST_HEIGHT: f64 = 1e-60;
 
 /// Checks the arrays alone: sizes, finite coordinates, index range, three different vertices per face.
-pub(super) fn arrays(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), MeshError> {
+pub(super) fn arrays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), MeshError> {
     sizes(vertices.len(), faces.len())?;
     finite(vertices)?;
     in_range(vertices.len(), faces)?;
@@ -33,7 +33,7 @@ fn sizes(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
     }
 }
 
-fn finite(vertices: &[Vector]) -> Result<(), MeshError> {
+fn finite(vertices: &[[f64; 3]]) -> Result<(), MeshError> {
     let bad = which(vertices, |vertex| !vertex.iter().all(|x| x.is_finite()));
     refuse(bad, |vertices| MeshError::NonFinite { vertices })
 }
@@ -72,8 +72,8 @@ pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(),
 ///
 /// Refuses faces whose corners lie on a line.
 pub(super) fn positive_areas(
-    vertices: &[Vector],
-    points: &[Vector],
+    vertices: &[[f64; 3]],
+    points: &[Vector3],
     scale: f64,
     faces: &[[u32; 3]],
 ) -> Result<Vec<f64>, MeshError> {
@@ -81,7 +81,7 @@ pub(super) fn positive_areas(
     let bad = faces.iter().zip(&areas).enumerate().filter(|(_, (face, area))| {
         // What the coordinates were rounded to, here and where the mesh came from.
         let corners = triangle(points, **face);
-        let given = largest(triangle(vertices, **face)) / scale;
+        let given = largest(face.map(|vertex| Vector3(vertices[vertex as usize]))) / scale;
         is_flat(corners, **area, given.max(largest(corners)))
     });
     let bad = Elements::collect(bad.map(|(face, _)| face));
@@ -90,7 +90,7 @@ pub(super) fn positive_areas(
 }
 
 /// Whether a triangle's height over its longest edge drowns in the rounding of its coordinates.
-fn is_flat(corners: [Vector; 3], area: f64, largest_coordinate: f64) -> bool {
+fn is_flat(corners: [Vector3; 3], area: f64, largest_coordinate: f64) -> bool {
     let longest = geometry::edge_lengths(corners).into_iter().fold(0.0, f64::max);
     let height = 2.0 * area / longest;
     let rounding = ROUNDINGS * f64::EPSILON * largest_coordinate.max(longest);
@@ -98,8 +98,8 @@ fn is_flat(corners: [Vector; 3], area: f64, largest_coordinate: f64) -> bool {
     height.is_nan() || height <= rounding.max(SMALLEST_HEIGHT)
 }
 
-fn largest(corners: [Vector; 3]) -> f64 {
-    corners.as_flattened().iter().fold(0.0, |largest, x| f64::max(largest, x.abs()))
+fn largest(corners: [Vector3; 3]) -> f64 {
+    corners.into_iter().map(Vector3::max_abs).fold(0.0, f64::max)
 }
 
 /// Refuses edges of three or more faces.

@@ -19,7 +19,7 @@ use crate::distortion::{Image, distortion, folded_in_plane};
 use crate::error::{Error, Side};
 use crate::location::Locator;
 use crate::mesh::TriangleMesh;
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// Registers two disks by landmarks inside them.
 ///
@@ -62,7 +62,7 @@ pub fn register_disks(
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
     // 4. h: the landmarks carried to their places; where some are missed, those of the target carried the other way
-    let ours: Vec<Vector> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
+    let ours: Vec<Vector3> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
     let disk = |mesh, landmarks, places| Carrying {
         mesh,
         domain: CanonicalDomain::Disk,
@@ -89,7 +89,7 @@ pub fn register_disks(
     let locator = Locator::new(&met.target, target.faces());
     let (locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
     // 6. Figures
-    let error = |(&p, &q): (&usize, &usize)| distance(met.source[p], met.target[q]);
+    let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
     let registered = flat(&met.source);
@@ -122,14 +122,14 @@ pub fn register_disks(
 
 /// Both surfaces in the disk with their landmarks together, but for a gap.
 struct Meeting {
-    source: Vec<Vector>,
-    target: Vec<Vector>,
+    source: Vec<Vector3>,
+    target: Vec<Vector3>,
     gap: f64,
     status: Status,
 }
 
 /// A map rotated by an angle, unless the rounding of that folds a sliver.
-fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector> {
+fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector3> {
     let (sine, cosine) = turn.sin_cos();
     let turned: Vec<[f64; 2]> =
         map.uv.iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
@@ -140,6 +140,6 @@ fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector> {
 }
 
 /// The images of some vertices.
-fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector> {
+fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector3> {
     lifted(&vertices.iter().map(|&vertex| map.uv[vertex]).collect::<Vec<_>>())
 }

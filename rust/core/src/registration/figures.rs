@@ -3,15 +3,16 @@
 
 use crate::mesh::geometry::{face_areas, normalized};
 use crate::parallel;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// The area of each face's image over its own, (m,), rescaled so that the whole image is as large as the surface: 1
 /// everywhere where g keeps areas.
 ///
 /// `points` (n, 3) and `faces` (m, 3) are the source, each face with an area; `positions` (n, 3) are g. All are 0 where
 /// the image has no area.
-pub fn area_ratios(points: &[Vector], faces: &[[u32; 3]], positions: &[Vector]) -> Vec<f64> {
-    let [areas, images] = [points, positions].map(|corners| face_areas(&normalized(corners).0, faces));
+pub fn area_ratios(points: &[[f64; 3]], faces: &[[u32; 3]], positions: &[Vector3]) -> Vec<f64> {
+    let (areas, images) =
+        (face_areas(&normalized(points).0, faces), face_areas(&normalized(positions).0, faces));
     let total = |areas: &[f64]| parallel::sum(areas.len(), |face| areas[face]);
     let (whole, image) = (total(&areas), total(&images));
     parallel::map(faces.len(), |face| match image > 0.0 {
@@ -21,7 +22,7 @@ pub fn area_ratios(points: &[Vector], faces: &[[u32; 3]], positions: &[Vector]) 
 }
 
 /// A third of the area of the faces at each vertex, (n,), of the surface scaled to a bounding box with a diagonal of 1.
-pub fn vertex_areas(points: &[Vector], faces: &[[u32; 3]]) -> Vec<f64> {
+pub fn vertex_areas(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<f64> {
     let areas = face_areas(&normalized(points).0, faces);
     let mut at_vertex = vec![0.0; points.len()];
     for (face, area) in faces.iter().zip(areas) {
@@ -66,12 +67,14 @@ mod tests {
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let faces = [[0, 1, 2], [0, 2, 3]];
         let huge = square.map(|[x, y, _]| [1e200, 3e200 * x, -2e200 * y]);
-        area_ratios(&square, &faces, &huge).iter().for_each(|ratio| assert!((ratio - 1.0).abs() < 1e-14));
+        area_ratios(&square, &faces, &huge.map(Vector3))
+            .iter()
+            .for_each(|ratio| assert!((ratio - 1.0).abs() < 1e-14));
         // a kite of which one half is three times the other
         let kite = [square[0], [1.5, -0.5, 0.0], square[2], [0.25, 0.75, 0.0]];
-        let ratios = area_ratios(&square, &faces, &kite);
+        let ratios = area_ratios(&square, &faces, &kite.map(Vector3));
         assert!((ratios[0] - 1.6).abs() < 1e-14 && (ratios[1] - 0.4).abs() < 1e-14);
-        assert_eq!(area_ratios(&square, &faces, &[[4.0; 3]; 4]), [0.0, 0.0]);
+        assert_eq!(area_ratios(&square, &faces, &[Vector3([4.0; 3]); 4]), [0.0, 0.0]);
     }
 
     #[test]

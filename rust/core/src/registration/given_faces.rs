@@ -3,7 +3,7 @@
 
 use super::transfer::{corner_sides, nearest_corners, pull_corners, pull_rows};
 use crate::location::Location;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// A registered surface with its faces as given, which say in what order data at corners come.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct GivenFaces<'a> {
     /// (m, 3): the faces as oriented.
     pub oriented: &'a [[u32; 3]],
     /// (n, 3): the vertices in the domain, on the unit sphere or in the plane z = 1.
-    pub registered: &'a [Vector],
+    pub registered: &'a [Vector3],
 }
 
 impl GivenFaces<'_> {

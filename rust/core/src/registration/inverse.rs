@@ -8,12 +8,12 @@ use crate::control::{Observer, Watch};
 use crate::distortion::Image;
 use crate::error::Error;
 use crate::location::Locator;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// A point of the disk or of the sphere.
 pub trait DomainPoint: Copy + Send + Sync {
     /// The point in space, where the disk lies in the plane z = 1.
-    fn lifted(self) -> Vector;
+    fn lifted(self) -> Vector3;
 
     /// A map to the domain.
     fn image(map: &[Self]) -> Image<'_>
@@ -22,8 +22,8 @@ pub trait DomainPoint: Copy + Send + Sync {
 }
 
 impl DomainPoint for [f64; 2] {
-    fn lifted(self) -> Vector {
-        [self[0], self[1], 1.0]
+    fn lifted(self) -> Vector3 {
+        Vector3([self[0], self[1], 1.0])
     }
 
     fn image(map: &[Self]) -> Image<'_> {
@@ -31,8 +31,8 @@ impl DomainPoint for [f64; 2] {
     }
 }
 
-impl DomainPoint for [f64; 3] {
-    fn lifted(self) -> Vector {
+impl DomainPoint for Vector3 {
+    fn lifted(self) -> Vector3 {
         self
     }
 
@@ -72,6 +72,6 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     }
 }
 
-fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector> {
+fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector3> {
     map.iter().map(|&point| point.lifted()).collect()
 }

@@ -23,7 +23,7 @@ use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
 use crate::sparse::{Order, elimination_order};
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 use crate::{disk, sphere};
 
 /// How often flow and pull take turns at the most.
@@ -87,7 +87,7 @@ pub(super) struct Carrying<'a> {
     /// The landmarks of this surface, (k,).
     pub landmarks: &'a [usize],
     /// Where they are wanted, (k,).
-    pub places: &'a [Vector],
+    pub places: &'a [Vector3],
     pub options: &'a RegistrationOptions,
 }
 
@@ -120,13 +120,13 @@ impl Carrying<'_> {
     }
 
     /// How far each landmark of a map is from its place.
-    fn gaps(&self, map: &[Vector]) -> Vec<f64> {
-        let gap = |(&vertex, &place): (&usize, &Vector)| distance(map[vertex], place);
+    fn gaps(&self, map: &[Vector3]) -> Vec<f64> {
+        let gap = |(&vertex, &place): (&usize, &Vector3)| map[vertex].distance(place);
         self.landmarks.iter().zip(self.places).map(gap).collect()
     }
 
     /// The gap of the farthest landmark of a map.
-    pub(super) fn farthest(&self, map: &[Vector]) -> f64 {
+    pub(super) fn farthest(&self, map: &[Vector3]) -> f64 {
         self.gaps(map).into_iter().fold(0.0, f64::max)
     }
 
@@ -267,6 +267,6 @@ fn descent(goals: Goals, [usual_iterations, most_iterations]: [usize; 2]) -> Gau
 }
 
 /// The gap of the farthest landmark.
-fn farthest(problem: &Problem, map: &[Vector]) -> f64 {
+fn farthest(problem: &Problem, map: &[Vector3]) -> f64 {
     problem.penalty.gaps(map).into_iter().fold(0.0, f64::max)
 }

@@ -4,7 +4,7 @@
 use crate::codomain::CanonicalDomain;
 use crate::error::{Elements, Error, LandmarkError, Side};
 use crate::mesh::TriangleMesh;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Pairs of vertices, one on the source and one on the target, that belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,7 +68,7 @@ fn fewest(domain: CanonicalDomain) -> usize {
 /// The angle by which to rotate points of the plane z = 1 about the origin so that they come nearest to others.
 ///
 /// The best R of SO(2) by Σ |R p_i − q_i|²; by no angle where the points say nothing, as at the centre.
-pub(super) fn best_turn(from: &[Vector], to: &[Vector]) -> f64 {
+pub(super) fn best_turn(from: &[Vector3], to: &[Vector3]) -> f64 {
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (p, q) in from.iter().zip(to) {
         sine += p[0] * q[1] - p[1] * q[0];
@@ -113,13 +113,13 @@ mod tests {
 
     #[test]
     fn the_best_turn_undoes_a_rotation() {
-        let points = [[0.3, 0.1, 1.0], [-0.2, 0.7, 1.0]];
-        let turned = points.map(|[u, v, w]| {
+        let points = [[0.3, 0.1, 1.0], [-0.2, 0.7, 1.0]].map(Vector3);
+        let turned = points.map(|Vector3([u, v, w])| {
             let (sine, cosine) = 2.5f64.sin_cos();
-            [cosine * u - sine * v, sine * u + cosine * v, w]
+            Vector3([cosine * u - sine * v, sine * u + cosine * v, w])
         });
         assert!((best_turn(&points, &turned) - 2.5).abs() < 1e-15);
-        assert_eq!(best_turn(&[[0.0, 0.0, 1.0]], &[[0.1, 0.2, 1.0]]), 0.0);
-        assert!((rotated([1.0, 0.0, 1.0], 2.5)[0] - 2.5f64.cos()).abs() < 1e-15);
+        assert_eq!(best_turn(&[Vector3([0.0, 0.0, 1.0])], &[Vector3([0.1, 0.2, 1.0])]), 0.0);
+        assert!((rotated(Vector3([1.0, 0.0, 1.0]), 2.5)[0] - 2.5f64.cos()).abs() < 1e-15);
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::alignment::similarity::similarity;
 use crate::parallel;
-use crate::vector::{Vector, add, scaled};
+use crate::vector::Vector3;
 
 /// The morph (1 − t) v + t g(v) from `vertices` (n, 3) at t = 0 to their `positions` (n, 3) on the target at t = 1.
 ///
@@ -11,13 +11,14 @@ use crate::vector::{Vector, add, scaled};
 /// Where the lengths differ.
 ///
 /// ```
-/// use authalic::registration::homotopy;
+/// use authalic::{Vector3, registration::homotopy};
 ///
-/// assert_eq!(homotopy(&[[0.0, 0.0, 0.0]], &[[1.0, 2.0, 4.0]], 0.25), [[0.25, 0.5, 1.0]]);
+/// let (vertex, position) = (Vector3::ZERO, Vector3([1.0, 2.0, 4.0]));
+/// assert_eq!(homotopy(&[vertex], &[position], 0.25), [Vector3([0.25, 0.5, 1.0])]);
 /// ```
-pub fn homotopy(vertices: &[Vector], positions: &[Vector], t: f64) -> Vec<Vector> {
+pub fn homotopy(vertices: &[Vector3], positions: &[Vector3], t: f64) -> Vec<Vector3> {
     assert_eq!(vertices.len(), positions.len(), "one position per vertex");
-    parallel::map(vertices.len(), |v| add(scaled(vertices[v], 1.0 - t), scaled(positions[v], t)))
+    parallel::map(vertices.len(), |v| vertices[v] * (1.0 - t) + positions[v] * t)
 }
 
 /// The morph to the `positions` brought onto the `vertices` by the best similarity by `weights` (n,), so that the shape
@@ -25,9 +26,14 @@ pub fn homotopy(vertices: &[Vector], positions: &[Vector], t: f64) -> Vec<Vector
 ///
 /// # Panics
 /// Where the lengths differ.
-pub fn aligned_homotopy(vertices: &[Vector], positions: &[Vector], weights: &[f64], t: f64) -> Vec<Vector> {
+pub fn aligned_homotopy(
+    vertices: &[Vector3],
+    positions: &[Vector3],
+    weights: &[f64],
+    t: f64,
+) -> Vec<Vector3> {
     let motion = similarity(positions, vertices, weights);
-    let aligned: Vec<Vector> = positions.iter().map(|&position| motion.apply(position)).collect();
+    let aligned: Vec<Vector3> = positions.iter().map(|&position| motion.apply(position)).collect();
     homotopy(vertices, &aligned, t)
 }
 
@@ -35,7 +41,6 @@ pub fn aligned_homotopy(vertices: &[Vector], positions: &[Vector], weights: &[f6
 mod tests {
     use super::*;
     use crate::alignment::similarity::tests::cloud;
-    use crate::vector::distance;
 
     #[test]
     fn a_morph_begins_and_ends_exactly() {
@@ -43,6 +48,6 @@ mod tests {
         assert_eq!(homotopy(&from, &to, 0.0), from);
         assert_eq!(homotopy(&from, &to, 1.0), to);
         let middle = homotopy(&from, &to, 0.5);
-        (0..9).for_each(|v| assert!(distance(middle[v], scaled(add(from[v], to[v]), 0.5)) < 1e-15));
+        (0..9).for_each(|v| assert!(middle[v].distance((from[v] + to[v]) * 0.5) < 1e-15));
     }
 }

@@ -6,12 +6,13 @@ use crate::disk::DiskMap;
 use crate::distortion::Distortion;
 use crate::location::{Location, points_on};
 use crate::sphere::SphereMap;
+use crate::vector::Vector3;
 
 /// A registration of disks.
 pub type DiskRegistration = Registration<DiskMap, [f64; 2]>;
 
 /// A registration of spheres.
-pub type SphereRegistration = Registration<SphereMap, [f64; 3]>;
+pub type SphereRegistration = Registration<SphereMap, Vector3>;
 
 /// A one-to-one map g of a source surface onto a target.
 #[derive(Debug, Clone)]
@@ -54,7 +55,7 @@ impl<Map, Point> Registration<Map, Point> {
     ///
     /// # Panics
     /// Where `vertices` are fewer than the target's.
-    pub fn positions(&self, vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub fn positions(&self, vertices: &[Vector3]) -> Vec<Vector3> {
         points_on(&self.locations, vertices, &self.target_faces)
     }
 }

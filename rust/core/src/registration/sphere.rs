@@ -21,7 +21,7 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
-use crate::vector::{Vector, add, distance, dot, norm, scaled};
+use crate::vector::Vector3;
 
 /// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on
 /// either side.
@@ -79,8 +79,8 @@ pub fn register_spheres(
     let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks, and the middle of each pair
     let turned = turned(source, &f0, landmarks, &f1);
-    let ours: Vec<Vector> = landmarks.source.iter().map(|&p| turned[p]).collect();
-    let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| turned[p]).collect();
+    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
     let places = meeting_places(&ours, &theirs);
     // 4. h₀ and h₁: the landmarks of both carried there
     let carrying = |mesh, landmarks| Carrying {
@@ -100,10 +100,10 @@ pub fn register_spheres(
     let locator = Locator::new(&target_registered, target.faces());
     let (locations, status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
     // 6. Figures
-    let error = |(&p, &q): (&usize, &usize)| distance(registered[p], target_registered[q]);
+    let error = |(&p, &q): (&usize, &usize)| registered[p].distance(target_registered[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
-    let figures = |mesh: &TriangleMesh, map: &[Vector]| {
+    let figures = |mesh: &TriangleMesh, map: &[Vector3]| {
         distortion(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
     };
     let target_distortion = figures(target, &target_registered)?;
@@ -138,23 +138,23 @@ pub(crate) fn inside_out(source: &TriangleMesh, target: &TriangleMesh) -> bool {
 fn volume(mesh: &TriangleMesh) -> f64 {
     parallel::sum(mesh.n_faces(), |face| {
         let corners = triangle(mesh.points(), mesh.faces()[face]);
-        2.0 * dot(corners[0], area_vector(corners))
+        2.0 * corners[0].dot(area_vector(corners))
     })
 }
 
 /// The source's map rotated so that its landmarks come nearest to the target's, unless the rounding of that
 /// folds a sliver.
-fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector> {
-    let ours: Vec<Vector> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
-    let theirs: Vec<Vector> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector3> {
+    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
+    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
     // of equally good rotations, as about the axis of two opposite landmarks, the least
-    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let axes = [0, 1, 2].map(Vector3::unit);
     let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
     let (ours, theirs) = ([&ours[..], &axes].concat(), [&theirs[..], &axes].concat());
     let rotation = best_rotation(&ours, &theirs, &weights);
     let turned = parallel::map(f0.positions.len(), |vertex| {
         let turned = rotate(rotation, f0.positions[vertex]);
-        scaled(turned, 1.0 / norm(turned))
+        turned * (1.0 / turned.norm())
     });
     match folded_on_sphere(source.faces(), &turned).is_empty() {
         true => turned,
@@ -164,10 +164,10 @@ fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: 
 
 /// Where the landmarks of each pair meet: in the middle, or at the target's where some pairs would meet in
 /// one place, as two that change places do.
-fn meeting_places(ours: &[Vector], theirs: &[Vector]) -> Vec<Vector> {
-    let middle: Vec<Vector> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
+fn meeting_places(ours: &[Vector3], theirs: &[Vector3]) -> Vec<Vector3> {
+    let middle: Vec<Vector3> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
     let is_crowded = |i: usize, j: usize| {
-        let apart = |points: &[Vector]| distance(points[i], points[j]);
+        let apart = |points: &[Vector3]| points[i].distance(points[j]);
         apart(&middle) < CROWDED * apart(ours).min(apart(theirs))
     };
     match (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j))) {
@@ -177,10 +177,10 @@ fn meeting_places(ours: &[Vector], theirs: &[Vector]) -> Vec<Vector> {
 }
 
 /// The point of the sphere in the middle of two; of opposite points the second.
-fn between(a: Vector, b: Vector) -> Vector {
-    let sum = add(a, b);
-    match norm(sum) {
-        length if length > 1e-6 => scaled(sum, 1.0 / length),
+fn between(a: Vector3, b: Vector3) -> Vector3 {
+    let sum = a + b;
+    match sum.norm() {
+        length if length > 1e-6 => sum * (1.0 / length),
         _ => b,
     }
 }

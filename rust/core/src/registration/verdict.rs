@@ -7,7 +7,7 @@ use crate::distortion::Distortion;
 use crate::error::Error;
 use crate::location::{Location, Locator};
 use crate::mesh::TriangleMesh;
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// A landmark that ends farther than this from its place, in a domain of radius 1, was missed.
 pub const MISSED: f64 = 1e-3;
@@ -18,7 +18,7 @@ const MISSED_ON_TARGET: f64 = 5e-3;
 /// The locations of points; a cancelled run still gets them, that takes seconds at a million.
 pub(super) fn located(
     locator: &Locator,
-    points: &[Vector],
+    points: &[Vector3],
     status: Status,
     observer: &mut dyn Observer,
 ) -> Result<(Vec<Location>, Status), Error> {
@@ -43,7 +43,7 @@ pub(super) fn missed(
     let is_missed = |&pair: &usize| {
         let location = locations[landmarks.source[pair]];
         let place = location.point_on(target.points(), target.faces());
-        let on_target = distance(place, target.points()[landmarks.target[pair]]);
+        let on_target = place.distance(target.points()[landmarks.target[pair]]);
         landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET
     };
     (0..landmark_error.len()).filter(is_missed).collect()

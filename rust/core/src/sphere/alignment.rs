@@ -10,17 +10,16 @@ use crate::codomain::SpatialMap;
 use crate::distortion::folded_on_sphere;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
-use crate::vector::{norm, scaled, sub};
 
 /// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
 /// folds a sliver.
 pub(super) fn aligned(mesh: &TriangleMesh, map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let (points, centre) = (mesh.points(), centroid(mesh.points(), weights));
-    let centred = parallel::map(points.len(), |vertex| sub(points[vertex], centre));
+    let centred = parallel::map(points.len(), |vertex| points[vertex] - centre);
     let rotation = best_rotation(&map, &centred, weights);
     let turned = parallel::map(map.len(), |vertex| {
         let turned = rotate(rotation, map[vertex]);
-        scaled(turned, 1.0 / norm(turned))
+        turned * (1.0 / turned.norm())
     });
     let folds = |map: &SpatialMap| folded_on_sphere(mesh.faces(), map).len();
     if folds(&turned) > folds(&map) { map } else { turned }

@@ -30,7 +30,6 @@ use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, target_floors};
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
-use crate::vector::{cross, dot};
 
 /// Fixed-point steps at the most.
 const FIXED_POINT_STEPS: usize = 5;
@@ -248,7 +247,7 @@ impl Run<'_> {
     fn is_bijective(&self, map: &SpatialMap) -> bool {
         let covered = parallel::sum(self.mesh.n_faces(), |face| {
             let [a, b, c] = triangle(map, self.mesh.faces()[face]);
-            2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
+            2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
         });
         (covered - 4.0 * PI).abs() < 1.0 && folded_on_sphere(self.mesh.faces(), map).is_empty()
     }
@@ -259,22 +258,21 @@ mod tests {
     use super::*;
     use crate::mesh::TriangleMesh;
     use crate::sparse::processor::with_each_width;
-    use crate::vector::{distance, norm, scaled};
+    use crate::vector::{Vector3, coordinates};
     use crate::{Silent, sphere_map};
 
     /// An octahedron split five times, with bumps and without symmetry.
     fn bumpy_ball() -> TriangleMesh {
-        let mut points =
-            vec![[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
+        let [x, y, z] = [0, 1, 2].map(Vector3::unit);
+        let mut points = vec![x, -x, y, -y, z, -z];
         let mut faces: Vec<[u32; 3]> =
             vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
         for _ in 0..5 {
             let mut middle_of = std::collections::HashMap::new();
-            let mut middle = |points: &mut Vec<[f64; 3]>, a: u32, b: u32| {
+            let mut middle = |points: &mut Vec<Vector3>, a: u32, b: u32| {
                 *middle_of.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                    let sum: [f64; 3] =
-                        std::array::from_fn(|k| points[a as usize][k] + points[b as usize][k]);
-                    points.push(scaled(sum, 1.0 / norm(sum)));
+                    let sum = points[a as usize] + points[b as usize];
+                    points.push(sum * (1.0 / sum.norm()));
                     points.len() as u32 - 1
                 })
             };
@@ -285,10 +283,11 @@ mod tests {
             }
             faces = split;
         }
-        let bump =
-            |[x, y, z]: [f64; 3]| 1.0 + 0.3 * (5.0 * x + 1.0).sin() * (4.0 * y + 0.4 * z).cos() + 0.2 * z;
-        points.iter_mut().for_each(|x| *x = scaled(*x, bump(*x)));
-        TriangleMesh::new(&points, &faces).unwrap()
+        let bump = |Vector3([x, y, z]): Vector3| {
+            1.0 + 0.3 * (5.0 * x + 1.0).sin() * (4.0 * y + 0.4 * z).cos() + 0.2 * z
+        };
+        points.iter_mut().for_each(|x| *x = *x * bump(*x));
+        TriangleMesh::new(&coordinates(points), &faces).unwrap()
     }
 
     #[test]
@@ -299,7 +298,7 @@ mod tests {
             let mut maps = with_each_width(|| sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
             maps.push(sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
             for map in &maps[1..] {
-                let most = map.iter().zip(&maps[0]).map(|(&x, &y)| distance(x, y)).fold(0.0, f64::max);
+                let most = map.iter().zip(&maps[0]).map(|(&x, &y)| x.distance(y)).fold(0.0, f64::max);
                 assert!(most < 1e-6, "{angle_weight}: {most}");
             }
         }

@@ -26,7 +26,7 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, normalized_density};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 use crate::codomain::SpatialMap;
 pub use options::{SphereMapOptions, SphereMethod};
@@ -43,7 +43,7 @@ const UNREFINED: f64 = 0.4;
 pub struct SphereMap {
     /// (n, 3): the image of each vertex, unit rows; positive faces are seen counter-clockwise from outside.
     /// Without a start map it is the rotated copy that lies over the surface best.
-    pub positions: Vec<Vector>,
+    pub positions: Vec<Vector3>,
     /// Why the run ended.
     pub status: Status,
     /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place

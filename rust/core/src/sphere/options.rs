@@ -9,7 +9,7 @@ use crate::mesh::geometry::{area_vector, triangle};
 use crate::optimize::published::gradient_descent::LineSearch;
 use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
-use crate::vector::{Vector, dot};
+use crate::vector::Vector3;
 
 /// How a sphere map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,7 +42,7 @@ pub struct SphereMapOptions<'a> {
     pub area_tolerance: Option<f64>,
     /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the
     /// fixed point itself fixed-point steps from it.
-    pub initial: Option<&'a [Vector]>,
+    pub initial: Option<&'a [Vector3]>,
     /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
     /// takes, with a weight of 0 17 (20 below 20,000 vertices, 40 below 10,000) where those leave the area ratio
     /// a deviation of .5 % (.2 % below 10,000 vertices); the papers' methods: 100, as in the paper's tables. The
@@ -117,13 +117,13 @@ impl SphereMapOptions<'_> {
 
 /// A start map must be finite, away from the origin and outward oriented on the whole; its folds are mended
 /// like any others.
-fn check_initial(mesh: &TriangleMesh, initial: &[Vector]) -> Result<(), Error> {
+fn check_initial(mesh: &TriangleMesh, initial: &[Vector3]) -> Result<(), Error> {
     if initial.len() != mesh.n_vertices() {
         let (found, expected) =
             (format!("of shape ({}, 3)", initial.len()), format!("of shape ({}, 3)", mesh.n_vertices()));
         return Err(Error::InvalidArray { name: "initial", found, expected });
     }
-    let not_finite = |v: &usize| !initial[*v].iter().all(|x| x.is_finite());
+    let not_finite = |v: &usize| !initial[*v].is_finite();
     if let Some(vertices) = Elements::collect((0..initial.len()).filter(not_finite)) {
         return Err(MapError::NonFinite { name: "initial", vertices }.into());
     }
@@ -135,7 +135,7 @@ fn check_initial(mesh: &TriangleMesh, initial: &[Vector]) -> Result<(), Error> {
     let map: SpatialMap = initial.iter().filter_map(|&x| onto_sphere(x)).collect();
     let volume = |face: usize| {
         let corners = triangle(&map, mesh.faces()[face]);
-        dot(corners[0], area_vector(corners))
+        corners[0].dot(area_vector(corners))
     };
     if parallel::sum(mesh.n_faces(), volume) <= 0.0 {
         let vertices = Elements::collect(0..initial.len()).expect("a mesh has vertices");

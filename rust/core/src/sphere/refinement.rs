@@ -28,7 +28,7 @@ use crate::mesh::bisection::{Bisection, bisect_longest_edges};
 use crate::mesh::geometry::triangle;
 use crate::mesh::ties::tie_breakers;
 use crate::parallel;
-use crate::vector::{Vector, add, distance, scaled};
+use crate::vector::{Vector3, coordinates};
 
 /// Rounds at the most.
 const ROUNDS: usize = 3;
@@ -52,7 +52,7 @@ pub struct Refinement {
     /// on from the vertices.
     pub parents: Vec<[u32; 2]>,
     /// (k, 3): the images of the split points, unit rows.
-    pub positions: Vec<[f64; 3]>,
+    pub positions: Vec<Vector3>,
     /// (m', 3): the faces between vertices and split points, oriented as the surface.
     pub faces: Vec<[u32; 3]>,
     /// (m',): the face that each of them is a part of, ascending.
@@ -126,17 +126,17 @@ impl Refined {
     }
 
     /// Which faces cannot have their targets.
-    fn blocked(&self, map: &[Vector]) -> Vec<bool> {
+    fn blocked(&self, map: &[Vector3]) -> Vec<bool> {
         let scale = 4.0 * PI / parallel::sum(self.targets.len(), |face| self.targets[face]);
         parallel::map(self.mesh.n_faces(), |face| {
             let [a, b, c] = triangle(map, self.mesh.faces()[face]);
-            let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
             SAGITTA * longest.powi(3) > BLOCKING * scale * self.targets[face]
         })
     }
 
     /// The surface with blocked faces split, and the map with the new midpoints; `None` where no face is blocked.
-    fn split(&self, map: &[Vector]) -> Option<(Self, SpatialMap)> {
+    fn split(&self, map: &[Vector3]) -> Option<(Self, SpatialMap)> {
         let blocked = self.blocked(map);
         if !blocked.contains(&true) {
             return None;
@@ -146,19 +146,19 @@ impl Refined {
         let preference = tie_breakers(points);
         let length = |a: u32, b: u32| {
             let [a, b] = [a as usize, b as usize];
-            distance(map[a], map[b]) * (preference[a] + preference[b])
+            map[a].distance(map[b]) * (preference[a] + preference[b])
         };
         let Bisection { parents, faces, face_of, parts } = bisect_longest_edges(&self.mesh, &blocked, length);
         // 2. Midpoints on the surface and on the sphere
-        let middle = |of: &[Vector], [a, b]: [u32; 2]| scaled(add(of[a as usize], of[b as usize]), 0.5);
+        let middle = |of: &[Vector3], [a, b]: [u32; 2]| (of[a as usize] + of[b as usize]) * 0.5;
         let on_surface = parents.iter().map(|&ends| middle(points, ends));
-        let points: Vec<Vector> = points.iter().copied().chain(on_surface).collect();
+        let points: Vec<Vector3> = points.iter().copied().chain(on_surface).collect();
         let on_sphere = parents.iter().map(|&ends| onto_sphere(middle(map, ends)));
         let map: SpatialMap = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
         // 3. Targets
         let part = |k: usize| self.targets[face_of[k] as usize] / f64::from(parts[k]);
         let split = Self {
-            mesh: TriangleMesh::new(&points, &faces).ok()?,
+            mesh: TriangleMesh::new(&coordinates(points), &faces).ok()?,
             targets: parallel::map(faces.len(), part),
             parents: self.parents.iter().copied().chain(parents).collect(),
             face_of: face_of.iter().map(|&face| self.face_of[face as usize]).collect(),
@@ -181,7 +181,7 @@ impl Refined {
     }
 
     /// The figures of a map's parts of faces, and of whole faces.
-    pub(super) fn figures(&self, map: &[Vector]) -> Result<(Distortion, Distortion), Error> {
+    pub(super) fn figures(&self, map: &[Vector3]) -> Result<(Distortion, Distortion), Error> {
         let (points, faces, image) = (self.mesh.points(), self.mesh.faces(), Image::Sphere(map));
         let of_parts = distortion(points, faces, image, &self.targets)?;
         let of_faces = distortion_of_wholes(&of_parts, faces, image, &self.targets, &self.face_of)?;

@@ -27,7 +27,7 @@ use crate::mesh::geometry::{corner_cotangents, triangle};
 use crate::mesh::ties::tie_breakers;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// Newton steps of the centring; three or four are the rule.
 const CENTRING_STEPS: usize = 50;
@@ -90,19 +90,19 @@ pub(super) fn start(
 /// The surface seen from its centroid, where no face is folded there.
 fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<SpatialMap> {
     let total: f64 = weights.iter().sum();
-    let centroid: Vector = std::array::from_fn(|axis| {
+    let centroid = Vector3::from_fn(|axis| {
         parallel::sum(mesh.n_vertices(), |v| weights[v] / total * mesh.points()[v][axis])
     });
-    let offset = |v: usize| sub(mesh.points()[v], centroid);
-    if !parallel::all(mesh.n_vertices(), |v| norm(offset(v)) > 1e-6) {
+    let offset = |v: usize| mesh.points()[v] - centroid;
+    if !parallel::all(mesh.n_vertices(), |v| offset(v).norm() > 1e-6) {
         return None;
     }
-    let map = parallel::map(mesh.n_vertices(), |v| scaled(offset(v), 1.0 / norm(offset(v))));
+    let map = parallel::map(mesh.n_vertices(), |v| offset(v) * (1.0 / offset(v).norm()));
     folded_on_sphere(mesh.faces(), &map).is_empty().then_some(map)
 }
 
 /// Whether some face has next to nothing of its target area.
-fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector]) -> bool {
+fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector3]) -> bool {
     let energy = SpatialStretchEnergy::new(mesh, targets);
     let (areas, least) = (energy.areas(map), COLLAPSED * 4.0 * PI / targets.iter().sum::<f64>());
     !parallel::all(areas.len(), |face| areas[face] > least * targets[face])
@@ -150,14 +150,14 @@ fn conformal_within(
 /// The map rotated so that the removed face lies at the south pole, whichever way the plane was turned.
 fn upright(map: SpatialMap, removed: [u32; 3]) -> SpatialMap {
     let [a, b, c] = triangle(&map, removed);
-    let face = add(a, add(b, c));
+    let face = a + (b + c);
     // a half turn about the axis between the face and the pole
-    let axis = add(scaled(face, 1.0 / norm(face)), [0.0, 0.0, -1.0]);
-    let length = norm(axis);
-    let axis = if length > 1e-6 { scaled(axis, 1.0 / length) } else { [1.0, 0.0, 0.0] };
+    let axis = face * (1.0 / face.norm()) + Vector3([0.0, 0.0, -1.0]);
+    let length = axis.norm();
+    let axis = if length > 1e-6 { axis * (1.0 / length) } else { Vector3([1.0, 0.0, 0.0]) };
     parallel::map(map.len(), |v| {
-        let turned = sub(scaled(axis, 2.0 * dot(axis, map[v])), map[v]);
-        scaled(turned, 1.0 / norm(turned))
+        let turned = axis * (2.0 * axis.dot(map[v])) - map[v];
+        turned * (1.0 / turned.norm())
     })
 }
 
@@ -165,7 +165,7 @@ fn upright(map: SpatialMap, removed: [u32; 3]) -> SpatialMap {
 fn roundest_face(mesh: &TriangleMesh) -> usize {
     let roundness = |face: usize| {
         let [a, b, c] = triangle(mesh.points(), mesh.faces()[face]);
-        let squares = [sub(b, a), sub(c, b), sub(a, c)].map(|edge| dot(edge, edge));
+        let squares = [b - a, c - b, a - c].map(|edge| edge.dot(edge));
         mesh.face_areas()[face] / squares.iter().sum::<f64>()
     };
     // symmetric surfaces have several
@@ -200,10 +200,10 @@ fn harmonic(
 }
 
 /// A triangle of space laid into the plane clockwise, its centroid at the origin, of size 1.
-fn mirrored_triangle([a, b, c]: [Vector; 3]) -> [[f64; 2]; 3] {
-    let length = distance(a, b);
-    let along = scaled(sub(b, a), 1.0 / length);
-    let corners = [[0.0, 0.0], [length, 0.0], [dot(sub(c, a), along), -norm(cross(along, sub(c, a)))]];
+fn mirrored_triangle([a, b, c]: [Vector3; 3]) -> [[f64; 2]; 3] {
+    let length = a.distance(b);
+    let along = (b - a) * (1.0 / length);
+    let corners = [[0.0, 0.0], [length, 0.0], [(c - a).dot(along), -along.cross(c - a).norm()]];
     let centroid = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
     corners.map(|corner| [0, 1].map(|axis| (corner[axis] - centroid[axis]) / length))
 }
@@ -229,35 +229,35 @@ fn normalise(plane: &mut [[f64; 2]], weights: &[f64]) {
 fn centred(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let total: f64 = weights.iter().sum();
     for _ in 0..CENTRING_STEPS {
-        let moment = |value: &(dyn Fn(Vector) -> f64 + Sync)| {
+        let moment = |value: &(dyn Fn(Vector3) -> f64 + Sync)| {
             parallel::sum(map.len(), |v| weights[v] / total * value(map[v]))
         };
-        let centroid: Vector = std::array::from_fn(|axis| moment(&|x| x[axis]));
-        if norm(centroid) < CENTRED {
+        let centroid = Vector3::from_fn(|axis| moment(&|x| x[axis]));
+        if centroid.norm() < CENTRED {
             break;
         }
-        let jacobian: [Vector; 3] = std::array::from_fn(|row| {
-            std::array::from_fn(|column| f64::from(u8::from(row == column)) - moment(&|x| x[row] * x[column]))
+        let jacobian: [Vector3; 3] = std::array::from_fn(|row| {
+            Vector3::from_fn(|column| f64::from(u8::from(row == column)) - moment(&|x| x[row] * x[column]))
         });
         let Some(shift) = solve_three(jacobian, centroid) else { break };
         // a full step of more than half the radius is shortened: the ball ends at 1
-        let shift = scaled(shift, 0.5 * (1.0f64).min(0.9 / norm(shift)));
+        let shift = shift * (0.5 * (1.0f64).min(0.9 / shift.norm()));
         map = parallel::map(map.len(), |v| boosted(map[v], shift));
     }
     map
 }
 
 /// The Möbius transformation of the unit ball that takes `a` to the centre, at a point of the sphere.
-fn boosted(x: Vector, a: Vector) -> Vector {
-    let offset = sub(x, a);
-    let moved = sub(scaled(offset, (1.0 - dot(a, a)) / dot(offset, offset)), a);
-    scaled(moved, 1.0 / norm(moved))
+fn boosted(x: Vector3, a: Vector3) -> Vector3 {
+    let offset = x - a;
+    let moved = offset * ((1.0 - a.dot(a)) / offset.dot(offset)) - a;
+    moved * (1.0 / moved.norm())
 }
 
 /// Cramer's rule; `None` where the three rows lie in a plane.
-fn solve_three([a, b, c]: [Vector; 3], rhs: Vector) -> Option<Vector> {
-    let determinant = dot(a, cross(b, c));
-    let sum = add(add(scaled(cross(b, c), rhs[0]), scaled(cross(c, a), rhs[1])), scaled(cross(a, b), rhs[2]));
-    let solution = scaled(sum, 1.0 / determinant);
-    solution.iter().all(|x| x.is_finite()).then_some(solution)
+fn solve_three([a, b, c]: [Vector3; 3], rhs: Vector3) -> Option<Vector3> {
+    let determinant = a.dot(b.cross(c));
+    let sum = b.cross(c) * rhs[0] + c.cross(a) * rhs[1] + a.cross(b) * rhs[2];
+    let solution = sum * (1.0 / determinant);
+    solution.is_finite().then_some(solution)
 }

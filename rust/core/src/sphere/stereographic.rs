@@ -7,7 +7,7 @@
 
 use crate::codomain::SpatialMap;
 use crate::parallel;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// The projection from one pole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,20 +28,20 @@ impl Chart {
     }
 
     /// The image of a point of the sphere; infinite at the pole itself.
-    pub(super) fn project(self, [x, y, z]: Vector) -> [f64; 2] {
+    pub(super) fn project(self, Vector3([x, y, z]): Vector3) -> [f64; 2] {
         let height = 1.0 - self.pole() * z;
         [x / height, y / height]
     }
 
     /// The point of the sphere over a point of the plane.
-    pub(super) fn lift(self, [u, v]: [f64; 2]) -> Vector {
+    pub(super) fn lift(self, [u, v]: [f64; 2]) -> Vector3 {
         let square = u * u + v * v;
         let unit = 1.0 / (1.0 + square);
-        [2.0 * u * unit, 2.0 * v * unit, self.pole() * (square - 1.0) * unit]
+        Vector3([2.0 * u * unit, 2.0 * v * unit, self.pole() * (square - 1.0) * unit])
     }
 
     /// The images of all points.
-    pub(super) fn project_all(self, map: &[Vector]) -> Vec<[f64; 2]> {
+    pub(super) fn project_all(self, map: &[Vector3]) -> Vec<[f64; 2]> {
         parallel::map(map.len(), |vertex| self.project(map[vertex]))
     }
 
@@ -74,7 +74,6 @@ pub(super) fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::norm;
 
     fn points() -> impl Iterator<Item = [f64; 2]> {
         (0..200).map(|i| {
@@ -88,7 +87,7 @@ mod tests {
         for (chart, z) in [Chart::North, Chart::South].into_iter().flat_map(|c| points().map(move |z| (c, z)))
         {
             let point = chart.lift(z);
-            assert!((norm(point) - 1.0).abs() < 1e-14);
+            assert!((point.norm() - 1.0).abs() < 1e-14);
             let back = chart.project(point);
             let modulus = z[0].hypot(z[1]);
             // near the pole the coordinate 1 ∓ z cancels

@@ -14,7 +14,7 @@ use crate::distortion::folded_on_sphere;
 use crate::energy::mean_value;
 use crate::energy::mean_value::{Weights, correct};
 use crate::mesh::TriangleMesh;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Modulus up to which a chart's vertices may be freed, a little beyond its hemisphere; the paper's r.
 const RADIUS: f64 = 1.2;
@@ -26,12 +26,12 @@ const PASSES: usize = 3;
 const MOST_RINGS: usize = 4096;
 
 /// Returns `map` with its folded faces unfolded, or `None` where even whole hemispheres do not suffice.
-pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector]) -> Option<SpatialMap> {
+pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector3]) -> Option<SpatialMap> {
     unfold_within(mesh, map, MOST_RINGS)
 }
 
 /// The same with no more than so many rings around the folded faces free.
-pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector], most_rings: usize) -> Option<SpatialMap> {
+pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector3], most_rings: usize) -> Option<SpatialMap> {
     let mut map = map.to_vec();
     let mut folded = folded_on_sphere(mesh.faces(), &map);
     let mut rings = 2;
@@ -55,7 +55,7 @@ pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector], most_rings: usi
 }
 
 /// One correction in each hemisphere's chart; leaves out one whose system is singular.
-fn mend(mesh: &TriangleMesh, map: &[Vector], rings: usize, weights: Weights) -> SpatialMap {
+fn mend(mesh: &TriangleMesh, map: &[Vector3], rings: usize, weights: Weights) -> SpatialMap {
     let mut map = map.to_vec();
     for chart in [Chart::North, Chart::South] {
         let folded = folded_on_sphere(mesh.faces(), &map);

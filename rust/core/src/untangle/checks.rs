@@ -8,6 +8,7 @@ use super::positions::Positions;
 use crate::distortion::Image;
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
+use crate::vector::Vector3;
 
 /// Refuses arguments that do not fit the mesh.
 pub(super) fn arguments(
@@ -16,20 +17,20 @@ pub(super) fn arguments(
     options: &UntangleOptions<'_>,
 ) -> Result<(), Error> {
     let n = mesh.n_vertices();
-    let (rows, width, flat) = match image {
-        Image::Plane(map) => (map.len(), 2, map.as_flattened()),
-        Image::Sphere(map) => (map.len(), 3, map.as_flattened()),
+    let (rows, width) = match image {
+        Image::Plane(map) => (map.len(), 2),
+        Image::Sphere(map) => (map.len(), 3),
     };
     if rows != n {
         let (found, expected) = (format!("of shape ({rows}, {width})"), format!("of shape ({n}, {width})"));
         return Err(Error::InvalidArray { name: "image", found, expected });
     }
-    let not_finite = |v: &usize| !flat[width * v..width * (v + 1)].iter().all(|x| x.is_finite());
+    let not_finite = |v: &usize| !image.point(*v).is_finite();
     if let Some(vertices) = Elements::collect((0..n).filter(not_finite)) {
         return Err(MapError::NonFinite { name: "image", vertices }.into());
     }
     if let Image::Sphere(map) = image
-        && let Some(vertices) = Elements::collect((0..n).filter(|&v| map[v] == [0.0; 3]))
+        && let Some(vertices) = Elements::collect((0..n).filter(|&v| map[v] == Vector3::ZERO))
     {
         return Err(MapError::NoDirection { name: "image", vertices }.into());
     }

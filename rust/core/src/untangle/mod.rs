@@ -28,6 +28,7 @@ use crate::control::{Observer, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion};
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
+use crate::vector::Vector3;
 use patch::{Effort, Outcome, Patch};
 use positions::Positions;
 
@@ -71,7 +72,7 @@ pub enum UntangledImage {
     /// (n, 2) positions in the plane.
     Plane(Vec<[f64; 2]>),
     /// (n, 3) positions on the sphere.
-    Sphere(Vec<[f64; 3]>),
+    Sphere(Vec<Vector3>),
 }
 
 /// Removes the folds of `image`, a map of `mesh`, and changes as little as can be.

@@ -7,7 +7,7 @@
 use super::UntangledImage;
 use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
 use crate::mesh::TriangleMesh;
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled};
+use crate::vector::Vector3;
 
 /// The rim of a patch on the sphere lies within this cosine of the center of its chart.
 const RIM: f64 = 0.1;
@@ -19,7 +19,7 @@ const HORIZON: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Positions {
     Plane(Vec<[f64; 2]>),
-    Sphere(Vec<Vector>),
+    Sphere(Vec<Vector3>),
 }
 
 impl Positions {
@@ -58,7 +58,7 @@ impl Positions {
             Self::Plane(map) => super::newton::doubled_area(face.map(|v| map[v as usize])).0,
             Self::Sphere(map) => {
                 let [a, b, c] = face.map(|v| map[v as usize]);
-                dot(a, cross(b, c))
+                a.dot(b.cross(c))
             }
         }
     }
@@ -71,7 +71,7 @@ impl Positions {
                 Self::Plane(turned.collect())
             }
             Self::Sphere(map) => {
-                let turned = map.iter().zip(mirrored).map(|(&x, &is)| if is { scaled(x, -1.0) } else { x });
+                let turned = map.iter().zip(mirrored).map(|(&x, &is)| if is { x * -1.0 } else { x });
                 Self::Sphere(turned.collect())
             }
         }
@@ -124,11 +124,11 @@ impl Positions {
         let ring = ring.filter(|&other| other != vertex);
         let share = 0.5 / corners.len() as f64;
         let place = |v: u32| match self {
-            Self::Plane(map) => [map[v as usize][0], map[v as usize][1], 0.0],
+            Self::Plane(map) => Vector3([map[v as usize][0], map[v as usize][1], 0.0]),
             Self::Sphere(map) => map[v as usize],
         };
-        let mean = scaled(ring.fold([0.0; 3], |sum, other| add(sum, place(other))), share);
-        distance(mean, place(vertex))
+        let mean = ring.fold(Vector3::ZERO, |sum, other| sum + place(other)) * share;
+        mean.distance(place(vertex))
     }
 
     /// Whether two vertices are in the same place.
@@ -177,7 +177,7 @@ pub(super) enum Chart {
     /// The plane around a center.
     Plane { center: [f64; 2], scale: f64 },
     /// The plane that touches the sphere of this radius at the third axis.
-    Gnomonic { axes: [Vector; 3], radius: f64, scale: f64 },
+    Gnomonic { axes: [Vector3; 3], radius: f64, scale: f64 },
 }
 
 impl Chart {
@@ -200,12 +200,12 @@ impl Chart {
                 Some(Self::Plane { center: sum.map(|x| x * share), scale: 1.0 })
             }
             Positions::Sphere(map) => {
-                let directions: Vec<Vector> = rim.iter().map(|&v| unit_vector(map[v as usize])).collect();
-                let mean = directions.iter().fold([0.0; 3], |sum, &x| add(sum, x));
-                let radius = share * rim.iter().map(|&v| norm(map[v as usize])).sum::<f64>();
+                let directions: Vec<Vector3> = rim.iter().map(|&v| unit_vector(map[v as usize])).collect();
+                let mean = directions.iter().fold(Vector3::ZERO, |sum, &x| sum + x);
+                let radius = share * rim.iter().map(|&v| map[v as usize].norm()).sum::<f64>();
                 let radius = if (radius - 1.0).abs() < 1e-6 { 1.0 } else { radius };
                 let axes = tangent_frame(unit_vector(mean));
-                let fits = directions.iter().all(|&x| dot(x, axes[2]) > RIM);
+                let fits = directions.iter().all(|&x| x.dot(axes[2]) > RIM);
                 fits.then_some(Self::Gnomonic { axes, radius, scale: 1.0 })
             }
         }
@@ -228,7 +228,7 @@ impl Chart {
             }
             (Self::Gnomonic { axes, scale, .. }, Positions::Sphere(map)) => {
                 let x = unit_vector(map[vertex as usize]);
-                let [u, v, height] = axes.map(|axis| dot(axis, x));
+                let [u, v, height] = axes.map(|axis| axis.dot(x));
                 if height > HORIZON {
                     return [scale * u / height, scale * v / height];
                 }
@@ -247,23 +247,21 @@ impl Chart {
             }
             (Self::Gnomonic { axes, radius, scale }, Positions::Sphere(map)) => {
                 let [u, v] = place.map(|x| x / scale);
-                let x = add(axes[2], add(crate::vector::scaled(axes[0], u), self::scaled(axes[1], v)));
-                map[vertex as usize] = self::scaled(unit_vector(x), *radius);
+                let x = axes[2] + (axes[0] * u + axes[1] * v);
+                map[vertex as usize] = unit_vector(x) * *radius;
             }
             _ => unreachable!("a chart of the same map"),
         }
     }
 }
 
-fn unit_vector(x: Vector) -> Vector {
-    scaled(x, 1.0 / norm(x).max(f64::MIN_POSITIVE))
+fn unit_vector(x: Vector3) -> Vector3 {
+    x * (1.0 / x.norm().max(f64::MIN_POSITIVE))
 }
 
 /// Two tangents and the normal, a right-handed frame; the normal `z` has length 1.
-fn tangent_frame(z: Vector) -> [Vector; 3] {
+fn tangent_frame(z: Vector3) -> [Vector3; 3] {
     let least = (0..3).min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs())).expect("three axes");
-    let mut axis = [0.0; 3];
-    axis[least] = 1.0;
-    let x = unit_vector(cross(axis, z));
-    [x, cross(z, x), z]
+    let x = unit_vector(Vector3::unit(least).cross(z));
+    [x, z.cross(x), z]
 }

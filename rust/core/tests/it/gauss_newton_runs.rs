@@ -11,10 +11,8 @@ use crate::common::{self, TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
 use authalic::mesh::TriangleMesh;
 use authalic::{
     Boundary, DiskMap, DiskMapOptions, Distortion, Error, History, MapError, Method, Silent, SphereMap,
-    SphereMapOptions, SphereMethod, Status, disk_map, sphere_map,
+    SphereMapOptions, SphereMethod, Status, Vector3, disk_map, sphere_map,
 };
-
-type Point = [f64; 3];
 
 const BOUNDARIES: [Boundary; 3] = [Boundary::ArcLength, Boundary::Sliding, Boundary::Free];
 
@@ -287,7 +285,7 @@ fn start_maps_of_spheres_are_improved_and_folded_ones_unfolded() {
     for mesh in [bumpy(), spiky_spheres()[1].mesh()] {
         let options = SphereMapOptions { method: SphereMethod::FixedPoint, ..Default::default() };
         let first = sphere(&mesh, options);
-        let from = |initial: &[Point]| {
+        let from = |initial: &[Vector3]| {
             sphere(&mesh, SphereMapOptions { initial: Some(initial), ..Default::default() })
         };
         let energy = from(&first.positions).distortion.authalic_energy;
@@ -412,7 +410,7 @@ fn the_same_bits_for_any_number_of_threads() {
 /// Copies of a surface: turned, of other sizes, with its vertices and faces in another order.
 fn copies(shape: &TestMesh) -> Vec<TriangleMesh> {
     let turn = rotation([0.3, 0.8, -0.2, 0.4]);
-    let moved = |of: &dyn Fn(&Point) -> Point| {
+    let moved = |of: &dyn Fn(&[f64; 3]) -> [f64; 3]| {
         TriangleMesh::new(&shape.vertices.iter().map(of).collect::<Vec<_>>(), &shape.faces).unwrap()
     };
     let mut random = Random::new(7);

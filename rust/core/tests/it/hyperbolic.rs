@@ -103,9 +103,10 @@ fn assert_sound(
     }
     let positions = found.map.positions(meshes[1].points());
     for (ours, theirs) in paths[0].iter().zip(paths[1]) {
-        let images: Vec<Point> = ours.iter().map(|&v| positions[v]).collect();
-        let [path, other] = [(0, ours), (1, theirs)]
-            .map(|(side, path)| path.iter().map(|&v| meshes[side].points()[v]).collect::<Vec<Point>>());
+        let images: Vec<Point> = ours.iter().map(|&v| positions[v].into()).collect();
+        let [path, other] = [(0, ours), (1, theirs)].map(|(side, path)| {
+            path.iter().map(|&v| meshes[side].points()[v].into()).collect::<Vec<Point>>()
+        });
         prop_assert!(off(&path, &images, &other) < 1e-11);
     }
     Ok(())

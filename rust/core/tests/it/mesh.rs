@@ -402,7 +402,7 @@ proptest! {
         match TriangleMesh::new(&vertices, &faces) {
             Ok(mesh) => {
                 prop_assert!(mesh.face_areas().iter().all(|&area| area > 0. && area.is_finite()));
-                prop_assert!(mesh.points().as_flattened().iter().all(|x| x.abs() <= 0.5 + 1e-12));
+                prop_assert!(mesh.points().iter().flat_map(|point| point.0).all(|x| x.abs() <= 0.5 + 1e-12));
                 let _ = mesh.require_disk();
             }
             Err(error) => prop_assert!(error.is_mesh_error() && !error.to_string().is_empty()),

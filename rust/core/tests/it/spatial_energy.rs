@@ -6,12 +6,11 @@ use std::f64::consts::PI;
 
 use crate::common;
 use approx::assert_relative_eq;
+use authalic::Vector3;
 use authalic::energy::stretch::Profile;
 use authalic::energy::{SpatialStretchEnergy, StretchEnergy};
 use authalic::mesh::TriangleMesh;
 use sprs::CsMat;
-
-type Point = [f64; 3];
 
 const PROFILES: [Profile; 2] = [Profile::Stretch, Profile::Barrier];
 
@@ -21,8 +20,10 @@ fn surfaces() -> Vec<TriangleMesh> {
 }
 
 /// A smooth map whose faces have areas unlike the mesh's.
-fn some_map(mesh: &TriangleMesh) -> Vec<Point> {
-    let bent = |&[x, y, z]: &Point| [x + 0.2 * y * y, 1.4 * y - 0.3 * z, z + 0.1 * (x + y).sin()];
+fn some_map(mesh: &TriangleMesh) -> Vec<Vector3> {
+    let bent = |&Vector3([x, y, z]): &Vector3| {
+        Vector3([x + 0.2 * y * y, 1.4 * y - 0.3 * z, z + 0.1 * (x + y).sin()])
+    };
     mesh.points().iter().map(bent).collect()
 }
 
@@ -31,12 +32,12 @@ fn some_targets(mesh: &TriangleMesh) -> Vec<f64> {
     mesh.face_areas().iter().enumerate().map(|(face, area)| area * (1.5 + (face as f64).sin())).collect()
 }
 
-fn difference(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+fn difference(a: Vector3, b: Vector3) -> Vector3 {
+    Vector3([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
 }
 
 /// Image areas by Heron's formula, (m,).
-fn areas(mesh: &TriangleMesh, map: &[Point]) -> Vec<f64> {
+fn areas(mesh: &TriangleMesh, map: &[Vector3]) -> Vec<f64> {
     let heron = |face: &[u32; 3]| {
         let [p, q, r] = face.map(|v| map[v as usize]);
         let [a, b, c] = [common::distance(q, r), common::distance(r, p), common::distance(p, q)];
@@ -51,12 +52,12 @@ fn rescaled(targets: &[f64], area: f64) -> Vec<f64> {
     targets.iter().map(|target| target * area / total).collect()
 }
 
-fn largest(values: &[Point]) -> f64 {
-    values.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
+fn largest(values: &[Vector3]) -> f64 {
+    values.iter().flat_map(|x| x.0).fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
 /// The derivative of `value` by every coordinate of some vertices, by central differences: (vertex, axis, value).
-fn differences(map: &[Point], step: f64, value: impl Fn(&[Point]) -> f64) -> Vec<(usize, usize, f64)> {
+fn differences(map: &[Vector3], step: f64, value: impl Fn(&[Vector3]) -> f64) -> Vec<(usize, usize, f64)> {
     let sampled = (0..map.len()).step_by(1 + map.len() / 12);
     let derivative = |(v, axis): (usize, usize)| {
         let moved = |h: f64| {
@@ -70,8 +71,8 @@ fn differences(map: &[Point], step: f64, value: impl Fn(&[Point]) -> f64) -> Vec
 }
 
 /// 2 L_S f with the weights (f_i − f_k)·(f_j − f_k) / (4|τ|) of each edge ij, summed over dense edges.
-fn laplacian_gradient(mesh: &TriangleMesh, map: &[Point], targets: &[f64]) -> Vec<Point> {
-    let mut gradient = vec![[0.0; 3]; map.len()];
+fn laplacian_gradient(mesh: &TriangleMesh, map: &[Vector3], targets: &[f64]) -> Vec<Vector3> {
+    let mut gradient = vec![Vector3::ZERO; map.len()];
     for (face, target) in mesh.faces().iter().zip(targets) {
         for k in 0..3 {
             let [apex, i, j] = [k, (k + 1) % 3, (k + 2) % 3].map(|corner| face[corner] as usize);
@@ -88,7 +89,7 @@ fn laplacian_gradient(mesh: &TriangleMesh, map: &[Point], targets: &[f64]) -> Ve
 }
 
 /// ∇A, from an energy whose targets are the image's own areas: there E_A vanishes to second order.
-fn area_gradient(mesh: &TriangleMesh, map: &[Point]) -> Vec<Point> {
+fn area_gradient(mesh: &TriangleMesh, map: &[Vector3]) -> Vec<Vector3> {
     let own = areas(mesh, map);
     let (value, gradient) = SpatialStretchEnergy::new(mesh, &own).gradient(map);
     assert!(value.authalic_energy < 1e-20 * value.area);
@@ -204,13 +205,13 @@ fn the_energy_ignores_motions_and_has_the_degree_of_an_area() {
         for profile in PROFILES {
             let energy = SpatialStretchEnergy::new(&mesh, &targets).with_profile(profile);
             let (value, gradient) = energy.gradient(&map);
-            let turned = |&[x, y, z]: &Point| {
-                [3.0 * (0.6 * y + 0.8 * z) + 2.0, 3.0 * (0.8 * y - 0.6 * z) - 1.0, 3.0 * x]
+            let turned = |&Vector3([x, y, z]): &Vector3| {
+                Vector3([3.0 * (0.6 * y + 0.8 * z) + 2.0, 3.0 * (0.8 * y - 0.6 * z) - 1.0, 3.0 * x])
             };
-            let moved: Vec<Point> = map.iter().map(turned).collect();
+            let moved: Vec<Vector3> = map.iter().map(turned).collect();
             assert_relative_eq!(energy.value(&moved).objective, 9.0 * value.objective, max_relative = 1e-10);
             // no net force, no torque; Euler's theorem: f·∇E = 2 E
-            let scale = gradient.iter().flatten().map(|g| g.abs()).sum::<f64>();
+            let scale = gradient.iter().flat_map(|g| g.0).map(|g| g.abs()).sum::<f64>();
             let mut sums = [0.0; 6];
             let mut pressure = 0.0;
             for (x, g) in map.iter().zip(&gradient) {
@@ -231,7 +232,7 @@ fn the_energy_ignores_motions_and_has_the_degree_of_an_area() {
 fn a_planar_map_in_a_plane_of_space_has_the_planar_energies() {
     for mesh in common::disks().iter().map(common::TestMesh::mesh) {
         let plane: Vec<[f64; 2]> = mesh.points().iter().map(|p| [p[0] + 0.3 * p[1], 1.7 * p[1]]).collect();
-        let space: Vec<Point> = plane.iter().map(|&[x, y]| [x, 0.6 * y, 0.8 * y]).collect();
+        let space: Vec<Vector3> = plane.iter().map(|&[x, y]| Vector3([x, 0.6 * y, 0.8 * y])).collect();
         let targets = some_targets(&mesh);
         let planar = StretchEnergy::new(&mesh, &targets);
         if !planar.areas(&plane).iter().all(|&area| area > 0.0) {
@@ -262,9 +263,9 @@ fn a_planar_map_in_a_plane_of_space_has_the_planar_energies() {
 }
 
 /// A sparse matrix of the Hessian times a vector field.
-fn times(hessian: &CsMat<f64>, field: &[Point]) -> Vec<Point> {
+fn times(hessian: &CsMat<f64>, field: &[Vector3]) -> Vec<Vector3> {
     let n = field.len();
-    let mut product = vec![[0.0; 3]; n];
+    let mut product = vec![Vector3::ZERO; n];
     for (value, (row, column)) in hessian.iter() {
         product[row % n][row / n] += value * field[column % n][column / n];
     }
@@ -272,7 +273,7 @@ fn times(hessian: &CsMat<f64>, field: &[Point]) -> Vec<Point> {
 }
 
 /// The map and the Hessian there, with the targets on the scale of its area.
-fn hessians() -> impl Iterator<Item = (TriangleMesh, Vec<Point>, Vec<f64>, CsMat<f64>)> {
+fn hessians() -> impl Iterator<Item = (TriangleMesh, Vec<Vector3>, Vec<f64>, CsMat<f64>)> {
     surfaces().into_iter().filter(|mesh| mesh.n_vertices() < 200).map(|mesh| {
         let (map, targets) = (some_map(&mesh), some_targets(&mesh));
         let energy = SpatialStretchEnergy::new(&mesh, &targets);
@@ -299,11 +300,11 @@ fn the_hessian_is_symmetric_and_couples_neighbours_only() {
 #[test]
 fn the_hessian_is_that_of_central_differences_of_the_gradient() {
     for (mesh, map, targets, hessian) in hessians() {
-        let field: Vec<Point> =
-            (0..map.len()).map(|v| [0, 1, 2].map(|axis| ((3 * v + axis) as f64 * 1.7).sin())).collect();
+        let field: Vec<Vector3> =
+            (0..map.len()).map(|v| Vector3::from_fn(|axis| ((3 * v + axis) as f64 * 1.7).sin())).collect();
         let gradient = |h: f64| {
-            let moved: Vec<Point> =
-                map.iter().zip(&field).map(|(x, d)| [0, 1, 2].map(|axis| x[axis] + h * d[axis])).collect();
+            let moved: Vec<Vector3> =
+                map.iter().zip(&field).map(|(x, d)| Vector3::from_fn(|axis| x[axis] + h * d[axis])).collect();
             laplacian_gradient(&mesh, &moved, &targets)
         };
         // along a line the gradient is a cubic, of which this quotient of four values is the exact slope
@@ -322,19 +323,19 @@ fn the_hessian_has_the_kernel_and_the_products_that_the_energy_implies() {
     for (mesh, map, targets, hessian) in hessians() {
         let gradient = laplacian_gradient(&mesh, &map, &targets);
         let scale = hessian.data().iter().fold(0.0f64, |most, x| most.max(x.abs())) * largest(&map);
-        let assert_same = |a: &[Point], b: &[Point]| {
-            let pairs = a.iter().flatten().zip(b.iter().flatten());
+        let assert_same = |a: &[Vector3], b: &[Vector3]| {
+            let pairs = a.iter().flat_map(|x| x.0).zip(b.iter().flat_map(|x| x.0));
             pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-11 * scale, "{a} {b}"));
         };
         for axis in 0..3 {
             // translations cost nothing: H 1 = 0
-            let mut shift = [0.0; 3];
+            let mut shift = Vector3::ZERO;
             shift[axis] = 1.0;
-            assert_same(&times(&hessian, &vec![shift; map.len()]), &vec![[0.0; 3]; map.len()]);
+            assert_same(&times(&hessian, &vec![shift; map.len()]), &vec![Vector3::ZERO; map.len()]);
             // ∇E_S turns with the map: H (ω × f) = ω × ∇E_S
-            let turned = |x: &Point| {
+            let turned = |x: &Vector3| {
                 let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
-                let mut out = [0.0; 3];
+                let mut out = Vector3::ZERO;
                 (out[i], out[j]) = (-x[j], x[i]);
                 out
             };
@@ -343,7 +344,7 @@ fn the_hessian_has_the_kernel_and_the_products_that_the_energy_implies() {
             assert_same(&times(&hessian, &spun), &expected);
         }
         // E_S has degree 4: H f = 3 ∇E_S
-        let tripled: Vec<Point> = gradient.iter().map(|g| g.map(|x| 3.0 * x)).collect();
+        let tripled: Vec<Vector3> = gradient.iter().map(|g| g.map(|x| 3.0 * x)).collect();
         assert_same(&times(&hessian, &map), &tripled);
     }
 }

@@ -7,7 +7,7 @@ use crate::common::closed::{
 };
 use crate::common::{self, TestMesh};
 use authalic::mesh::TriangleMesh;
-use authalic::{Error, MapError, MeshError, SphereMapOptions, SphereMethod, folded_on_sphere};
+use authalic::{Error, MapError, MeshError, SphereMapOptions, SphereMethod, Vector3, folded_on_sphere};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -156,7 +156,7 @@ fn the_same_bits_for_any_number_of_threads() {
 // The surface below the map
 
 /// Σ w (R f)·(v − c), w the vertices' shares of the targets.
-fn overlap(mesh: &TriangleMesh, map: &[Point], targets: &[f64], rotation: [Point; 3]) -> f64 {
+fn overlap(mesh: &TriangleMesh, map: &[Vector3], targets: &[f64], rotation: [Point; 3]) -> f64 {
     let mut weights = vec![0.0; map.len()];
     for (face, target) in mesh.faces().iter().zip(targets) {
         face.iter().for_each(|&v| weights[v as usize] += target);

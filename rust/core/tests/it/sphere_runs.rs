@@ -9,9 +9,7 @@ use crate::common::closed::{
     rotation, spiky_spheres, with,
 };
 use authalic::mesh::TriangleMesh;
-use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status, sphere_map};
-
-type Point = [f64; 3];
+use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status, Vector3, sphere_map};
 
 // Start maps
 
@@ -21,7 +19,7 @@ fn a_start_map_is_improved_and_keeps_its_rotation() {
     let options = SphereMapOptions { max_iterations: Some(3), ..with(SphereMethod::FixedPoint) };
     let first = mapped(&mesh, options).positions;
     let turn = rotation([0.3, 0.8, -0.2, 0.4]);
-    let turned: Vec<Point> = first.iter().map(|x| turn.map(|row| dot(row, *x))).collect();
+    let turned: Vec<Vector3> = first.iter().map(|x| Vector3(turn.map(|row| dot(row, *x)))).collect();
     for method in METHODS {
         let map = mapped(&mesh, SphereMapOptions { initial: Some(&turned), ..with(method) });
         assert_bijective(&mesh, &map.positions, "from a start map");
@@ -29,7 +27,7 @@ fn a_start_map_is_improved_and_keeps_its_rotation() {
         assert!(after < before, "{method:?}: {after} {before}");
         assert!((energies(&map)[0] - before).abs() < 1e-9 * before, "{method:?}: the history begins there");
         // it still lies nearer to the start map than to its rotated copy
-        let to = |other: &[Point]| {
+        let to = |other: &[Vector3]| {
             map.positions.iter().zip(other).map(|(a, b)| common::distance(*a, *b)).sum::<f64>()
         };
         assert!(to(&turned) < 0.5 * to(&first), "{method:?}");
@@ -40,7 +38,7 @@ fn a_start_map_is_improved_and_keeps_its_rotation() {
 fn a_start_map_without_iterations_is_returned_on_the_sphere() {
     let mesh = bumpy();
     let start = mapped(&mesh, SphereMapOptions::default()).positions;
-    let stretched: Vec<Point> =
+    let stretched: Vec<Vector3> =
         start.iter().enumerate().map(|(v, x)| x.map(|c| c * (1.0 + v as f64))).collect();
     for initial in [&start, &stretched] {
         for method in METHODS {
@@ -56,7 +54,7 @@ fn a_start_map_without_iterations_is_returned_on_the_sphere() {
 }
 
 /// The start map with some vertices on the other side of the sphere.
-fn spoiled(mesh: &TriangleMesh, vertices: &[usize]) -> Vec<Point> {
+fn spoiled(mesh: &TriangleMesh, vertices: &[usize]) -> Vec<Vector3> {
     let mut map = mapped(mesh, SphereMapOptions { max_iterations: Some(5), ..Default::default() }).positions;
     vertices.iter().for_each(|&v| map[v] = map[v].map(|x| -x));
     assert!(!folded(mesh, &map).is_empty());
@@ -82,7 +80,7 @@ fn a_folded_start_map_is_unfolded() {
 fn a_start_map_that_is_none_is_refused() {
     let mesh = bumpy();
     let good = mapped(&mesh, SphereMapOptions::default()).positions;
-    let refusal = |change: &dyn Fn(&mut Vec<Point>)| {
+    let refusal = |change: &dyn Fn(&mut Vec<Vector3>)| {
         let mut initial = good.clone();
         change(&mut initial);
         METHODS.map(|method| refused(&mesh, SphereMapOptions { initial: Some(&initial), ..with(method) }))
@@ -91,7 +89,7 @@ fn a_start_map_that_is_none_is_refused() {
         errors.iter().for_each(|error| assert!(is_right(error) && error.is_mesh_error(), "{error}"));
     };
     all(
-        refusal(&|map| map[7] = [0.0; 3]),
+        refusal(&|map| map[7] = Vector3::ZERO),
         &|e| matches!(e, Error::Map(MapError::InitialSphere { vertices, .. }) if vertices.first == [7]),
     );
     all(
@@ -100,7 +98,7 @@ fn a_start_map_that_is_none_is_refused() {
     );
     all(refusal(&|map| map[9][1] = f64::INFINITY), &|e| matches!(e, Error::Map(MapError::NonFinite { .. })));
     all(refusal(&|map| map.truncate(20)), &|e| matches!(e, Error::InvalidArray { name: "initial", .. }));
-    let mirror = |map: &mut Vec<Point>| map.iter_mut().for_each(|x| x[0] = -x[0]);
+    let mirror = |map: &mut Vec<Vector3>| map.iter_mut().for_each(|x| x[0] = -x[0]);
     all(refusal(&mirror), &|e| {
         matches!(e, Error::Map(MapError::InitialSphere { .. })) && e.to_string().contains("mirror")
     });

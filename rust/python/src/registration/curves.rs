@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::found::Outcome;
 use super::result::Registration;
 use super::{found, mesh, surface};
-use crate::arrays::{from_index_list, index_list, points};
+use crate::arrays::{from_index_list, index_list, vectors};
 use crate::errors::{bad_array, bad_option};
 use crate::options::parse_iterations;
 use crate::run::run;
@@ -178,7 +178,7 @@ pub fn register_hyperbolic(
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
         (Some(ours), Some(theirs)) => {
-            Some([points::<3>(ours, "source_sphere")?, points::<3>(theirs, "target_sphere")?])
+            Some([vectors(ours, "source_sphere")?, vectors(theirs, "target_sphere")?])
         }
         _ => {
             return Err(bad_option(

@@ -7,7 +7,7 @@ use authalic::hyperbolic::CurveRegistration;
 use authalic::registration::{
     DiskRegistration, GivenFaces, Location, SphereRegistration, nearest_given_corners, pull_given_corners,
 };
-use authalic::{Error, Observer, registration};
+use authalic::{Error, Observer, Vector3, registration};
 
 /// A surface of a registration.
 pub struct Surface {
@@ -23,7 +23,7 @@ pub struct Found {
     pub source: Arc<Surface>,
     pub target: Arc<Surface>,
     pub outcome: Outcome,
-    pub positions: Vec<[f64; 3]>,
+    pub positions: Vec<Vector3>,
     pub area_ratio: Vec<f64>,
 }
 
@@ -51,14 +51,15 @@ pub(super) use either;
 
 impl Surface {
     /// The surface with its vertices at places in the domain.
-    fn registered<'a>(&'a self, places: &'a [[f64; 3]]) -> GivenFaces<'a> {
+    fn registered<'a>(&'a self, places: &'a [Vector3]) -> GivenFaces<'a> {
         GivenFaces { given: &self.given, oriented: &self.faces, registered: places }
     }
 }
 
 impl Found {
     pub fn new(source: Arc<Surface>, target: Arc<Surface>, outcome: Outcome) -> Self {
-        let positions = either!(&outcome, found => found.positions(&target.vertices));
+        let vertices: Vec<Vector3> = target.vertices.iter().copied().map(Vector3).collect();
+        let positions = either!(&outcome, found => found.positions(&vertices));
         let area_ratio = registration::area_ratios(&source.vertices, &source.faces, &positions);
         Self { source, target, outcome, positions, area_ratio }
     }
@@ -68,7 +69,7 @@ impl Found {
     }
 
     /// The vertices of source and target in the domain, the disk in the plane z = 1 as the core has it.
-    fn in_domain(&self) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
+    fn in_domain(&self) -> (Vec<Vector3>, Vec<Vector3>) {
         match &self.outcome {
             Outcome::Disk(found) => (lifted(&found.registered), lifted(&found.target_registered)),
             Outcome::Sphere(found) => (found.registered.clone(), found.target_registered.clone()),
@@ -108,7 +109,7 @@ impl Found {
     }
 
     /// (1 − t) v + t g(v); aligned, g(v) is brought onto v first.
-    pub fn morphed(&self, vertices: &[[f64; 3]], t: f64, align: bool) -> Vec<[f64; 3]> {
+    pub fn morphed(&self, vertices: &[Vector3], t: f64, align: bool) -> Vec<Vector3> {
         if !align {
             return registration::homotopy(vertices, &self.positions, t);
         }
@@ -122,8 +123,8 @@ impl Found {
 }
 
 /// Points of the disk in the plane z = 1, where the core has them.
-fn lifted(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
-    points.iter().map(|&[u, v]| [u, v, 1.0]).collect()
+fn lifted(points: &[[f64; 2]]) -> Vec<Vector3> {
+    points.iter().map(|&[u, v]| Vector3([u, v, 1.0])).collect()
 }
 
 /// What there is one row of data for.

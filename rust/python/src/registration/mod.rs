@@ -10,7 +10,7 @@ use authalic::registration::{Landmarks, RegistrationOptions};
 use authalic::{Error, Side, registration};
 use pyo3::prelude::*;
 
-use crate::arrays::{Pairs, from_points, index_list, indices, points};
+use crate::arrays::{Pairs, from_points, index_list, indices, points, vectors};
 use crate::errors::{bad_array, bad_option};
 use crate::run::run;
 pub use curves::{Certificates, register_hyperbolic};
@@ -216,7 +216,7 @@ pub fn homotopy(
     align: bool,
 ) -> PyResult<Pairs> {
     let found = registration.found.clone();
-    let (vertices, n) = (points::<3>(vertices, "vertices")?, found.positions.len());
+    let (vertices, n) = (vectors(vertices, "vertices")?, found.positions.len());
     if vertices.len() != n {
         let (shape, expected) = (format!("of shape ({}, 3)", vertices.len()), format!("of shape ({n}, 3)"));
         return Err(bad_array(py, "vertices", shape, expected));

@@ -13,7 +13,7 @@ use crate::codomain::planar::PlanarMap;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
-use crate::vector::{Vector, cross, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// β of f.
 const STIFFENING: f64 = 0.1;
@@ -237,15 +237,15 @@ fn stiffened(shear: f64) -> f64 {
 }
 
 /// The gradients of the hat functions on a triangle in the plane, similar to the one in space and of area `target`.
-fn rest_hats(corners: [Vector; 3], target: f64) -> [[f64; 2]; 3] {
+fn rest_hats(corners: [Vector3; 3], target: f64) -> [[f64; 2]; 3] {
     // from the longest edge, so that the height is the least and no difference cancels
-    let length = |k: usize| norm(sub(corners[(k + 2) % 3], corners[(k + 1) % 3]));
+    let length = |k: usize| (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
     let apex = (0..3).fold(0, |best, k| if length(k) > length(best) * (1.0 + 1e-8) { k } else { best });
     let [top, left, right] = [0, 1, 2].map(|k| corners[(apex + k) % 3]);
-    let base = norm(sub(right, left));
-    let along = scaled(sub(right, left), 1.0 / base);
-    let foot = dot(sub(top, left), along);
-    let height = (norm(cross(sub(right, left), sub(top, left))) / base).max(FLATTEST * base);
+    let base = (right - left).norm();
+    let along = (right - left) * (1.0 / base);
+    let foot = (top - left).dot(along);
+    let height = ((right - left).cross(top - left).norm() / base).max(FLATTEST * base);
     // of the rest triangle's own size, then of the target's
     let scale = (0.5 * base * height / target).sqrt();
     let of_top = [0.0, scale / height];

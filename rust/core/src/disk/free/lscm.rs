@@ -12,7 +12,6 @@ use super::energy::{Element, Energy};
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::sparse::{Analysis, Factor, Failure};
-use crate::vector::distance;
 
 /// Inverse iterations; a few are enough for a start.
 const ITERATIONS: usize = 12;
@@ -81,7 +80,7 @@ fn conformal_element(energy: &Energy<'_>, face: usize, shift: f64) -> Element {
 fn around_a_circle(energy: &Energy<'_>) -> PlanarMap {
     let (mesh, outline) = (energy.mesh, &energy.mesh.boundary_loops()[0]);
     let point = |k: usize| mesh.points()[outline[k % outline.len()] as usize];
-    let lengths: Vec<f64> = (0..outline.len()).map(|k| distance(point(k + 1), point(k))).collect();
+    let lengths: Vec<f64> = (0..outline.len()).map(|k| point(k + 1).distance(point(k))).collect();
     let (total, mut travelled) = (lengths.iter().sum::<f64>(), 0.0);
     let mut map = vec![[0.0; 2]; mesh.n_vertices()];
     for (&v, length) in outline.iter().zip(lengths) {

@@ -11,7 +11,7 @@ use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::sparse::{Analysis, Failure};
-use crate::vector::{Vector, add, cross, dot, norm, scaled};
+use crate::vector::Vector3;
 
 /// A later start replaces an earlier one where its energy is below this part of it: no tie is left to rounding.
 const MARGIN: f64 = 0.9;
@@ -114,21 +114,23 @@ fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Planar
 /// The projection along the sum of the area vectors.
 fn plan_view(energy: &Energy<'_>) -> Option<PlanarMap> {
     let mesh = energy.mesh;
-    let normal =
-        mesh.faces().iter().fold([0.0; 3], |sum, &face| add(sum, area_vector(triangle(mesh.points(), face))));
-    let length = norm(normal);
+    let normal = mesh
+        .faces()
+        .iter()
+        .fold(Vector3::ZERO, |sum, &face| sum + area_vector(triangle(mesh.points(), face)));
+    let length = normal.norm();
     if length < STEEPEST * mesh.face_areas().iter().sum::<f64>() {
         return None;
     }
-    let normal = scaled(normal, 1.0 / length);
+    let normal = normal * (1.0 / length);
     let axis =
         (0..3).fold(0, |least, k| if normal[k].abs() < normal[least].abs() - 1e-6 { k } else { least });
-    let mut x: Vector = [0.0; 3];
+    let mut x: Vector3 = Vector3::ZERO;
     x[axis] = 1.0;
-    let x = cross(cross(normal, x), normal);
-    let x = scaled(x, 1.0 / norm(x));
-    let y = cross(normal, x);
-    Some(of_area_one(energy, mesh.points().iter().map(|&p| [dot(p, x), dot(p, y)]).collect()))
+    let x = normal.cross(x).cross(normal);
+    let x = x * (1.0 / x.norm());
+    let y = normal.cross(x);
+    Some(of_area_one(energy, mesh.points().iter().map(|&p| [p.dot(x), p.dot(y)]).collect()))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// Four places along the boundary loop, ascending but for where the loop ends; the first goes to the lower left.
 pub(super) type Corners = [usize; 4];
@@ -54,7 +54,7 @@ impl<'a> Outline<'a> {
         let vertices = &mesh.boundary_loops()[0][..];
         let point = |k: usize| mesh.points()[vertices[k % vertices.len()] as usize];
         let mut lengths = vec![0.0];
-        (0..vertices.len()).for_each(|k| lengths.push(lengths[k] + distance(point(k), point(k + 1))));
+        (0..vertices.len()).for_each(|k| lengths.push(lengths[k] + point(k).distance(point(k + 1))));
         let (cut_off, chords) = smallest_parts_cut_off(mesh, vertices);
         Self { mesh, vertices, lengths, cut_off, chords }
     }
@@ -272,14 +272,14 @@ impl<'a> Outline<'a> {
     }
 
     fn height(&self, place: usize) -> f64 {
-        dot(self.point(place), [0.37, 0.61, 1.0])
+        self.point(place).dot(Vector3([0.37, 0.61, 1.0]))
     }
 
     fn heights(&self, corners: &Corners) -> f64 {
         corners.iter().map(|&k| self.height(k)).sum()
     }
 
-    fn point(&self, place: usize) -> Vector {
+    fn point(&self, place: usize) -> Vector3 {
         self.mesh.points()[self.vertices[place] as usize]
     }
 
@@ -290,8 +290,8 @@ impl<'a> Outline<'a> {
         let score = |by: usize| {
             let corners = turned(by);
             let [a, b, c, d] = corners.map(|k| self.point(k));
-            let [right, up] = [sub(add(b, c), add(a, d)), sub(add(c, d), add(a, b))]
-                .map(|axis| scaled(axis, 1.0 / norm(axis).max(f64::MIN_POSITIVE)));
+            let [right, up] = [b + c - (a + d), c + d - (a + b)]
+                .map(|axis| axis * (1.0 / axis.norm().max(f64::MIN_POSITIVE)));
             let misfit = aspect.map_or(0.0, |aspect| (aspect / self.aspect(&corners)).ln().abs());
             up[2] + 0.5 * up[1] + 0.25 * right[0] + 0.125 * right[1] - MISFIT * misfit
         };
@@ -306,8 +306,8 @@ fn angle_sum(mesh: &TriangleMesh, vertex: usize) -> f64 {
         let (face, k) = (corner as usize / 3, corner as usize % 3);
         let corners = triangle(mesh.points(), mesh.faces()[face]);
         let [here, next, after] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
-        let (a, b) = (sub(next, here), sub(after, here));
-        norm(cross(a, b)).atan2(dot(a, b))
+        let (a, b) = (next - here, after - here);
+        a.cross(b).norm().atan2(a.dot(b))
     };
     mesh.vertex_corners(vertex).iter().map(angle).sum()
 }

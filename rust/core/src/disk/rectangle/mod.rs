@@ -38,7 +38,7 @@ use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
 use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use corners::Outline;
 
 /// Fixed-point steps at the most, and where √(gᵀM⁻¹g) ends them.
@@ -321,7 +321,8 @@ impl Rectangle<'_> {
         let bound = MOST_ASPECT.ln();
         let change = (now + 2.0 * part * best_stretch(&problem.energy, map)).clamp(-bound, bound) - now;
         let factor = (0.5 * change).exp();
-        let stretched: SpatialMap = map.iter().map(|&[x, y, z]| [x * factor, y / factor, z]).collect();
+        let stretched: SpatialMap =
+            map.iter().map(|&Vector3([x, y, z])| Vector3([x * factor, y / factor, z])).collect();
         if problem.energy.is_embedding(&stretched) { (stretched, change) } else { (map.clone(), 0.0) }
     }
 
@@ -466,12 +467,12 @@ impl Rectangle<'_> {
         let along = |x: [f64; 2], k: usize| {
             to_low[k] + (x[k] - low[k]) / (high[k] - low[k]) * (to_high[k] - to_low[k])
         };
-        let mut map: SpatialMap = initial.iter().map(|&x| [along(x, 0), along(x, 1), 1.0]).collect();
+        let mut map: SpatialMap = initial.iter().map(|&x| Vector3([along(x, 0), along(x, 1), 1.0])).collect();
         for (k, side) in self.sides.iter().enumerate() {
             let across = (k + 1) % 2;
             side.iter().for_each(|&v| map[v as usize][across] = boundary[side[0] as usize][across]);
             let corner = boundary[side[0] as usize];
-            map[side[0] as usize] = [corner[0], corner[1], 1.0];
+            map[side[0] as usize] = Vector3([corner[0], corner[1], 1.0]);
         }
         map
     }
@@ -482,14 +483,14 @@ impl Rectangle<'_> {
         let sides = [high[0] - low[0], high[1] - low[1]];
         let longer = sides[0].max(sides[1]);
         // the farther sides exactly on one line, the longer one exactly 1
-        let place = |x: &Vector, k: usize| if x[k] == high[k] { sides[k] } else { x[k] - low[k] } / longer;
+        let place = |x: &Vector3, k: usize| if x[k] == high[k] { sides[k] } else { x[k] - low[k] } / longer;
         let moved: PlanarMap = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
         if certificate::folded(self.run.mesh, &moved).is_empty() {
             return (moved, 1.0 / longer);
         }
         // the rounding of the shift folded a face that is next to nothing; a power of two rounds nothing
         let scale = (1.0 / longer).log2().floor().exp2();
-        (map.iter().map(|&[x, y, _]| [x * scale, y * scale]).collect(), scale)
+        (map.iter().map(|&Vector3([x, y, _])| [x * scale, y * scale]).collect(), scale)
     }
 
     fn options(&self) -> GaussNewtonOptions {
@@ -513,7 +514,7 @@ fn half_sides(aspect: f64) -> [f64; 2] {
 }
 
 /// The t for which the map (eᵗ x, e⁻ᵗ y) has the least angle energy, by Newton's method on a convex function.
-fn best_stretch(energy: &AuthalicEnergy, map: &[Vector]) -> f64 {
+fn best_stretch(energy: &AuthalicEnergy, map: &[Vector3]) -> f64 {
     let mut t = 0.0;
     for _ in 0..50 {
         let [slope, curvature] = energy.angle_slopes_of_stretch(map, t);
@@ -581,11 +582,15 @@ mod tests {
     fn the_best_stretch_makes_the_angle_energy_stationary() {
         let mesh = grid(4, 4, [1.0, 1.0]);
         let energy = AuthalicEnergy::new(&mesh, mesh.face_areas().to_vec(), Codomain::Plane, 0.0);
-        let map: SpatialMap =
-            mesh.points().iter().map(|p| [2.0 * p[0] + 0.3 * p[1], p[1] - 0.1 * p[0] * p[1], 1.0]).collect();
+        let map: SpatialMap = mesh
+            .points()
+            .iter()
+            .map(|p| Vector3([2.0 * p[0] + 0.3 * p[1], p[1] - 0.1 * p[0] * p[1], 1.0]))
+            .collect();
         let t = best_stretch(&energy, &map);
         let angle = |t: f64| {
-            let stretched: SpatialMap = map.iter().map(|x| [x[0] * t.exp(), x[1] / t.exp(), 1.0]).collect();
+            let stretched: SpatialMap =
+                map.iter().map(|x| Vector3([x[0] * t.exp(), x[1] / t.exp(), 1.0])).collect();
             energy.sums(&energy.costs(&stretched)).angle_energy
         };
         assert!(angle(t) < angle(t + 1e-3).min(angle(t - 1e-3)));

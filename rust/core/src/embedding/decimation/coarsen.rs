@@ -12,7 +12,7 @@ use super::Decimation;
 use crate::control::Observer;
 use crate::mesh::corners::next_corner;
 use crate::parallel;
-use crate::vector::{Vector, cross, dot, sub};
+use crate::vector::Vector3;
 
 /// The observer is asked once for so many vertices.
 pub(super) const BEAT: usize = 1024;
@@ -55,7 +55,7 @@ struct Ring {
     /// The corners at the vertex whose next corners are the neighbours.
     corners: Vec<u32>,
     vertices: Vec<u32>,
-    points: Vec<Vector>,
+    points: Vec<Vector3>,
     measure: f64,
     /// Where in the ring the apex is.
     apex: Option<usize>,
@@ -91,11 +91,11 @@ impl Ring {
             if self.apex.is_some_and(|apex| apex == one || apex == two) {
                 continue;
             }
-            let (edge, spoke) = (sub(self.points[two], self.points[one]), sub(self.points[one], onto));
-            let other = sub(self.points[two], onto);
-            let squares = dot(edge, edge) + dot(spoke, spoke) + dot(other, other);
-            let normal = cross(spoke, edge);
-            let shape = if squares > 0.0 { dot(normal, normal) / (squares * squares) } else { 0.0 };
+            let (edge, spoke) = (self.points[two] - self.points[one], self.points[one] - onto);
+            let other = self.points[two] - onto;
+            let squares = edge.dot(edge) + spoke.dot(spoke) + other.dot(other);
+            let normal = spoke.cross(edge);
+            let shape = if squares > 0.0 { normal.dot(normal) / (squares * squares) } else { 0.0 };
             worst = f64::min(worst, 12.0 * shape);
         }
         worst.sqrt()

@@ -271,7 +271,6 @@ mod tests {
     use super::coarsen::BEAT;
     use super::*;
     use crate::control::Silent;
-    use crate::vector::Vector;
 
     /// A bipyramid over a polygon of n corners, all on the unit sphere; without the first `open` faces.
     fn bipyramid(n: u32, open: usize) -> TriangleMesh {
@@ -279,7 +278,7 @@ mod tests {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
             [angle.cos(), angle.sin(), 0.05 * (3.0 * angle).sin()]
         };
-        let vertices: Vec<Vector> = (0..n).map(corner).chain([[0., 0., 1.], [0., 0., -1.]]).collect();
+        let vertices: Vec<[f64; 3]> = (0..n).map(corner).chain([[0., 0., 1.], [0., 0., -1.]]).collect();
         let faces = (0..n).flat_map(|i| [[i, (i + 1) % n, n], [(i + 1) % n, i, n + 1]]).skip(open);
         TriangleMesh::new(&vertices, &faces.collect::<Vec<_>>()).unwrap()
     }

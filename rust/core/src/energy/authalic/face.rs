@@ -3,7 +3,7 @@
 
 use crate::codomain::motion::Frame;
 use crate::mesh::geometry::determinant_rounding;
-use crate::vector::{Vector, add, cross, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// β, what a large m costs beyond its own size.
 pub(super) const STEEPNESS: f64 = 0.1;
@@ -14,13 +14,13 @@ pub(crate) type Element = [[f64; 6]; 6];
 /// An image triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle {
-    pub x: [Vector; 3],
+    pub x: [Vector3; 3],
     /// D = det(x_i, x_j, x_k).
     pub determinant: f64,
     /// Twice the area, signed in the plane.
     pub doubled_area: f64,
     /// N divided by that.
-    normal: Vector,
+    normal: Vector3,
     /// Q.
     quadratic: f64,
     /// Bound of the rounding error of D.
@@ -64,19 +64,19 @@ pub(super) fn angle_cost(angle: f64) -> f64 {
 
 impl Triangle {
     #[inline(always)]
-    pub(super) fn new(x: [Vector; 3], cotangents: [f64; 3], planar: bool) -> Self {
-        let (p, q) = (sub(x[1], x[0]), sub(x[2], x[0]));
-        let r = sub(q, p);
-        let product = cross(p, q);
-        let determinant = dot(x[0], product);
+    pub(super) fn new(x: [Vector3; 3], cotangents: [f64; 3], planar: bool) -> Self {
+        let (p, q) = (x[1] - x[0], x[2] - x[0]);
+        let r = q - p;
+        let product = p.cross(q);
+        let determinant = x[0].dot(product);
         let (doubled_area, normal) = if planar {
-            (determinant, [0.0, 0.0, 1.0])
+            (determinant, Vector3([0.0, 0.0, 1.0]))
         } else {
-            let length = norm(product);
-            (length, scaled(product, 1.0 / length.max(f64::MIN_POSITIVE)))
+            let length = product.norm();
+            (length, product * (1.0 / length.max(f64::MIN_POSITIVE)))
         };
         let quadratic =
-            0.5 * (cotangents[0] * dot(r, r) + cotangents[1] * dot(q, q) + cotangents[2] * dot(p, p));
+            0.5 * (cotangents[0] * r.dot(r) + cotangents[1] * q.dot(q) + cotangents[2] * p.dot(p));
         let rounding = determinant_rounding(x[0], p, q);
         Self { x, determinant, doubled_area, normal, quadratic, rounding }
     }
@@ -88,31 +88,29 @@ impl Triangle {
 
     /// ∇a = ½ (x_{c+1} − x_{c+2}) × n by the unknowns of each corner c.
     pub(super) fn area_slopes(&self, frames: [&Frame; 3]) -> [f64; 6] {
-        self.reduced(frames, |[next, after, _]| scaled(cross(sub(next, after), self.normal), 0.5))
+        self.reduced(frames, |[next, after, _]| (next - after).cross(self.normal) * 0.5)
     }
 
     pub(super) fn slopes(&self, frames: [&Frame; 3], cotangents: [f64; 3]) -> Slopes {
         let area = self.area_slopes(frames);
         // in the plane D is twice the area
-        let determinant = self.reduced(frames, |[next, after, _]| cross(next, sub(after, next)));
+        let determinant = self.reduced(frames, |[next, after, _]| next.cross(after - next));
         let mut quadratic = [0.0; 6];
         for c in 0..3 {
             let (next, after) = ((c + 1) % 3, (c + 2) % 3);
-            let slope = add(
-                scaled(sub(self.x[c], self.x[after]), cotangents[next]),
-                scaled(sub(self.x[c], self.x[next]), cotangents[after]),
-            );
-            (0..2).for_each(|axis| quadratic[2 * c + axis] = dot(slope, frames[c].axes[axis]));
+            let slope = (self.x[c] - self.x[after]) * cotangents[next]
+                + (self.x[c] - self.x[next]) * cotangents[after];
+            (0..2).for_each(|axis| quadratic[2 * c + axis] = slope.dot(frames[c].axes[axis]));
         }
         Slopes { area, determinant, quadratic }
     }
 
     /// A vector per corner, from the corners after it and itself, by the unknowns.
-    fn reduced(&self, frames: [&Frame; 3], of_corner: impl Fn([Vector; 3]) -> Vector) -> [f64; 6] {
+    fn reduced(&self, frames: [&Frame; 3], of_corner: impl Fn([Vector3; 3]) -> Vector3) -> [f64; 6] {
         let mut out = [0.0; 6];
         for c in 0..3 {
             let slope = of_corner([self.x[(c + 1) % 3], self.x[(c + 2) % 3], self.x[c]]);
-            (0..2).for_each(|axis| out[2 * c + axis] = dot(slope, frames[c].axes[axis]));
+            (0..2).for_each(|axis| out[2 * c + axis] = slope.dot(frames[c].axes[axis]));
         }
         out
     }
@@ -158,42 +156,40 @@ impl Triangle {
         cotangents: [f64; 3],
     ) {
         let axis = |k: usize| frames[k / 2].axes[k % 2];
-        let in_plane: [Vector; 6] = std::array::from_fn(|k| {
+        let in_plane: [Vector3; 6] = std::array::from_fn(|k| {
             let c = k / 2;
-            let turned = cross(axis(k), sub(self.x[(c + 1) % 3], self.x[(c + 2) % 3]));
-            sub(turned, scaled(self.normal, dot(turned, self.normal)))
+            let turned = axis(k).cross(self.x[(c + 1) % 3] - self.x[(c + 2) % 3]);
+            turned - self.normal * turned.dot(self.normal)
         });
         // corners c and e after it: ∂²D is det(axis, axis, third corner), ∂²(2a) has the normal for that
         for c in 0..3 {
             let (e, third) = ((c + 1) % 3, self.x[(c + 2) % 3]);
-            let bent = add(scaled(self.normal, 0.5 * outer.by_area), scaled(third, outer.by_determinant));
+            let bent = self.normal * (0.5 * outer.by_area) + third * outer.by_determinant;
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let triple = dot(cross(axis(2 * c + i), axis(2 * e + j)), bent);
+                let triple = axis(2 * c + i).cross(axis(2 * e + j)).dot(bent);
                 element[2 * c + i][2 * e + j] += triple;
                 element[2 * e + j][2 * c + i] += triple;
             }
         }
         let stretch = 0.5 * outer.by_area / self.doubled_area;
         for row in 0..6 {
-            (0..6).for_each(|column| element[row][column] += stretch * dot(in_plane[row], in_plane[column]));
+            (0..6).for_each(|column| element[row][column] += stretch * in_plane[row].dot(in_plane[column]));
         }
         for c in 0..3 {
-            let pull = dot(self.slope_in_space(outer, cotangents, c), frames[c].outward);
+            let pull = self.slope_in_space(outer, cotangents, c).dot(frames[c].outward);
             (0..2).for_each(|axis| element[2 * c + axis][2 * c + axis] -= pull);
         }
     }
 
     /// The gradient of the face's energy by the place of a corner in space.
-    pub(super) fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector {
+    pub(super) fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector3 {
         let (n, a) = ((c + 1) % 3, (c + 2) % 3);
         let (next, after) = (self.x[n], self.x[a]);
-        let by_area = scaled(cross(sub(next, after), self.normal), 0.5 * outer.by_area);
-        let by_determinant = scaled(cross(next, sub(after, next)), outer.by_determinant);
-        let by_quadratic = add(
-            scaled(sub(self.x[c], after), outer.by_quadratic * cotangents[n]),
-            scaled(sub(self.x[c], next), outer.by_quadratic * cotangents[a]),
-        );
-        add(by_area, add(by_determinant, by_quadratic))
+        let by_area = (next - after).cross(self.normal) * (0.5 * outer.by_area);
+        let by_determinant = next.cross(after - next) * outer.by_determinant;
+        let by_quadratic = (self.x[c] - after) * (outer.by_quadratic * cotangents[n])
+            + (self.x[c] - next) * (outer.by_quadratic * cotangents[a]);
+        by_area + (by_determinant + by_quadratic)
     }
 
     /// Subtracts `factor` times the Hessian of 2a in the plane of the face.
@@ -202,7 +198,7 @@ impl Triangle {
             let next = (c + 1) % 3;
             for i in 0..2 {
                 for j in 0..2 {
-                    let turn = factor * dot(cross(frames[c].axes[i], frames[next].axes[j]), self.normal);
+                    let turn = factor * frames[c].axes[i].cross(frames[next].axes[j]).dot(self.normal);
                     element[2 * c + i][2 * next + j] -= turn;
                     element[2 * next + j][2 * c + i] -= turn;
                 }
@@ -224,9 +220,9 @@ pub(super) fn add_quadratic(element: &mut Element, frames: [&Frame; 3], weights:
         let (next, after) = ((c + 1) % 3, (c + 2) % 3);
         for i in 0..2 {
             for j in 0..2 {
-                let own = dot(frames[c].axes[i], frames[c].axes[j]);
+                let own = frames[c].axes[i].dot(frames[c].axes[j]);
                 element[2 * c + i][2 * c + j] += (weights[next] + weights[after]) * own;
-                let mixed = weights[after] * dot(frames[c].axes[i], frames[next].axes[j]);
+                let mixed = weights[after] * frames[c].axes[i].dot(frames[next].axes[j]);
                 element[2 * c + i][2 * next + j] -= mixed;
                 element[2 * next + j][2 * c + i] -= mixed;
             }

@@ -31,7 +31,7 @@ use crate::codomain::motion::Frame;
 use crate::mesh::geometry::triangle;
 use crate::mesh::{TriangleMesh, VertexCorners};
 use crate::parallel;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use face::{Outer, STEEPNESS, Triangle, add_product, add_quadratic, angle_cost};
 
 /// Energy of maps of one mesh.
@@ -121,7 +121,7 @@ impl AuthalicEnergy {
     }
 
     /// Whether no face of `map` is folded and no boundary edge turned.
-    pub(crate) fn is_embedding(&self, map: &[Vector]) -> bool {
+    pub(crate) fn is_embedding(&self, map: &[Vector3]) -> bool {
         parallel::all(self.faces.len(), |face| self.is_open(&self.triangle(map, face), face))
     }
 
@@ -131,13 +131,13 @@ impl AuthalicEnergy {
     }
 
     /// The areas of the faces of `map`, signed in the plane.
-    pub(crate) fn areas(&self, map: &[Vector]) -> Vec<f64> {
+    pub(crate) fn areas(&self, map: &[Vector3]) -> Vec<f64> {
         parallel::map(self.targets.len(), |face| 0.5 * self.triangle(map, face).doubled_area)
     }
 
     /// The area of each face of `map`, signed in the plane, and (m − 1) + ½ β (m − 1)², infinite where the face is not
     /// open.
-    pub(crate) fn costs(&self, map: &[Vector]) -> Vec<[f64; 2]> {
+    pub(crate) fn costs(&self, map: &[Vector3]) -> Vec<[f64; 2]> {
         parallel::map(self.targets.len(), |face| {
             let corners = self.triangle(map, face);
             let angle = if self.is_open(&corners, face) { corners.angle() } else { f64::INFINITY };
@@ -171,7 +171,7 @@ impl AuthalicEnergy {
     }
 
     /// The first two derivatives by t of the angle energy of the planar map (eᵗ x, e⁻ᵗ y), which has the same areas.
-    pub(crate) fn angle_slopes_of_stretch(&self, map: &[Vector], t: f64) -> [f64; 2] {
+    pub(crate) fn angle_slopes_of_stretch(&self, map: &[Vector3], t: f64) -> [f64; 2] {
         parallel::sums(self.targets.len(), |face| {
             let corners = self.triangle(map, face);
             let along = |axis: usize| {
@@ -188,7 +188,7 @@ impl AuthalicEnergy {
     }
 
     /// The gradient by the unknowns of every vertex, (n, 2).
-    pub(crate) fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
+    pub(crate) fn gradient(&self, map: &[Vector3], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
         self.gather(|face| {
             let corners = self.triangle(map, face);
             let outer = self.outer(&corners, face, weights);
@@ -201,8 +201,8 @@ impl AuthalicEnergy {
     /// the right-hand side of the second-order correction.
     pub(crate) fn curvature(
         &self,
-        map: &[Vector],
-        moved: &[Vector],
+        map: &[Vector3],
+        moved: &[Vector3],
         frames: &[Frame],
         direction: &[[f64; 2]],
         weights: &Weights,
@@ -224,7 +224,7 @@ impl AuthalicEnergy {
     /// damping of its deviation, |ρ − 1|, as the weight of the triangle's graph Laplacian.
     pub(crate) fn element(
         &self,
-        map: &[Vector],
+        map: &[Vector3],
         frames: &[Frame],
         weights: &Weights,
         how: &Hessian,
@@ -277,7 +277,7 @@ impl AuthalicEnergy {
     }
 
     #[inline(always)]
-    fn triangle(&self, map: &[Vector], face: usize) -> Triangle {
+    fn triangle(&self, map: &[Vector3], face: usize) -> Triangle {
         Triangle::new(
             triangle(map, self.faces[face]),
             self.cotangents[face],
@@ -307,9 +307,7 @@ impl AuthalicEnergy {
 mod tests {
     use super::*;
     use crate::codomain::motion::{Motion, frames};
-    use crate::vector::dot;
-    use crate::vector::norm;
-    use crate::vector::scaled;
+    use crate::vector::coordinates;
 
     const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
     const COMPOSITE: Hessian = Hessian { damping: 0.0, least: 0.0, curvature: 0.0 };
@@ -317,25 +315,25 @@ mod tests {
     const WEIGHTS: Weights = Weights { scale: 0.9, angle: 0.4, profile: Profile::Barrier };
 
     /// A tetrahedron with its image on the sphere.
-    fn closed() -> (TriangleMesh, Vec<Motion>, Vec<Vector>) {
+    fn closed() -> (TriangleMesh, Vec<Motion>, Vec<Vector3>) {
         let corners = [[1., 1., 1.], [1.2, -1., -1.], [-1., 0.8, -1.], [-1., -1., 1.1]];
         let mesh = TriangleMesh::new(&corners, &FACES).unwrap();
         let image = [[0.6, 0.7, 0.9], [0.9, -1., -0.5], [-1., 1., -1.1], [-0.3, -1., 1.]];
-        let image = image.map(|x| scaled(x, 1.0 / norm(x))).to_vec();
+        let image = image.map(Vector3).map(|x| x * (1.0 / x.norm())).to_vec();
         (mesh, vec![Motion::Sphere; 4], image)
     }
 
     /// A pyramid without its base, with its image in the disk.
-    fn open() -> (TriangleMesh, Vec<Motion>, Vec<Vector>) {
+    fn open() -> (TriangleMesh, Vec<Motion>, Vec<Vector3>) {
         let corners = [[0., 0., 1.], [1.3, 0., 0.], [0., 1., 0.2], [-1., -0.5, 0.]];
         let mesh = TriangleMesh::new(&corners, &FACES[..3]).unwrap();
-        let on_circle = |angle: f64| [angle.cos(), angle.sin(), 1.0];
-        let image = vec![[0.2, -0.1, 1.0], on_circle(0.3), on_circle(1.5), on_circle(4.0)];
+        let on_circle = |angle: f64| Vector3([angle.cos(), angle.sin(), 1.0]);
+        let image = vec![Vector3([0.2, -0.1, 1.0]), on_circle(0.3), on_circle(1.5), on_circle(4.0)];
         let motions = vec![Motion::Plane, Motion::Circle, Motion::Held, Motion::Circle];
         (mesh, motions, image)
     }
 
-    fn moved(motions: &[Motion], map: &[Vector], direction: &[[f64; 2]], step: f64) -> Vec<Vector> {
+    fn moved(motions: &[Motion], map: &[Vector3], direction: &[[f64; 2]], step: f64) -> Vec<Vector3> {
         let frames = frames(motions, map);
         (0..map.len()).map(|v| motions[v].moved(map[v], &frames[v], direction[v].map(|d| step * d))).collect()
     }
@@ -379,7 +377,7 @@ mod tests {
     /// The diagonal entry of an unknown that does not exist, which its element carries all the same.
     fn missing_pull(
         energy: &AuthalicEnergy,
-        map: &[Vector],
+        map: &[Vector3],
         frames: &[Frame],
         motions: &[Motion],
         direction: &[[f64; 2]],
@@ -392,7 +390,7 @@ mod tests {
             let (face, c) = (corner as usize / 3, corner as usize % 3);
             let corners = energy.triangle(map, face);
             let outer = energy.outer(&corners, face, &WEIGHTS);
-            dot(corners.slope_in_space(&outer, energy.cotangents[face], c), frames[vertex].outward)
+            corners.slope_in_space(&outer, energy.cotangents[face], c).dot(frames[vertex].outward)
         };
         direction[vertex][1].powi(2) * energy.corners.of(vertex).iter().map(of_corner).sum::<f64>()
     }
@@ -400,7 +398,7 @@ mod tests {
     /// dᵀ H d of a map of the plane, without damping.
     fn curvature_along(
         energy: &AuthalicEnergy,
-        map: &[Vector],
+        map: &[Vector3],
         direction: &[[f64; 2]],
         weights: &Weights,
     ) -> f64 {
@@ -416,7 +414,7 @@ mod tests {
     #[test]
     fn the_hessian_of_an_isometry_is_exact_and_turning_it_costs_nothing() {
         let (mesh, _, map) = open();
-        let flat = TriangleMesh::new(&map, mesh.faces()).unwrap();
+        let flat = TriangleMesh::new(&coordinates(map.clone()), mesh.faces()).unwrap();
         let energy = AuthalicEnergy::new(&flat, flat.face_areas().to_vec(), Codomain::Plane, 0.0);
         let total = |areas: &[f64]| areas.iter().sum::<f64>();
         let scale = total(&energy.areas(&map)) / total(energy.targets());
@@ -509,16 +507,16 @@ mod tests {
     fn a_folded_face_is_infinitely_expensive() {
         let (mesh, _, mut map) = open();
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 3], Codomain::Disk, 0.0);
-        map[0] = [0.9, -0.9, 1.0];
+        map[0] = Vector3([0.9, -0.9, 1.0]);
         assert_eq!(energy.value(&energy.costs(&map), &WEIGHTS), f64::INFINITY);
         assert_eq!(energy.sums(&energy.costs(&map)).angle_energy, f64::INFINITY);
     }
 
     #[test]
     fn flat_rest_triangles_count_as_a_little_fatter() {
-        let right = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+        let right = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].map(Vector3);
         assert!((0..3).all(|k| (rest_cotangents(right, 1e-3)[k] - [0., 1., 1.][k]).abs() < 1e-15));
-        let sliver = [[0., 0., 0.], [1., 0., 0.], [0.5, 1e-9, 0.]];
+        let sliver = [[0., 0., 0.], [1., 0., 0.], [0.5, 1e-9, 0.]].map(Vector3);
         assert!((rest_cotangents(sliver, 0.01)[0] - 50.0).abs() < 1e-9);
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Parameters along curves, and points at parameters.
 
-use crate::vector::{Vector, add, distance, norm, scaled};
+use crate::vector::Vector3;
 
 /// How much of a curve is divided evenly where some of its edges are too short for the others.
 const EVEN_SHARE: f64 = 1e-9;
@@ -10,10 +10,10 @@ const EVEN_SHARE: f64 = 1e-9;
 /// 1.
 ///
 /// Takes at least two points.
-pub(super) fn shares(points: impl Iterator<Item = Vector>) -> Vec<f64> {
-    let points: Vec<Vector> = points.collect();
+pub(super) fn shares(points: impl Iterator<Item = Vector3>) -> Vec<f64> {
+    let points: Vec<Vector3> = points.collect();
     let mut lengths = vec![0.0];
-    points.windows(2).for_each(|ends| lengths.push(lengths[lengths.len() - 1] + distance(ends[0], ends[1])));
+    points.windows(2).for_each(|ends| lengths.push(lengths[lengths.len() - 1] + ends[0].distance(ends[1])));
     let last = lengths.len() - 1;
     let total = lengths[last].max(f64::MIN_POSITIVE);
     let mut shares: Vec<f64> = lengths.iter().map(|length| length / total).collect();
@@ -26,11 +26,11 @@ pub(super) fn shares(points: impl Iterator<Item = Vector>) -> Vec<f64> {
 }
 
 /// The point of the unit sphere at parameter `s` of a polyline on it, of which every point has its parameter.
-pub(crate) fn on_sphere(places: &[Vector], parameters: &[f64], s: f64) -> Vector {
+pub(crate) fn on_sphere(places: &[Vector3], parameters: &[f64], s: f64) -> Vector3 {
     let after = parameters.partition_point(|&at| at < s).clamp(1, parameters.len() - 1);
     let [low, high] = [parameters[after - 1], parameters[after]];
     let t = ((s - low) / (high - low)).clamp(0.0, 1.0);
-    unit(add(scaled(places[after - 1], 1.0 - t), scaled(places[after], t)))
+    unit(places[after - 1] * (1.0 - t) + places[after] * t)
 }
 
 /// The index of the parameter nearest to `s` among those from `first` to `last`; parameters ascend.
@@ -40,15 +40,15 @@ pub(super) fn nearest(parameters: &[f64], [first, last]: [usize; 2], s: f64) -> 
 }
 
 /// The length of a polyline on the unit sphere, by chords.
-pub(crate) fn length(places: &[Vector]) -> f64 {
-    places.windows(2).map(|ends| distance(ends[0], ends[1])).sum()
+pub(crate) fn length(places: &[Vector3]) -> f64 {
+    places.windows(2).map(|ends| ends[0].distance(ends[1])).sum()
 }
 
 /// A vector made a unit one; zero stays zero.
-pub(crate) fn unit(x: Vector) -> Vector {
-    match norm(x) {
+pub(crate) fn unit(x: Vector3) -> Vector3 {
+    match x.norm() {
         0.0 => x,
-        length => scaled(x, 1.0 / length),
+        length => x * (1.0 / length),
     }
 }
 
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn shares_go_from_zero_to_one_even_over_edges_without_length() {
-        let line = |xs: &[f64]| shares(xs.iter().map(|&x| [x, 0.0, 0.0]));
+        let line = |xs: &[f64]| shares(xs.iter().map(|&x| Vector3([x, 0.0, 0.0])));
         assert_eq!(line(&[0.0, 1.0, 4.0]), [0.0, 0.25, 1.0]);
         let short = line(&[0.0, 1.0, 1.0 + 1e-18, 2.0]);
         assert!(short[0] == 0.0 && short[3] == 1.0 && short.windows(2).all(|ends| ends[0] < ends[1]));
@@ -66,12 +66,12 @@ mod tests {
 
     #[test]
     fn points_at_parameters_lie_between_their_neighbours() {
-        let places = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let places = [0, 1, 2].map(Vector3::unit);
         let parameters = [0.0, 0.5, 1.0];
         assert_eq!(on_sphere(&places, &parameters, 0.0), places[0]);
         assert_eq!(on_sphere(&places, &parameters, 1.0), places[2]);
         let middle = on_sphere(&places, &parameters, 0.75);
-        assert!(distance(middle, unit([0.0, 1.0, 1.0])) < 1e-15);
+        assert!(middle.distance(unit(Vector3([0.0, 1.0, 1.0]))) < 1e-15);
         assert_eq!(nearest(&parameters, [0, 2], 0.7), 1);
         assert_eq!(nearest(&parameters, [2, 2], 0.7), 2);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a surface is cut along: slits along landmark curves and boundary loops, each with two banks.
 
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// One bank of a feature: vertices from its start to its end, with their parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,11 +55,11 @@ impl Bank {
 #[derive(Debug, Clone)]
 pub(crate) struct Piece {
     /// (n, 3).
-    pub points: Vec<Vector>,
+    pub points: Vec<Vector3>,
     /// (m, 3), oriented.
     pub faces: Vec<[u32; 3]>,
     /// (n, 3): the vertices on the unit sphere, those of source and target roughly aligned.
-    pub on_sphere: Vec<Vector>,
+    pub on_sphere: Vec<Vector3>,
     /// (n,): the vertices of the surface.
     pub vertex_of: Vec<u32>,
     /// (m,): the faces of the surface.

@@ -13,7 +13,7 @@ use super::piece::{Bank, Feature, Piece};
 use super::placement::Placement;
 use super::regions::{Divided, Regions};
 use crate::mesh::TriangleMesh;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
 /// same order: curves as given, then other boundary loops.
@@ -50,7 +50,7 @@ pub(crate) fn pieces(
 struct Surface<'a> {
     mesh: &'a TriangleMesh,
     regions: &'a Regions,
-    sphere: &'a [Vector],
+    sphere: &'a [Vector3],
     features: &'a [Feature],
 }
 
@@ -62,7 +62,7 @@ impl Surface<'_> {
         let number = |vertex: u32| vertex_of.partition_point(|&of| of < vertex) as u32;
         let features = (0..self.features.len()).filter_map(|curve| self.seen_from(region, curve));
         let features = features.map(|feature| feature.with_vertices(number)).collect();
-        let of_vertices = |values: &[Vector]| vertex_of.iter().map(|&v| values[v as usize]).collect();
+        let of_vertices = |values: &[Vector3]| vertex_of.iter().map(|&v| values[v as usize]).collect();
         Piece {
             points: of_vertices(self.mesh.points()),
             on_sphere: of_vertices(self.sphere),
@@ -110,7 +110,7 @@ fn renumbered(mesh: &TriangleMesh, face_of: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>)
 }
 
 /// An open curve cut open.
-fn slit(vertices: &[u32], points: &[Vector]) -> Feature {
+fn slit(vertices: &[u32], points: &[Vector3]) -> Feature {
     let bank = Bank {
         vertices: vertices.to_vec(),
         parameters: shares(vertices.iter().map(|&vertex| points[vertex as usize])),
@@ -119,7 +119,7 @@ fn slit(vertices: &[u32], points: &[Vector]) -> Feature {
 }
 
 /// A pair of closed curves as loops around what lies on their left.
-fn loop_features(pair: &CurvePair, points: [&[Vector]; 2], shift: f64) -> [Feature; 2] {
+fn loop_features(pair: &CurvePair, points: [&[Vector3]; 2], shift: f64) -> [Feature; 2] {
     // 1. Both from their starts
     let [ours, theirs] = [Around::new(&pair.source, points[0]), Around::new(&pair.target, points[1])];
     let (ours, theirs) = match pair.gap {
@@ -153,7 +153,7 @@ struct Around {
 }
 
 impl Around {
-    fn new(closed: &[u32], points: &[Vector]) -> Self {
+    fn new(closed: &[u32], points: &[Vector3]) -> Self {
         let vertices: Vec<u32> = closed.iter().chain(&closed[..1]).copied().collect();
         let parameters = shares(vertices.iter().map(|&vertex| points[vertex as usize]));
         Self { vertices, parameters }
@@ -169,7 +169,7 @@ impl Around {
     }
 
     /// The same curve from another vertex on.
-    fn rotated(&self, start: usize, points: &[Vector]) -> Self {
+    fn rotated(&self, start: usize, points: &[Vector3]) -> Self {
         let n = self.n_edges();
         Self::new(&[&self.vertices[start..n], &self.vertices[..start]].concat(), points)
     }

@@ -19,7 +19,7 @@ use crate::error::{Elements, Error, MapError};
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 use crate::sphere::rough_conformal;
-use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// The middle of a closed curve says where it is if it is farther than this from that of the sphere.
 const LEAST_MIDDLE: f64 = 0.1;
@@ -41,15 +41,15 @@ const NEXT_TO_NOTHING: f64 = 0.1;
 const FEWEST: usize = 3;
 
 /// A rotation, by rows.
-type Rotation = [Vector; 3];
+type Rotation = [Vector3; 3];
 
 /// Both surfaces on the unit sphere.
 #[derive(Debug, Clone)]
 pub(crate) struct Placement {
     /// (n, 3): the source's vertices, rotated over the target's.
-    pub source: Vec<Vector>,
+    pub source: Vec<Vector3>,
     /// (m, 3): the target's vertices.
-    pub target: Vec<Vector>,
+    pub target: Vec<Vector3>,
     /// Paired boundary loops that are no curves.
     pub loops: Vec<CurvePair>,
     /// Per curve, then per pair of `loops`: which share of the target's length lies between its first vertex
@@ -63,8 +63,8 @@ pub(crate) struct Placement {
 
 /// Points of equal parameter on a pair of curves.
 struct Samples {
-    source: Vec<Vector>,
-    target: Vec<Vector>,
+    source: Vec<Vector3>,
+    target: Vec<Vector3>,
     closed: bool,
     /// The target by its vertices.
     line: Line,
@@ -83,7 +83,7 @@ struct Samples {
 pub(crate) fn placed(
     meshes: [&TriangleMesh; 2],
     divided: &Divided,
-    spheres: Option<[&[Vector]; 2]>,
+    spheres: Option<[&[Vector3]; 2]>,
     watch: &Watch<'_>,
 ) -> Result<Placement, Error> {
     // 1. Either surface by itself
@@ -117,12 +117,12 @@ pub(crate) fn placed(
 }
 
 /// Given positions on the unit sphere.
-fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector]) -> Result<Vec<Vector>, Error> {
+fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector3]) -> Result<Vec<Vector3>, Error> {
     if given.len() != mesh.n_vertices() {
         let expected = format!("of shape ({}, 3), one place for each vertex", mesh.n_vertices());
         return Err(Error::InvalidArray { name, found: format!("of shape ({}, 3)", given.len()), expected });
     }
-    let is_bad = |vertex: &usize| !(norm(given[*vertex]) > 0.0 && norm(given[*vertex]).is_finite());
+    let is_bad = |vertex: &usize| !(given[*vertex].norm() > 0.0 && given[*vertex].norm().is_finite());
     match Elements::collect((0..given.len()).filter(is_bad)) {
         None => Ok(given.iter().map(|&x| unit(x)).collect()),
         Some(vertices) => Err(MapError::NoDirection { name, vertices }.into()),
@@ -130,20 +130,20 @@ fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector]) -> Resu
 }
 
 /// The nearly conformal map of a surface, holes filled, rotated over the surface.
-fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector>, Error> {
+fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector3>, Error> {
     let whole = closed(mesh)?;
     let weights = whole.vertex_shares(whole.face_areas());
     let mut map = rough_conformal(&whole, &weights, watch)?;
     map.truncate(mesh.n_vertices());
     let weights = mesh.vertex_shares(mesh.face_areas());
     let centre = centroid(mesh.points(), &weights);
-    let directions = parallel::map(map.len(), |vertex| sub(mesh.points()[vertex], centre));
+    let directions = parallel::map(map.len(), |vertex| mesh.points()[vertex] - centre);
     let rotation = best_rotation(&map, &directions, &weights);
     Ok(parallel::map(map.len(), |vertex| unit(rotate(rotation, map[vertex]))))
 }
 
 impl Samples {
-    fn new(pair: &CurvePair, meshes: [&TriangleMesh; 2], spheres: [&[Vector]; 2]) -> Self {
+    fn new(pair: &CurvePair, meshes: [&TriangleMesh; 2], spheres: [&[Vector3]; 2]) -> Self {
         let line = |side: usize| {
             let vertices = [&pair.source, &pair.target][side];
             Line::new(vertices, pair.closed, meshes[side].points(), spheres[side])
@@ -160,7 +160,7 @@ impl Samples {
     }
 
     /// Points that belong together, with what they weigh: every curve the same.
-    fn pairs(&self) -> impl Iterator<Item = (Vector, Vector, f64)> {
+    fn pairs(&self) -> impl Iterator<Item = (Vector3, Vector3, f64)> {
         let n = self.source.len();
         let partner = move |k: usize| if self.backwards { n - 1 - k } else { k };
         (0..n).map(move |k| (self.source[k], self.target[partner(k)], 1.0 / n as f64))
@@ -183,14 +183,14 @@ impl Samples {
     /// Finds the start of the target's curve that brings the rotated source's nearest.
     fn find_shift(&mut self, rotation: Rotation) {
         let n = self.source.len();
-        let turned: Vec<Vector> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
+        let turned: Vec<Vector3> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
         // the vertices, so that curves that are the same fit exactly, and places between
         let vertices = &self.line.parameters[..self.line.parameters.len() - 1];
         let few = vertices.iter().step_by(vertices.len().div_ceil(MOST_STARTS)).copied();
         let shifts: Vec<f64> = few.chain((0..n).map(|k| k as f64 / n as f64)).collect();
         let fit = |shift: usize| -> f64 {
             let target = self.line.samples(true, shifts[shift]);
-            turned.iter().zip(target).map(|(&x, y)| dot(x, y)).sum()
+            turned.iter().zip(target).map(|(&x, y)| x.dot(y)).sum()
         };
         let fits = parallel::map(shifts.len(), fit);
         // max_by takes the last of equals, so from the back
@@ -200,31 +200,31 @@ impl Samples {
     }
 
     /// The middles of both curves.
-    fn middles(&self) -> [Vector; 2] {
+    fn middles(&self) -> [Vector3; 2] {
         [middle(&self.source), middle(&self.target)]
     }
 }
 
-fn middle(points: &[Vector]) -> Vector {
-    scaled(points.iter().fold([0.0; 3], |sum, &x| add(sum, x)), 1.0 / points.len() as f64)
+fn middle(points: &[Vector3]) -> Vector3 {
+    points.iter().fold(Vector3::ZERO, |sum, &x| sum + x) * (1.0 / points.len() as f64)
 }
 
 /// A curve on the sphere by shares of its length in space.
 struct Line {
     /// The vertices, of a closed curve the first again at the end.
-    places: Vec<Vector>,
+    places: Vec<Vector3>,
     parameters: Vec<f64>,
 }
 
 impl Line {
-    fn new(vertices: &[u32], closed: bool, points: &[Vector], sphere: &[Vector]) -> Self {
+    fn new(vertices: &[u32], closed: bool, points: &[Vector3], sphere: &[Vector3]) -> Self {
         let all = || vertices.iter().chain(if closed { &vertices[..1] } else { &[] });
         let parameters = shares(all().map(|&v| points[v as usize]));
         Self { places: all().map(|&v| sphere[v as usize]).collect(), parameters }
     }
 
     /// Points at equal distances, of a closed curve from parameter `shift` on.
-    fn samples(&self, closed: bool, shift: f64) -> Vec<Vector> {
+    fn samples(&self, closed: bool, shift: f64) -> Vec<Vector3> {
         let at = |s: f64| on_sphere(&self.places, &self.parameters, s);
         match closed {
             true => {
@@ -236,8 +236,8 @@ impl Line {
 }
 
 /// The rotation that brings the first point of each pair nearest to the second; among equals the least.
-fn rotation_over(pairs: impl Iterator<Item = (Vector, Vector, f64)>) -> Rotation {
-    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+fn rotation_over(pairs: impl Iterator<Item = (Vector3, Vector3, f64)>) -> Rotation {
+    let axes = [0, 1, 2].map(Vector3::unit);
     let (mut from, mut to, mut weights) = (axes.to_vec(), axes.to_vec(), vec![LEAST_TURN; 3]);
     for (x, y, weight) in pairs {
         from.push(x);
@@ -252,7 +252,7 @@ fn first_rotation(curves: &[Samples]) -> Rotation {
     let middles = curves.iter().filter(|samples| samples.closed).map(|samples| {
         let [ours, theirs] = samples.middles();
         // that of a great circle is no direction
-        let weight = if norm(ours).min(norm(theirs)) > LEAST_MIDDLE { 1.0 } else { 0.0 };
+        let weight = if ours.norm().min(theirs.norm()) > LEAST_MIDDLE { 1.0 } else { 0.0 };
         (ours, theirs, weight)
     });
     let open = curves.iter().filter(|samples| !samples.closed).flat_map(Samples::pairs);
@@ -263,7 +263,7 @@ fn first_rotation(curves: &[Samples]) -> Rotation {
 fn paired_loops(
     meshes: [&TriangleMesh; 2],
     divided: &Divided,
-    spheres: [&[Vector]; 2],
+    spheres: [&[Vector3]; 2],
     rotation: Rotation,
 ) -> Vec<CurvePair> {
     let centre = |side: usize, number: usize| {
@@ -280,7 +280,7 @@ fn paired_loops(
     let mut near = Vec::new();
     for (i, &(_, region, x)) in ours.iter().enumerate() {
         let same = theirs.iter().enumerate().filter(|(_, their)| their.1 == region);
-        near.extend(same.map(|(j, their)| (distance(x, their.2), i, j)));
+        near.extend(same.map(|(j, their)| (x.distance(their.2), i, j)));
     }
     near.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     // 2. Each loop once
@@ -301,9 +301,9 @@ fn paired_loops(
 }
 
 /// √ of the mean squared distance after a rotation.
-fn left_over(pairs: &[(Vector, Vector, f64)], rotation: Rotation) -> f64 {
+fn left_over(pairs: &[(Vector3, Vector3, f64)], rotation: Rotation) -> f64 {
     let total: f64 = pairs.iter().map(|(_, _, weight)| weight).sum();
-    let square = |&(x, y, weight): &(Vector, Vector, f64)| weight * distance(rotate(rotation, x), y).powi(2);
+    let square = |&(x, y, weight): &(Vector3, Vector3, f64)| weight * rotate(rotation, x).distance(y).powi(2);
     (pairs.iter().map(square).sum::<f64>() / total).sqrt()
 }
 
@@ -319,8 +319,9 @@ fn fits_mirrored(samples: &mut [Samples]) -> bool {
         return false;
     }
     let given: Vec<_> = open().flat_map(Samples::pairs).collect();
-    let mirrored: Vec<_> = given.iter().map(|&([x, y, z], to, weight)| ([x, y, -z], to, weight)).collect();
-    let best = |pairs: &[(Vector, Vector, f64)]| left_over(pairs, rotation_over(pairs.iter().copied()));
+    let mirrored: Vec<_> =
+        given.iter().map(|&(Vector3([x, y, z]), to, weight)| (Vector3([x, y, -z]), to, weight)).collect();
+    let best = |pairs: &[(Vector3, Vector3, f64)]| left_over(pairs, rotation_over(pairs.iter().copied()));
     is_clearly_better(best(&mirrored), best(&given))
 }
 

@@ -12,7 +12,7 @@ use crate::error::{CurveError, Error, Side};
 use crate::mesh::TriangleMesh;
 use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
 use crate::mesh::geometry::triangle;
-use crate::vector::{Vector, add, dot, scaled, sub};
+use crate::vector::Vector3;
 
 /// No region: beyond the boundary.
 pub(super) const OUTSIDE: u32 = u32::MAX;
@@ -38,7 +38,7 @@ pub(crate) struct Regions {
     /// The share of each region in the area of the surface.
     shares: Vec<f64>,
     /// Per region its centroid times its share.
-    moments: Vec<Vector>,
+    moments: Vec<Vector3>,
 }
 
 /// Both surfaces divided, with closed curves of the target turned like their partners.
@@ -121,7 +121,7 @@ fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
         return by_area > 0.0;
     }
     // 3. Or how the surfaces lie in space
-    dot(ours.direction_to(&left), theirs.direction_to(&their_left)) < 0.0
+    ours.direction_to(&left).dot(theirs.direction_to(&their_left)) < 0.0
 }
 
 /// Refuses other curves and loops on different sides of a closed curve.
@@ -163,13 +163,13 @@ impl Regions {
             (number, region(face_on_left(mesh, vertices[0], vertices[1])))
         });
         let loops = loops.collect();
-        let (mut shares, mut moments) = (vec![0.0; count], vec![[0.0; 3]; count]);
+        let (mut shares, mut moments) = (vec![0.0; count], vec![Vector3::ZERO; count]);
         let total: f64 = mesh.face_areas().iter().sum();
         for (face, &at) in of_face.iter().enumerate() {
             let (share, [a, b, c]) =
                 (mesh.face_areas()[face] / total, triangle(mesh.points(), mesh.faces()[face]));
             shares[at as usize] += share;
-            moments[at as usize] = add(moments[at as usize], scaled(add(a, add(b, c)), share / 3.0));
+            moments[at as usize] += (a + (b + c)) * (share / 3.0);
         }
         Self { of_face, count, sides, loops, shares, moments }
     }
@@ -203,13 +203,13 @@ impl Regions {
     }
 
     /// From the centroid of the rest to that of some regions.
-    fn direction_to(&self, inside: &[bool]) -> Vector {
+    fn direction_to(&self, inside: &[bool]) -> Vector3 {
         let share = self.share_of(inside);
         let sum = |wanted: bool| {
             let moments = self.moments.iter().zip(inside).filter(|(_, inside)| **inside == wanted);
-            moments.fold([0.0; 3], |sum, (&moment, _)| add(sum, moment))
+            moments.fold(Vector3::ZERO, |sum, (&moment, _)| sum + moment)
         };
-        sub(scaled(sum(true), 1.0 / share), scaled(sum(false), 1.0 / (1.0 - share)))
+        sum(true) * (1.0 / share) - sum(false) * (1.0 / (1.0 - share))
     }
 
     fn share_of(&self, inside: &[bool]) -> f64 {

@@ -14,7 +14,7 @@ use crate::hyperbolic::moebius::{
 use crate::hyperbolic::slice::Opened;
 use crate::mesh::NO_CORNER;
 use crate::parallel;
-use crate::vector::{Vector, add, cross, dot, scaled};
+use crate::vector::Vector3;
 
 /// A point this far outside an edge still counts as inside.
 const INSIDE: f64 = 1e-13;
@@ -114,8 +114,8 @@ impl<'a> Atlas<'a> {
     /// that keeps circumcircles.
     pub(crate) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
         let (corners, mu) = (self.charts[face as usize], self.mu[face as usize]);
-        let weighted = |k: usize| scaled(to_hyperboloid(corners[k]), barycentric[k] * mu[k]);
-        from_hyperboloid(add(weighted(0), add(weighted(1), weighted(2))))
+        let weighted = |k: usize| to_hyperboloid(corners[k]) * (barycentric[k] * mu[k]);
+        from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)))
     }
 
     /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not
@@ -132,9 +132,8 @@ impl<'a> Atlas<'a> {
 }
 
 /// det(a, b, x), by differences so that it keeps its digits for small triangles.
-fn determinant(a: Vector, b: Vector, x: Vector) -> f64 {
-    let difference = |p: Vector| [p[0] - x[0], p[1] - x[1], p[2] - x[2]];
-    dot(x, cross(difference(a), difference(b)))
+fn determinant(a: Vector3, b: Vector3, x: Vector3) -> f64 {
+    x.dot((a - x).cross(b - x))
 }
 
 /// The ends of the edge opposite to a corner, in the order in which its face runs through it.
@@ -151,7 +150,7 @@ fn chart(lengths: [f64; 3], angles: [f64; 3]) -> [Complex; 3] {
         Complex::from_polar((0.5 * lengths[1]).tanh(), angles[0]),
     ];
     let [a, b, c] = corners.map(to_hyperboloid);
-    let middle = from_hyperboloid(add(a, add(b, c)));
+    let middle = from_hyperboloid(a + (b + c));
     corners.map(|corner| seen_from(middle, corner))
 }
 

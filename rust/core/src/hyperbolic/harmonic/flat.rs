@@ -21,6 +21,7 @@ use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError, Side};
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
+use crate::vector::Vector3;
 
 /// How many times a layout of a cylinder may wind around it beyond its own period.
 const WINDINGS: i32 = 8;
@@ -224,7 +225,7 @@ fn located(
                 break;
             }
             let moved = [point[0] + f64::from(turn), point[1]];
-            let other = locator.locate([moved[0], moved[1], 1.0]);
+            let other = locator.locate(Vector3([moved[0], moved[1], 1.0]));
             if miss(&other, moved) < best {
                 (best, *found) = (miss(&other, moved), other);
             }

@@ -16,7 +16,7 @@ use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::Location;
 use crate::mesh::NO_CORNER;
 use crate::parallel;
-use crate::vector::{Vector, cross, dot};
+use crate::vector::Vector3;
 
 /// A vertex this far outside of an edge, in barycentric coordinates, may still belong to a face.
 const NEAR: f64 = 1e-9;
@@ -105,10 +105,10 @@ fn overlap(one: &[Complex; 3], other: &[Complex; 3]) -> bool {
 /// The coordinates of a point of Klein's model in a triangle that contains it, up to [`NEAR`], as those of
 /// the flat triangle on the hyperboloid.
 fn barycentric(triangle: &[Complex; 3], point: Complex) -> Option<[f64; 3]> {
-    let ray = |k: Complex| -> Vector { [k.re, k.im, 1.0] };
+    let ray = |k: Complex| -> Vector3 { Vector3([k.re, k.im, 1.0]) };
     let [a, b, c] = triangle.map(|corner| to_hyperboloid(from_klein(corner)));
     let x = ray(point);
-    let weights = [dot(x, cross(b, c)), dot(x, cross(c, a)), dot(x, cross(a, b))];
+    let weights = [x.dot(b.cross(c)), x.dot(c.cross(a)), x.dot(a.cross(b))];
     let sum: f64 = weights.iter().sum();
     let weights = weights.map(|weight| weight / sum);
     (sum > 0.0 && weights.iter().all(|&weight| weight > -NEAR)).then_some(weights)

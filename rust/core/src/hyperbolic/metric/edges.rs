@@ -15,7 +15,7 @@
 
 use crate::mesh::{EdgeTable, corner_of_entry};
 use crate::parallel;
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// The edges of the faces.
 pub(super) struct Edges {
@@ -63,10 +63,10 @@ impl Edges {
     }
 
     /// The lengths in space.
-    pub(super) fn lengths(&self, points: &[Vector]) -> Vec<f64> {
+    pub(super) fn lengths(&self, points: &[Vector3]) -> Vec<f64> {
         parallel::map(self.len(), |edge| {
             let [a, b] = self.ends[edge].map(|end| points[end as usize]);
-            distance(a, b)
+            a.distance(b)
         })
     }
 }

@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 use crate::control::Watch;
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::geometry::face_areas;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
 use newton::{State, Surface, flatten};
 use relaxation::{Relaxed, bad_faces, relaxed};
@@ -70,7 +70,7 @@ pub struct Metric {
 /// [`NumericsError::NoHyperbolicMetric`] where numerics allow none, [`NumericsError::FactorizationFailed`] where the mesh is
 /// too large, [`Error::CancelledEarly`] by the watch.
 pub(super) fn hyperbolic_metric(
-    points: &[Vector],
+    points: &[Vector3],
     faces: &[[u32; 3]],
     euler_characteristic: i64,
     method: MetricMethod,

@@ -8,10 +8,9 @@ use super::newton::{hessian, length_derivatives};
 use super::*;
 use crate::control::Silent;
 use crate::sparse::solve_positive_definite;
-use crate::vector::{add, cross, distance, dot, norm, scaled};
 
 struct Mesh {
-    points: Vec<Vector>,
+    points: Vec<Vector3>,
     faces: Vec<[u32; 3]>,
 }
 
@@ -19,30 +18,30 @@ struct Mesh {
 fn icosphere(times: usize) -> Mesh {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let signs = [[-1.0, golden], [1.0, golden], [-1.0, -golden], [1.0, -golden]];
-    let corner = |axis: usize, [p, q]: [f64; 2]| std::array::from_fn(|k| [p, q, 0.0][(k + axis) % 3]);
-    let points: Vec<Vector> = (0..3).flat_map(|axis| signs.map(|sign| unit(corner(axis, sign)))).collect();
-    let edge = (0..12).map(|v| distance(points[0], points[v])).filter(|&d| d > 0.0).fold(4.0, f64::min);
+    let corner = |axis: usize, [p, q]: [f64; 2]| Vector3::from_fn(|k| [p, q, 0.0][(k + axis) % 3]);
+    let points: Vec<Vector3> = (0..3).flat_map(|axis| signs.map(|sign| unit(corner(axis, sign)))).collect();
+    let edge = (0..12).map(|v| points[0].distance(points[v])).filter(|&d| d > 0.0).fold(4.0, f64::min);
     let mut faces = Vec::new();
     for i in 0..12_u32 {
         for (j, k) in (i + 1..12).flat_map(|j| (j + 1..12).map(move |k| (j, k))) {
             let [a, b, c] = [i, j, k].map(|v| points[v as usize]);
-            if [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| distance(p, q) < 1.1 * edge) {
-                faces.push(if dot(a, cross(b, c)) > 0.0 { [i, j, k] } else { [i, k, j] });
+            if [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| p.distance(q) < 1.1 * edge) {
+                faces.push(if a.dot(b.cross(c)) > 0.0 { [i, j, k] } else { [i, k, j] });
             }
         }
     }
     (0..times).fold(Mesh { points, faces }, |mesh, _| split(mesh))
 }
 
-fn unit(a: Vector) -> Vector {
-    scaled(a, 1.0 / norm(a))
+fn unit(a: Vector3) -> Vector3 {
+    a * (1.0 / a.norm())
 }
 
 fn split(Mesh { mut points, faces }: Mesh) -> Mesh {
     let mut midpoints = BTreeMap::new();
     let mut midpoint = |a: u32, b: u32| {
         *midpoints.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            points.push(unit(add(points[a as usize], points[b as usize])));
+            points.push(unit(points[a as usize] + points[b as usize]));
             points.len() as u32 - 1
         })
     };
@@ -69,7 +68,7 @@ fn without(Mesh { points, faces }: Mesh, holes: u32) -> Mesh {
 /// Points moved at random by up to `amount`.
 fn noisy(mut mesh: Mesh, amount: f64) -> Mesh {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    for x in mesh.points.as_flattened_mut() {
+    for x in mesh.points.iter_mut().flat_map(|point| &mut point.0) {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;

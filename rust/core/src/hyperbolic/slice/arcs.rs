@@ -16,7 +16,7 @@ use super::paths::{cheapest_path, lower_distances};
 use super::polyline::{Polyline, resampled};
 use crate::control::Watch;
 use crate::error::{CurveError, Error};
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// The angle between the points of a carried polyline.
 const SPACING: f64 = 0.01;
@@ -28,12 +28,12 @@ const STRAYING: f64 = 10.0;
 const FAR: f64 = 10.0;
 
 /// Carries a polyline from the sphere of the source to that of the target, if it can.
-pub(super) type Carry<'a> = &'a dyn Fn(&[Vector]) -> Option<Vec<Vector>>;
+pub(super) type Carry<'a> = &'a dyn Fn(&[Vector3]) -> Option<Vec<Vector3>>;
 
 /// Where an arc on the target should run.
 pub(super) struct Guide {
     /// At least two points on its sphere.
-    polyline: Vec<Vector>,
+    polyline: Vec<Vector3>,
     /// Whether it has been carried there from the source.
     is_carried: bool,
 }
@@ -66,10 +66,9 @@ pub(super) fn source_arcs(
 /// Where the source's cannot be carried over, the arc there runs where it runs on the source.
 pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> Vec<Guide> {
     let guide = |arc: &Vec<u32>| {
-        let along: Vec<Vector> = arc.iter().map(|&vertex| source.on_sphere[vertex as usize]).collect();
+        let along: Vec<Vector3> = arc.iter().map(|&vertex| source.on_sphere[vertex as usize]).collect();
         let along = resampled(&along, SPACING);
-        let is_line =
-            |line: &Vec<Vector>| line.len() >= 2 && line.as_flattened().iter().all(|x| x.is_finite());
+        let is_line = |line: &Vec<Vector3>| line.len() >= 2 && line.iter().all(|x| x.is_finite());
         match carry(&along).filter(is_line) {
             Some(polyline) => Guide { polyline, is_carried: true },
             None => Guide { polyline: along, is_carried: false },
@@ -156,10 +155,10 @@ fn goes_on(watch: &Watch<'_>) -> Result<(), Error> {
 }
 
 /// The median length of the faces' sides.
-fn median_edge(positions: &[Vector], faces: &[[u32; 3]]) -> f64 {
+fn median_edge(positions: &[Vector3], faces: &[[u32; 3]]) -> f64 {
     let sides = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut lengths: Vec<f64> =
-        sides.map(|[a, b]| distance(positions[a as usize], positions[b as usize])).collect();
+        sides.map(|[a, b]| positions[a as usize].distance(positions[b as usize])).collect();
     let middle = lengths.len() / 2;
     if lengths.is_empty() { 0.0 } else { *lengths.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

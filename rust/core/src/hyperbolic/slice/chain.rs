@@ -11,7 +11,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::hyperbolic::features::piece::{Feature, Piece};
-use crate::vector::{Vector, distance};
+use crate::vector::Vector3;
 
 /// A link from the end of a feature to the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,9 +53,9 @@ pub(super) fn links(features: &[Feature]) -> Vec<Link> {
 }
 
 /// On either sphere, start and end of a feature.
-type Tips = [[Vector; 2]; 2];
+type Tips = [[Vector3; 2]; 2];
 
-fn tips(piece: &Piece, feature: &Feature) -> [Vector; 2] {
+fn tips(piece: &Piece, feature: &Feature) -> [Vector3; 2] {
     [feature.start(), feature.end()].map(|vertex| piece.on_sphere[vertex as usize])
 }
 
@@ -81,7 +81,7 @@ fn gap(tips: &[Tips], (one, one_reversed): (usize, bool), (other, other_reversed
     let angle = |sphere: usize| {
         let end = tips[one][sphere][usize::from(!one_reversed)];
         let start = tips[other][sphere][usize::from(other_reversed)];
-        let half_chord = 0.5 * distance(end, start);
+        let half_chord = 0.5 * end.distance(start);
         if half_chord < 1.0 { half_chord.asin() } else { FRAC_PI_2 }
     };
     2.0 * (angle(0) + angle(1))
@@ -97,7 +97,8 @@ mod tests {
         let bank =
             |k: usize| Bank { vertices: vec![2 * k as u32, 2 * k as u32 + 1], parameters: vec![0.0, 1.0] };
         let feature = |k: usize| Feature { left: bank(k), right: bank(k), is_loop: false, curve: Some(k) };
-        let on_sphere: Vec<Vector> = angles.as_flattened().iter().map(|a| [a.cos(), a.sin(), 0.0]).collect();
+        let on_sphere: Vec<Vector3> =
+            angles.as_flattened().iter().map(|a| Vector3([a.cos(), a.sin(), 0.0])).collect();
         Piece {
             points: on_sphere.clone(),
             faces: Vec::new(),

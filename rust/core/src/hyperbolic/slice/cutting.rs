@@ -15,7 +15,7 @@
 use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
 use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
-use crate::vector::{Vector, add, distance, norm, scaled};
+use crate::vector::Vector3;
 
 /// What an edge is cut for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,9 +32,9 @@ pub(super) enum Seam {
 #[derive(Debug, Clone)]
 pub(super) struct Cutting {
     /// (n, 3): the vertices, then the midpoints of split edges.
-    pub points: Vec<Vector>,
+    pub points: Vec<Vector3>,
     /// (n, 3): the same on the unit sphere.
-    pub on_sphere: Vec<Vector>,
+    pub on_sphere: Vec<Vector3>,
     /// (m, 3), oriented.
     pub faces: Vec<[u32; 3]>,
     /// (3 m,): the opposite corners, [`NO_CORNER`] on the boundary of the piece.
@@ -78,7 +78,7 @@ impl Cutting {
 
     /// The distance of two vertices in space.
     pub(super) fn length(&self, a: u32, b: u32) -> f64 {
-        distance(self.points[a as usize], self.points[b as usize])
+        self.points[a as usize].distance(self.points[b as usize])
     }
 
     /// The corners at a vertex, in the order in which they lie around it; none at a loose vertex.
@@ -158,11 +158,11 @@ impl Cutting {
 
     fn add_midpoint(&mut self, a: u32, b: u32, is_cut: bool) -> u32 {
         let [a, b] = [a as usize, b as usize];
-        let on_sphere = add(self.on_sphere[a], self.on_sphere[b]);
-        let length = norm(on_sphere);
+        let on_sphere = self.on_sphere[a] + self.on_sphere[b];
+        let length = on_sphere.norm();
         let antipodal = length < f64::EPSILON;
-        self.on_sphere.push(if antipodal { self.on_sphere[a] } else { scaled(on_sphere, 1.0 / length) });
-        self.points.push(scaled(add(self.points[a], self.points[b]), 0.5));
+        self.on_sphere.push(if antipodal { self.on_sphere[a] } else { on_sphere * (1.0 / length) });
+        self.points.push((self.points[a] + self.points[b]) * 0.5);
         self.is_cut.push(is_cut);
         self.first_corner.push(NO_CORNER);
         self.points.len() as u32 - 1
@@ -217,7 +217,7 @@ impl Cutting {
     fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: u32) {
         let weights = &mut self.places[corner as usize / 3].corners;
         let [a, b] = [a, b].map(|end| weights[end as usize % 3]);
-        weights[corner as usize % 3] = scaled(add(a, b), 0.5);
+        weights[corner as usize % 3] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
         self.faces[corner as usize / 3][corner as usize % 3] = midpoint;
     }
 
@@ -248,9 +248,11 @@ mod tests {
 
     /// Two triangles that share the edge from 0 to 1.
     fn two_triangles() -> Cutting {
-        let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, -1.0, 0.0]];
+        let points =
+            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, -1.0, 0.0]].map(Vector3).to_vec();
+        let [x, y, z] = [0, 1, 2].map(Vector3::unit);
         Cutting::new(&Piece {
-            on_sphere: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
+            on_sphere: vec![x, y, z, -z],
             vertex_of: (0..4).collect(),
             face_of: vec![0, 1],
             faces: vec![[0, 1, 2], [1, 0, 3]],
@@ -272,8 +274,8 @@ mod tests {
             for (corner, weights) in face.iter().zip(place.corners) {
                 assert_eq!(weights.iter().sum::<f64>(), 1.0);
                 let whole = two_triangles().faces[place.face as usize];
-                let terms = whole.iter().zip(weights).map(|(&v, w)| scaled(cutting.points[v as usize], w));
-                assert_eq!(terms.fold([0.0; 3], add), cutting.points[*corner as usize]);
+                let terms = whole.iter().zip(weights).map(|(&v, w)| cutting.points[v as usize] * w);
+                assert_eq!(terms.sum::<Vector3>(), cutting.points[*corner as usize]);
             }
         }
     }

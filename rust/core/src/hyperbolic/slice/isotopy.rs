@@ -16,7 +16,7 @@ use crate::hyperbolic::features::parameters::{length, on_sphere, unit};
 use crate::hyperbolic::features::piece::{Bank, Piece};
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled};
+use crate::vector::Vector3;
 
 /// How far a displacement is felt.
 const REACH: f64 = 0.25;
@@ -44,8 +44,8 @@ pub(crate) struct Isotopy {
 /// One displacement of the whole sphere.
 #[derive(Debug, Clone)]
 struct Step {
-    places: Vec<Vector>,
-    weights: Vec<Vector>,
+    places: Vec<Vector3>,
+    weights: Vec<Vector3>,
 }
 
 impl Isotopy {
@@ -59,10 +59,10 @@ impl Isotopy {
     /// all of them unit vectors and no two of one surface equal.
     ///
     /// `None` where curves run into each other on the way, and where cancelled.
-    pub(super) fn new(source: &[Vec<Vector>], target: &[Vec<Vector>], watch: &Watch<'_>) -> Option<Self> {
+    pub(super) fn new(source: &[Vec<Vector3>], target: &[Vec<Vector3>], watch: &Watch<'_>) -> Option<Self> {
         let (from, to) = (source.concat(), target.concat());
-        let are_within = |points: &[Vector], most: f64| {
-            points.iter().zip(&to).all(|(&x, &place)| distance(x, place) <= most)
+        let are_within = |points: &[Vector3], most: f64| {
+            points.iter().zip(&to).all(|(&x, &place)| x.distance(place) <= most)
         };
         if are_within(&from, AT_REST) {
             return Some(Self { steps: Vec::new() });
@@ -73,7 +73,7 @@ impl Isotopy {
     }
 
     /// Carries unit vectors along.
-    pub(crate) fn carry(&self, points: &[Vector]) -> Vec<Vector> {
+    pub(crate) fn carry(&self, points: &[Vector3]) -> Vec<Vector3> {
         parallel::map(points.len(), |i| self.steps.iter().fold(points[i], |x, step| step.moved(x)))
     }
 }
@@ -81,23 +81,23 @@ impl Isotopy {
 impl Step {
     /// The displacement through those of points at `places` on the way to `next`; `None` where the system is
     /// singular.
-    fn through(places: Vec<Vector>, next: &[Vector]) -> Option<Self> {
+    fn through(places: Vec<Vector3>, next: &[Vector3]) -> Option<Self> {
         let k = places.len();
         let mut matrix = parallel::map(k * k, |entry| {
             let (i, j) = (entry % k, entry / k);
-            kernel(distance(places[i], places[j])) + if i == j { RIDGE } else { 0.0 }
+            kernel(places[i].distance(places[j])) + if i == j { RIDGE } else { 0.0 }
         });
         let mut weights: Vec<f64> =
             (0..3 * k).map(|entry| next[entry % k][entry / k] - places[entry % k][entry / k]).collect();
         solve_positive_definite(&mut matrix, &mut weights).then(|| {
-            let weights = (0..k).map(|i| [weights[i], weights[k + i], weights[2 * k + i]]).collect();
+            let weights = (0..k).map(|i| Vector3([weights[i], weights[k + i], weights[2 * k + i]])).collect();
             Self { places, weights }
         })
     }
 
-    fn moved(&self, x: Vector) -> Vector {
+    fn moved(&self, x: Vector3) -> Vector3 {
         let terms = self.places.iter().zip(&self.weights);
-        unit(terms.fold(x, |sum, (&place, &weight)| add(sum, scaled(weight, kernel(distance(x, place))))))
+        unit(terms.fold(x, |sum, (&place, &weight)| sum + weight * kernel(x.distance(place))))
     }
 }
 
@@ -110,7 +110,7 @@ fn kernel(distance: f64) -> f64 {
 /// The steps along all paths; `None` where some step would fold or the points are too close for the kernel.
 fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
     let at =
-        |i: usize| -> Vec<Vector> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
+        |i: usize| -> Vec<Vector3> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
     let mut places = at(0);
     let mut steps = Vec::with_capacity(count);
     for i in 1..=count {
@@ -125,12 +125,12 @@ fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
 }
 
 /// The largest change of the difference of two points relative to their distance.
-fn strain(places: &[Vector], next: &[Vector]) -> f64 {
+fn strain(places: &[Vector3], next: &[Vector3]) -> f64 {
     let of = |i: usize| {
         let pair = |j: usize| {
             let [x, y] = [0, 1].map(|at| if at == 0 { i } else { j });
-            let change = [0, 1, 2].map(|k| next[x][k] - places[x][k] - (next[y][k] - places[y][k]));
-            norm(change) / distance(places[x], places[y])
+            let change = next[x] - places[x] - (next[y] - places[y]);
+            change.norm() / places[x].distance(places[y])
         };
         (0..i).map(pair).fold(0.0, f64::max)
     };
@@ -139,15 +139,15 @@ fn strain(places: &[Vector], next: &[Vector]) -> f64 {
 
 /// The way of one point: a rotation shared with its curve, and a great arc before it.
 struct Path {
-    from: Vector,
+    from: Vector3,
     /// The point's place turned back by the whole rotation.
-    to: Vector,
-    axis: Vector,
+    to: Vector3,
+    axis: Vector3,
     angle: f64,
 }
 
 /// The ways of the points of one curve.
-fn paths(from: &[Vector], to: &[Vector]) -> impl Iterator<Item = Path> {
+fn paths(from: &[Vector3], to: &[Vector3]) -> impl Iterator<Item = Path> {
     let rotation = best_rotation(from, to, &vec![1.0; from.len()]);
     let (axis, angle) = axis_angle(rotation);
     let back = turn(axis, -angle);
@@ -155,48 +155,48 @@ fn paths(from: &[Vector], to: &[Vector]) -> impl Iterator<Item = Path> {
 }
 
 impl Path {
-    fn at(&self, t: f64) -> Vector {
+    fn at(&self, t: f64) -> Vector3 {
         rotate(turn(self.axis, t * self.angle), slerp(self.from, self.to, t))
     }
 }
 
 /// The point at share `t` of the great arc.
-fn slerp(from: Vector, to: Vector, t: f64) -> Vector {
-    let angle = norm(cross(from, to)).atan2(dot(from, to));
+fn slerp(from: Vector3, to: Vector3, t: f64) -> Vector3 {
+    let angle = from.cross(to).norm().atan2(from.dot(to));
     match angle.sin() {
         sine if sine > 1e-12 => {
             let [a, b] = [((1.0 - t) * angle).sin() / sine, (t * angle).sin() / sine];
-            unit(add(scaled(from, a), scaled(to, b)))
+            unit(from * a + to * b)
         }
         _ => from,
     }
 }
 
 /// The rotation about a unit axis.
-fn turn(axis: Vector, angle: f64) -> [Vector; 3] {
+fn turn(axis: Vector3, angle: f64) -> [Vector3; 3] {
     let (sine, cosine) = (0.5 * angle).sin_cos();
     rotation_of([cosine, sine * axis[0], sine * axis[1], sine * axis[2]])
 }
 
 /// The unit axis and the angle in [0, π] of a rotation.
-fn axis_angle(rotation: [Vector; 3]) -> (Vector, f64) {
-    let [[a, ab, ac], [ba, b, bc], [ca, cb, c]] = rotation;
-    let double_sine = [cb - bc, ac - ca, ba - ab];
-    let angle = norm(double_sine).atan2(a + b + c - 1.0);
-    if norm(double_sine) > 1e-6 {
+fn axis_angle(rotation: [Vector3; 3]) -> (Vector3, f64) {
+    let [Vector3([a, ab, ac]), Vector3([ba, b, bc]), Vector3([ca, cb, c])] = rotation;
+    let double_sine = Vector3([cb - bc, ac - ca, ba - ab]);
+    let angle = double_sine.norm().atan2(a + b + c - 1.0);
+    if double_sine.norm() > 1e-6 {
         return (unit(double_sine), angle);
     }
     if angle < 1.0 {
-        return ([0.0, 0.0, 1.0], 0.0);
+        return (Vector3([0.0, 0.0, 1.0]), 0.0);
     }
     // by half a turn: R + I = 2 axis axisᵀ, of which the longest column is taken
-    let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]];
-    let longest = columns.into_iter().max_by(|x, y| norm(*x).total_cmp(&norm(*y)));
-    (unit(longest.unwrap_or([0.0, 0.0, 1.0])), angle)
+    let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]].map(Vector3);
+    let longest = columns.into_iter().max_by(|x, y| x.norm().total_cmp(&y.norm()));
+    (unit(longest.unwrap_or(Vector3::unit(2))), angle)
 }
 
 /// Points of equal parameter on all features of both pieces, of closed ones each once.
-fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector>>; 2] {
+fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector3>>; 2] {
     let features = || source.features.iter().zip(&target.features);
     let banks = features().flat_map(|(ours, theirs)| {
         let right = ours.is_loop.then_some((&ours.right, &theirs.right));
@@ -221,12 +221,12 @@ fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector>>; 2] {
     [ours, theirs]
 }
 
-fn longer(ours: &[Vector], theirs: &[Vector]) -> f64 {
+fn longer(ours: &[Vector3], theirs: &[Vector3]) -> f64 {
     f64::max(length(ours), length(theirs))
 }
 
 /// Points of equal parameter on two banks, both ends included.
-fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector>; 2] {
+fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector3>; 2] {
     let places = [0, 1].map(|side| banks[side].places(pieces[side]));
     let count = ((longer(&places[0], &places[1]) / spacing).ceil() as usize).max(2);
     let point =
@@ -235,7 +235,7 @@ fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector>; 
 }
 
 impl Bank {
-    fn places(&self, piece: &Piece) -> Vec<Vector> {
+    fn places(&self, piece: &Piece) -> Vec<Vector3> {
         self.vertices.iter().map(|&vertex| piece.on_sphere[vertex as usize]).collect()
     }
 }

@@ -4,19 +4,19 @@
 //! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball
 //! enclose the halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
 
-use crate::vector::{Vector, add, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 
 /// The same polyline with further points, so that neighbours are about `spacing` apart at the most.
-pub(super) fn resampled(points: &[Vector], spacing: f64) -> Vec<Vector> {
-    let mut dense: Vec<Vector> = points.first().copied().into_iter().collect();
+pub(super) fn resampled(points: &[Vector3], spacing: f64) -> Vec<Vector3> {
+    let mut dense: Vec<Vector3> = points.first().copied().into_iter().collect();
     for ends in points.windows(2) {
-        let parts = (distance(ends[0], ends[1]) / spacing).ceil().max(1.0);
+        let parts = (ends[0].distance(ends[1]) / spacing).ceil().max(1.0);
         for part in 1..parts as usize {
             let between = along(ends[0], ends[1], part as f64 / parts);
-            let length = norm(between);
+            let length = between.norm();
             // nothing lies between antipodes
             if length > f64::EPSILON {
-                dense.push(scaled(between, 1.0 / length));
+                dense.push(between * (1.0 / length));
             }
         }
         dense.push(ends[1]);
@@ -26,29 +26,30 @@ pub(super) fn resampled(points: &[Vector], spacing: f64) -> Vec<Vector> {
 
 /// A polyline of two or more points, prepared for distances.
 pub(super) struct Polyline {
-    points: Vec<Vector>,
+    points: Vec<Vector3>,
     /// Centre and radius; the children of ball i are balls 2 i + 1 and 2 i + 2.
-    balls: Vec<(Vector, f64)>,
+    balls: Vec<(Vector3, f64)>,
 }
 
 impl Polyline {
     /// Prepares for distances to the chords between consecutive points.
-    pub(super) fn new(points: Vec<Vector>) -> Self {
+    pub(super) fn new(points: Vec<Vector3>) -> Self {
         let n_chords = points.len() - 1;
-        let mut line = Self { points, balls: vec![([0.0; 3], 0.0); 2 * n_chords.next_power_of_two() - 1] };
+        let mut line =
+            Self { points, balls: vec![(Vector3::ZERO, 0.0); 2 * n_chords.next_power_of_two() - 1] };
         line.enclose(0, 0, n_chords);
         line
     }
 
     /// The distance of a point in space.
-    pub(super) fn distance(&self, x: Vector) -> f64 {
+    pub(super) fn distance(&self, x: Vector3) -> f64 {
         self.nearest(0, 0, self.points.len() - 1, x, f64::INFINITY)
     }
 
     /// Encloses the chords `low..high` in a ball, and their halves.
     fn enclose(&mut self, ball: usize, low: usize, high: usize) {
         let centre = self.points[usize::midpoint(low, high)];
-        let radius = self.points[low..=high].iter().map(|&point| distance(centre, point)).fold(0.0, f64::max);
+        let radius = self.points[low..=high].iter().map(|&point| centre.distance(point)).fold(0.0, f64::max);
         self.balls[ball] = (centre, radius);
         if high - low > 1 {
             let middle = usize::midpoint(low, high);
@@ -58,9 +59,9 @@ impl Polyline {
     }
 
     /// The distance of the chords `low..high`, or `least` where that is less.
-    fn nearest(&self, ball: usize, low: usize, high: usize, x: Vector, least: f64) -> f64 {
+    fn nearest(&self, ball: usize, low: usize, high: usize, x: Vector3, least: f64) -> f64 {
         let (centre, radius) = self.balls[ball];
-        if distance(centre, x) - radius >= least {
+        if centre.distance(x) - radius >= least {
             return least;
         }
         if high - low == 1 {
@@ -68,33 +69,33 @@ impl Polyline {
         }
         let middle = usize::midpoint(low, high);
         let children = [(2 * ball + 1, low, middle), (2 * ball + 2, middle, high)];
-        let [one, other] = children.map(|(child, ..)| distance(self.balls[child].0, x));
+        let [one, other] = children.map(|(child, ..)| self.balls[child].0.distance(x));
         let nearer_first = if one <= other { children } else { [children[1], children[0]] };
         nearer_first.iter().fold(least, |least, &(ball, low, high)| self.nearest(ball, low, high, x, least))
     }
 }
 
 /// The distance of a point from a straight line between two others.
-fn chord_distance(a: Vector, b: Vector, x: Vector) -> f64 {
-    let chord = sub(b, a);
-    let squared = dot(chord, chord);
-    let share = if squared > 0.0 { (dot(sub(x, a), chord) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    distance(x, along(a, b, share))
+fn chord_distance(a: Vector3, b: Vector3, x: Vector3) -> f64 {
+    let chord = b - a;
+    let squared = chord.dot(chord);
+    let share = if squared > 0.0 { ((x - a).dot(chord) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    x.distance(along(a, b, share))
 }
 
-fn along(a: Vector, b: Vector, share: f64) -> Vector {
-    add(scaled(a, 1.0 - share), scaled(b, share))
+fn along(a: Vector3, b: Vector3, share: f64) -> Vector3 {
+    a * (1.0 - share) + b * share
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn spiral(n: usize) -> Vec<Vector> {
+    fn spiral(n: usize) -> Vec<Vector3> {
         let point = |i: usize| {
             let t = i as f64 / n as f64;
             let (latitude, longitude) = (2.0 * t - 1.0, 20.0 * t);
-            [latitude.cos() * longitude.cos(), latitude.cos() * longitude.sin(), latitude.sin()]
+            Vector3([latitude.cos() * longitude.cos(), latitude.cos() * longitude.sin(), latitude.sin()])
         };
         (0..=n).map(point).collect()
     }
@@ -104,7 +105,7 @@ mod tests {
         for n in [1, 2, 3, 7, 100] {
             let points = spiral(n);
             let line = Polyline::new(points.clone());
-            for x in spiral(37).into_iter().map(|[x, y, z]| [y, z, -x]) {
+            for x in spiral(37).into_iter().map(|Vector3([x, y, z])| Vector3([y, z, -x])) {
                 let chords = points.windows(2).map(|ends| chord_distance(ends[0], ends[1], x));
                 assert_eq!(line.distance(x), chords.fold(f64::INFINITY, f64::min));
             }
@@ -116,8 +117,8 @@ mod tests {
     fn resampling_keeps_the_points_and_fills_the_gaps() {
         let points = spiral(30);
         let dense = resampled(&points, 0.01);
-        assert!(dense.windows(2).all(|ends| distance(ends[0], ends[1]) < 0.012));
-        assert!(dense.iter().all(|&point| (norm(point) - 1.0).abs() < 1e-15));
+        assert!(dense.windows(2).all(|ends| ends[0].distance(ends[1]) < 0.012));
+        assert!(dense.iter().all(|&point| (point.norm() - 1.0).abs() < 1e-15));
         assert!(points.iter().all(|point| dense.contains(point)));
         assert_eq!(resampled(&points, 10.0), points);
     }

@@ -4,14 +4,14 @@
 use super::openings::Opened;
 use crate::hyperbolic::features::piece::Piece;
 use crate::location::Location;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts
 /// are split.
 #[derive(Debug, Clone)]
 pub(crate) struct Sliced {
     /// (n, 3): the points of the piece and of the midpoints of split edges, before cutting.
-    pub points: Vec<Vector>,
+    pub points: Vec<Vector3>,
     /// (m, 3): faces before cutting.
     pub faces: Vec<[u32; 3]>,
     /// (m,): where each face lies in the piece.
@@ -38,7 +38,7 @@ impl Sliced {
     }
 
     /// The points of the vertices of the sliced surface.
-    pub(crate) fn surface_points(&self) -> Vec<Vector> {
+    pub(crate) fn surface_points(&self) -> Vec<Vector3> {
         self.surface.vertex_of.iter().map(|&vertex| self.points[vertex as usize]).collect()
     }
 

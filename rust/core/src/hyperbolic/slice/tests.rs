@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Slicing of spheres with all kinds of slits and holes.
 
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use std::f64::consts::PI;
 
 use super::polyline::Polyline;
@@ -10,15 +10,15 @@ use crate::control::Silent;
 use crate::hyperbolic::features::piece::Bank;
 use crate::mesh::geometry::{area, triangle};
 use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
-use crate::vector::{add, distance, dot, norm, scaled};
 
 /// The icosahedron, each face divided into 4^level.
-fn icosphere(level: usize) -> (Vec<Vector>, Vec<[u32; 3]>) {
+fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[u32; 3]>) {
     let g = f64::midpoint(1.0, 5f64.sqrt());
     let signs = [[-1.0, g], [1.0, g], [-1.0, -g], [1.0, -g]];
     let turned =
         [|[a, b]: [f64; 2]| [a, b, 0.0], |[a, b]: [f64; 2]| [0.0, a, b], |[a, b]: [f64; 2]| [b, 0.0, a]];
-    let mut points: Vec<Vector> = turned.iter().flat_map(|turn| signs.map(turn)).map(unit).collect();
+    let mut points: Vec<Vector3> =
+        turned.iter().flat_map(|turn| signs.map(turn)).map(Vector3).map(unit).collect();
     let mut faces: Vec<[u32; 3]> = [
         [0, 11, 5],
         [0, 5, 1],
@@ -48,17 +48,17 @@ fn icosphere(level: usize) -> (Vec<Vector>, Vec<[u32; 3]>) {
     (points, faces)
 }
 
-fn unit(x: Vector) -> Vector {
-    scaled(x, 1.0 / norm(x))
+fn unit(x: Vector3) -> Vector3 {
+    x * (1.0 / x.norm())
 }
 
 /// Each face divided into four.
-fn divided(points: &mut Vec<Vector>, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+fn divided(points: &mut Vec<Vector3>, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let table = EdgeTable::new(points.len(), faces);
     let mut middles = vec![0; 3 * faces.len()];
     for ([a, b], _) in table.edges() {
         table.corners([a, b]).for_each(|corner| middles[corner as usize] = points.len() as u32);
-        points.push(unit(add(points[a as usize], points[b as usize])));
+        points.push(unit(points[a as usize] + points[b as usize]));
     }
     let four = |(face, &[a, b, c]): (usize, &[u32; 3])| {
         let [x, y, z] = [0, 1, 2].map(|k| middles[3 * face + k]);
@@ -73,7 +73,7 @@ fn sphere(level: usize) -> Piece {
     piece(points, faces)
 }
 
-fn piece(points: Vec<Vector>, faces: Vec<[u32; 3]>) -> Piece {
+fn piece(points: Vec<Vector3>, faces: Vec<[u32; 3]>) -> Piece {
     Piece {
         on_sphere: points.clone(),
         vertex_of: (0..points.len() as u32).collect(),
@@ -92,16 +92,16 @@ fn with_slits(mut piece: Piece, paths: &[Vec<u32>]) -> Piece {
     piece
 }
 
-fn slit(points: &[Vector], path: &[u32]) -> Feature {
+fn slit(points: &[Vector3], path: &[u32]) -> Feature {
     let bank = bank(points, path.to_vec());
     Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
 
-fn bank(points: &[Vector], vertices: Vec<u32>) -> Bank {
+fn bank(points: &[Vector3], vertices: Vec<u32>) -> Bank {
     let mut parameters = vec![0.0];
     for ends in vertices.windows(2) {
         let [a, b] = [points[ends[0] as usize], points[ends[1] as usize]];
-        parameters.push(parameters[parameters.len() - 1] + distance(a, b));
+        parameters.push(parameters[parameters.len() - 1] + a.distance(b));
     }
     let whole = parameters[parameters.len() - 1];
     Bank { vertices, parameters: parameters.into_iter().map(|length| length / whole).collect() }
@@ -179,15 +179,15 @@ fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Ve
 /// icosahedron.
 fn middle_vertex(piece: &Piece) -> u32 {
     let [a, b, c] = triangle(&piece.points, [0, 11, 5]);
-    nearest(piece, unit(add(a, add(b, c))))
+    nearest(piece, unit(a + (b + c)))
 }
 
-fn nearest(piece: &Piece, x: Vector) -> u32 {
-    let gap = |&vertex: &u32| distance(piece.points[vertex as usize], x);
+fn nearest(piece: &Piece, x: Vector3) -> u32 {
+    let gap = |&vertex: &u32| piece.points[vertex as usize].distance(x);
     (0..piece.points.len() as u32).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap()
 }
 
-fn identity(line: &[Vector]) -> Option<Vec<Vector>> {
+fn identity(line: &[Vector3]) -> Option<Vec<Vector3>> {
     Some(line.to_vec())
 }
 
@@ -199,7 +199,7 @@ fn slice(source: &Piece, target: &Piece) -> SlicedPair {
 /// Slices a piece against an ellipsoid with the same features and checks both.
 fn check(source: &Piece) -> SlicedPair {
     let mut target = source.clone();
-    target.points.iter_mut().for_each(|[_, y, z]| (*y, *z) = (1.5 * *y, 0.7 * *z));
+    target.points.iter_mut().for_each(|x| (x[1], x[2]) = (1.5 * x[1], 0.7 * x[2]));
     let pair = slice(source, &target);
     let chain = chain::order(source, &target);
     check_sliced(source, &chain, &pair.source);
@@ -225,8 +225,8 @@ fn check_places(piece: &Piece, sliced: &Sliced) {
         let whole = triangle(&piece.points, piece.faces[place.face as usize]);
         for (corner, weights) in face.iter().zip(place.corners) {
             assert_eq!(weights.iter().sum::<f64>(), 1.0);
-            let at = whole.iter().zip(weights).map(|(&x, weight)| scaled(x, weight)).fold([0.0; 3], add);
-            assert!(distance(at, sliced.points[*corner as usize]) < 1e-15);
+            let at = whole.iter().zip(weights).map(|(&x, weight)| x * weight).sum::<Vector3>();
+            assert!(at.distance(sliced.points[*corner as usize]) < 1e-15);
         }
         left[place.face as usize] -= area(triangle(&sliced.points, face));
     }
@@ -340,7 +340,8 @@ fn slits_of_two_edges() {
 fn holes_and_slits() {
     for n_slits in [0, 1, 4] {
         let whole = sphere(3);
-        let centres = [nearest(&whole, [0.0, 0.0, 1.0]), nearest(&whole, [0.0, 1.0, 0.0]), 0];
+        let centres =
+            [nearest(&whole, Vector3([0.0, 0.0, 1.0])), nearest(&whole, Vector3([0.0, 1.0, 0.0])), 0];
         let open = with_holes(&whole, &centres);
         let rims: Vec<u32> = open.features.iter().flat_map(outline).collect();
         let is_free = |path: &Vec<u32>| path.iter().all(|vertex| !rims.contains(vertex));
@@ -357,12 +358,12 @@ fn holes_and_slits() {
 /// Slits of three edges, each at the first place of its own part of the sphere at which `is_allowed`.
 fn scattered_where(piece: &Piece, n_slits: usize, is_allowed: impl Fn(&Vec<u32>) -> bool) -> Vec<Vec<u32>> {
     let surface = Cutting::new(piece);
-    let slit_near = |x: Vector| {
+    let slit_near = |x: Vector3| {
         let at = nearest(piece, x);
         surface.neighbours(at).map(|next| straight(&surface, at, next, 3)).find(&is_allowed).unwrap()
     };
     let places = [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]];
-    places[..n_slits].iter().map(|&x| slit_near(unit(x))).collect()
+    places[..n_slits].iter().map(|&x| slit_near(unit(Vector3(x)))).collect()
 }
 
 #[test]
@@ -412,15 +413,15 @@ fn a_spiral_around_another_slit() {
     let sphere = sphere(4);
     let at = |t: f64| {
         let (colatitude, longitude) = (0.35 + 1.2 * t, 5.0 * PI * t);
-        [colatitude.sin() * longitude.cos(), colatitude.sin() * longitude.sin(), colatitude.cos()]
+        Vector3([colatitude.sin() * longitude.cos(), colatitude.sin() * longitude.sin(), colatitude.cos()])
     };
     let mut spiral: Vec<u32> = (0..=2000).map(|i| nearest(&sphere, at(f64::from(i) / 2000.0))).collect();
     spiral.dedup();
     let surface = Cutting::new(&sphere);
     assert!(spiral.windows(2).all(|ends| surface.neighbours(ends[0]).any(|v| v == ends[1])));
-    let pole = nearest(&sphere, [0.0, 0.0, 1.0]);
+    let pole = nearest(&sphere, Vector3([0.0, 0.0, 1.0]));
     let inner = straight(&surface, surface.neighbours(pole).next().unwrap(), pole, 2);
-    let south = nearest(&sphere, [0.0, 0.0, -1.0]);
+    let south = nearest(&sphere, Vector3([0.0, 0.0, -1.0]));
     let outer = straight(&surface, surface.neighbours(south).next().unwrap(), south, 4);
     assert!(check(&with_slits(sphere, &[spiral, inner, outer])).followed);
 }
@@ -448,7 +449,7 @@ fn source_and_target_of_different_resolution() {
     assert!(pair.followed);
     // the arcs of the target stay near those of the source
     for (one, other) in pair.source.sides.iter().zip(&pair.target.sides).filter(|(side, _)| side.is_arc) {
-        let line = |side: &Side, sliced: &Sliced| -> Vec<Vector> {
+        let line = |side: &Side, sliced: &Sliced| -> Vec<Vector3> {
             side.vertices.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v as usize] as usize]).collect()
         };
         let along = Polyline::new(line(one, &pair.source));
@@ -460,7 +461,7 @@ fn source_and_target_of_different_resolution() {
 fn arcs_on_the_target_wind_as_they_are_carried() {
     let sphere = sphere(4);
     let surface = Cutting::new(&sphere);
-    let near = |x: Vector| {
+    let near = |x: Vector3| {
         straight(
             &surface,
             nearest(&sphere, unit(x)),
@@ -468,12 +469,20 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
             3,
         )
     };
-    let paths = [near([1.0, 0.0, 0.3]), near([0.0, 1.0, 0.3]), near([-1.0, 0.0, 0.3])];
+    let paths =
+        [near(Vector3([1.0, 0.0, 0.3])), near(Vector3([0.0, 1.0, 0.3])), near(Vector3([-1.0, 0.0, 0.3]))];
     let piece = with_slits(sphere.clone(), &paths);
     // the long way round each time: through the south pole
-    let detour = |line: &[Vector]| {
+    let detour = |line: &[Vector3]| {
         let [from, to] = [line[0], line[line.len() - 1]];
-        let ends = [from, [from[0], from[1], -0.3], [0.0, 0.0, -1.0], [to[0], to[1], -0.3], to].map(unit);
+        let ends = [
+            from,
+            Vector3([from[0], from[1], -0.3]),
+            Vector3([0.0, 0.0, -1.0]),
+            Vector3([to[0], to[1], -0.3]),
+            to,
+        ]
+        .map(unit);
         Some(super::polyline::resampled(&ends, 0.01))
     };
     let mut silent = Silent;
@@ -521,7 +530,7 @@ fn features_that_touch_or_are_no_paths_are_refused() {
     let one = straight(&surface, around[0], a, 3);
     let touching = straight(&surface, around[2], around[1], 2);
     let crossing = vec![around[0], a, around[3]];
-    let jump = vec![around[1], nearest(&sphere, scaled(sphere.points[a as usize], -1.0))];
+    let jump = vec![around[1], nearest(&sphere, sphere.points[a as usize] * -1.0)];
     for (second, is_fine) in [(touching, true), (crossing, false), (jump, false)] {
         let piece = with_slits(sphere.clone(), &[one.clone(), second]);
         let mut silent = Silent;
@@ -543,7 +552,7 @@ fn slits_that_touch_themselves_are_refused() {
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
     let around: Vec<u32> = surface.neighbours(a).collect();
-    let far = nearest(&sphere, scaled(sphere.points[a as usize], -1.0));
+    let far = nearest(&sphere, sphere.points[a as usize] * -1.0);
     let other = straight(&surface, surface.neighbours(far).next().unwrap(), far, 3);
     let noose = vec![around[3], a, around[0], around[1], a];
     let there_and_back = vec![around[0], a, around[3], a, around[0]];
@@ -575,5 +584,5 @@ fn time_of_ten_slits_on_a_large_sphere() {
     let began = std::time::Instant::now();
     let pair = slice(&piece, &piece);
     println!("{} vertices: {:?}", piece.points.len(), began.elapsed());
-    assert!(dot(pair.source.points[0], pair.source.points[0]) > 0.0);
+    assert!(pair.source.points[0].dot(pair.source.points[0]) > 0.0);
 }

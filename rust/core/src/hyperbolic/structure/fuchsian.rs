@@ -18,7 +18,7 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
 use crate::hyperbolic::slice::sliced::{Side, Sliced};
 use crate::parallel;
-use crate::vector::{Vector, add, scaled};
+use crate::vector::Vector3;
 
 /// A copy of the fundamental domain in the universal cover.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,8 @@ impl<'a> Development<'a> {
     pub(super) fn centred(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
         let first = Self::around(0, sliced, atlas);
         // the mean on the hyperboloid is where the sum of cosh(distance) is least: the farthest count most
-        let middle = first.frames.iter().fold([0.0; 3], |sum, frame| add(sum, weighted(frame.apply(ORIGIN))));
+        let middle =
+            first.frames.iter().fold(Vector3::ZERO, |sum, frame| sum + weighted(frame.apply(ORIGIN)));
         let middle = from_hyperboloid(middle);
         let far =
             parallel::map(first.frames.len(), |face| distance(middle, first.frames[face].apply(ORIGIN)));
@@ -117,8 +118,8 @@ impl<'a> Development<'a> {
 const ORIGIN: Complex = Complex::new(0.0, 0.0);
 
 /// A point on the hyperboloid, scaled so that sums do not overflow.
-fn weighted(z: Complex) -> Vector {
-    scaled(to_hyperboloid(z), 1e-9)
+fn weighted(z: Complex) -> Vector3 {
+    to_hyperboloid(z) * 1e-9
 }
 
 /// The fundamental domain and its copies in the universal cover, at most `count` in all.

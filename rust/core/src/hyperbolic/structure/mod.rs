@@ -32,7 +32,7 @@ use crate::error::{CurveError, Error, NumericsError};
 use crate::location::Location;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
-use crate::vector::Vector;
+use crate::vector::Vector3;
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
 use trace::closed_geodesic;
@@ -92,7 +92,7 @@ impl HyperbolicStructure {
     ///
     /// # Panics
     /// Where `vertices` are fewer than the surface's.
-    pub fn in_space(&self, places: &[Location], vertices: &[Vector]) -> Vec<Vector> {
+    pub fn in_space(&self, places: &[Location], vertices: &[Vector3]) -> Vec<Vector3> {
         let point =
             |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle as usize]));
         places.iter().map(point).collect()

@@ -11,7 +11,7 @@
 //! Cost: constant.
 
 use crate::hyperbolic::moebius::{Complex, Moebius, exponential, from_hyperboloid, seen_from, to_klein};
-use crate::vector::{Vector, cross, dot, scaled};
+use crate::vector::Vector3;
 
 /// A pair of pants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,26 +82,26 @@ fn angles(corners: [Complex; 6]) -> [f64; 6] {
 }
 
 /// The unit normal of the axis of a translation.
-fn axis(motion: Moebius) -> Vector {
-    let [from, to] = motion.fixed_points().map(|end| [end.re, end.im, 1.0]);
-    let chord = [to[0] - from[0], to[1] - from[1], 0.0];
-    let half_square = 0.5 * dot(chord, chord);
-    scaled(lorentz_cross(from, chord), 1.0 / half_square)
+fn axis(motion: Moebius) -> Vector3 {
+    let [from, to] = motion.fixed_points().map(|end| Vector3([end.re, end.im, 1.0]));
+    let chord = to - from;
+    let half_square = 0.5 * chord.dot(chord);
+    lorentz_cross(from, chord) * (1.0 / half_square)
 }
 
 /// Where the common perpendicular of two disjoint lines meets the first and the second.
-fn feet(one: Vector, other: Vector) -> [Complex; 2] {
+fn feet(one: Vector3, other: Vector3) -> [Complex; 2] {
     let perpendicular = lorentz_cross(one, other);
     [one, other].map(|line| {
         let foot = lorentz_cross(line, perpendicular);
-        from_hyperboloid(scaled(foot, foot[2].signum()))
+        from_hyperboloid(foot * foot[2].signum())
     })
 }
 
 /// Orthogonal to both in the Lorentz product x x' + y y' − t t'.
-fn lorentz_cross(one: Vector, other: Vector) -> Vector {
-    let [x, y, t] = cross(one, other);
-    [x, y, -t]
+fn lorentz_cross(one: Vector3, other: Vector3) -> Vector3 {
+    let Vector3([x, y, t]) = one.cross(other);
+    Vector3([x, y, -t])
 }
 
 #[cfg(test)]

@@ -8,9 +8,9 @@ use super::super::moebius::{distance, from_klein, to_hyperboloid};
 use super::super::sample_meshes::{circle, mesh, path, sphere};
 use super::*;
 use crate::control::Silent;
-use crate::vector;
+use crate::vector::{Vector3, coordinates};
 
-type Points = (Vec<Vector>, Vec<[u32; 3]>);
+type Points = (Vec<Vector3>, Vec<[u32; 3]>);
 
 /// Slits spread over a sphere along a spiral.
 fn slits(ball: &Points, count: usize) -> Vec<Vec<usize>> {
@@ -22,13 +22,13 @@ fn slits(ball: &Points, count: usize) -> Vec<Vec<usize>> {
     let tilt = 0.6 / (count as f64).sqrt();
     let slit = |k: usize| {
         let [x, y, z] = at(k as f64);
-        path(ball, [x - tilt, y, z + 0.3 * tilt], [x + tilt, y, z - 0.3 * tilt])
+        path(ball, Vector3([x - tilt, y, z + 0.3 * tilt]), Vector3([x + tilt, y, z - 0.3 * tilt]))
     };
     (0..count).map(slit).collect()
 }
 
 fn ellipsoid(ball: &Points) -> TriangleMesh {
-    mesh(ball, |x| [x[0], 0.8 * x[1], 1.3 * x[2]])
+    mesh(ball, |x| Vector3([x[0], 0.8 * x[1], 1.3 * x[2]]))
 }
 
 fn found(count: usize) -> HyperbolicStructure {
@@ -139,9 +139,9 @@ fn the_axis_of_the_first_generator_is_the_first_boundary() {
 /// sinh of the distance from a line.
 fn off_line(z: Complex, [from, to]: [Complex; 2]) -> f64 {
     let chord = to - from;
-    let normal = vector::cross([from.re, from.im, 1.0], [chord.re, chord.im, 0.0]);
+    let normal = Vector3([from.re, from.im, 1.0]).cross(Vector3([chord.re, chord.im, 0.0]));
     let point = to_hyperboloid(z);
-    (2.0 * vector::dot(normal, point) / chord.norm_sqr()).abs()
+    (2.0 * normal.dot(point) / chord.norm_sqr()).abs()
 }
 
 #[test]
@@ -207,8 +207,7 @@ fn pants_curves_run_on_the_surface_and_close_up() {
             let points = found.in_space(curve, surface.points());
             assert_eq!(curve.first(), curve.last());
             assert!(points.len() > 10);
-            let longest =
-                points.windows(2).map(|ends| vector::distance(ends[0], ends[1])).fold(0.0, f64::max);
+            let longest = points.windows(2).map(|ends| ends[0].distance(ends[1])).fold(0.0, f64::max);
             assert!(longest < 0.12, "{longest}");
         }
     }
@@ -256,12 +255,14 @@ fn boundary_loops_are_features_named_or_not() {
     let used: Vec<u32> =
         (0..ball.0.len() as u32).filter(|v| kept.iter().any(|face| face.contains(v))).collect();
     let number = |v: u32| used.binary_search(&v).unwrap() as u32;
-    let points: Vec<Vector> = used.iter().map(|&v| ball.0[v as usize]).collect();
+    let points: Vec<Vector3> = used.iter().map(|&v| ball.0[v as usize]).collect();
     let faces: Vec<[u32; 3]> = kept.iter().map(|face| face.map(number)).collect();
     let open = (points, faces);
-    let surface = TriangleMesh::new(&open.0, &open.1).unwrap();
-    let slits =
-        [path(&open, [1.0, -0.3, 0.0], [1.0, 0.3, 0.0]), path(&open, [-1.0, 0.0, -0.4], [-1.0, 0.0, 0.3])];
+    let surface = TriangleMesh::new(&coordinates(open.0.clone()), &open.1).unwrap();
+    let slits = [
+        path(&open, Vector3([1.0, -0.3, 0.0]), Vector3([1.0, 0.3, 0.0])),
+        path(&open, Vector3([-1.0, 0.0, -0.4]), Vector3([-1.0, 0.0, 0.3])),
+    ];
     let found =
         |curves: &[Vec<usize>]| hyperbolic_structure(&surface, curves, MetricMethod::Newton, &mut Silent);
     let unnamed = found(&slits).unwrap();
@@ -284,7 +285,7 @@ fn what_is_not_hyperbolic_is_refused() {
     let three = slits(&ball, 3);
     assert_eq!(refused(&[]), CurveError::TooFewFeatures { found: 0 }.into());
     assert_eq!(refused(&three[..2]), CurveError::TooFewFeatures { found: 2 }.into());
-    let mut ring = circle(&ball, [1.0, 1.0, 0.3], 0.5);
+    let mut ring = circle(&ball, Vector3([1.0, 1.0, 0.3]), 0.5);
     ring.push(ring[0]);
     assert_eq!(refused(&[ring]), CurveError::Divides { curve: 0 }.into());
     assert!(refused(&[three[0].clone(), vec![0, 1]]).to_string().starts_with("curves: curve 1"));

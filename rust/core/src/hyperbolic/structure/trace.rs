@@ -14,7 +14,7 @@ use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, f
 use crate::hyperbolic::slice::Opened;
 use crate::location::Location;
 use crate::mesh::{NO_CORNER, next_corner, previous_corner};
-use crate::vector::{Vector, add, cross, dot, scaled};
+use crate::vector::Vector3;
 
 /// The line has closed up where it crosses the first edge again after its length but for this share.
 const ROUNDING: f64 = 1e-3;
@@ -70,10 +70,10 @@ fn on_circle(end: Complex) -> Complex {
 }
 
 /// How far a point of the hyperboloid lies on the left of a line.
-fn height([from, to]: Line, point: Vector) -> f64 {
+fn height([from, to]: Line, point: Vector3) -> f64 {
     let chord = to - from;
-    let normal = cross([from.re, from.im, 1.0], [chord.re, chord.im, 0.0]);
-    2.0 * dot(normal, point) / chord.norm_sqr()
+    let normal = Vector3([from.re, from.im, 1.0]).cross(Vector3([chord.re, chord.im, 0.0]));
+    2.0 * normal.dot(point) / chord.norm_sqr()
 }
 
 /// The height of a corner's vertex above a line in the chart of its face.
@@ -157,5 +157,5 @@ fn crossing(atlas: &Atlas<'_>, corner: u32, line: Line) -> (Location, Complex) {
         (to_hyperboloid(atlas.charts[face][corner]), weights[k] / atlas.mu[face][corner])
     });
     let place = Location::on_edge(corner, to.1 / (from.1 + to.1));
-    (place, from_hyperboloid(add(scaled(from.0, weights[0]), scaled(to.0, weights[1]))))
+    (place, from_hyperboloid(from.0 * weights[0] + to.0 * weights[1]))
 }

@@ -10,7 +10,7 @@ use crate::energy::stretch::Profile;
 use crate::error::Error;
 use crate::parallel;
 use crate::sparse::{Analysis, Order};
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 /// A surface, how its vertices may move, and the energy of its maps.
 pub(crate) struct Problem {
@@ -70,20 +70,20 @@ impl Problem {
     }
 
     /// The gradient by the unknowns of every vertex, (n, 2).
-    pub(super) fn gradient(&self, map: &[Vector], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
+    pub(super) fn gradient(&self, map: &[Vector3], frames: &[Frame], weights: &Weights) -> Vec<[f64; 2]> {
         let mut gradient = self.energy.gradient(map, frames, weights);
         self.penalty.add_gradient(map, frames, &mut gradient);
         gradient
     }
 
     /// E_A of a map over the area of its image.
-    pub(crate) fn unevenness(&self, map: &[Vector]) -> f64 {
+    pub(crate) fn unevenness(&self, map: &[Vector3]) -> f64 {
         let sums = self.energy.sums(&self.energy.costs(map));
         sums.authalic_energy / sums.area
     }
 
     /// The map reached from `map` by `direction` along the frames.
-    pub(super) fn moved(&self, map: &[Vector], frames: &[Frame], direction: &[[f64; 2]]) -> SpatialMap {
+    pub(super) fn moved(&self, map: &[Vector3], frames: &[Frame], direction: &[[f64; 2]]) -> SpatialMap {
         parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
     }
 

@@ -7,7 +7,7 @@ use crate::control::Watch;
 use crate::energy::authalic::{Element, Hessian, Weights};
 use crate::parallel;
 use crate::sparse::{Factor, Failure};
-use crate::vector::Vector;
+use crate::vector::Vector3;
 
 pub(super) const LARGE: usize = 500_000;
 
@@ -41,7 +41,7 @@ pub(super) struct Newton {
 
 /// Where a direction starts.
 struct Place<'a> {
-    map: &'a [Vector],
+    map: &'a [Vector3],
     frames: Vec<Frame>,
     gradient: Vec<[f64; 2]>,
     weights: &'a Weights,
@@ -72,7 +72,7 @@ impl Linearised {
     pub(super) fn direction(
         &mut self,
         problem: &Problem,
-        map: &[Vector],
+        map: &[Vector3],
         weights: &Weights,
         damping: Hessian,
         is_near: bool,
@@ -157,8 +157,8 @@ impl Linearised {
     pub(super) fn correction(
         &self,
         problem: &Problem,
-        map: &[Vector],
-        moved: &[Vector],
+        map: &[Vector3],
+        moved: &[Vector3],
         newton: &Newton,
         weights: &Weights,
     ) -> Vec<[f64; 2]> {

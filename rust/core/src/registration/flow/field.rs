@@ -13,7 +13,7 @@ use crate::codomain::CanonicalDomain;
 use crate::codomain::motion::Frame;
 use crate::parallel;
 use crate::sparse::solve_positive_definite;
-use crate::vector::{Vector, cross, dot};
+use crate::vector::Vector3;
 
 /// What is added to the diagonal of the system, relative to its largest entry.
 const RIDGE: f64 = 1e-10;
@@ -33,8 +33,8 @@ pub(super) struct Field {
 /// the disk that times b(x).
 #[derive(Debug, Clone, Copy, Default)]
 struct Source {
-    place: Vector,
-    pull: Vector,
+    place: Vector3,
+    pull: Vector3,
     mass: f64,
 }
 
@@ -44,15 +44,14 @@ impl Field {
     pub(super) fn through(
         domain: CanonicalDomain,
         length: f64,
-        places: &[Vector],
-        velocities: &[Vector],
+        places: &[Vector3],
+        velocities: &[Vector3],
     ) -> Option<Self> {
         let scale = 5f64.sqrt() / length;
         let frames: Vec<Frame> = places.iter().map(|&x| domain.motion(false).frame(x)).collect();
         // 1. The velocities along the axes of each place, and how each would answer to a weight at another
-        let mut weights: Vec<f64> = (0..2 * places.len())
-            .map(|row| dot(velocities[row / 2], frames[row / 2].axes[row % 2]))
-            .collect();
+        let mut weights: Vec<f64> =
+            (0..2 * places.len()).map(|row| velocities[row / 2].dot(frames[row / 2].axes[row % 2])).collect();
         let mut matrix = responses(domain, scale, places, &frames);
         // 2. The weights that make them as they should be
         let size = weights.len();
@@ -64,40 +63,44 @@ impl Field {
         // 3. Both weights of a place together
         let source = |i: usize| {
             let [a, b] = frames[i].axes;
-            let weight = [0, 1, 2].map(|k| weights[2 * i] * a[k] + weights[2 * i + 1] * b[k]);
+            let weight = a * weights[2 * i] + b * weights[2 * i + 1];
             Source::new(domain, scale, places[i], weight)
         };
         Some(Self { domain, scale, sources: (0..places.len()).map(source).collect() })
     }
 
     /// The velocity at a point, also of one slightly off the domain.
-    pub(super) fn velocity(&self, x: Vector) -> Vector {
+    pub(super) fn velocity(&self, x: Vector3) -> Vector3 {
         velocity(self.domain, self.scale, &self.sources, x)
     }
 }
 
 impl Source {
     /// The field of a unit covariance with the velocity at `place` along `weight`.
-    fn new(domain: CanonicalDomain, scale: f64, place: Vector, weight: Vector) -> Self {
+    fn new(domain: CanonicalDomain, scale: f64, place: Vector3, weight: Vector3) -> Self {
         match domain {
-            CanonicalDomain::Sphere => Self { place, pull: cross(weight, place), mass: 0.0 },
+            CanonicalDomain::Sphere => Self { place, pull: weight.cross(place), mass: 0.0 },
             CanonicalDomain::Disk => {
                 let turned = [weight[1], -weight[0]];
                 let (bubble, slope) = bubble(place);
                 let mass = turned[0] * slope[0] + turned[1] * slope[1];
-                Self { place, pull: [scale * bubble * turned[0], scale * bubble * turned[1], 0.0], mass }
+                Self {
+                    place,
+                    pull: Vector3([scale * bubble * turned[0], scale * bubble * turned[1], 0.0]),
+                    mass,
+                }
             }
         }
     }
 }
 
 /// b(x), which is zero on the circle, and its gradient.
-fn bubble([u, v, _]: Vector) -> (f64, [f64; 2]) {
+fn bubble(Vector3([u, v, _]): Vector3) -> (f64, [f64; 2]) {
     (1.0 - u * u - v * v, [-2.0 * u, -2.0 * v])
 }
 
 /// The lower triangle of the covariance of the velocities at the places along their axes, column by column.
-fn responses(domain: CanonicalDomain, scale: f64, places: &[Vector], frames: &[Frame]) -> Vec<f64> {
+fn responses(domain: CanonicalDomain, scale: f64, places: &[Vector3], frames: &[Frame]) -> Vec<f64> {
     let k = places.len();
     // entries [α][β]: the velocity at i along its axis α for a unit weight at j along its axis β
     let blocks = parallel::map(k * k, |pair| {
@@ -108,7 +111,7 @@ fn responses(domain: CanonicalDomain, scale: f64, places: &[Vector], frames: &[F
         let by =
             |weight| velocity(domain, scale, &[Source::new(domain, scale, places[j], weight)], places[i]);
         let answers = frames[j].axes.map(by);
-        frames[i].axes.map(|axis| answers.map(|answer| dot(axis, answer)))
+        frames[i].axes.map(|axis| answers.map(|answer| axis.dot(answer)))
     });
     parallel::map(4 * k * k, |entry| {
         let (column, row) = (entry / (2 * k), entry % (2 * k));
@@ -116,32 +119,32 @@ fn responses(domain: CanonicalDomain, scale: f64, places: &[Vector], frames: &[F
     })
 }
 
-fn velocity(domain: CanonicalDomain, scale: f64, sources: &[Source], x: Vector) -> Vector {
+fn velocity(domain: CanonicalDomain, scale: f64, sources: &[Source], x: Vector3) -> Vector3 {
     match domain {
-        CanonicalDomain::Sphere => cross(x, spherical_gradient(scale, sources, x)),
+        CanonicalDomain::Sphere => x.cross(spherical_gradient(scale, sources, x)),
         CanonicalDomain::Disk => {
             let (value, slope) = planar_stream(scale, sources, x);
             let (bubble, bubble_slope) = bubble(x);
             let gradient = [0, 1].map(|k| value * bubble_slope[k] + bubble * slope[k]);
-            [-gradient[1], gradient[0], 0.0]
+            Vector3([-gradient[1], gradient[0], 0.0])
         }
     }
 }
 
 /// ∇ψ / scale = Σ g pull + h (pull · D) D, with h = g'/|D|.
-fn spherical_gradient(scale: f64, sources: &[Source], x: Vector) -> Vector {
-    let mut gradient = [0.0; 3];
+fn spherical_gradient(scale: f64, sources: &[Source], x: Vector3) -> Vector3 {
+    let mut gradient = Vector3::ZERO;
     for Source { place, pull, .. } in sources {
-        let d = [0, 1, 2].map(|k| scale * (x[k] - place[k]));
-        let (_, g, h) = matern(dot(d, d));
-        let along = h * dot(*pull, d);
-        gradient = [0, 1, 2].map(|k| gradient[k] + ((g + ROTATION) * pull[k] + along * d[k]));
+        let d = (x - *place) * scale;
+        let (_, g, h) = matern(d.dot(d));
+        let along = h * pull.dot(d);
+        gradient += *pull * (g + ROTATION) + d * along;
     }
     gradient
 }
 
 /// ψ/b and its gradient.
-fn planar_stream(scale: f64, sources: &[Source], x: Vector) -> (f64, [f64; 2]) {
+fn planar_stream(scale: f64, sources: &[Source], x: Vector3) -> (f64, [f64; 2]) {
     let (mut value, mut gradient) = (0.0, [0.0; 2]);
     for Source { place, pull, mass } in sources {
         let d = [scale * (x[0] - place[0]), scale * (x[1] - place[1])];

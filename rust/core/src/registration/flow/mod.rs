@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::codomain::CanonicalDomain;
 use crate::control::Watch;
 use crate::parallel;
-use crate::vector::{Vector, add, cross, distance, dot, norm, scaled, sub};
+use crate::vector::Vector3;
 use field::Field;
 
 /// A landmark this close to its place has arrived.
@@ -46,17 +46,17 @@ const BREATH: usize = 512;
 /// the last map, the landmarks as near to their places as it came; the very map given where they are there already.
 pub(super) fn flow(
     domain: CanonicalDomain,
-    map: Vec<Vector>,
+    map: Vec<Vector3>,
     landmarks: &[u32],
-    places: &[Vector],
-    mended: &dyn Fn(Vec<Vector>) -> Option<Vec<Vector>>,
+    places: &[Vector3],
+    mended: &dyn Fn(Vec<Vector3>) -> Option<Vec<Vector3>>,
     watch: &Watch<'_>,
-) -> Vec<Vector> {
+) -> Vec<Vector3> {
     let mut map = map;
     for steps_left in (1..=MOST_STEPS).rev() {
         // 1. Where the landmarks are and how far they have to go
         let paths = Paths::new(domain, &map, landmarks, places);
-        if paths.ways.iter().all(|&way| norm(way) <= ARRIVED) || !watch.goes_on() {
+        if paths.ways.iter().all(|&way| way.norm() <= ARRIVED) || !watch.goes_on() {
             break;
         }
         // 2. The velocities that would take them there in a unit of time, and the part of that for this step
@@ -77,14 +77,14 @@ pub(super) fn flow(
 /// The ways of all landmarks from where they are, each in a unit of time.
 struct Paths {
     domain: CanonicalDomain,
-    now: Vec<Vector>,
-    ways: Vec<Vector>,
+    now: Vec<Vector3>,
+    ways: Vec<Vector3>,
 }
 
 impl Paths {
-    fn new(domain: CanonicalDomain, map: &[Vector], landmarks: &[u32], places: &[Vector]) -> Self {
-        let now: Vec<Vector> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
-        let ways: Vec<Vector> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
+    fn new(domain: CanonicalDomain, map: &[Vector3], landmarks: &[u32], places: &[Vector3]) -> Self {
+        let now: Vec<Vector3> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
+        let ways: Vec<Vector3> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
         let collides =
             |i: usize| (0..now.len()).any(|j| j != i && collide([now[i], now[j]], [ways[i], ways[j]]));
         let around = |i: usize| if collides(i) { domain.aside(now[i], ways[i]) } else { ways[i] };
@@ -93,12 +93,12 @@ impl Paths {
     }
 
     /// Into how many steps the way from here has to be cut.
-    fn steps_needed(&self, velocities: &[Vector]) -> f64 {
+    fn steps_needed(&self, velocities: &[Vector3]) -> f64 {
         let Self { now, ways, .. } = self;
-        let fastest = velocities.iter().fold(0.0, |fastest, &v| f64::max(fastest, norm(v)));
+        let fastest = velocities.iter().fold(0.0, |fastest, &v| f64::max(fastest, v.norm()));
         let pairs = (0..now.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         let strain = pairs.fold(0.0, |most, (i, j)| {
-            f64::max(most, distance(ways[i], ways[j]) / distance(now[i], now[j]).max(ARRIVED))
+            f64::max(most, ways[i].distance(ways[j]) / now[i].distance(now[j]).max(ARRIVED))
         });
         (fastest / LONGEST_MOVE).max(strain / LARGEST_STRAIN).ceil()
     }
@@ -111,7 +111,7 @@ impl Paths {
     }
 
     /// The velocity of every vertex; `None` where cancelled or where landmarks are too close to each other.
-    fn velocities(&self, map: &[Vector], watch: &Watch<'_>) -> Option<Vec<Vector>> {
+    fn velocities(&self, map: &[Vector3], watch: &Watch<'_>) -> Option<Vec<Vector3>> {
         let field = self.field(0.0)?;
         for_all(map.len(), watch, |vertex| field.velocity(map[vertex]))
     }
@@ -119,37 +119,37 @@ impl Paths {
     /// One step of the classical Runge–Kutta method over the first `share` of the landmarks' ways.
     fn step(
         &self,
-        map: &[Vector],
-        velocities: &[Vector],
+        map: &[Vector3],
+        velocities: &[Vector3],
         share: f64,
         watch: &Watch<'_>,
-    ) -> Option<Vec<Vector>> {
+    ) -> Option<Vec<Vector3>> {
         let halfway = self.field(0.5 * share)?;
         let end = self.field(share)?;
         for_all(map.len(), watch, |vertex| {
             let (x, first) = (map[vertex], velocities[vertex]);
-            let second = halfway.velocity(add(x, scaled(first, 0.5 * share)));
-            let third = halfway.velocity(add(x, scaled(second, 0.5 * share)));
-            let fourth = end.velocity(add(x, scaled(third, share)));
-            let mean = [0, 1, 2].map(|k| (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]) / 6.0);
-            self.domain.settled(x, add(x, scaled(mean, share)))
+            let second = halfway.velocity(x + first * (0.5 * share));
+            let third = halfway.velocity(x + second * (0.5 * share));
+            let fourth = end.velocity(x + third * share);
+            let sum = first + (second + third) * 2.0 + fourth;
+            self.domain.settled(x, x + sum.map(|x| x / 6.0) * share)
         })
     }
 }
 
 /// Whether two points run into each other on their straight ways.
-fn collide([x, y]: [Vector; 2], [way, other]: [Vector; 2]) -> bool {
-    let (apart, drift) = (sub(x, y), sub(way, other));
-    let when = (-dot(apart, drift) / dot(drift, drift).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    let nearest = norm(add(apart, scaled(drift, when)));
-    nearest < COLLISION * norm(apart).min(norm(add(apart, drift)))
+fn collide([x, y]: [Vector3; 2], [way, other]: [Vector3; 2]) -> bool {
+    let (apart, drift) = (x - y, way - other);
+    let when = (-apart.dot(drift) / drift.dot(drift).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    let nearest = (apart + drift * when).norm();
+    nearest < COLLISION * apart.norm().min((apart + drift).norm())
 }
 
 impl CanonicalDomain {
     /// A velocity at `x` turned aside.
-    fn aside(self, x: Vector, way: Vector) -> Vector {
-        let normal = if self == Self::Disk { [0.0, 0.0, 1.0] } else { x };
-        add(scaled(way, ASIDE.cos()), scaled(cross(normal, way), ASIDE.sin()))
+    fn aside(self, x: Vector3, way: Vector3) -> Vector3 {
+        let normal = if self == Self::Disk { Vector3([0.0, 0.0, 1.0]) } else { x };
+        way * ASIDE.cos() + normal.cross(way) * ASIDE.sin()
     }
 
     /// How far the velocity of a landmark is felt: as far as keeps angles best, by measurement.
@@ -161,41 +161,41 @@ impl CanonicalDomain {
     }
 
     /// The velocity at `from` that leads straight to `to` in a unit of time.
-    fn way(self, from: Vector, to: Vector) -> Vector {
+    fn way(self, from: Vector3, to: Vector3) -> Vector3 {
         if self == Self::Disk {
-            return [to[0] - from[0], to[1] - from[1], 0.0];
+            return Vector3([to[0] - from[0], to[1] - from[1], 0.0]);
         }
-        let angle = norm(cross(from, to)).atan2(dot(from, to));
-        let along = sub(to, scaled(from, dot(from, to)));
-        match norm(along) {
-            0.0 if angle == 0.0 => [0.0; 3],
+        let angle = from.cross(to).norm().atan2(from.dot(to));
+        let along = to - from * from.dot(to);
+        match along.norm() {
+            0.0 if angle == 0.0 => Vector3::ZERO,
             // all ways to the opposite point are equally long
-            length if length < ARRIVED && angle > 1.0 => scaled(self.motion(false).frame(from).axes[0], PI),
-            length => scaled(along, angle / length),
+            length if length < ARRIVED && angle > 1.0 => self.motion(false).frame(from).axes[0] * PI,
+            length => along * (angle / length),
         }
     }
 
     /// The point and the velocity on the straight path from `x` with velocity `way` at time `t`.
-    fn on_path(self, x: Vector, way: Vector, t: f64) -> (Vector, Vector) {
-        let speed = norm(way);
+    fn on_path(self, x: Vector3, way: Vector3, t: f64) -> (Vector3, Vector3) {
+        let speed = way.norm();
         if self == Self::Disk || speed == 0.0 {
-            return (add(x, scaled(way, t)), way);
+            return (x + way * t, way);
         }
         let (sine, cosine) = (t * speed).sin_cos();
-        let point = add(scaled(x, cosine), scaled(way, sine / speed));
-        (point, sub(scaled(way, cosine), scaled(x, speed * sine)))
+        let point = x * cosine + way * (sine / speed);
+        (point, way * cosine - x * (speed * sine))
     }
 
     /// A moved point back on the domain: on the sphere, or on the circle if it was there.
-    fn settled(self, before: Vector, moved: Vector) -> Vector {
+    fn settled(self, before: Vector3, moved: Vector3) -> Vector3 {
         match self {
-            Self::Sphere => scaled(moved, 1.0 / norm(moved)),
+            Self::Sphere => moved * (1.0 / moved.norm()),
             Self::Disk if (1.0 - before[0] * before[0] - before[1] * before[1]).abs() > ON_CIRCLE => {
-                [moved[0], moved[1], 1.0]
+                Vector3([moved[0], moved[1], 1.0])
             }
             Self::Disk => {
                 let radius = (moved[0] * moved[0] + moved[1] * moved[1]).sqrt();
-                [moved[0] / radius, moved[1] / radius, 1.0]
+                Vector3([moved[0] / radius, moved[1] / radius, 1.0])
             }
         }
     }
@@ -205,14 +205,14 @@ impl CanonicalDomain {
 fn for_all(
     n: usize,
     watch: &Watch<'_>,
-    value: impl Fn(usize) -> Vector + Sync + Send,
-) -> Option<Vec<Vector>> {
+    value: impl Fn(usize) -> Vector3 + Sync + Send,
+) -> Option<Vec<Vector3>> {
     let cancelled = AtomicBool::new(false);
     let values = parallel::map(n, |i| {
         if i % BREATH == 0 && !watch.goes_on() {
             cancelled.store(true, Ordering::Relaxed);
         }
-        if cancelled.load(Ordering::Relaxed) { [0.0; 3] } else { value(i) }
+        if cancelled.load(Ordering::Relaxed) { Vector3::ZERO } else { value(i) }
     });
     (!cancelled.into_inner()).then_some(values)
 }

@@ -10,7 +10,7 @@ use crate::location::{Location, Locator, determinant};
 use crate::mesh::VertexCorners;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
-use crate::vector::{Vector, add, scaled};
+use crate::vector::Vector3;
 
 /// Values that differ by less than this, of themselves or of 1, are the same on both sides of an edge.
 const ROUNDING: f64 = 1e-6;
@@ -28,9 +28,9 @@ pub fn pull_corners(
     values: &[f64],
     width: usize,
     source_faces: &[[u32; 3]],
-    registered: &[Vector],
+    registered: &[Vector3],
     target_faces: &[[u32; 3]],
-    target_registered: &[Vector],
+    target_registered: &[Vector3],
     locations: &[Location],
 ) -> Vec<f64> {
     let locator = Locator::new(target_registered, target_faces);
@@ -41,7 +41,7 @@ pub fn pull_corners(
     parallel::fill(&mut places, |face| {
         let vertices = source_faces[face];
         let corners = triangle(registered, vertices);
-        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        let centroid = corners.into_iter().sum::<Vector3>() * (1.0 / 3.0);
         let start = target.locator.locate(centroid).triangle;
         std::array::from_fn(|k| target.reached(start, centroid, corners[k], locations[vertices[k] as usize]))
     });
@@ -57,14 +57,14 @@ struct Target<'a> {
     values: &'a [f64],
     width: usize,
     faces: &'a [[u32; 3]],
-    positions: &'a [Vector],
+    positions: &'a [Vector3],
     corners: VertexCorners,
     locator: Locator<'a>,
 }
 
 impl Target<'_> {
     /// How far the way `from` a point of the triangle `here` gets to `x`, which lies at `goal`: to its end or to a seam.
-    fn reached(&self, mut here: u32, from: Vector, x: Vector, goal: Location) -> Location {
+    fn reached(&self, mut here: u32, from: Vector3, x: Vector3, goal: Location) -> Location {
         // a way longer than all triangles would be going in circles
         for _ in 0..self.faces.len() {
             if here == goal.triangle {
@@ -80,7 +80,7 @@ impl Target<'_> {
     }
 
     /// The edge through which the way to `x` leaves a triangle, by the corner opposite; `None` where `x` lies in it.
-    fn way_out(&self, face: u32, from: Vector, x: Vector) -> Option<usize> {
+    fn way_out(&self, face: u32, from: Vector3, x: Vector3) -> Option<usize> {
         let corners = triangle(self.positions, self.faces[face as usize]);
         // what lies on the way counts as left of it, in every triangle alike
         let is_left = corners.map(|corner| determinant(from, x, corner) >= 0.0);
@@ -102,7 +102,7 @@ impl Target<'_> {
     }
 
     /// The point of an edge at which the way crosses it.
-    fn crossing(&self, face: u32, edge: usize, from: Vector, x: Vector) -> Location {
+    fn crossing(&self, face: u32, edge: usize, from: Vector3, x: Vector3) -> Location {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
         let corners = triangle(self.positions, self.faces[face as usize]);
         let (right, left) = (-determinant(from, x, corners[i]), determinant(from, x, corners[j]));

@@ -12,7 +12,7 @@ mod corners;
 use crate::location::{Location, Locator};
 use crate::mesh::geometry::triangle;
 use crate::parallel;
-use crate::vector::{Vector, add, distance, scaled, sub};
+use crate::vector::Vector3;
 
 pub use corners::pull_corners;
 
@@ -73,16 +73,16 @@ pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[u32]) -> Vec<T> {
 /// plane z = 1, and `locations` (n,) say where in the target the vertices of the source lie. Cost: O(log m) for a corner.
 pub fn corner_sides(
     source_faces: &[[u32; 3]],
-    registered: &[Vector],
+    registered: &[Vector3],
     target_faces: &[[u32; 3]],
-    target_registered: &[Vector],
+    target_registered: &[Vector3],
     locations: &[Location],
 ) -> Vec<Location> {
     let target = Locator::new(target_registered, target_faces);
     let mut sides = vec![[Location::default(); 3]; source_faces.len()];
     parallel::fill(&mut sides, |face| {
         let corners = triangle(registered, source_faces[face]);
-        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        let centroid = corners.into_iter().sum::<Vector3>() * (1.0 / 3.0);
         let vertices = source_faces[face];
         std::array::from_fn(|k| corner_side(&target, locations[vertices[k] as usize], corners[k], centroid))
     });
@@ -90,10 +90,10 @@ pub fn corner_sides(
 }
 
 /// Where a corner at `x` lies on the side of `inner`.
-fn corner_side(target: &Locator<'_>, at_vertex: Location, x: Vector, inner: Vector) -> Location {
+fn corner_side(target: &Locator<'_>, at_vertex: Location, x: Vector3, inner: Vector3) -> Location {
     let here = at_vertex.triangle;
-    let part = INWARD * (target.longest_edge(here) / distance(x, inner)).min(1.0);
-    let moved = add(x, scaled(sub(inner, x), part));
+    let part = INWARD * (target.longest_edge(here) / x.distance(inner)).min(1.0);
+    let moved = x + (inner - x) * part;
     if target.contains(here, moved) {
         return at_vertex;
     }

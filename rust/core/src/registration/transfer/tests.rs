@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::location::tests::{Map, number, octasphere, rings};
-use crate::vector::norm;
 
-fn located(target: &Map, points: &[Vector]) -> Vec<Location> {
+fn located(target: &Map, points: &[Vector3]) -> Vec<Location> {
     let locator = Locator::new(&target.0, &target.1);
     points.iter().map(|&x| locator.locate(x)).collect()
 }
@@ -24,7 +23,9 @@ fn turned_rings(n: u32) -> Map {
     (
         points
             .into_iter()
-            .map(|[u, v, w]| [0.8 * (cosine * u - sine * v), 0.8 * (sine * u + cosine * v), w])
+            .map(|Vector3([u, v, w])| {
+                Vector3([0.8 * (cosine * u - sine * v), 0.8 * (sine * u + cosine * v), w])
+            })
             .collect(),
         faces,
     )
@@ -37,7 +38,7 @@ fn by_corner(faces: &[[u32; 3]], value: impl Fn(u32) -> f64) -> Vec<f64> {
 #[test]
 fn linear_functions_are_reproduced() {
     let (target, source) = (rings(7), turned_rings(5));
-    let linear = |[u, v, _]: Vector| [2.0 * u - v + 0.5, 7.0 * v];
+    let linear = |Vector3([u, v, _]): Vector3| [2.0 * u - v + 0.5, 7.0 * v];
     let values: Vec<f64> = target.0.iter().flat_map(|&x| linear(x)).collect();
     let locations = located(&target, &source.0);
     let pulled = pull_vertices(&values, 2, &target.1, &locations);
@@ -78,15 +79,15 @@ fn the_side_of_a_seam_is_that_of_the_face() {
     // the line v = 0 is a chain of edges in both, but of edges of different lengths; above it the data jump by 10
     let (target, source) = (rings(6), rings(4));
     let is_above =
-        |points: &[Vector], face: [u32; 3]| triangle(points, face).iter().map(|x| x[1]).sum::<f64>() > 0.0;
+        |points: &[Vector3], face: [u32; 3]| triangle(points, face).iter().map(|x| x[1]).sum::<f64>() > 0.0;
     let on_target = |face: usize| if is_above(&target.0, target.1[face]) { 10.0 } else { 0.0 };
     let values: Vec<f64> = (0..3 * target.1.len())
         .map(|corner| on_target(corner / 3) + target.0[target.1.as_flattened()[corner] as usize][0])
         .collect();
     // and a little noise: registrations are not exact
     for noise in [0.0, 1e-9, 1e-7] {
-        let shaken: Vec<Vector> = (0..source.0.len())
-            .map(|v| add(source.0[v], [noise * number(2 * v), noise * number(2 * v + 1), 0.0]))
+        let shaken: Vec<Vector3> = (0..source.0.len())
+            .map(|v| source.0[v] + Vector3([noise * number(2 * v), noise * number(2 * v + 1), 0.0]))
             .collect();
         let source = (shaken, source.1.clone());
         let locations = located(&target, &source.0);
@@ -99,7 +100,7 @@ fn the_side_of_a_seam_is_that_of_the_face() {
             assert_eq!(pulled_labels[corner], u8::from(above));
             let expected = if above { 10.0 } else { 0.0 } + source.0[vertex as usize][0];
             // beyond the chords the nearest point of the rim counts
-            let inside = norm(source.0[vertex as usize]) < 1.4;
+            let inside = source.0[vertex as usize].norm() < 1.4;
             assert!((pulled[corner] - expected).abs() < if inside { 1e-6 } else { 1e-2 });
         }
     }
@@ -109,21 +110,21 @@ fn the_side_of_a_seam_is_that_of_the_face() {
 fn no_face_is_smeared_over_a_seam() {
     // the angle, from 0 to 1 in the rings of the target, jumps where u > 0 = v: amid faces of the source
     let (target, source) = (rings(12), turned_rings(5));
-    let angle = |x: Vector| x[1].atan2(x[0]).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
+    let angle = |x: Vector3| x[1].atan2(x[0]).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
     let values: Vec<f64> = target
         .1
         .iter()
         .flat_map(|&face| {
             let corners = triangle(&target.0, face);
-            let middle = angle(scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0));
-            corners.map(|x| if norm(x) == 1.0 { middle } else { angle(x) - (angle(x) - middle).round() })
+            let middle = angle(corners.into_iter().sum::<Vector3>() * (1.0 / 3.0));
+            corners.map(|x| if x.norm() == 1.0 { middle } else { angle(x) - (angle(x) - middle).round() })
         })
         .collect();
     let pulled = corners(&values, 1, &target, &source);
     let mut n_across = 0;
     for (face, &vertices) in source.1.iter().enumerate() {
         let corners = triangle(&source.0, vertices);
-        let centroid = scaled(corners.into_iter().fold([0.0; 3], add), 1.0 / 3.0);
+        let centroid = corners.into_iter().sum::<Vector3>() * (1.0 / 3.0);
         if centroid[0].hypot(centroid[1]) < 0.25 {
             continue;
         }
@@ -140,8 +141,10 @@ fn no_face_is_smeared_over_a_seam() {
 
 #[test]
 fn labels_come_from_the_nearest_corner() {
-    let target: Map = (vec![[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]], vec![[0, 1, 2]]);
-    let locations = located(&target, &[[0.6, 0.3, 1.0], [0.1, 0.7, 1.0], [0.5, 0.0, 1.0]]);
+    let target: Map =
+        (vec![Vector3([0., 0., 1.]), Vector3([1., 0., 1.]), Vector3([0., 1., 1.])], vec![[0, 1, 2]]);
+    let locations =
+        located(&target, &[Vector3([0.6, 0.3, 1.0]), Vector3([0.1, 0.7, 1.0]), Vector3([0.5, 0.0, 1.0])]);
     let nearest = nearest_vertices(&target.1, &locations);
     assert_eq!(nearest, [1, 2, 0]);
     assert_eq!(pull_rows(&["a", "b", "c", "d", "e", "f"], 2, &nearest), ["c", "d", "e", "f", "a", "b"]);

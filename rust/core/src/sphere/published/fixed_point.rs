@@ -106,7 +106,7 @@ fn iterate(
     parallel::fill_with_old(&mut plane, |_, z| [z[0] / scale, z[1] / scale]);
     // 3. Back to the sphere; a vertex at the pole itself stays there
     let lifted = chart.lift_all(&plane);
-    Ok(parallel::map(map.len(), |v| if lifted[v].iter().all(|x| x.is_finite()) { lifted[v] } else { map[v] }))
+    Ok(parallel::map(map.len(), |v| if lifted[v].is_finite() { lifted[v] } else { map[v] }))
 }
 
 fn record(domain: &SphereDomain<'_>, map: &SpatialMap, history: &mut History, is_start: bool) {

@@ -18,7 +18,7 @@ use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::optimize::published::{Domain, Energies};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
-use crate::vector::{Vector, cross, dot, norm, scaled, sub};
+use crate::vector::{Vector3, coordinates};
 
 /// Part of the mean diagonal that is added to L_S(f⁰), which takes constants to zero.
 const SHIFT: f64 = 1e-6;
@@ -59,7 +59,7 @@ impl<'a> SphereDomain<'a> {
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the weights are too far apart.
-    pub(super) fn set_preconditioner(&mut self, map: &[Vector], watch: &Watch<'_>) -> Result<(), Error> {
+    pub(super) fn set_preconditioner(&mut self, map: &[Vector3], watch: &Watch<'_>) -> Result<(), Error> {
         let mut weights = self.energy.laplacian_weights(map);
         parallel::fill_with_old(&mut weights, |_, weight| 2.0 * weight);
         let (mut laplacian, mut factor) = match self.preconditioner.take() {
@@ -77,7 +77,7 @@ impl<'a> SphereDomain<'a> {
         Ok(())
     }
 
-    fn full_objective(&self, map: &[Vector], value: Value) -> f64 {
+    fn full_objective(&self, map: &[Vector3], value: Value) -> f64 {
         match self.guarded && !clearly_unfolded(self.mesh, map) {
             true => f64::INFINITY,
             false => value.objective,
@@ -97,7 +97,7 @@ impl Domain for SphereDomain<'_> {
         parallel::fill_with_old(&mut gradient, |vertex, g| tangent(map[vertex], g));
         let energies =
             Energies { objective: self.full_objective(map, value), authalic_energy: value.authalic_energy };
-        (energies, gradient.into_flattened())
+        (energies, coordinates(gradient).into_flattened())
     }
 
     fn precondition(&self, map: &SpatialMap, gradient: &[f64]) -> Vec<f64> {
@@ -107,32 +107,32 @@ impl Domain for SphereDomain<'_> {
         let n = map.len();
         let mut columns = parallel::map(3 * n, |i| gradient[3 * (i % n) + i / n]);
         factor.solve(&mut columns);
-        let column = |v: usize| std::array::from_fn(|axis| columns[axis * n + v]);
-        parallel::map(n, |vertex| tangent(map[vertex], column(vertex))).into_flattened()
+        let column = |v: usize| Vector3::from_fn(|axis| columns[axis * n + v]);
+        coordinates(parallel::map(n, |vertex| tangent(map[vertex], column(vertex)))).into_flattened()
     }
 
     fn retract(&self, map: &SpatialMap, direction: &[f64], step: f64) -> SpatialMap {
         parallel::map(map.len(), |vertex| {
-            let moved: Vector =
-                std::array::from_fn(|axis| map[vertex][axis] + step * direction[3 * vertex + axis]);
-            scaled(moved, 1.0 / norm(moved))
+            let moved: Vector3 =
+                Vector3::from_fn(|axis| map[vertex][axis] + step * direction[3 * vertex + axis]);
+            moved * (1.0 / moved.norm())
         })
     }
 }
 
 /// The projection (4.1) of `z` to the tangent plane at `x`.
-fn tangent(x: Vector, z: Vector) -> Vector {
-    sub(z, scaled(x, dot(x, z)))
+fn tangent(x: Vector3, z: Vector3) -> Vector3 {
+    z - x * x.dot(z)
 }
 
 /// Whether every face is positive around the origin by more than its rounding error; never true for a folded
 /// face.
-fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector]) -> bool {
+fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector3]) -> bool {
     parallel::all(mesh.n_faces(), |face| is_clearly_positive(triangle(map, mesh.faces()[face])))
 }
 
 /// Whether det(a, b, c) is positive by more than its rounding error.
-fn is_clearly_positive([a, b, c]: [Vector; 3]) -> bool {
-    let (p, q) = (sub(b, a), sub(c, a));
-    dot(a, cross(p, q)) > determinant_rounding(a, p, q)
+fn is_clearly_positive([a, b, c]: [Vector3; 3]) -> bool {
+    let (p, q) = (b - a, c - a);
+    a.dot(p.cross(q)) > determinant_rounding(a, p, q)
 }

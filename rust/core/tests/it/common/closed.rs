@@ -9,7 +9,7 @@ use authalic::mesh::TriangleMesh;
 use authalic::optimize::published::gradient_descent::LineSearch;
 use authalic::{Error, Silent, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 
-use super::{TestMesh, determinant, distance, ellipsoid, icosphere, known, lattice};
+use super::{Coordinates, TestMesh, determinant, distance, ellipsoid, icosphere, known, lattice};
 
 type Point = [f64; 3];
 
@@ -163,10 +163,10 @@ pub fn star(level: u32, radii: &[f64]) -> TestMesh {
 }
 
 /// A bijection onto the sphere: unit rows, every face positive around the centre, the sphere covered once.
-pub fn assert_bijective(mesh: &TriangleMesh, map: &[Point], context: &str) {
+pub fn assert_bijective(mesh: &TriangleMesh, map: &[impl Coordinates], context: &str) {
     assert_eq!(map.len(), mesh.n_vertices());
-    for x in map {
-        assert!((distance(*x, [0.0; 3]) - 1.0).abs() < 1e-14, "{context}: a row of another length than 1");
+    for &x in map {
+        assert!((distance(x, [0.0; 3]) - 1.0).abs() < 1e-14, "{context}: a row of another length than 1");
     }
     assert_eq!(folded(mesh, map), [0usize; 0], "{context}: folded faces");
     let covered: f64 = mesh.faces().iter().map(|face| solid_angle(face.map(|v| map[v as usize]))).sum();
@@ -174,17 +174,18 @@ pub fn assert_bijective(mesh: &TriangleMesh, map: &[Point], context: &str) {
 }
 
 /// Faces whose determinant is not positive, in exact arithmetic.
-pub fn folded(mesh: &TriangleMesh, map: &[Point]) -> Vec<usize> {
-    let is_folded = |face: &usize| !is_positive(mesh.faces()[*face].map(|v| map[v as usize]));
+pub fn folded(mesh: &TriangleMesh, map: &[impl Coordinates]) -> Vec<usize> {
+    let is_folded = |face: &usize| !is_positive(mesh.faces()[*face].map(|v| map[v as usize].into()));
     (0..mesh.n_faces()).filter(is_folded).collect()
 }
 
 /// The signed solid angle of a triangle seen from the origin (Van Oosterom & Strackee 1983).
-pub fn solid_angle([a, b, c]: [Point; 3]) -> f64 {
+pub fn solid_angle([a, b, c]: [impl Coordinates; 3]) -> f64 {
     2.0 * determinant(a, b, c).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 }
 
-pub fn dot(a: Point, b: Point) -> f64 {
+pub fn dot(a: impl Coordinates, b: impl Coordinates) -> f64 {
+    let (a, b): (Point, Point) = (a.into(), b.into());
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -240,7 +241,7 @@ pub fn energies(map: &SphereMap) -> Vec<f64> {
 }
 
 /// Areas of the image's flat faces.
-pub fn image_areas(mesh: &TriangleMesh, map: &[Point]) -> Vec<f64> {
+pub fn image_areas(mesh: &TriangleMesh, map: &[impl Coordinates]) -> Vec<f64> {
     let area = |face: &[u32; 3]| {
         let [a, b, c] = face.map(|v| map[v as usize]);
         let [p, q, r] = [distance(b, c), distance(c, a), distance(a, b)];
@@ -250,7 +251,7 @@ pub fn image_areas(mesh: &TriangleMesh, map: &[Point]) -> Vec<f64> {
 }
 
 /// (E_A, E): the authalic energy and the normalised stretch energy (|M|/A) Σ a²/|τ|, scaled to |M| = A.
-pub fn energy_of(mesh: &TriangleMesh, map: &[Point], targets: &[f64]) -> (f64, f64) {
+pub fn energy_of(mesh: &TriangleMesh, map: &[impl Coordinates], targets: &[f64]) -> (f64, f64) {
     let areas = image_areas(mesh, map);
     let (area, total): (f64, f64) = (areas.iter().sum(), targets.iter().sum());
     let scaled: Vec<f64> = targets.iter().map(|target| target * area / total).collect();

@@ -299,11 +299,18 @@ fn triples(n: u32) -> impl Iterator<Item = [u32; 3]> {
     (0..n).flat_map(move |a| (a + 1..n).flat_map(move |b| (b + 1..n).map(move |c| [a, b, c])))
 }
 
-pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+/// A point as an array or a vector.
+pub trait Coordinates: Copy + Into<[f64; 3]> {}
+
+impl<Point: Copy + Into<[f64; 3]>> Coordinates for Point {}
+
+pub fn distance(a: impl Coordinates, b: impl Coordinates) -> f64 {
+    let (a, b) = (a.into(), b.into());
     (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }
 
-pub fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+pub fn determinant(a: impl Coordinates, b: impl Coordinates, c: impl Coordinates) -> f64 {
+    let [a, b, c]: [[f64; 3]; 3] = [a.into(), b.into(), c.into()];
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
-use crate::vector::Vector;
+use crate::vector::{Vector3, coordinates};
 
-const X: Vector = [1.0, 0.0, 0.0];
-const Y: Vector = [0.0, 1.0, 0.0];
-const Z: Vector = [0.0, 0.0, 1.0];
+const X: Vector3 = Vector3([1.0, 0.0, 0.0]);
+const Y: Vector3 = Vector3([0.0, 1.0, 0.0]);
+const Z: Vector3 = Vector3([0.0, 0.0, 1.0]);
 
 fn whole() -> TriangleMesh {
     mesh(&sphere(3), |x| x)
@@ -82,7 +82,7 @@ fn counts_must_agree() {
 #[test]
 fn bad_curves_are_refused_by_argument_number_and_place() {
     let (whole, arc) = (whole(), path(&sphere(3), X, Y));
-    let other = path(&sphere(3), [-1.0, -0.3, 0.0], [0.0, -1.0, -0.4]);
+    let other = path(&sphere(3), Vector3([-1.0, -0.3, 0.0]), Vector3([0.0, -1.0, -0.4]));
     let with = |curve: Vec<usize>| message(&whole, &[other.clone(), curve]);
     let short = with(arc[..2].to_vec());
     assert!(short.starts_with("source_curves: curve 1 has 1 edges"), "{short}");
@@ -95,7 +95,8 @@ fn bad_curves_are_refused_by_argument_number_and_place() {
     assert!(off.contains(&format!("after place 1: no edge joins vertices {}, {};", arc[1], arc[3])), "{off}");
     let back = with(vec![arc[0], arc[1], arc[2], arc[1]]);
     assert!(back.contains(&format!("at vertex {}, at places 1 and 3", arc[1])), "{back}");
-    let meeting = message(&whole, &[arc.clone(), other.clone(), path(&sphere(3), Y, [0.0, 0.6, 0.7])]);
+    let meeting =
+        message(&whole, &[arc.clone(), other.clone(), path(&sphere(3), Y, Vector3([0.0, 0.6, 0.7]))]);
     let at = arc[arc.len() - 1];
     assert!(meeting.contains(&format!("source_curves: curves 0 and 2 meet at vertex {at}:")), "{meeting}");
     let error = check([&whole, &whole], std::slice::from_ref(&arc), &[vec![0, 0, 0, 0]]).unwrap_err();
@@ -114,7 +115,7 @@ fn the_boundary_is_met_by_whole_loops_only() {
     let part = message(&open, &[rim[..4].to_vec()]);
     assert!(part.contains("curve 0 meets the boundary at 4 vertices"), "{part}");
     // a loop inside the target cannot be the end of the source
-    let ring = circle(&without(&sphere(3), |x| x[2] > 0.8), [0.0, 0.0, -1.0], 0.5);
+    let ring = circle(&without(&sphere(3), |x| x[2] > 0.8), Vector3([0.0, 0.0, -1.0]), 0.5);
     let ring = [&ring[..], &ring[..1]].concat();
     let error = check([&open, &open], &[backwards], &[ring]).unwrap_err();
     assert_eq!(error, CurveError::BoundsOneSide { side: Some(Side::Source), curve: 0 }.into());
@@ -123,11 +124,11 @@ fn the_boundary_is_met_by_whole_loops_only() {
 #[test]
 fn surfaces_must_be_one_piece_without_handles() {
     let (points, faces) = sphere(1);
-    let shifted: Vec<Vector> = points.iter().map(|&[x, y, z]| [x + 5.0, y, z]).collect();
+    let shifted: Vec<Vector3> = points.iter().map(|&x| x + Vector3([5.0, 0.0, 0.0])).collect();
     let n = points.len() as u32;
     let other = faces.iter().map(|face| face.map(|v| v + n));
     let both: Vec<[u32; 3]> = faces.iter().copied().chain(other).collect();
-    let two = TriangleMesh::new(&[points, shifted].concat(), &both).unwrap();
+    let two = TriangleMesh::new(&coordinates([points, shifted].concat()), &both).unwrap();
     let error = check([&whole(), &two], &[vec![0, 1]], &[vec![0, 1]]).unwrap_err();
     assert!(error.to_string().starts_with("the target: the mesh is 2 separate pieces"), "{error}");
 }

@@ -6,11 +6,12 @@ use crate::hyperbolic::features::curves::{Curves, face_on_left};
 use crate::hyperbolic::features::placement::placed;
 use crate::hyperbolic::features::regions::divided;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
+use crate::vector::coordinates;
 
-const Z: Vector = [0.0, 0.0, 1.0];
+const Z: Vector3 = Vector3([0.0, 0.0, 1.0]);
 
-fn ellipsoid([x, y, z]: Vector) -> Vector {
-    [x, 0.8 * y + 0.1 * x * x, 0.6 * z]
+fn ellipsoid(Vector3([x, y, z]): Vector3) -> Vector3 {
+    Vector3([x, 0.8 * y + 0.1 * x * x, 0.6 * z])
 }
 
 fn cut(
@@ -26,7 +27,7 @@ fn cut(
 
 /// Parameters ascend, banks have the piece on the right side, and all boundary loops are features.
 fn check(piece: &Piece) {
-    let mesh = TriangleMesh::new(&piece.points, &piece.faces).unwrap();
+    let mesh = TriangleMesh::new(&coordinates(piece.points.clone()), &piece.faces).unwrap();
     assert!(mesh.flipped_faces().is_empty() && mesh.n_components() == 1);
     assert_eq!(piece.features.iter().filter(|feature| feature.is_loop).count(), mesh.boundary_loops().len());
     for feature in &piece.features {
@@ -52,18 +53,19 @@ fn curves() -> Vec<Vec<usize>> {
     let sphere = sphere(4);
     let closed = |curve: Vec<usize>| [&curve[..], &curve[..1]].concat();
     vec![
-        path(&sphere, [0.7, 0.7, -0.5], [-0.7, 0.7, -0.5]),
+        path(&sphere, Vector3([0.7, 0.7, -0.5]), Vector3([-0.7, 0.7, -0.5])),
         closed(circle(&sphere, Z, 0.8)),
-        closed(circle(&sphere, [1.0, -0.5, -0.3], 0.4)),
+        closed(circle(&sphere, Vector3([1.0, -0.5, -0.3]), 0.4)),
         closed(circle(&sphere, Z, 0.2)),
-        path(&sphere, [0.7, 0.0, 1.0], [0.5, 0.5, 1.0]),
+        path(&sphere, Vector3([0.7, 0.0, 1.0]), Vector3([0.5, 0.5, 1.0])),
     ]
 }
 
 #[test]
 fn without_closed_curves_the_piece_is_the_whole_surface() {
     let surface = mesh(&without(&sphere(3), |x| x[2] > 0.8), ellipsoid);
-    let arc = path(&without(&sphere(3), |x| x[2] > 0.8), [1.0, 0.0, -0.3], [0.0, 1.0, -0.3]);
+    let arc =
+        path(&without(&sphere(3), |x| x[2] > 0.8), Vector3([1.0, 0.0, -0.3]), Vector3([0.0, 1.0, -0.3]));
     let found = cut(&surface, std::slice::from_ref(&arc), std::slice::from_ref(&arc)).unwrap();
     let [(ours, theirs)] = &found[..] else { panic!("one piece") };
     check(ours);
@@ -165,7 +167,7 @@ fn the_edge_that_closes_a_curve_belongs_to_one_edge() {
 fn curves_on_different_sides_are_refused() {
     let surface = mesh(&sphere(4), ellipsoid);
     let mut moved = curves();
-    moved[4] = path(&sphere(4), [-1.0, 0.0, -0.3], [-0.6, -0.3, -1.0]);
+    moved[4] = path(&sphere(4), Vector3([-1.0, 0.0, -0.3]), Vector3([-0.6, -0.3, -1.0]));
     let error = cut(&surface, &curves(), &moved).unwrap_err();
     let expected = "curve 4 lies inside closed curve 1 on the source but outside on the other surface";
     assert!(error.to_string().starts_with(expected), "{error}");

@@ -6,8 +6,8 @@ use crate::hyperbolic::features::curves::Curves;
 use crate::hyperbolic::features::regions::divided;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
 
-fn ellipsoid([x, y, z]: Vector) -> Vector {
-    [x, 0.8 * y + 0.1 * x * x, 0.6 * z]
+fn ellipsoid(Vector3([x, y, z]): Vector3) -> Vector3 {
+    Vector3([x, 0.8 * y + 0.1 * x * x, 0.6 * z])
 }
 
 fn place(
@@ -25,9 +25,9 @@ fn arcs() -> Vec<Vec<usize>> {
     let sphere = sphere(3);
     let arc = |from, to| path(&sphere, from, to);
     vec![
-        arc([1.0, 0.2, 0.3], [0.3, 1.0, 0.2]),
-        arc([-1.0, 0.0, 0.2], [-0.5, 0.4, 1.0]),
-        arc([0.2, -1.0, -0.4], [0.6, -0.2, -1.0]),
+        arc(Vector3([1.0, 0.2, 0.3]), Vector3([0.3, 1.0, 0.2])),
+        arc(Vector3([-1.0, 0.0, 0.2]), Vector3([-0.5, 0.4, 1.0])),
+        arc(Vector3([0.2, -1.0, -0.4]), Vector3([0.6, -0.2, -1.0])),
     ]
 }
 
@@ -36,10 +36,10 @@ fn a_turned_copy_is_laid_over_its_original() {
     let turn = rotation_of([0.5, -0.1, 0.7, 0.5]);
     let source = mesh(&sphere(3), ellipsoid);
     let target = mesh(&sphere(3), |x| rotate(turn, ellipsoid(x)));
-    let ring = circle(&sphere(3), [0.3, -1.0, 0.8], 0.4);
+    let ring = circle(&sphere(3), Vector3([0.3, -1.0, 0.8]), 0.4);
     for curves in [arcs(), vec![arcs()[0].clone(), ring.clone()]] {
         let placement = place(&source, &target, &curves, &curves);
-        let apart = |v: usize| distance(placement.source[v], placement.target[v]);
+        let apart = |v: usize| placement.source[v].distance(placement.target[v]);
         assert!((0..source.n_vertices()).all(|v| apart(v) < 1e-6));
         assert!(!placement.mirrored && placement.backwards.is_empty());
         // the open curve comes first
@@ -51,7 +51,7 @@ fn a_turned_copy_is_laid_over_its_original() {
 fn curves_that_fit_the_other_way_round_and_mirrored_surfaces_are_told() {
     let source = mesh(&sphere(3), ellipsoid);
     let mut curves = arcs();
-    curves.push(path(&sphere(3), [1.0, -0.7, 0.5], [0.2, -0.9, 0.8]));
+    curves.push(path(&sphere(3), Vector3([1.0, -0.7, 0.5]), Vector3([0.2, -0.9, 0.8])));
     let mut turned = curves.clone();
     turned[1].reverse();
     let placement = place(&source, &source, &curves, &turned);
@@ -64,7 +64,7 @@ fn curves_that_fit_the_other_way_round_and_mirrored_surfaces_are_told() {
 
 #[test]
 fn boundary_loops_find_their_partners() {
-    let holes = |[x, y, z]: Vector| x > 0.9 || y > 0.93 || z < -0.91;
+    let holes = |Vector3([x, y, z]): Vector3| x > 0.9 || y > 0.93 || z < -0.91;
     let raw = without(&sphere(3), holes);
     let [source, target] = [mesh(&raw, ellipsoid), mesh(&raw, |x| ellipsoid(x).map(|x| 2.0 * x))];
     let placement = place(&source, &target, &[], &[]);
@@ -81,13 +81,13 @@ fn given_spheres_are_taken_and_checked() {
     let divided = divided(&source, &source, pairs).unwrap();
     let turn = rotation_of([0.6, 0.0, 0.0, 0.8]);
     let theirs = sphere(3).0;
-    let ours: Vec<Vector> = theirs.iter().map(|&x| scaled(rotate(turn, x), 7.0)).collect();
+    let ours: Vec<Vector3> = theirs.iter().map(|&x| rotate(turn, x) * 7.0).collect();
     let place = |spheres| placed([&source; 2], &divided, Some(spheres), &Watch::new(&mut Silent, 0.0, ""));
     let placement = place([&ours[..], &theirs]).unwrap();
-    assert!(placement.source.iter().zip(&theirs).all(|(&x, &y)| distance(x, y) < 1e-7));
+    assert!(placement.source.iter().zip(&theirs).all(|(&x, &y)| x.distance(y) < 1e-7));
     let short = place([&ours[1..], &theirs[..]]);
     assert!(matches!(short, Err(Error::InvalidArray { name: "source_sphere", .. })));
-    let zeros = vec![[0.0; 3]; ours.len()];
+    let zeros = vec![Vector3::ZERO; ours.len()];
     let error = place([&ours[..], &zeros]).unwrap_err();
     assert!(error.to_string().starts_with("target_sphere points nowhere"), "{error}");
 }

@@ -136,3 +136,54 @@ impl From<Vector3> for [f64; 3] {
         vector.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Vector3 = Vector3([1.0, -2.0, 0.5]);
+    const B: Vector3 = Vector3([3.0, 0.25, -4.0]);
+
+    #[test]
+    fn operators_act_on_each_coordinate() {
+        assert_eq!(A + B, Vector3([4.0, -1.75, -3.5]));
+        assert_eq!(A - B, Vector3([-2.0, -2.25, 4.5]));
+        assert_eq!(A * 2.0, Vector3([2.0, -4.0, 1.0]));
+        assert_eq!(-A, Vector3([-1.0, 2.0, -0.5]));
+        let mut sum = A;
+        sum += B;
+        assert_eq!(sum, A + B);
+        assert_eq!([A, B, -B].into_iter().sum::<Vector3>(), A);
+        assert_eq!(A.map(f64::abs), Vector3([1.0, 2.0, 0.5]));
+    }
+
+    #[test]
+    fn products_satisfy_the_identities_of_the_textbook() {
+        // Lagrange: |a × b|² + (a · b)² = |a|² |b|²
+        let cross = A.cross(B);
+        let squares = |x: f64| x * x;
+        let difference = cross.norm().powi(2) + squares(A.dot(B)) - squares(A.norm() * B.norm());
+        assert!(difference.abs() < 1e-12);
+        // a × b is orthogonal to both, and the axes are right-handed
+        assert!(cross.dot(A).abs() < 1e-15 && cross.dot(B).abs() < 1e-15);
+        let [x, y, z] = [0, 1, 2].map(Vector3::unit);
+        assert_eq!([x.cross(y), y.cross(z), z.cross(x)], [z, x, y]);
+        assert_eq!(A.cross(B), -B.cross(A));
+    }
+
+    #[test]
+    fn lengths_are_those_of_pythagoras() {
+        assert_eq!(Vector3([2.0, -3.0, 6.0]).norm(), 7.0);
+        assert_eq!(Vector3([1.0, 1.0, 1.0]).distance(Vector3([3.0, -2.0, 7.0])), 7.0);
+        assert_eq!(B.max_abs(), 4.0);
+        assert!(A.is_finite() && !Vector3([0.0, f64::NAN, 0.0]).is_finite());
+    }
+
+    #[test]
+    fn coordinates_are_read_and_written_by_axis() {
+        let mut vector = Vector3::from([1.0, 2.0, 3.0]);
+        vector[1] = 5.0;
+        assert_eq!([vector[0], vector[1], vector[2]], <[f64; 3]>::from(vector));
+        assert_eq!(coordinates([vector, Vector3::ZERO]), [[1.0, 5.0, 3.0], [0.0; 3]]);
+    }
+}

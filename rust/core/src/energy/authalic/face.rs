@@ -70,7 +70,7 @@ impl Triangle {
         let product = p.cross(q);
         let determinant = x[0].dot(product);
         let (doubled_area, normal) = if planar {
-            (determinant, Vector3([0.0, 0.0, 1.0]))
+            (determinant, Vector3::unit(2))
         } else {
             let length = product.norm();
             (length, product * (1.0 / length.max(f64::MIN_POSITIVE)))

@@ -187,7 +187,7 @@ fn axis_angle(rotation: [Vector3; 3]) -> (Vector3, f64) {
         return (unit(double_sine), angle);
     }
     if angle < 1.0 {
-        return (Vector3([0.0, 0.0, 1.0]), 0.0);
+        return (Vector3::unit(2), 0.0);
     }
     // by half a turn: R + I = 2 axis axisᵀ, of which the longest column is taken
     let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]].map(Vector3);

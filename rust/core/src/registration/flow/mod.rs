@@ -148,7 +148,7 @@ fn collide([x, y]: [Vector3; 2], [way, other]: [Vector3; 2]) -> bool {
 impl CanonicalDomain {
     /// A velocity at `x` turned aside.
     fn aside(self, x: Vector3, way: Vector3) -> Vector3 {
-        let normal = if self == Self::Disk { Vector3([0.0, 0.0, 1.0]) } else { x };
+        let normal = if self == Self::Disk { Vector3::unit(2) } else { x };
         way * ASIDE.cos() + normal.cross(way) * ASIDE.sin()
     }
 

@@ -33,7 +33,7 @@ class RegistrationWarning(str):
     curve: int | None
     second_curve: int | None
     indices: tuple[int, ...]
-    count: int
+    count: int  # type: ignore[assignment]
     value: float | None
 
     def __new__(

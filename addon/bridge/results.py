@@ -12,10 +12,10 @@ from .shortfall import Shortfall
 class Island(PlanarIsland):
     """A map of an island of the surface of number `surface` into the plane.
 
-    A point of the surface is there once for each of its UVs. Those of the mesh corners `corners` (k,) are the
-    UVs of the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the
-    rest; they are mirrored in the map. `shortfall` says where the map is not as good as it should be, else it
-    is None. `may_turn` says that the outline has no upper side.
+    A point of the surface occurs once for each of its UVs. The mesh corners `corners` (k,) have the UVs of
+    the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the rest;
+    they are mirrored in the map. `shortfall` says where the map is not as good as it should be, else it is
+    None. `may_turn` says that the outline has no upper side.
     """
 
     name: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data of a mesh's vertices and corners on the triangles of a registration's side. Plain numpy, no bpy."""
+"""Data of a mesh's vertices and corners as data of its side's triangles, and back. Plain numpy, no bpy."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from .sides import Side
 def by_points(side: Side, values: Reals) -> Floats:
     """Values (n, d) of a mesh's vertices as those of a side's points (u, d).
 
-    The centre of a divided polygon has the mean of its corners.
+    The center of a divided polygon has the mean of its corners.
     """
     real = side.vertices >= 0
     result = np.empty((len(side.points), values.shape[1]))
@@ -21,7 +21,7 @@ def by_points(side: Side, values: Reals) -> Floats:
 
 
 def by_corners(side: Side, values: Reals) -> Floats:
-    """Values (c, d) of a mesh's corners as those of a side's triangles (m, 3, d); centres as for points."""
+    """Values (c, d) of a mesh's corners as those of a side's triangles (m, 3, d); centers as for points."""
     result = np.zeros((*side.corners.shape, values.shape[1]))
     real = side.corners >= 0
     result[real] = values[side.corners[real]]
@@ -39,7 +39,7 @@ def from_points(side: Side, values: Floats) -> tuple[Integers, Floats]:
 def from_corners(side: Side, values: Floats) -> tuple[Integers, Floats]:
     """The corners (k,) of the mesh that a side's triangles have, and their values (k, d).
 
-    Of a corner that several triangles of its polygon share, the one in the first of these.
+    Where several triangles of a polygon share a corner, the value is that of the first triangle.
     """
     corners, first = np.unique(side.corners, return_index=True)
     real = corners >= 0
@@ -55,11 +55,11 @@ def turn_and_scale(points: Floats, images: Floats) -> Floats:
 
 
 def _means(side: Side, values: Floats) -> Floats:
-    """At the centres of divided polygons the means (u, d) of values (m, 3, d) around them."""
-    centre = side.corners < 0
-    fan = centre.any(axis=1)
-    at = side.faces[fan][centre[fan]]
-    around = values[fan][~centre[fan]].reshape(len(at), 2, -1).mean(axis=1)
+    """At the centers of divided polygons the means (u, d) of values (m, 3, d) around them."""
+    is_center = side.corners < 0
+    fan = is_center.any(axis=1)
+    points = side.faces[fan][is_center[fan]]
+    around = values[fan][~is_center[fan]].reshape(len(points), 2, -1).mean(axis=1)
     result = np.zeros((len(side.points), values.shape[2]))
-    np.add.at(result, at, around)
-    return result / np.maximum(np.bincount(at, minlength=len(side.points)), 1)[:, None]
+    np.add.at(result, points, around)
+    return result / np.maximum(np.bincount(points, minlength=len(side.points)), 1)[:, None]

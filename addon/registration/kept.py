@@ -18,14 +18,14 @@ _KEPT = 4
 
 
 def fingerprint(source: Side, target: Side, pairs: Sequence[PointPair] | Sequence[CurvePair]) -> bytes:
-    """A hash of all that a registration depends on but its settings: both sides and the landmarks.
+    """A hash of everything but the settings that a registration depends on: both sides and the landmarks.
 
     Pairs are (name, vertex, vertex), or (name, vertices, vertices) of curves.
     """
     digest = hashlib.blake2b(digest_size=16)
-    for one in (source, target):
-        digest.update(one.name.encode())
-        arrays: tuple[NDArray[Any], ...] = one.points, one.faces, one.vertices, one.corners
+    for side in (source, target):
+        digest.update(side.name.encode())
+        arrays: tuple[NDArray[Any], ...] = side.points, side.faces, side.vertices, side.corners
         for array in arrays:
             digest.update(np.array(array.shape, np.int64).tobytes() + np.ascontiguousarray(array).tobytes())
     listed = [(name, np.array(first).tolist(), np.array(second).tolist()) for name, first, second in pairs]
@@ -34,20 +34,22 @@ def fingerprint(source: Side, target: Side, pairs: Sequence[PointPair] | Sequenc
 
 
 class Kept:
-    """The last few registrations, for what is done with them after."""
+    """The last few registrations of the session."""
 
     def __init__(self) -> None:
         self._found: OrderedDict[tuple[bytes, tuple[Any, ...]], Registered] = OrderedDict()
 
     def get(self, key_: bytes, settings: Settings) -> Registered | None:
-        """One of these meshes and settings that ran to its end, or None."""
-        found = self._found.get((key_, astuple(settings)))
-        return found if found is not None and not found.ended_early else None
+        """The registration of these meshes with these settings, if it ran to its end, or None."""
+        registered = self._found.get((key_, astuple(settings)))
+        return registered if registered is not None and not registered.ended_early else None
 
     def latest(self, keys: Sequence[tuple[bytes, str]]) -> Registered | None:
-        """The latest of some (key, method), or None."""
-        listed = reversed(self._found.items())
-        return next((found for (own, used), found in listed if (own, Settings(*used).method) in keys), None)
+        """The latest registration with one of these keys and methods, or None."""
+        for (key_, used), registered in reversed(self._found.items()):
+            if (key_, Settings(*used).method) in keys:
+                return registered
+        return None
 
     def put(self, key_: bytes, settings: Settings, registered: Registered) -> None:
         self._found.pop((key_, astuple(settings)), None)
@@ -56,5 +58,5 @@ class Kept:
             self._found.popitem(last=False)
 
     def touch(self, key_: bytes, settings: Settings) -> None:
-        """Makes one that was found the latest."""
+        """Makes a registration the latest."""
         self._found.move_to_end((key_, astuple(settings)))

@@ -8,16 +8,16 @@ from ..surfaces.suitability import Patch, Unsuitable
 from .sides import Side
 
 
-def check_piece(one: Side, patches: Sequence[Patch]) -> Patch:
+def check_piece(side: Side, patches: Sequence[Patch]) -> Patch:
     """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
     try:
-        _check_one_piece(len(one.points), patches)
+        _check_one_piece(len(side.points), patches)
         if patches[0].genus is None:
             raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
         if patches[0].genus > 0:
             raise Unsuitable(f"has {suitability.handles(patches[0])}, like a torus; close it up or remesh it")
     except Unsuitable as problem:
-        raise Unsuitable(f"{one.name}: {problem}") from problem
+        raise Unsuitable(f"{side.name}: {problem}") from problem
     return patches[0]
 
 

@@ -78,8 +78,8 @@ def registered_by_points(
         names=names,
         errors=apart / max(target.size, np.finfo(float).tiny),
         missed=[names[pair] for pair in native.missed],
-        energy=max(float(one.authalic_energy) for one in figures),
-        folds=sum(len(one.folded) for one in figures),
+        energy=max(float(figure.authalic_energy) for figure in figures),
+        folds=sum(len(figure.folded) for figure in figures),
         status=native.status,
         seconds=float(native.seconds),
     )

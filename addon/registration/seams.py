@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UVs that were pulled to triangles, for polygons of which some triangles lie beyond a seam of the UVs.
 
-Each triangle has the UVs of the side that its middle is on. A quad with a triangle on either side would reach
-from one island to another, all over the texture: its largest triangle says where all its corners are. Plain
-numpy, no bpy.
+Each triangle has the UVs of that side of the seam on which its middle lies. A quad with a triangle on either
+side would reach from one island to another, all over the texture: its largest triangle decides for all its
+corners. Plain numpy, no bpy.
 """
 
 import numpy as np

@@ -19,5 +19,5 @@ class Settings:
 
     @property
     def that_count(self) -> "Settings":
-        """The same, but for options that make no difference."""
+        """These settings without the options that make no difference."""
         return self if self.method == "POINTS" else Settings(method=self.method)

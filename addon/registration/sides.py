@@ -26,7 +26,7 @@ class Side:
     They have the shape that they have in the world, but the place and the size of the mesh: whatever moves,
     turns or scales the object makes no difference. `matrix` (4, 4) leads from there into the world.
     `faces` (m, 3) are between `points` (u, 3); `vertices` (u,) and `corners` (m, 3) are those of the mesh,
-    -1 at the centre of a divided polygon, `polygons` (m,) the polygons. The mesh has `count` vertices.
+    -1 at the center of a divided polygon, `polygons` (m,) the polygons. The mesh has `count` vertices.
     """
 
     name: str
@@ -78,7 +78,7 @@ def side(surface: Surface, matrix: Floats) -> Side:
 
 
 def _shape_of(linear: Floats) -> Floats:
-    """What a linear map (3, 3) does but to turn and to scale: to squeeze, and maybe to mirror."""
+    """A linear map (3, 3) without its rotation and scale: what it squeezes and whether it mirrors."""
     u, scale, vt = np.linalg.svd(linear)
     squeeze = (vt.T * (scale / scale.max())) @ vt
     if scale.min() > (1 - _UNIFORM) * scale.max():
@@ -96,7 +96,7 @@ def boundaries(patches: Sequence[Patch]) -> list[Integers]:
     return [np.asarray(patch.vertex_of)[loop] for patch in patches for loop in patch.boundary_loops]
 
 
-def is_open(one: Side) -> bool:
+def is_open(side: Side) -> bool:
     """Whether a side has an edge with one face."""
-    ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    ends = np.sort(side.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     return bool((np.unique(ends, axis=0, return_counts=True)[1] == 1).any())

@@ -14,7 +14,7 @@ ADDON = ROOT / "addon"
 
 # The rooms of the crate, lowest first: a room may use those of lower rows only, and itself.
 CORE_ROOMS = (
-    {"vector", "error", "control", "parallel"},
+    {"vector", "arrays", "error", "control", "parallel"},
     {"mesh", "options"},
     {"sparse", "distortion", "codomain", "location"},
     {"energy", "embedding", "alignment"},

@@ -28,6 +28,7 @@ NAMES = {
     "RegistrationWarning",
     "SolverError",
     "SphereMap",
+    "Surface",
     "Untangled",
     "__version__",
     "cut",
@@ -176,6 +177,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         "DiskMap",
         "SphereMap",
         "Distortion",
+        "Surface",
         "Patch",
         "Refinement",
         "Registration",
@@ -197,7 +199,7 @@ def test_the_docstrings_have_all_sections_and_name_all_parameters(name):
         assert f"\n{parameter} : " in text
 
 
-@pytest.mark.parametrize("name", ["", *FUNCTIONS])
+@pytest.mark.parametrize("name", ["", "Surface", *FUNCTIONS])
 def test_the_examples_in_the_docstrings_run(name):
     subject = getattr(authalic, name) if name else authalic
     test = doctest.DocTestParser().get_doctest(subject.__doc__, {}, name or "authalic", None, 0)
@@ -213,6 +215,7 @@ def test_every_attribute_of_the_results_is_documented():
         *maps,
         authalic.Untangled,
         authalic.Distortion,
+        authalic.Surface,
         authalic.Patch,
         authalic.Certificates,
         authalic.Pants,
@@ -252,7 +255,7 @@ def test_a_patch_has_the_attributes_of_the_contract():
     (patch,) = authalic.cut(*meshes.bumpy_cap())
     arrays = {"vertices", "faces", "vertex_of", "corner_of", "face_of"}
     topology = {"euler_characteristic", "genus", "boundary_loops", "is_disk", "is_closed"}
-    assert public_attributes(patch) == arrays | topology
+    assert public_attributes(patch) == arrays | topology | {"surface"}
     assert type(patch.euler_characteristic) is int
     assert type(patch.boundary_loops) is list
     assert (patch.genus, patch.is_disk, patch.is_closed) == (0, True, False)

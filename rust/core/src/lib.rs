@@ -20,6 +20,7 @@
 //! Rooms and their order are described in `ARCHITECTURE.md`.
 
 mod alignment;
+mod arrays;
 mod codomain;
 mod control;
 mod disk;
@@ -45,6 +46,7 @@ pub use distortion::{Distortion, Image, distortion, folded_in_plane, folded_on_s
 pub use error::{
     CurveError, Elements, Error, ErrorKind, LandmarkError, MapError, MeshError, NumericsError, Side,
 };
+pub use mesh::{Patch, Surface, Topology};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, UntangledImage, untangle};
 pub use vector::Vector3;

@@ -2,7 +2,7 @@
 """Types of the native module; the documentation stands in the docstrings of the module itself."""
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,7 @@ __all__ = [
     "Registration",
     "SolverError",
     "SphereMap",
+    "Surface",
     "Untangled",
     "__version__",
     "cut",
@@ -42,7 +43,8 @@ _Reals: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int64]
 _Complex: TypeAlias = NDArray[np.complex128]
 _Progress: TypeAlias = Callable[[float, str], bool | None]
-_Surface: TypeAlias = tuple[ArrayLike, ArrayLike]
+_Handle: TypeAlias = Surface | Patch
+_Surface: TypeAlias = _Handle | tuple[ArrayLike, ArrayLike]
 _Side: TypeAlias = Literal["source", "target"] | None
 _Status: TypeAlias = Literal["converged", "max_iterations", "stalled", "cancelled"]
 
@@ -67,7 +69,34 @@ class SolverError(RuntimeError):
     count: int
 
 @final
+class Surface:
+    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Self: ...
+    @property
+    def vertices(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def n_vertices(self) -> int: ...
+    @property
+    def n_faces(self) -> int: ...
+    @property
+    def n_components(self) -> int: ...
+    @property
+    def euler_characteristic(self) -> int: ...
+    @property
+    def genus(self) -> int: ...
+    @property
+    def boundary_loops(self) -> list[_Indices]: ...
+    @property
+    def is_disk(self) -> bool: ...
+    @property
+    def is_closed(self) -> bool: ...
+    def cut(self, *, seams: ArrayLike | None = None) -> list[Patch]: ...
+
+@final
 class Patch:
+    @property
+    def surface(self) -> Surface: ...
     @property
     def vertices(self) -> _Reals: ...
     @property
@@ -300,13 +329,19 @@ class HyperbolicStructure:
     def area(self) -> float: ...
     def cover(self, copies: int) -> tuple[list[tuple[int, ...]], _Complex]: ...
 
-def cut(vertices: ArrayLike, faces: ArrayLike, *, seams: ArrayLike | None = None) -> list[Patch]: ...
+def cut(
+    vertices: ArrayLike | _Handle, faces: ArrayLike | None = None, *, seams: ArrayLike | None = None
+) -> list[Patch]: ...
 def distortion(
-    vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
+    image: ArrayLike | None = None,
+    *,
+    density: ArrayLike | None = None,
 ) -> Distortion: ...
 def disk_map(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
     *,
     method: Literal["gauss_newton", "conjugate_gradient", "fixed_point"] = "gauss_newton",
     boundary: Literal["sliding", "arc_length", "free", "rectangle"] = "sliding",
@@ -323,8 +358,8 @@ def disk_map(
     progress: _Progress | None = None,
 ) -> DiskMap: ...
 def sphere_map(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
     *,
     method: Literal["gauss_newton", "gradient_descent", "fixed_point"] = "gauss_newton",
     line_search: Literal["interpolation", "bounded"] = "interpolation",
@@ -339,7 +374,11 @@ def sphere_map(
     progress: _Progress | None = None,
 ) -> SphereMap: ...
 def stretch_hessian(
-    vertices: ArrayLike, faces: ArrayLike, image: ArrayLike, *, density: ArrayLike | None = None
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
+    image: ArrayLike | None = None,
+    *,
+    density: ArrayLike | None = None,
 ) -> tuple[_Reals, _Indices, _Indices]: ...
 def untangle(
     surface: _Surface,
@@ -383,10 +422,12 @@ def register_hyperbolic(
     target_sphere: ArrayLike | None = None,
     progress: _Progress | None = None,
 ) -> Registration: ...
-def homotopy(vertices: ArrayLike, registration: Registration, t: float, *, align: bool = False) -> _Reals: ...
+def homotopy(
+    vertices: ArrayLike | _Handle, registration: Registration, t: float, *, align: bool = False
+) -> _Reals: ...
 def hyperbolic_structure(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    vertices: ArrayLike | _Handle,
+    faces: ArrayLike | None = None,
     *,
     curves: Iterable[ArrayLike],
     metric: Literal["newton", "ricci_flow"] = "newton",

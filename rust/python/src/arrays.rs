@@ -2,6 +2,7 @@
 //! Arrays in and out: any real dtype and memory layout in, C-contiguous float64 and int64 out.
 
 use authalic::{Elements, Vector3};
+use numpy::ndarray::{Array2, ArrayView2};
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
@@ -15,26 +16,27 @@ use crate::errors::{bad_array, bad_indices};
 pub type Pairs = Py<PyArray2<f64>>;
 
 /// Real numbers of shape (n, N).
-pub fn points<const N: usize>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<[f64; N]>> {
-    rows(object, name, "float64", "iufb", "real numbers")
+pub fn real_table<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array2<f64>> {
+    table::<f64, N>(object, name, "float64", "iufb", "real numbers")
+}
+
+/// The same as rows.
+pub fn points<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[f64; N]>> {
+    Ok(rows(real_table::<N>(object, name)?.view()).to_vec())
 }
 
 /// Points in space: real numbers of shape (n, 3).
-pub fn vectors(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<Vector3>> {
+pub fn vectors(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Vector3>> {
     Ok(points(object, name)?.into_iter().map(Vector3).collect())
 }
 
 /// Faces or seams: integers of shape (n, N) that fit a vertex index. Reals are taken where they are whole.
-pub fn indices<const N: usize>(
+pub fn index_table<const N: usize>(
     object: &Bound<'_, PyAny>,
-    name: &'static str,
+    name: &str,
     n_vertices: usize,
-) -> PyResult<Vec<[u32; N]>> {
-    let found: Vec<[i64; N]> = match kind(&as_array(object, name)?)?.as_str() {
-        "f" => whole(object, name)?,
-        _ => rows(object, name, "int64", "iu", "integers")?,
-    };
-    narrow(object.py(), name, "row", &found, n_vertices)
+) -> PyResult<Array2<u32>> {
+    narrow(object.py(), name, "row", &integers::<N>(object, name)?, n_vertices)
 }
 
 /// Vertices: integers of shape (k,) that fit a vertex index; `noun` names an entry.
@@ -50,12 +52,8 @@ pub fn index_list(
         return Err(bad_array(object.py(), name, found, "of shape (k,), vertex indices".into()));
     };
     let column = array.call_method1(intern!(object.py(), "reshape"), ((length, 1),))?;
-    let found: Vec<[i64; 1]> = match kind(&array)?.as_str() {
-        "f" => whole(&column, name)?,
-        _ => rows(&column, name, "int64", "iu", "integers")?,
-    };
-    let narrowed = narrow(object.py(), name, noun, &found, n_vertices)?;
-    Ok(narrowed.as_flattened().iter().map(|&vertex| vertex as usize).collect())
+    let narrowed = narrow(object.py(), name, noun, &integers::<1>(&column, name)?, n_vertices)?;
+    Ok(narrowed.iter().map(|&vertex| vertex as usize).collect())
 }
 
 /// Data of any kind and shape.
@@ -105,7 +103,7 @@ pub fn from_values(py: Python<'_>, values: Vec<f64>, shape: Vec<usize>) -> PyRes
 }
 
 /// Real numbers of shape (n,).
-pub fn values(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<f64>> {
+pub fn values(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
     let array: PyReadonlyArrayDyn<'_, f64> = converted(object, name, "float64", "iufb", "real numbers")?;
     match array.shape() {
         [_] => Ok(array.as_slice()?.to_vec()),
@@ -116,7 +114,7 @@ pub fn values(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<f64
 }
 
 /// The second length of an (n, k) array.
-pub fn width(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<usize> {
+pub fn width(object: &Bound<'_, PyAny>, name: &str) -> PyResult<usize> {
     match as_array(object, name)?.shape() {
         [_, width] => Ok(*width),
         shape => Err(bad_array(object.py(), name, shape_words(shape), "of shape (n, 2) or (n, 3)".into())),
@@ -172,47 +170,54 @@ fn converted<'py, T: numpy::Element>(
     Ok(required.cast_into::<PyArrayDyn<T>>()?.readonly())
 }
 
-fn rows<T: numpy::Element + Copy, const N: usize>(
+fn table<T: numpy::Element + Copy + Default, const N: usize>(
     object: &Bound<'_, PyAny>,
     name: &str,
     dtype: &str,
     kinds: &str,
     expected: &str,
-) -> PyResult<Vec<[T; N]>> {
+) -> PyResult<Array2<T>> {
     // the conversion makes a scalar an array of one, so the shape is judged before
     let given = as_array(object, name)?;
     let array: PyReadonlyArrayDyn<'_, T> = converted(object, name, dtype, kinds, expected)?;
     match given.shape() {
-        [_, width] if *width == N => Ok(array.as_slice()?.as_chunks::<N>().0.to_vec()),
-        [0] => Ok(Vec::new()),
+        [_, width] if *width == N => {
+            Ok(array.as_array().into_dimensionality().expect("two axes").into_owned())
+        }
+        [0] => Ok(Array2::default((0, N))),
         shape => Err(bad_array(object.py(), name, shape_words(shape), format!("of shape (n, {N})"))),
     }
 }
 
-/// Reals that are whole numbers, as integers.
-fn whole<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[i64; N]>> {
-    let reals: Vec<[f64; N]> = rows(object, name, "float64", "f", "integers")?;
-    match reals.as_flattened().iter().find(|x| x.fract() != 0.0 || x.abs() > 2f64.powi(53)) {
+/// Integers, or reals that are whole numbers, of shape (n, N).
+fn integers<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array2<i64>> {
+    if kind(&as_array(object, name)?)? != "f" {
+        return table::<i64, N>(object, name, "int64", "iu", "integers");
+    }
+    let reals = table::<f64, N>(object, name, "float64", "f", "integers")?;
+    match reals.iter().find(|x| x.fract() != 0.0 || x.abs() > 2f64.powi(53)) {
         Some(x) => Err(bad_array(object.py(), name, format!("not whole: {x}"), "integers".into())),
-        None => Ok(reals.iter().map(|row| row.map(|x| x as i64)).collect()),
+        None => Ok(reals.mapv(|x| x as i64)),
     }
 }
 
 /// Indices of the `n_vertices` vertices, or an error that names the rows (the noun says what they are) with
 /// others.
-fn narrow<const N: usize>(
+fn narrow(
     py: Python<'_>,
     name: &str,
     noun: &str,
-    rows: &[[i64; N]],
+    table: &Array2<i64>,
     n_vertices: usize,
-) -> PyResult<Vec<[u32; N]>> {
-    let outside = |value: &&i64| **value < 0 || **value >= n_vertices as i64;
-    let bad = (0..rows.len()).filter(|&row| rows[row].iter().any(|value| outside(&value)));
-    let Some(bad) = Elements::collect(bad) else {
-        return Ok(rows.iter().map(|row| row.map(|value| value as u32)).collect());
+) -> PyResult<Array2<u32>> {
+    let outside = |value: &i64| *value < 0 || *value >= n_vertices as i64;
+    let bad = table.iter().enumerate().filter(|(_, value)| outside(value));
+    let mut rows: Vec<usize> = bad.map(|(place, _)| place / table.ncols()).collect();
+    rows.dedup();
+    let Some(bad) = Elements::collect(rows) else {
+        return Ok(table.mapv(|value| value as u32));
     };
-    let value = rows[bad.first[0]].iter().find(outside).expect("the row is bad");
+    let value = table.row(bad.first[0]).into_iter().find(|value| outside(value)).expect("the row is bad");
     let found = match bad.count {
         1 => format!("{value} in {noun} {bad}"),
         count => format!("{value} and others in {count} {noun}s ({bad})"),
@@ -222,6 +227,11 @@ fn narrow<const N: usize>(
         n => format!("indices of the {n} vertices, 0 to {}", n - 1),
     };
     Err(bad_indices(py, name, &found, &expected, &bad))
+}
+
+/// The rows of a table in C order.
+pub fn rows<T, const N: usize>(table: ArrayView2<'_, T>) -> &[[T; N]] {
+    table.to_slice().expect("in C order").as_chunks().0
 }
 
 fn shape_words(shape: &[usize]) -> String {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::disk_map`.
 
-use authalic::mesh::TriangleMesh;
 use authalic::{Boundary, DiskMapOptions, Method};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_indices, from_points, index_list, indices, points, values};
+use crate::arrays::{from_indices, from_points, index_list, points, values};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
+use crate::surface::Given;
 
 /// A one-to-one map of a disk to the unit disk.
 #[pyclass(frozen, get_all, module = "authalic")]
@@ -72,7 +72,7 @@ impl DiskMap {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit.
+///     Positions, any unit. Or a Surface, without `faces`.
 /// faces : (m, 3) integer array
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
@@ -147,14 +147,14 @@ impl DiskMap {
 /// >>> result.uv.shape, len(result.distortion.folded)
 /// ((5, 2), 0)
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
+#[pyo3(signature = (vertices, faces=None, *, method="gauss_newton", boundary="sliding", density=None, angle_weight=0.0,
                     area_tolerance=None, initial=None, max_iterations=None, tolerance=None, fill_holes=false,
                     overlap=false, corners=None, aspect=None, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn disk_map(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
     method: &str,
     boundary: &str,
     density: Option<&Bound<'_, PyAny>>,
@@ -172,14 +172,13 @@ pub fn disk_map(
     // 1. Arguments to plain data
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
-    let vertices = points::<3>(vertices, "vertices")?;
-    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let given = Given::new(vertices, faces)?;
     let density = density.map(|density| values(density, "density")).transpose()?;
     let initial = initial.map(|initial| points::<2>(initial, "initial")).transpose()?;
-    let corners = corners.map(|corners| parse_corners(corners, vertices.len())).transpose()?;
+    let corners = corners.map(|corners| parse_corners(corners, given.n_vertices())).transpose()?;
     // 2. The run
-    let (map, faces) = run(py, progress, move |observer| {
-        let mesh = TriangleMesh::new(&vertices, &faces)?;
+    let (map, surface) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
         let (density, initial) = (density.as_deref(), initial.as_deref());
         let options = DiskMapOptions {
             method,
@@ -195,10 +194,11 @@ pub fn disk_map(
             corners,
             aspect,
         };
-        Ok((authalic::disk_map(&mesh, &options, observer)?, mesh.faces().to_vec()))
+        Ok((authalic::disk_map(surface.mesh()?, &options, observer)?, surface))
     })?;
     // 3. The result
-    DiskMap::new(py, &map, &faces)
+    let mesh = surface.mesh().expect("it was mapped");
+    DiskMap::new(py, &map, mesh.faces())
 }
 
 fn parse_method(method: &str) -> PyResult<Method> {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::distortion`.
 
-use authalic::mesh::TriangleSoup;
 use authalic::{Image, Vector3, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, indices, points, values, vectors, width};
+use crate::arrays::{from_index_list, points, values, vectors, width};
 use crate::errors::bad_array;
 use crate::run::run;
+use crate::surface::Given;
 
 /// Quality figures of a map; all are signed, so a folded face never scores like a good one.
 #[pyclass(frozen, get_all, module = "authalic")]
@@ -105,13 +105,13 @@ impl OwnedImage {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions on the surface, any unit.
+///     Positions on the surface, any unit. Or a Surface, without `faces`: `distortion(surface, image)`.
 /// faces : (m, 3) integer array
 ///     Triangles; they need not form a manifold. Faces turned against the rest of their component are
 ///     turned back.
 /// image : (n, 2) or (n, 3) real array
 ///     The map: into the plane (a face is positive counter-clockwise), or onto a sphere around the origin
-///     (positive counter-clockwise from outside).
+///     (positive counter-clockwise from outside). Single precision is measured, and certified, as it is.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 ///
@@ -132,25 +132,25 @@ impl OwnedImage {
 /// >>> figures.area_ratio_std, len(figures.folded)
 /// (0.0, 0)
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, image, *, density=None))]
+#[pyo3(signature = (vertices, faces=None, image=None, *, density=None))]
 pub fn distortion(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
-    image: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
+    image: Option<&Bound<'_, PyAny>>,
     density: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Distortion> {
-    let vertices = points::<3>(vertices, "vertices")?;
-    let faces = indices::<3>(faces, "faces", vertices.len())?;
-    let image = OwnedImage::extract(image, vertices.len())?;
+    let (given, image) = Given::with_image(vertices, faces, image)?;
+    let image = OwnedImage::extract(image, given.n_vertices())?;
     let density = density.map(|density| values(density, "density")).transpose()?;
     let figures = run(py, None, move |_| {
-        let soup = TriangleSoup::new(&vertices, &faces)?;
+        let surface = given.surface()?;
+        let triangles = surface.triangles()?;
         let targets = match density {
-            Some(density) => normalized_density(&density, faces.len())?,
-            None => authalic::mesh::geometry::face_areas(&soup.points, &soup.faces),
+            Some(density) => normalized_density(&density, surface.n_faces())?,
+            None => triangles.areas.to_vec(),
         };
-        authalic::distortion(&soup.points, &soup.faces, image.view(), &targets)
+        authalic::distortion(triangles.points, triangles.faces, image.view(), &targets)
     })?;
     Ok(Distortion::new(py, &figures))
 }

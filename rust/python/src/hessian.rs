@@ -2,14 +2,14 @@
 //! Bindings of the Hessian of the stretch energy.
 
 use authalic::energy::SpatialStretchEnergy;
-use authalic::mesh::TriangleMesh;
 use authalic::{Elements, Error, MapError, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, indices, points, values, vectors};
+use crate::arrays::{from_index_list, values, vectors};
 use crate::errors::bad_array;
 use crate::run::run;
+use crate::surface::Given;
 
 /// Values, row indices and column starts of a sparse matrix.
 type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
@@ -22,7 +22,7 @@ type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions on the surface, any unit.
+///     Positions on the surface, any unit. Or a Surface, without `faces`: `stretch_hessian(surface, image)`.
 /// faces : (m, 3) integer array
 ///     Triangles of an orientable manifold.
 /// image : (n, 3) real array
@@ -50,24 +50,24 @@ type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 /// >>> len(indptr)
 /// 13
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, image, *, density=None))]
+#[pyo3(signature = (vertices, faces=None, image=None, *, density=None))]
 pub fn stretch_hessian(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
-    image: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
+    image: Option<&Bound<'_, PyAny>>,
     density: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Columns> {
-    let vertices = points::<3>(vertices, "vertices")?;
-    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let (given, image) = Given::with_image(vertices, faces, image)?;
     let image = vectors(image, "image")?;
-    if image.len() != vertices.len() {
-        let expected = format!("of shape ({}, 3), one row per vertex", vertices.len());
+    if image.len() != given.n_vertices() {
+        let expected = format!("of shape ({}, 3), one row per vertex", given.n_vertices());
         return Err(bad_array(py, "image", format!("of {} rows", image.len()), expected));
     }
     let density = density.map(|density| values(density, "density")).transpose()?;
     let matrix = run(py, None, move |_| {
-        let mesh = TriangleMesh::new(&vertices, &faces)?;
+        let surface = given.surface()?;
+        let mesh = surface.mesh()?;
         let not_finite = |v: &usize| !image[*v].is_finite();
         if let Some(vertices) = Elements::collect((0..image.len()).filter(not_finite)) {
             return Err(MapError::NonFinite { name: "image", vertices }.into());
@@ -76,7 +76,7 @@ pub fn stretch_hessian(
             Some(density) => normalized_density(&density, mesh.n_faces())?,
             None => mesh.face_areas().to_vec(),
         };
-        let energy = SpatialStretchEnergy::new(&mesh, &targets);
+        let energy = SpatialStretchEnergy::new(mesh, &targets);
         let hessian = energy.hessian(&image);
         match hessian.data().iter().all(|value| value.is_finite()) {
             true => Ok(hessian),

@@ -7,12 +7,12 @@ mod disk;
 mod distortion;
 mod errors;
 mod hessian;
-mod mesh;
 mod options;
 mod registration;
 mod run;
 mod sphere;
 mod structure;
+mod surface;
 mod untangle;
 
 use pyo3::prelude::*;
@@ -21,7 +21,8 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(module)?;
-    module.add_class::<mesh::Patch>()?;
+    module.add_class::<surface::Surface>()?;
+    module.add_class::<surface::Patch>()?;
     module.add_class::<distortion::Distortion>()?;
     module.add_class::<disk::DiskMap>()?;
     module.add_class::<sphere::SphereMap>()?;
@@ -31,7 +32,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<structure::HyperbolicStructure>()?;
     module.add_class::<structure::Pants>()?;
     module.add_class::<untangle::Untangled>()?;
-    module.add_function(wrap_pyfunction!(mesh::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(surface::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
     module.add_function(wrap_pyfunction!(sphere::sphere_map, module)?)?;

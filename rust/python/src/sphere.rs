@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::sphere_map`.
 
-use authalic::mesh::TriangleMesh;
 use authalic::optimize::published::gradient_descent::LineSearch;
 use authalic::{SphereMapOptions, SphereMethod};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, from_indices, from_points, indices, points, values, vectors};
+use crate::arrays::{from_index_list, from_indices, from_points, rows, values, vectors};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
 use crate::options::{history, parse_iterations};
 use crate::run::run;
+use crate::surface::Given;
 
 /// A one-to-one map of a closed surface to the unit sphere.
 #[pyclass(frozen, get_all, module = "authalic")]
@@ -132,7 +132,7 @@ impl SphereMap {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit.
+///     Positions, any unit. Or a Surface, without `faces`.
 /// faces : (m, 3) integer array
 ///     Triangles of a connected orientable manifold without boundary and without handles.
 /// method : {"gauss_newton", "gradient_descent", "fixed_point"}
@@ -197,14 +197,14 @@ impl SphereMap {
 /// >>> result.positions.shape, len(result.distortion.folded)
 /// ((6, 3), 0)
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, method="gauss_newton", line_search="interpolation", density=None,
+#[pyo3(signature = (vertices, faces=None, *, method="gauss_newton", line_search="interpolation", density=None,
                     angle_weight=0.0, area_tolerance=None, initial=None, max_iterations=None, tolerance=None,
                     refine=false, unfold=true, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn sphere_map(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
     method: &str,
     line_search: &str,
     density: Option<&Bound<'_, PyAny>>,
@@ -220,13 +220,12 @@ pub fn sphere_map(
     // 1. Arguments to plain data
     let (method, line_search) = (parse_method(method)?, parse_line_search(line_search)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
-    let vertices = points::<3>(vertices, "vertices")?;
-    let faces = indices::<3>(faces, "faces", vertices.len())?;
+    let given = Given::new(vertices, faces)?;
     let density = density.map(|density| values(density, "density")).transpose()?;
     let initial = initial.map(|initial| vectors(initial, "initial")).transpose()?;
     // 2. The run
-    let (map, vertices, faces) = run(py, progress, move |observer| {
-        let mesh = TriangleMesh::new(&vertices, &faces)?;
+    let (map, surface) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
         let (density, initial) = (density.as_deref(), initial.as_deref());
         let options = SphereMapOptions {
             method,
@@ -240,14 +239,17 @@ pub fn sphere_map(
             refine,
             unfold,
         };
-        let map = authalic::sphere_map(&mesh, &options, observer)?;
-        Ok((map, vertices, mesh.faces().to_vec()))
+        Ok((authalic::sphere_map(surface.mesh()?, &options, observer)?, surface))
     })?;
     // 3. The result
-    let refinement =
-        map.refinement.as_ref().map(|found| Refinement::new(py, found, &vertices)).transpose()?;
+    let refinement = map
+        .refinement
+        .as_ref()
+        .map(|found| Refinement::new(py, found, rows(surface.vertices())))
+        .transpose()?;
     let refinement = refinement.map(|found| Py::new(py, found)).transpose()?;
-    Ok(SphereMap { refinement, ..SphereMap::new(py, &map, &faces)? })
+    let mesh = surface.mesh().expect("it was mapped");
+    Ok(SphereMap { refinement, ..SphereMap::new(py, &map, mesh.faces())? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

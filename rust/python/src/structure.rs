@@ -4,14 +4,14 @@
 use authalic::Vector3;
 use authalic::hyperbolic as core;
 use authalic::hyperbolic::moebius::{Complex, Moebius};
-use authalic::mesh::TriangleMesh;
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::arrays::{Pairs, from_index_list, from_indices, from_points, indices, points};
+use crate::arrays::{Pairs, from_index_list, from_indices, from_points, rows};
 use crate::errors::bad_option;
 use crate::registration::{choice, metrics, vertex_paths};
 use crate::run::run;
+use crate::surface::Given;
 
 /// Rows (a, b).
 type Isometries = Py<PyArray2<Complex64>>;
@@ -123,7 +123,8 @@ pub struct HyperbolicStructure {
 type Sides = (Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 
 impl HyperbolicStructure {
-    fn new(py: Python<'_>, found: core::HyperbolicStructure, vertices: &[Vector3]) -> PyResult<Self> {
+    fn new(py: Python<'_>, found: core::HyperbolicStructure, surface: &authalic::Surface) -> PyResult<Self> {
+        let vertices: Vec<Vector3> = rows(surface.vertices()).iter().copied().map(Vector3).collect();
         let list = |values: &[u32]| from_index_list(py, values.iter().map(|&i| i as usize));
         let sides = |sides: &[[Vec<u32>; 2]]| -> Vec<Sides> {
             sides.iter().map(|[left, right]| (list(left), list(right))).collect()
@@ -133,7 +134,7 @@ impl HyperbolicStructure {
         let pants = found.pants.iter().map(|pants| Py::new(py, Pants::new(py, pants)?));
         let curves = found.pants_curves.iter();
         Ok(Self {
-            vertices: from_points(py, &found.in_space(&found.vertices, vertices)),
+            vertices: from_points(py, &found.in_space(&found.vertices, &vertices)),
             faces: from_indices(py, &found.faces),
             vertex_of: PyArray1::from_iter(py, vertex_of).unbind(),
             disk_faces: from_indices(py, &found.disk_faces),
@@ -146,7 +147,7 @@ impl HyperbolicStructure {
             generators: isometries(py, &found.generators)?,
             boundary_lengths: PyArray1::from_slice(py, &found.boundary_lengths).unbind(),
             pants: pants.collect::<PyResult<_>>()?,
-            pants_curves: curves.map(|curve| from_points(py, &found.in_space(curve, vertices))).collect(),
+            pants_curves: curves.map(|curve| from_points(py, &found.in_space(curve, &vertices))).collect(),
             lengths: PyArray1::from_slice(py, &found.lengths).unbind(),
             curvature: found.curvature,
             area: found.area,
@@ -215,7 +216,7 @@ impl HyperbolicStructure {
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     Positions, any unit.
+///     Positions, any unit. Or a Surface, without `faces`.
 /// faces : (m, 3) integer array
 ///     Triangles: one component without handles, closed or with boundary loops.
 /// curves : list of (k,) integer arrays
@@ -259,23 +260,21 @@ impl HyperbolicStructure {
 /// >>> motions.shape, all(abs(pants.angles - np.pi / 2).max() < 1e-9 for pants in found.pants)
 /// ((7, 2), True)
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, curves, metric="newton", progress=None))]
+#[pyo3(signature = (vertices, faces=None, *, curves, metric="newton", progress=None))]
 pub fn hyperbolic_structure(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
     curves: &Bound<'_, PyAny>,
     metric: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<HyperbolicStructure> {
     let metric = choice("metric", metric, &metrics())?;
-    let vertices = points::<3>(vertices, "vertices")?;
-    let faces = indices::<3>(faces, "faces", vertices.len())?;
-    let curves = vertex_paths(curves, "curves", vertices.len())?;
-    let (found, vertices) = run(py, progress, move |observer| {
-        let mesh = TriangleMesh::new(&vertices, &faces)?;
-        Ok((core::hyperbolic_structure(&mesh, &curves, metric, observer)?, vertices))
+    let given = Given::new(vertices, faces)?;
+    let curves = vertex_paths(curves, "curves", given.n_vertices())?;
+    let (found, surface) = run(py, progress, move |observer| {
+        let surface = given.surface()?;
+        Ok((core::hyperbolic_structure(surface.mesh()?, &curves, metric, observer)?, surface))
     })?;
-    let vertices: Vec<Vector3> = vertices.into_iter().map(Vector3).collect();
-    HyperbolicStructure::new(py, found, &vertices)
+    HyperbolicStructure::new(py, found, &surface)
 }

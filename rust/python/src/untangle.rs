@@ -3,7 +3,6 @@
 
 use std::time::Instant;
 
-use authalic::mesh::TriangleMesh;
 use authalic::{UntangleOptions, UntangledImage};
 use numpy::PyArray1;
 use pyo3::intern;
@@ -12,8 +11,8 @@ use pyo3::prelude::*;
 use crate::arrays::{from_index_list, from_points, index_list};
 use crate::distortion::{Distortion, OwnedImage};
 use crate::errors::bad_array;
-use crate::registration::surface;
 use crate::run::run;
+use crate::surface::Given;
 
 /// A map without folds, made from one with folds.
 #[pyclass(frozen, get_all, module = "authalic")]
@@ -59,7 +58,7 @@ impl Untangled {
 ///
 /// Parameters
 /// ----------
-/// surface : (vertices, faces)
+/// surface : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: an orientable manifold, of any number of parts and boundary loops.
 /// image : (n, 2) or (n, 3) real array
 ///     The map of its vertices into the plane, or onto a sphere around the origin. A closed part needs the sphere; there
@@ -107,14 +106,14 @@ pub fn untangle(
 ) -> PyResult<Untangled> {
     // 1. Arguments to plain data
     let began = Instant::now();
-    let (vertices, faces) = self::surface(surface, ["surface", "surface vertices", "surface faces"])?;
-    let image = OwnedImage::extract(image, vertices.len())?;
-    let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, vertices.len()))?;
+    let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
+    let image = OwnedImage::extract(image, given.n_vertices())?;
+    let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, given.n_vertices()))?;
     // 2. The run
     let map = run(py, progress, move |observer| {
-        let mesh = TriangleMesh::new(&vertices, &faces)?;
+        let surface = given.surface()?;
         let options = UntangleOptions { fixed: &fixed, tolerance };
-        authalic::untangle(&mesh, image.view(), &options, observer)
+        authalic::untangle(surface.mesh()?, image.view(), &options, observer)
     })?;
     // 3. The result
     Ok(Untangled {

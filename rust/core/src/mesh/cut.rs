@@ -15,21 +15,20 @@
 use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
 use super::orientation::Orientation;
 use super::topology::Topology;
-use super::{geometry, validate};
+use super::{Surface, geometry, validate};
 use crate::error::{Elements, Error, MeshError};
 
-/// One piece of a cut mesh.
+/// One piece of a cut surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
-    /// The vertices, (n, 3), in the order of the input vertices they are copies of.
-    pub vertices: Vec<[f64; 3]>,
-    /// The faces, (m, 3), in the order, winding and corner order of the input.
-    pub faces: Vec<[u32; 3]>,
-    /// The input vertex of each vertex, (n,), ascending.
+    /// The piece by itself. Its vertices are copies of vertices of the surface that was cut, in their order; its faces
+    /// have the order, winding and corner order of those.
+    pub surface: Surface,
+    /// The vertex of the cut surface that each vertex is a copy of, (n,), ascending.
     pub vertex_of: Vec<u32>,
-    /// The input corner (3 × face + corner) of each corner, (m, 3).
+    /// The corner of the cut surface (3 × face + corner) that each corner was, (m, 3).
     pub corner_of: Vec<[u32; 3]>,
-    /// What kind of surface the patch is. Its loops have the numbers of the patch.
+    /// What kind of surface the patch is, also where it has faces without area or duplicates.
     pub topology: Topology,
 }
 
@@ -45,29 +44,12 @@ impl Patch {
     }
 }
 
-/// Cuts `vertices` (n, 3) and `faces` (m, 3) along `seams` (k, 2), each the two ends of an edge.
-///
-/// Returns the patches in the order of their lowest faces. Without seams these are the components.
-///
-/// ```
-/// use authalic::mesh::cut;
-///
-/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-/// let patches = cut(&vertices, &[[0, 1, 2], [0, 2, 3]], &[[0, 2]])?;
-/// assert_eq!(patches.len(), 2);
-/// assert_eq!(patches[1].vertex_of, [0, 2, 3]);
-/// assert_eq!(patches[1].corner_of, [[3, 4, 5]]);
-/// # Ok::<(), authalic::Error>(())
-/// ```
-///
-/// # Errors
-/// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex, and
-/// seams that are out of range or no edge of the mesh.
-pub fn cut(vertices: &[[f64; 3]], faces: &[[u32; 3]], seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
-    // 1. The arrays.
-    validate::arrays(vertices, faces)?;
+/// Cuts a surface along `seams`, each the two ends of an edge; see [`Surface::cut`].
+pub(super) fn cut(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
+    let (vertices, faces) = (surface.vertex_rows(), surface.face_rows());
+    // 1. The seams.
     check_range(vertices.len(), seams)?;
-    // 2. Which faces are neighbours.
+    // 2. Which faces are neighbors.
     let table = EdgeTable::new(vertices.len(), faces);
     let mut opposite = table.opposites();
     open_seams(&table, seams, &mut opposite)?;
@@ -75,33 +57,33 @@ pub fn cut(vertices: &[[f64; 3]], faces: &[[u32; 3]], seams: &[[u32; 2]]) -> Res
     // 3. Which corners are one vertex, and which faces one patch.
     let joined = join_corners(faces, &opposite);
     let islands = Orientation::propagate(faces, &opposite);
+    drop(opposite);
     // 4. The patches.
-    let mut patches = vec![Patch::empty(); islands.first_faces.len()];
-    let numbers = number_vertices(vertices, faces, joined, &islands.component, &mut patches);
-    collect_faces(numbers, &islands.component, &mut patches);
-    for patch in &mut patches {
-        let (points, _) = geometry::normalized(&patch.vertices);
-        patch.topology = Topology::of_faces(&points, &patch.faces);
-    }
-    Ok(patches)
+    let mut pieces = vec![Piece::default(); islands.first_faces.len()];
+    let numbers = number_vertices(vertices, faces, joined, &islands.component, &mut pieces);
+    collect_faces(numbers, &islands.component, &mut pieces);
+    Ok(pieces.into_iter().map(Piece::into_patch).collect())
 }
 
-impl Patch {
-    fn empty() -> Self {
-        let topology = Topology {
-            euler_characteristic: 0,
-            genus: Some(0),
-            orientable: true,
-            boundary_loops: Vec::new(),
-            first_faces: Vec::new(),
-        };
-        Self {
-            vertices: Vec::new(),
-            faces: Vec::new(),
-            vertex_of: Vec::new(),
-            corner_of: Vec::new(),
-            topology,
-        }
+/// A patch while it is being collected.
+#[derive(Default, Clone)]
+struct Piece {
+    vertices: Vec<[f64; 3]>,
+    faces: Vec<[u32; 3]>,
+    vertex_of: Vec<u32>,
+    corner_of: Vec<[u32; 3]>,
+}
+
+impl Piece {
+    fn into_patch(self) -> Patch {
+        let Self { vertices, faces, vertex_of, corner_of } = self;
+        let surface = Surface::of_checked_rows(vertices, faces);
+        let topology = surface.topology().cloned().unwrap_or_else(|_| {
+            // faces without area or duplicates are for the functions that cannot do with them to refuse
+            let (points, _) = geometry::normalized(surface.vertex_rows());
+            Topology::of_faces(&points, surface.face_rows())
+        });
+        Patch { surface, vertex_of, corner_of, topology }
     }
 }
 
@@ -148,7 +130,7 @@ fn number_vertices(
     faces: &[[u32; 3]],
     mut joined: UnionFind,
     patch_of: &[u32],
-    patches: &mut [Patch],
+    pieces: &mut [Piece],
 ) -> Vec<u32> {
     const UNNUMBERED: u32 = u32::MAX;
     let corners = VertexCorners::new(vertices.len(), faces);
@@ -157,10 +139,10 @@ fn number_vertices(
         for &corner in corners.of(v) {
             let root = joined.root(corner) as usize;
             if numbers[root] == UNNUMBERED {
-                let patch = &mut patches[patch_of[corner as usize / 3] as usize];
-                numbers[root] = patch.vertices.len() as u32;
-                patch.vertices.push(position);
-                patch.vertex_of.push(v as u32);
+                let piece = &mut pieces[patch_of[corner as usize / 3] as usize];
+                numbers[root] = piece.vertices.len() as u32;
+                piece.vertices.push(position);
+                piece.vertex_of.push(v as u32);
             }
             numbers[corner as usize] = numbers[root];
         }
@@ -168,11 +150,11 @@ fn number_vertices(
     numbers
 }
 
-fn collect_faces(numbers: Vec<u32>, patch_of: &[u32], patches: &mut [Patch]) {
+fn collect_faces(numbers: Vec<u32>, patch_of: &[u32], pieces: &mut [Piece]) {
     for (face, (corners, &patch)) in numbers.as_chunks::<3>().0.iter().zip(patch_of).enumerate() {
-        let patch = &mut patches[patch as usize];
-        patch.faces.push(*corners);
-        patch.corner_of.push([0, 1, 2].map(|k| 3 * face as u32 + k));
+        let piece = &mut pieces[patch as usize];
+        piece.faces.push(*corners);
+        piece.corner_of.push([0, 1, 2].map(|k| 3 * face as u32 + k));
     }
 }
 

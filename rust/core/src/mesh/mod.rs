@@ -2,7 +2,7 @@
 //! Triangle meshes: validated once, then trusted.
 //!
 //! [`TriangleMesh`] is an oriented manifold surface with or without boundary, every face of which has an
-//! area. [`cut()`] opens any set of triangles along seams into [`Patch`]es that can become meshes.
+//! area. [`Surface`] holds any set of triangles, and cuts it along seams into [`Patch`]es.
 
 pub(crate) mod bisection;
 pub(super) mod corners;
@@ -12,6 +12,7 @@ pub mod orientation;
 pub(crate) mod polygon;
 pub(crate) mod renumbering;
 mod soup;
+mod surface;
 pub(crate) mod ties;
 pub(crate) mod topology;
 mod triangle_mesh;
@@ -20,8 +21,8 @@ mod validate;
 pub(crate) use corners::{
     EdgeTable, NO_CORNER, VertexCorners, corner_of_entry, half_edge, next_corner, previous_corner, vertex_at,
 };
-pub use cut::{Patch, cut};
+pub use cut::Patch;
 pub use orientation::{Orientation, consistent};
-pub use soup::TriangleSoup;
+pub use surface::{Surface, Triangles};
 pub use topology::Topology;
 pub use triangle_mesh::TriangleMesh;

@@ -12,21 +12,22 @@ pub struct TriangleSoup {
     pub points: Vec<Vector3>,
     /// The faces, (m, 3), turned like most of their component.
     pub faces: Vec<[u32; 3]>,
+    /// Their areas, (m,), all positive.
+    pub areas: Vec<f64>,
 }
 
 impl TriangleSoup {
-    /// Validates vertices (n, 3) and faces (m, 3); faces may touch, cross or repeat in any way.
+    /// Validates vertices (n, 3) and faces (m, 3) that have passed [`validate::arrays`]; faces may touch, cross or
+    /// repeat in any way.
     ///
     /// # Errors
-    /// Empty arrays, coordinates that are not finite, indices out of range, faces that repeat a vertex,
-    /// faces without area.
-    pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
-        validate::arrays(vertices, faces)?;
+    /// Faces without area.
+    pub fn of_checked(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
         let (points, scale) = geometry::normalized(vertices);
-        validate::positive_areas(vertices, &points, scale, faces)?;
+        let areas = validate::positive_areas(vertices, &points, scale, faces)?;
         let flipped = orientation::consistent(points.len(), faces).flipped;
         let turned = |(&[a, b, c], flip): (&[u32; 3], bool)| if flip { [a, c, b] } else { [a, b, c] };
         let faces = faces.iter().zip(flipped).map(turned).collect();
-        Ok(Self { points, faces })
+        Ok(Self { points, faces, areas })
     }
 }

@@ -49,8 +49,13 @@ impl TriangleMesh {
     /// edges of three or more faces, surfaces that cannot be oriented, vertices in which parts only touch,
     /// and vertices without a face.
     pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
-        // 1. The arrays and each face by itself.
         validate::arrays(vertices, faces)?;
+        Self::of_checked(vertices, faces)
+    }
+
+    /// [`Self::new`] of arrays that have passed [`validate::arrays`].
+    pub(super) fn of_checked(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
+        // 1. Each face by itself.
         let (points, scale) = geometry::normalized(vertices);
         let table = EdgeTable::new(points.len(), faces);
         validate::no_duplicates(faces, &table)?;

@@ -3,28 +3,28 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{self, TestMesh};
-use authalic::mesh::{Patch, TriangleMesh, cut};
-use authalic::{Elements, Error, MeshError};
+use crate::common::{self, TestMesh, cut, faces_of, vertices_of};
+use authalic::mesh::TriangleMesh;
+use authalic::{Elements, Error, MeshError, Patch};
 use proptest::prelude::*;
 
 /// Every corner of the input lies in exactly one patch, at its own vertex and position.
 fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch]) {
     let mut rebuilt = vec![[u32::MAX; 3]; faces.len()];
     for patch in patches {
-        assert_eq!(patch.vertices.len(), patch.vertex_of.len());
-        assert_eq!(patch.faces.len(), patch.corner_of.len());
+        assert_eq!(vertices_of(patch).len(), patch.vertex_of.len());
+        assert_eq!(faces_of(patch).len(), patch.corner_of.len());
         assert!(patch.vertex_of.is_sorted() && patch.corner_of.is_sorted());
-        for (&v, position) in patch.vertex_of.iter().zip(&patch.vertices) {
+        for (&v, position) in patch.vertex_of.iter().zip(vertices_of(patch)) {
             assert_eq!(vertices[v as usize], *position);
         }
-        for (face, corners) in patch.faces.iter().zip(&patch.corner_of) {
+        for (face, corners) in faces_of(patch).iter().zip(&patch.corner_of) {
             for (&v, &corner) in face.iter().zip(corners) {
                 rebuilt[corner as usize / 3][corner as usize % 3] = patch.vertex_of[v as usize];
             }
         }
-        let used: BTreeSet<u32> = patch.faces.iter().flatten().copied().collect();
-        assert!(used.into_iter().eq(0..patch.vertices.len() as u32), "every vertex is used");
+        let used: BTreeSet<u32> = faces_of(patch).iter().flatten().copied().collect();
+        assert!(used.into_iter().eq(0..vertices_of(patch).len() as u32), "every vertex is used");
     }
     assert_eq!(rebuilt, faces);
     let lowest: Vec<u32> = patches.iter().map(|patch| patch.corner_of[0][0]).collect();
@@ -65,7 +65,7 @@ fn without_seams_the_components_come_out_unchanged() {
         assert_eq!(loops, test.n_loops, "{}", test.name);
         assert_eq!(patches.iter().all(|patch| patch.topology.orientable), test.genus.is_some());
         if let [patch] = &patches[..] {
-            assert_eq!((&patch.vertices, &patch.faces), (&test.vertices, &test.faces));
+            assert_eq!((vertices_of(patch), faces_of(patch)), (&test.vertices[..], &test.faces[..]));
             assert_eq!((patch.is_disk(), patch.is_closed()), (test.is_disk(), test.n_loops == 0));
             assert_eq!(patch.topology.genus, test.genus, "{}", test.name);
         }
@@ -76,7 +76,7 @@ fn without_seams_the_components_come_out_unchanged() {
 fn patches_know_the_same_topology_as_meshes() {
     for test in common::orientable() {
         for patch in cut_checked(&test, &[]) {
-            let mesh = TriangleMesh::new(&patch.vertices, &patch.faces).unwrap();
+            let mesh = TriangleMesh::new(vertices_of(&patch), faces_of(&patch)).unwrap();
             assert_eq!(*mesh.topology(), patch.topology, "{}", test.name);
         }
     }
@@ -88,12 +88,12 @@ fn a_seam_across_a_grid_parts_it() {
     let across: Vec<u32> = (0..=4).map(|j| 3 * 5 + j).collect();
     let patches = cut_checked(&test, &path(&across));
     assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(1, 1, Some(0)); 2]);
-    assert_eq!([patches[0].faces.len(), patches[1].faces.len()], [24, 24]);
-    assert_eq!([patches[0].vertices.len(), patches[1].vertices.len()], [20, 20]);
+    assert_eq!([faces_of(&patches[0]).len(), faces_of(&patches[1]).len()], [24, 24]);
+    assert_eq!([vertices_of(&patches[0]).len(), vertices_of(&patches[1]).len()], [20, 20]);
     // A seam that starts at the boundary and ends inside opens the grid without parting it.
     let patches = cut_checked(&test, &path(&across[..3]));
     assert_eq!(patches.iter().map(summary).collect::<Vec<_>>(), [(1, 1, Some(0))]);
-    assert_eq!(patches[0].vertices.len(), test.vertices.len() + 2);
+    assert_eq!(vertices_of(&patches[0]).len(), test.vertices.len() + 2);
 }
 
 #[test]
@@ -128,7 +128,9 @@ fn a_torus_opens_into_an_annulus_and_then_into_a_disk() {
     assert!(patches.len() == 1 && patches[0].is_disk());
     assert_eq!(patches[0].topology.boundary_loops[0].len(), 2 * (7 + 9));
     assert_eq!(patches[0].vertex_of[..4], [0; 4], "four copies where the loops cross");
-    assert!(TriangleMesh::new(&patches[0].vertices, &patches[0].faces).unwrap().require_disk().is_ok());
+    assert!(
+        TriangleMesh::new(vertices_of(&patches[0]), faces_of(&patches[0])).unwrap().require_disk().is_ok()
+    );
 }
 
 #[test]
@@ -238,7 +240,7 @@ proptest! {
             let marked = |i: usize| choice[i % choice.len()] < density;
             let seams: Vec<_> = edges.iter().enumerate().filter(|(i, _)| marked(*i)).map(|(_, e)| *e).collect();
             for patch in cut_checked(&test, &seams) {
-                match TriangleMesh::new(&patch.vertices, &patch.faces) {
+                match TriangleMesh::new(vertices_of(&patch), faces_of(&patch)) {
                     Ok(mesh) => {
                         prop_assert_eq!(mesh.topology().euler_characteristic, patch.topology.euler_characteristic);
                         prop_assert_eq!(mesh.boundary_loops().len(), patch.topology.boundary_loops.len());
@@ -277,7 +279,7 @@ proptest! {
         assert_round_trip(&vertices, &faces, &patches);
         for patch in &patches {
             prop_assert_eq!(patch.topology.n_components(), 1);
-            match TriangleMesh::new(&patch.vertices, &patch.faces) {
+            match TriangleMesh::new(vertices_of(patch), faces_of(patch)) {
                 Ok(mesh) => prop_assert_eq!(mesh.topology(), &patch.topology),
                 Err(Error::Mesh(MeshError::DuplicateFaces { .. } | MeshError::NotOrientable { .. })) => {}
                 // Copies of one vertex coincide, but never within a face.

@@ -8,11 +8,12 @@ use pyo3::prelude::*;
 
 use super::found::Outcome;
 use super::result::Registration;
-use super::{found, mesh, surface};
+use super::{SOURCE, TARGET, checked, found};
 use crate::arrays::{from_index_list, index_list, vectors};
 use crate::errors::{bad_array, bad_option};
 use crate::options::parse_iterations;
 use crate::run::run;
+use crate::surface::Given;
 
 /// What proves that a registration by curves is one-to-one, with the curves in place.
 ///
@@ -86,9 +87,9 @@ impl Certificates {
 ///
 /// Parameters
 /// ----------
-/// source : (vertices, faces)
+/// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: one component without handles, closed or with boundary loops.
-/// target : (vertices, faces)
+/// target : Surface, or (vertices, faces)
 ///     Another, with (n_t, 3) and (m_t, 3) and as many boundary loops.
 /// source_curves : list of (k,) integer arrays
 ///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common.
@@ -171,10 +172,10 @@ pub fn register_hyperbolic(
     };
     options.heat_steps = max_iterations.map(parse_iterations).transpose()?.unwrap_or(options.heat_steps);
     options.heat_tolerance = tolerance.unwrap_or(options.heat_tolerance);
-    let source = surface(source, ["source", "source vertices", "source faces"])?;
-    let target = surface(target, ["target", "target vertices", "target faces"])?;
-    let source_curves = vertex_paths(source_curves, "source_curves", source.0.len())?;
-    let target_curves = vertex_paths(target_curves, "target_curves", target.0.len())?;
+    let source = Given::pair(source, SOURCE)?;
+    let target = Given::pair(target, TARGET)?;
+    let source_curves = vertex_paths(source_curves, "source_curves", source.n_vertices())?;
+    let target_curves = vertex_paths(target_curves, "target_curves", target.n_vertices())?;
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
         (Some(ours), Some(theirs)) => {
@@ -187,12 +188,12 @@ pub fn register_hyperbolic(
         }
     };
     let outcome = run(py, progress, move |observer| {
-        let meshes = (mesh(&source, Side::Source)?, mesh(&target, Side::Target)?);
+        let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
         let curves = Curves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
         let options = HyperbolicOptions { spheres, ..options };
-        let outcome = core::register_hyperbolic(&meshes.0, &meshes.1, &curves, &options, observer)?;
-        Ok(found(source, target, &meshes.0, Outcome::Curves(outcome.into())))
+        let outcome = core::register_hyperbolic(source.mesh()?, target.mesh()?, &curves, &options, observer)?;
+        found(&source, &target, Outcome::Curves(outcome.into()))
     })?;
     Registration::new(py, outcome)
 }

@@ -7,12 +7,13 @@ mod result;
 
 use authalic::mesh::TriangleMesh;
 use authalic::registration::{Landmarks, RegistrationOptions};
-use authalic::{Error, Side, registration};
+use authalic::{Error, Side, Vector3, registration};
 use pyo3::prelude::*;
 
-use crate::arrays::{Pairs, from_points, index_list, indices, points, vectors};
+use crate::arrays::{Pairs, from_points, index_list, rows, vectors};
 use crate::errors::{bad_array, bad_option};
 use crate::run::run;
+use crate::surface::{Given, handle};
 pub use curves::{Certificates, register_hyperbolic};
 pub(crate) use curves::{choice, metrics, vertex_paths};
 use found::{Found, Outcome, Surface};
@@ -27,9 +28,9 @@ pub use result::Registration;
 ///
 /// Parameters
 /// ----------
-/// source : (vertices, faces)
+/// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: a surface with one boundary loop and no handles.
-/// target : (vertices, faces)
+/// target : Surface, or (vertices, faces)
 ///     Another, with (n_t, 3) and (m_t, 3).
 /// source_landmarks : (k,) integer array
 ///     Vertices of the source, at least 1, none on the boundary.
@@ -104,9 +105,9 @@ pub fn register_disks(
 ///
 /// Parameters
 /// ----------
-/// source : (vertices, faces)
+/// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: a closed surface without handles.
-/// target : (vertices, faces)
+/// target : Surface, or (vertices, faces)
 ///     Another, with (n_t, 3) and (m_t, 3). One that is turned inside out beside the source is turned back.
 /// source_landmarks : (k,) integer array
 ///     Vertices of the source, at least 2.
@@ -174,7 +175,7 @@ pub fn register_spheres(
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
-///     The source's vertices.
+///     The source's vertices. Or the source as a Surface.
 /// registration : Registration
 ///     Where they go.
 /// t : float
@@ -216,7 +217,7 @@ pub fn homotopy(
     align: bool,
 ) -> PyResult<Pairs> {
     let found = registration.found.clone();
-    let (vertices, n) = (vectors(vertices, "vertices")?, found.positions.len());
+    let (vertices, n) = (vertices_of(vertices)?, found.positions.len());
     if vertices.len() != n {
         let (shape, expected) = (format!("of shape ({}, 3)", vertices.len()), format!("of shape ({n}, 3)"));
         return Err(bad_array(py, "vertices", shape, expected));
@@ -228,10 +229,18 @@ pub fn homotopy(
     Ok(from_points(py, &morphed))
 }
 
+/// Vertices, or those of a surface.
+fn vertices_of(object: &Bound<'_, PyAny>) -> PyResult<Vec<Vector3>> {
+    match handle(object) {
+        Some(surface) => Ok(rows(surface.vertices()).iter().copied().map(Vector3).collect()),
+        None => vectors(object, "vertices"),
+    }
+}
+
 /// The arguments of a registration as plain data.
 struct Arguments {
-    source: (Vec<[f64; 3]>, Vec<[u32; 3]>),
-    target: (Vec<[f64; 3]>, Vec<[u32; 3]>),
+    source: Given,
+    target: Given,
     source_landmarks: Vec<usize>,
     target_landmarks: Vec<usize>,
     options: RegistrationOptions,
@@ -245,10 +254,10 @@ impl Arguments {
         target_landmarks: &Bound<'_, PyAny>,
         options: RegistrationOptions,
     ) -> PyResult<Self> {
-        let source = surface(source, ["source", "source vertices", "source faces"])?;
-        let target = surface(target, ["target", "target vertices", "target faces"])?;
-        let source_landmarks = index_list(source_landmarks, "source_landmarks", "pair", source.0.len())?;
-        let target_landmarks = index_list(target_landmarks, "target_landmarks", "pair", target.0.len())?;
+        let source = Given::pair(source, SOURCE)?;
+        let target = Given::pair(target, TARGET)?;
+        let source_landmarks = index_list(source_landmarks, "source_landmarks", "pair", source.n_vertices())?;
+        let target_landmarks = index_list(target_landmarks, "target_landmarks", "pair", target.n_vertices())?;
         Ok(Self { source, target, source_landmarks, target_landmarks, options })
     }
 
@@ -262,44 +271,32 @@ impl Arguments {
             &RegistrationOptions,
         ) -> Result<Outcome, Error>,
     ) -> Result<Found, Error> {
-        let (source, target) = (mesh(&self.source, Side::Source)?, mesh(&self.target, Side::Target)?);
+        let (source, target) = (checked(self.source, Side::Source)?, checked(self.target, Side::Target)?);
         let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
-        let outcome = register(&source, &target, &landmarks, &self.options)?;
-        Ok(found(self.source, self.target, &source, outcome))
+        let outcome = register(source.mesh()?, target.mesh()?, &landmarks, &self.options)?;
+        found(&source, &target, outcome)
     }
 }
 
-/// A checked surface.
-fn mesh((vertices, faces): &Arrays, side: Side) -> Result<TriangleMesh, Error> {
-    TriangleMesh::new(vertices, faces).map_err(|error| error.of_surface(side))
+/// The names of a surface, of its vertices and of its faces in messages.
+const SOURCE: [&str; 3] = ["source", "source vertices", "source faces"];
+const TARGET: [&str; 3] = ["target", "target vertices", "target faces"];
+
+/// A surface that is a mesh; errors say which surface is at fault.
+fn checked(given: Given, side: Side) -> Result<authalic::Surface, Error> {
+    let surface = given.surface().map_err(|error| error.of_surface(side))?;
+    surface.mesh().map_err(|error| error.of_surface(side))?;
+    Ok(surface)
 }
 
 /// An outcome with the surfaces as given and as oriented.
-fn found(source: Arrays, target: Arrays, mesh: &TriangleMesh, outcome: Outcome) -> Found {
-    let kept = |(vertices, given): Arrays, faces: &[_]| Surface { vertices, given, faces: faces.to_vec() };
-    let target_faces = found::either!(&outcome, found => found.target_faces.clone());
-    let surfaces = (kept(source, mesh.faces()), kept(target, &target_faces));
-    Found::new(surfaces.0.into(), surfaces.1.into(), outcome)
-}
-
-/// Vertices and faces.
-type Arrays = (Vec<[f64; 3]>, Vec<[u32; 3]>);
-
-/// A surface given as (vertices, faces).
-pub(crate) fn surface(
-    object: &Bound<'_, PyAny>,
-    [name, vertices, faces]: [&'static str; 3],
-) -> PyResult<Arrays> {
-    let parts: Vec<Bound<'_, PyAny>> =
-        object.try_iter().and_then(|parts| parts.take(3).collect()).unwrap_or_default();
-    let [first, second] = &parts[..] else {
-        let found = match object.len() {
-            Ok(length) => format!("{} of length {length}", object.get_type().name()?),
-            Err(_) => object.get_type().name()?.to_string(),
-        };
-        return Err(bad_array(object.py(), name, found, "a pair (vertices, faces)".into()));
+fn found(source: &authalic::Surface, target: &authalic::Surface, outcome: Outcome) -> Result<Found, Error> {
+    let kept = |surface: &authalic::Surface, faces: &[_]| Surface {
+        vertices: rows(surface.vertices()).to_vec(),
+        given: rows(surface.faces()).to_vec(),
+        faces: faces.to_vec(),
     };
-    let vertices = points::<3>(first, vertices)?;
-    let faces = indices::<3>(second, faces, vertices.len())?;
-    Ok((vertices, faces))
+    let target_faces = found::either!(&outcome, found => found.target_faces.clone());
+    let surfaces = (kept(source, source.mesh()?.faces()), kept(target, &target_faces));
+    Ok(Found::new(surfaces.0.into(), surfaces.1.into(), outcome))
 }

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A surface as callers hold it: arrays that are checked once, with everything that follows from them.
+
+use std::sync::{Arc, OnceLock};
+
+use ndarray::{Array2, ArrayView2, CowArray, Ix2};
+
+use super::cut::{Patch, cut};
+use super::soup::TriangleSoup;
+use super::{Topology, TriangleMesh, validate};
+use crate::arrays::{from_rows, row_major, rows};
+use crate::error::Error;
+use crate::vector::Vector3;
+
+/// Triangles in space: checked once, then mapped, measured and cut without a further check or copy.
+///
+/// The arrays are checked when the surface is made. Whether it is an oriented manifold is checked by the first function
+/// that needs one, and the answer is kept. Clones share all of it.
+///
+/// ```
+/// use authalic::Surface;
+/// use ndarray::array;
+///
+/// let square = Surface::new(
+///     array![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+///     array![[0, 1, 2], [0, 2, 3]],
+/// )?;
+/// assert!(square.topology()?.is_disk());
+/// assert_eq!(square.cut(array![[0, 2]])?.len(), 2);
+/// # Ok::<(), authalic::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Surface(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    vertices: Array2<f64>,
+    faces: Array2<u32>,
+    mesh: OnceLock<Result<TriangleMesh, Error>>,
+    soup: OnceLock<Result<TriangleSoup, Error>>,
+}
+
+impl Surface {
+    /// A surface of `vertices` (n, 3) and `faces` (m, 3), vertex indices. Owned arrays are not copied.
+    ///
+    /// # Errors
+    /// Arrays of another shape or empty, coordinates that are not finite, indices out of range, faces that repeat a
+    /// vertex; each with the elements at fault.
+    pub fn new<'a>(
+        vertices: impl Into<CowArray<'a, f64, Ix2>>,
+        faces: impl Into<CowArray<'a, u32, Ix2>>,
+    ) -> Result<Self, Error> {
+        let vertices = row_major::<3, _>("vertices", vertices.into())?;
+        let faces = row_major::<3, _>("faces", faces.into())?;
+        validate::arrays(rows(&vertices), rows(&faces))?;
+        Ok(Self::of_checked(vertices, faces))
+    }
+
+    /// A surface of rows that have passed [`validate::arrays`].
+    pub(crate) fn of_checked_rows(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Self {
+        Self::of_checked(from_rows(vertices), from_rows(faces))
+    }
+
+    fn of_checked(vertices: Array2<f64>, faces: Array2<u32>) -> Self {
+        Self(Arc::new(Parts { vertices, faces, mesh: OnceLock::new(), soup: OnceLock::new() }))
+    }
+
+    /// The vertices as given, (n, 3).
+    pub fn vertices(&self) -> ArrayView2<'_, f64> {
+        self.0.vertices.view()
+    }
+
+    /// The faces as given, (m, 3).
+    pub fn faces(&self) -> ArrayView2<'_, u32> {
+        self.0.faces.view()
+    }
+
+    /// How many vertices there are.
+    pub fn n_vertices(&self) -> usize {
+        self.0.vertices.nrows()
+    }
+
+    /// How many faces there are.
+    pub fn n_faces(&self) -> usize {
+        self.0.faces.nrows()
+    }
+
+    /// What kind of surface it is.
+    ///
+    /// # Errors
+    /// What is no manifold or cannot be oriented: duplicate faces, faces without area, edges of three or more faces,
+    /// vertices in which parts only touch, and vertices without a face.
+    pub fn topology(&self) -> Result<&Topology, Error> {
+        self.mesh().map(TriangleMesh::topology)
+    }
+
+    /// Cuts the surface along `seams` (k, 2), each the two ends of an edge, into patches in the order of their lowest
+    /// faces. Without seams these are the connected components.
+    ///
+    /// # Errors
+    /// Seams that are out of range or no edge of the surface.
+    pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
+        let seams = row_major::<2, _>("seams", seams.into())?;
+        cut(self, rows(&seams))
+    }
+
+    /// The surface as an oriented manifold.
+    ///
+    /// # Errors
+    /// As [`Self::topology`].
+    pub fn mesh(&self) -> Result<&TriangleMesh, Error> {
+        let mesh = self.0.mesh.get_or_init(|| TriangleMesh::of_checked(self.vertex_rows(), self.face_rows()));
+        mesh.as_ref().map_err(Clone::clone)
+    }
+
+    /// The triangles for figures that do not need a manifold; those of the mesh where there is one already.
+    ///
+    /// # Errors
+    /// Faces without area.
+    pub fn triangles(&self) -> Result<Triangles<'_>, Error> {
+        if let Some(Ok(mesh)) = self.0.mesh.get() {
+            return Ok(Triangles { points: mesh.points(), faces: mesh.faces(), areas: mesh.face_areas() });
+        }
+        let soup = self.0.soup.get_or_init(|| TriangleSoup::of_checked(self.vertex_rows(), self.face_rows()));
+        let soup = soup.as_ref().map_err(Clone::clone)?;
+        Ok(Triangles { points: &soup.points, faces: &soup.faces, areas: &soup.areas })
+    }
+
+    pub(crate) fn vertex_rows(&self) -> &[[f64; 3]] {
+        rows(&self.0.vertices)
+    }
+
+    pub(crate) fn face_rows(&self) -> &[[u32; 3]] {
+        rows(&self.0.faces)
+    }
+}
+
+/// Surfaces are equal where their arrays are.
+impl PartialEq for Surface {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+            || (self.0.vertices == other.0.vertices && self.0.faces == other.0.faces)
+    }
+}
+
+/// Triangles with an area, oriented alike where they hang together.
+#[derive(Debug, Clone, Copy)]
+pub struct Triangles<'a> {
+    /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
+    pub points: &'a [Vector3],
+    /// The faces, (m, 3), turned like most of their component.
+    pub faces: &'a [[u32; 3]],
+    /// Their areas, (m,).
+    pub areas: &'a [f64],
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::{ShapeBuilder, array, aview2};
+
+    use super::*;
+    use crate::error::MeshError;
+
+    const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+
+    fn square() -> Surface {
+        Surface::new(aview2(&SQUARE), aview2(&HALVES)).unwrap()
+    }
+
+    #[test]
+    fn what_follows_from_a_surface_is_computed_once_and_shared_by_its_clones() {
+        let surface = square();
+        assert!(surface.0.mesh.get().is_none(), "nothing before it is asked for");
+        let mesh: *const TriangleMesh = surface.mesh().unwrap();
+        assert!(std::ptr::eq(surface.clone().mesh().unwrap(), mesh));
+        assert!(std::ptr::eq(surface.triangles().unwrap().points, surface.mesh().unwrap().points()));
+        assert!(surface.0.soup.get().is_none(), "the figures take the triangles of the mesh");
+    }
+
+    #[test]
+    fn patches_are_meshes_from_the_cut_on() {
+        let patches = square().cut(array![[0, 2]]).unwrap();
+        assert!(patches.iter().all(|patch| patch.surface.0.mesh.get().is_some_and(Result::is_ok)));
+    }
+
+    #[test]
+    fn a_refusal_is_kept_too() {
+        let folded = Surface::new(aview2(&SQUARE), array![[0, 1, 2], [1, 2, 0], [0, 2, 3]]).unwrap();
+        assert!(matches!(folded.mesh(), Err(Error::Mesh(MeshError::DuplicateFaces { .. }))));
+        assert!(matches!(folded.0.mesh.get(), Some(Err(Error::Mesh(MeshError::DuplicateFaces { .. })))));
+        assert!(folded.triangles().is_ok(), "figures do not need a manifold");
+    }
+
+    #[test]
+    fn owned_arrays_are_taken_over_and_other_layouts_copied() {
+        let vertices = aview2(&SQUARE).to_owned();
+        let address = vertices.as_ptr();
+        let surface = Surface::new(vertices, aview2(&HALVES)).unwrap();
+        assert_eq!(surface.vertices().as_ptr(), address);
+        let columns = Array2::from_shape_fn((4, 3).f(), |(v, k)| SQUARE[v][k]);
+        let surface = Surface::new(columns.view(), aview2(&HALVES)).unwrap();
+        assert_eq!(surface.vertex_rows(), SQUARE);
+    }
+
+    #[test]
+    fn arrays_of_another_shape_are_refused() {
+        let refused = Surface::new(Array2::zeros((4, 2)), aview2(&HALVES));
+        assert!(matches!(refused, Err(Error::InvalidArray { name: "vertices", .. })));
+    }
+}

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::Surface`: the handle, its patches, and surfaces as arguments.
+
+use authalic::{Error, Topology};
+use numpy::ndarray::{Array2, aview2};
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+
+use crate::arrays::{from_index_list, from_indices, index_table, real_table};
+use crate::errors::bad_array;
+use crate::run::run;
+
+/// A triangle mesh that is checked once, and taken wherever vertices and faces are.
+///
+/// Maps, figures and cuts of a surface neither copy nor check its arrays again, and what follows from them, such as
+/// areas and topology, is computed once. The arrays are checked here; that they form an oriented manifold is checked by
+/// the first function that needs one. Surfaces never change, and threads may share them.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     Positions, any unit.
+/// faces : (m, 3) integer array
+///     Triangles as vertex indices.
+///
+/// Raises
+/// ------
+/// MeshError
+///     Empty arrays or arrays of another shape, NaN, indices out of range, faces that repeat a vertex.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+/// >>> surface = authalic.Surface(pyramid, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])
+/// >>> surface
+/// Surface(5 vertices, 4 faces)
+/// >>> surface.is_disk
+/// True
+/// >>> uv = authalic.disk_map(surface).uv
+/// >>> len(authalic.distortion(surface, uv.astype("float32")).folded)
+/// 0
+/// >>> [patch.surface for patch in surface.cut(seams=[[0, 1], [0, 3]])]
+/// [Surface(4 vertices, 2 faces), Surface(4 vertices, 2 faces)]
+#[pyclass(frozen, module = "authalic")]
+pub struct Surface {
+    handle: authalic::Surface,
+    vertices: PyOnceLock<Py<PyArray2<f64>>>,
+    faces: PyOnceLock<Py<PyArray2<i64>>>,
+}
+
+impl From<authalic::Surface> for Surface {
+    fn from(handle: authalic::Surface) -> Self {
+        Self { handle, vertices: PyOnceLock::new(), faces: PyOnceLock::new() }
+    }
+}
+
+impl Surface {
+    /// What a property reads off the topology; the first one may take a while on a large mesh.
+    fn of_topology<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        read: impl FnOnce(&Topology) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let surface = self.handle.clone();
+        run(py, None, move |_| surface.topology().map(read))
+    }
+}
+
+#[pymethods]
+impl Surface {
+    #[new]
+    fn new(py: Python<'_>, vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let given = Given::arrays(vertices, faces, ["vertices", "faces"])?;
+        Ok(run(py, None, move |_| given.surface())?.into())
+    }
+
+    /// (n, 3) float64, read-only: the vertices as given.
+    #[getter]
+    fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let made = self
+            .vertices
+            .get_or_try_init(py, || read_only(PyArray2::from_array(py, &self.handle.vertices())))?;
+        Ok(made.clone_ref(py))
+    }
+
+    /// (m, 3) int64, read-only: the faces as given; results have them as oriented.
+    #[getter]
+    fn faces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i64>>> {
+        let made = self.faces.get_or_try_init(py, || {
+            read_only(PyArray2::from_owned_array(py, self.handle.faces().mapv(i64::from)))
+        })?;
+        Ok(made.clone_ref(py))
+    }
+
+    /// The number of vertices.
+    #[getter]
+    fn n_vertices(&self) -> usize {
+        self.handle.n_vertices()
+    }
+
+    /// The number of faces.
+    #[getter]
+    fn n_faces(&self) -> usize {
+        self.handle.n_faces()
+    }
+
+    /// The number of connected components. This and the properties below raise MeshError where the surface is no
+    /// oriented manifold.
+    #[getter]
+    fn n_components(&self, py: Python<'_>) -> PyResult<usize> {
+        self.of_topology(py, Topology::n_components)
+    }
+
+    /// Vertices − edges + faces.
+    #[getter]
+    fn euler_characteristic(&self, py: Python<'_>) -> PyResult<i64> {
+        self.of_topology(py, |topology| topology.euler_characteristic)
+    }
+
+    /// The number of handles.
+    #[getter]
+    fn genus(&self, py: Python<'_>) -> PyResult<Option<usize>> {
+        self.of_topology(py, |topology| topology.genus)
+    }
+
+    /// List of (k,) int64: the boundary loops as vertices, the longest first, the surface on the left.
+    #[getter]
+    fn boundary_loops(&self, py: Python<'_>) -> PyResult<Vec<Py<PyArray1<i64>>>> {
+        let loops = self.of_topology(py, |topology| topology.boundary_loops.clone())?;
+        Ok(index_lists(py, &loops))
+    }
+
+    /// Whether the surface is a topological disk.
+    #[getter]
+    fn is_disk(&self, py: Python<'_>) -> PyResult<bool> {
+        self.of_topology(py, Topology::is_disk)
+    }
+
+    /// Whether the surface has no boundary.
+    #[getter]
+    fn is_closed(&self, py: Python<'_>) -> PyResult<bool> {
+        self.of_topology(py, Topology::is_closed)
+    }
+
+    /// Cuts the surface along seams into its patches (islands), as the function `cut` does.
+    ///
+    /// Parameters
+    /// ----------
+    /// seams : (k, 2) integer array, optional
+    ///     Edges to cut, each as its two vertices. Without seams the patches are the connected components.
+    ///
+    /// Returns
+    /// -------
+    /// list of Patch
+    ///     In the order of their lowest faces.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Seams that are no edges.
+    #[pyo3(signature = (*, seams=None))]
+    fn cut(&self, py: Python<'_>, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
+        patches(py, Given::Handle(self.handle.clone()), seams)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Surface({} vertices, {} faces)", self.handle.n_vertices(), self.handle.n_faces())
+    }
+}
+
+/// An array that Python cannot write to.
+fn read_only<T: numpy::Element>(array: Bound<'_, PyArray2<T>>) -> PyResult<Py<PyArray2<T>>> {
+    let py = array.py();
+    let flags = array.getattr(intern!(py, "flags"))?;
+    flags.setattr(intern!(py, "writeable"), false)?;
+    Ok(array.unbind())
+}
+
+fn index_lists(py: Python<'_>, lists: &[Vec<u32>]) -> Vec<Py<PyArray1<i64>>> {
+    lists.iter().map(|list| from_index_list(py, list.iter().map(|&i| i as usize))).collect()
+}
+
+/// One piece of a cut mesh (an island), with maps back to the input. Taken wherever a Surface is.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Patch {
+    /// The patch by itself: what to map and to measure.
+    surface: Py<Surface>,
+    /// (n, 3) float64: the vertices, copies of input vertices.
+    vertices: Py<PyArray2<f64>>,
+    /// (m, 3) int64: the faces, in the order, winding and corner order of the input.
+    faces: Py<PyArray2<i64>>,
+    /// (n,) int64: the input vertex of each vertex.
+    vertex_of: Py<PyArray1<i64>>,
+    /// (m, 3) int64: the input corner, 3 × face + corner, of each corner.
+    corner_of: Py<PyArray2<i64>>,
+    /// (m,) int64: the input face of each face.
+    face_of: Py<PyArray1<i64>>,
+    /// Vertices − edges + faces.
+    euler_characteristic: i64,
+    /// The number of handles; None where the patch is not orientable.
+    genus: Option<usize>,
+    /// List of (k,) int64: the boundary loops as patch vertices, the longest first, the surface on the left.
+    boundary_loops: Vec<Py<PyArray1<i64>>>,
+    /// Whether the patch is a topological disk.
+    is_disk: bool,
+    /// Whether the patch has no boundary.
+    is_closed: bool,
+}
+
+impl Patch {
+    fn new(py: Python<'_>, patch: authalic::Patch) -> PyResult<Self> {
+        let face_of = patch.corner_of.iter().map(|corners| corners[0] as usize / 3);
+        Ok(Self {
+            vertices: PyArray2::from_array(py, &patch.surface.vertices()).unbind(),
+            faces: PyArray2::from_owned_array(py, patch.surface.faces().mapv(i64::from)).unbind(),
+            vertex_of: from_index_list(py, patch.vertex_of.iter().map(|&vertex| vertex as usize)),
+            corner_of: from_indices(py, &patch.corner_of),
+            face_of: from_index_list(py, face_of),
+            euler_characteristic: patch.topology.euler_characteristic,
+            genus: patch.topology.genus,
+            boundary_loops: index_lists(py, &patch.topology.boundary_loops),
+            is_disk: patch.is_disk(),
+            is_closed: patch.is_closed(),
+            surface: Py::new(py, Surface::from(patch.surface))?,
+        })
+    }
+}
+
+#[pymethods]
+impl Patch {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Patch({} vertices, {} faces, {} boundary loops, Euler characteristic {})",
+            self.vertices.bind(py).len()?,
+            self.faces.bind(py).len()?,
+            self.boundary_loops.len(),
+            self.euler_characteristic,
+        ))
+    }
+}
+
+/// Cuts a mesh along seams into its patches (islands).
+///
+/// Corners of neighbouring faces become one vertex wherever the faces meet in an edge that is no seam.
+/// Edges of three or more faces act as seams, parts that only touch in a vertex come apart. A seam that
+/// does not separate still opens the surface; a single edge inside the surface opens nothing, because both
+/// sides keep both of its ends.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     Positions, any unit. Or a Surface, without `faces`.
+/// faces : (m, 3) integer array
+///     Triangles as vertex indices.
+/// seams : (k, 2) integer array, optional
+///     Edges to cut, each as its two vertices. Without seams the patches are the connected components.
+///
+/// Returns
+/// -------
+/// list of Patch
+///     In the order of their lowest faces.
+///
+/// Raises
+/// ------
+/// MeshError
+///     Empty arrays, NaN, indices out of range, faces that repeat a vertex, seams that are no edges.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+/// >>> [len(patch.faces) for patch in authalic.cut(square, [[0, 1, 2], [0, 2, 3]], seams=[[0, 2]])]
+/// [1, 1]
+#[pyfunction]
+#[pyo3(signature = (vertices, faces=None, *, seams=None))]
+pub fn cut(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
+    seams: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Patch>> {
+    patches(py, Given::new(vertices, faces)?, seams)
+}
+
+fn patches(py: Python<'_>, given: Given, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
+    let seams = seams.map(|seams| index_table::<2>(seams, "seams", given.n_vertices())).transpose()?;
+    let patches = run(py, None, move |_| {
+        let surface = given.surface()?;
+        match seams {
+            Some(seams) => surface.cut(seams),
+            None => surface.cut(aview2::<u32, 2>(&[])),
+        }
+    })?;
+    patches.into_iter().map(|patch| Patch::new(py, patch)).collect()
+}
+
+/// A surface as an argument.
+pub enum Given {
+    Handle(authalic::Surface),
+    /// Vertices and faces that nobody has checked but for their dtype and shape.
+    Arrays(Array2<f64>, Array2<u32>),
+}
+
+impl Given {
+    /// The first arguments of a function: a Surface or Patch, or vertices and faces.
+    pub fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        match (handle(vertices), faces) {
+            (Some(handle), None) => Ok(Self::Handle(handle)),
+            (Some(_), Some(_)) => Err(too_many()),
+            (None, Some(faces)) => Self::arrays(vertices, faces, ["vertices", "faces"]),
+            (None, None) => {
+                Err(missing(vertices.py(), "faces", "integers of shape (m, 3) beside the vertices"))
+            }
+        }
+    }
+
+    /// The first arguments of a function on a map: a surface and its image, or vertices, faces and image.
+    pub fn with_image<'a, 'py>(
+        vertices: &Bound<'py, PyAny>,
+        faces: Option<&'a Bound<'py, PyAny>>,
+        image: Option<&'a Bound<'py, PyAny>>,
+    ) -> PyResult<(Self, &'a Bound<'py, PyAny>)> {
+        let py = vertices.py();
+        let no_image = || missing(py, "image", "real numbers of shape (n, 2) or (n, 3)");
+        if handle(vertices).is_none() {
+            let given = Self::new(vertices, faces)?;
+            return Ok((given, image.ok_or_else(no_image)?));
+        }
+        // a surface stands for two arguments, so that its image is the second
+        match (faces, image) {
+            (Some(image), None) | (None, Some(image)) => Ok((Self::new(vertices, None)?, image)),
+            (None, None) => Err(no_image()),
+            (Some(_), Some(_)) => Err(too_many()),
+        }
+    }
+
+    /// One argument of the given name: a Surface or Patch, or a pair (vertices, faces).
+    pub fn pair(object: &Bound<'_, PyAny>, [name, vertices, faces]: [&'static str; 3]) -> PyResult<Self> {
+        if let Some(handle) = handle(object) {
+            return Ok(Self::Handle(handle));
+        }
+        let parts: Vec<Bound<'_, PyAny>> =
+            object.try_iter().and_then(|parts| parts.take(3).collect()).unwrap_or_default();
+        let [first, second] = &parts[..] else {
+            let found = match object.len() {
+                Ok(length) => format!("{} of length {length}", object.get_type().name()?),
+                Err(_) => object.get_type().name()?.to_string(),
+            };
+            return Err(bad_array(object.py(), name, found, "a pair (vertices, faces)".into()));
+        };
+        Self::arrays(first, second, [vertices, faces])
+    }
+
+    fn arrays(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        [vertices_name, faces_name]: [&'static str; 2],
+    ) -> PyResult<Self> {
+        let vertices = real_table::<3>(vertices, vertices_name)?;
+        let faces = index_table::<3>(faces, faces_name, vertices.nrows())?;
+        Ok(Self::Arrays(vertices, faces))
+    }
+
+    pub fn n_vertices(&self) -> usize {
+        match self {
+            Self::Handle(surface) => surface.n_vertices(),
+            Self::Arrays(vertices, _) => vertices.nrows(),
+        }
+    }
+
+    /// The surface; arrays are checked and taken over.
+    pub fn surface(self) -> Result<authalic::Surface, Error> {
+        match self {
+            Self::Handle(surface) => Ok(surface),
+            Self::Arrays(vertices, faces) => authalic::Surface::new(vertices, faces),
+        }
+    }
+}
+
+fn missing(py: Python<'_>, name: &'static str, expected: &str) -> PyErr {
+    bad_array(py, name, "missing".into(), expected.into())
+}
+
+fn too_many() -> PyErr {
+    PyTypeError::new_err("faces go with vertices; a Surface has its own")
+}
+
+/// The surface behind a Surface or a Patch.
+pub fn handle(object: &Bound<'_, PyAny>) -> Option<authalic::Surface> {
+    if let Ok(surface) = object.cast::<Surface>() {
+        return Some(surface.get().handle.clone());
+    }
+    let patch = object.cast::<Patch>().ok()?;
+    Some(patch.get().surface.get().handle.clone())
+}

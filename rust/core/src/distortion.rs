@@ -6,6 +6,7 @@
 //! image's area A = Σ|a_τ|; then E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)).
 //! Which faces are folded is decided by exact predicates.
 
+use crate::mesh::Face;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::error::{Elements, Error, MapError};
@@ -218,17 +219,17 @@ pub(crate) fn distortion_of_wholes(
     parts: &[[u32; 3]],
     image: Image<'_>,
     targets: &[f64],
-    face_of: &[u32],
+    face_of: &[Face],
 ) -> Result<Distortion, Error> {
     let image = Scaled::new(image)?;
     let areas = signed_areas(parts, image, &of_parts.folded);
-    let n_faces = face_of.last().map_or(0, |&face| face as usize + 1);
+    let n_faces = face_of.last().map_or(0, |face| face.index() + 1);
     let mut sums = vec![[0.0; 3]; n_faces];
     for (part, &face) in face_of.iter().enumerate() {
         let values = [areas[part], targets[part], targets[part] * of_parts.angle_distortion[part]];
-        (0..3).for_each(|k| sums[face as usize][k] += values[k]);
+        (0..3).for_each(|k| sums[face][k] += values[k]);
     }
-    let mut folded: Vec<usize> = of_parts.folded.iter().map(|&part| face_of[part] as usize).collect();
+    let mut folded: Vec<usize> = of_parts.folded.iter().map(|&part| face_of[part].index()).collect();
     folded.dedup();
     let [areas, targets, angle] = [0, 1, 2].map(|k| sums.iter().map(|sum| sum[k]).collect::<Vec<f64>>());
     let angle = angle.iter().zip(&targets).map(|(sum, target)| sum / target).collect();

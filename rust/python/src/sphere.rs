@@ -73,7 +73,7 @@ impl Refinement {
             vertices: from_points(py, &all[vertices.len()..]),
             positions: from_points(py, &found.positions),
             faces: from_indices(py, &found.faces),
-            face_of: from_index_list(py, found.face_of.iter().map(|&face| face as usize)),
+            face_of: from_index_list(py, found.face_of.iter().map(|face| face.index())),
             distortion: Py::new(py, Distortion::new(py, &found.distortion))?,
         })
     }

@@ -61,8 +61,6 @@ const QUICK: usize = 50_000;
 
 const MESSAGE: &str = "Start map";
 
-/// A map in the plane z = 1.
-
 impl Run<'_> {
     /// An area-preserving map without folds, computed on the mesh in elimination order.
     ///

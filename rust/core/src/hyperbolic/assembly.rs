@@ -157,7 +157,7 @@ impl Assembly {
                 self.inverse[vertex] = Some(source.given_place(ours, location));
             }
         }
-        let face_of = |face: usize| ours.face_of[source.places[face].face as usize] as usize;
+        let face_of = |face: usize| ours.face_of[source.places[face].face].index();
         self.folded.extend(map.certificates.folded.iter().map(|&face| face_of(face)));
         self.certificates.push(map.certificates);
         if let Some((metrics, descent)) = map.hyperbolic {

@@ -83,7 +83,7 @@ pub fn register_hyperbolic(
 /// An error about faces of a piece as one about faces of its surface.
 fn of_whole_surface(error: Error, source: &Piece, target: &Piece) -> Error {
     let piece = if error.side() == Some(Side::Target) { target } else { source };
-    error.with_faces(|face| piece.face_of[face] as usize)
+    error.with_faces(|face| piece.face_of[face].index())
 }
 
 fn is_closed(mesh: &TriangleMesh) -> bool {

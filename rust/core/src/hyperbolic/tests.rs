@@ -21,7 +21,7 @@ use super::sample_meshes::{mesh, path, sphere};
 use super::slice::slice_pair;
 use super::slice::sliced::{Sliced, SlicedPair};
 use crate::control::{Silent, Status, Watch};
-use crate::mesh::NO_CORNER;
+use crate::mesh::{Face, NO_CORNER};
 use crate::vector::Vector3;
 
 /// Ends of four curves on the sphere.
@@ -100,7 +100,7 @@ fn coordinates_on_a_face_come_back_and_agree_across_edges() {
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
     for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
-        let (face, k) = (corner as u32 / 3, corner % 3);
+        let (face, k) = (Face::new(corner / 3), corner % 3);
         let back = atlas.barycentric(face, atlas.at(face, [0.2, 0.5, 0.3]));
         assert!((back[0] - 0.2).abs() + (back[1] - 0.5).abs() + (back[2] - 0.3).abs() < 1e-9);
         let across = sliced.surface.opposite[corner] as usize;
@@ -110,7 +110,7 @@ fn coordinates_on_a_face_come_back_and_agree_across_edges() {
             weights
         };
         let ours = atlas.transitions[corner].apply(atlas.at(face, on_edge(k, 0.3)));
-        let theirs = atlas.at(across as u32 / 3, on_edge(across % 3, 0.7));
+        let theirs = atlas.at(Face::new(across / 3), on_edge(across % 3, 0.7));
         assert!(distance(ours, theirs) < 1e-10, "{}", distance(ours, theirs));
     }
 }
@@ -122,10 +122,10 @@ fn walks_end_where_they_should() {
     let atlas = Atlas::new(&sliced.surface, &metric);
     // from each face to the middles of its neighbours, as seen from it
     for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
-        let across = sliced.surface.opposite[corner] / 3;
+        let across = Face::of_corner(sliced.surface.opposite[corner]);
         let middle = atlas.at(across, [0.3, 0.4, 0.3]);
         let seen = atlas.transitions[corner].inverse().apply(middle);
-        let walk = atlas.walk(corner as u32 / 3, seen);
+        let walk = atlas.walk(Face::new(corner / 3), seen);
         assert!(walk.face == across && distance(walk.x, middle) < 1e-9 && !walk.is_outside);
         assert!(distance(walk.motion.apply(seen), walk.x) < 1e-9);
     }
@@ -246,14 +246,14 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
         for (vertex, location) in back.iter().enumerate() {
             let location = location.unwrap();
             assert!(location.barycentric.iter().all(|&weight| (0.0..=1.0).contains(&weight)));
-            let face = location.triangle as usize;
+            let face = location.triangle.index();
             let images = super::harmonic::certificates::image(&map, &map.input, face);
             let first = map.input.faces[face][0] as usize;
             // the same point of the hyperboloid from the images of the corners
             let weighted = |k: usize| moebius::to_hyperboloid(images[k]) * location.barycentric[k];
             let point = moebius::from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)));
             let walk = map.atlas.walk(map.places.faces[first], point);
-            let corners = sliced.target.surface.faces[walk.face as usize];
+            let corners = sliced.target.surface.faces[walk.face];
             let Some(k) = corners.iter().position(|&corner| corner as usize == vertex) else {
                 assert!(
                     is_boundary(&sliced.target, vertex),
@@ -261,7 +261,7 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
                 );
                 continue;
             };
-            let gap = distance(walk.x, map.atlas.charts[walk.face as usize][k]);
+            let gap = distance(walk.x, map.atlas.charts[walk.face][k]);
             assert!(gap < 1e-7 || is_boundary(&sliced.target, vertex), "{gap}");
         }
     });

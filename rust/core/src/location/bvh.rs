@@ -4,6 +4,7 @@
 //! Built by halving the elements along the longest side of their centres' box, so that it is as deep as log₂ of their
 //! number whatever their shapes. Cost: O(n log² n) to build, O(log n) for a point in boxes that overlap little.
 
+use crate::mesh::Face;
 use crate::vector::Vector3;
 
 /// Elements in a leaf at the most.
@@ -67,22 +68,22 @@ impl Bounds {
 #[derive(Debug, Clone, Copy)]
 struct Node {
     bounds: Bounds,
-    first: u32,
-    count: u32,
+    first: usize,
+    count: usize,
 }
 
-/// The tree over elements `0..n`, each known by its box.
+/// The tree over faces, each known by its box.
 #[derive(Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    order: Vec<u32>,
+    order: Vec<Face>,
 }
 
 impl Tree {
     /// Builds the tree over at least one box.
     pub(super) fn new(boxes: &[Bounds]) -> Self {
         let centres: Vec<Vector3> = boxes.iter().map(Bounds::centre).collect();
-        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut order: Vec<Face> = Face::all(boxes.len()).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
         branch(boxes, &centres, &mut order, 0, &mut nodes);
         Self { nodes, order }
@@ -90,11 +91,11 @@ impl Tree {
 
     /// Calls `visit` with every element whose leaf's box contains the point, in no particular order, until it says
     /// that this is enough.
-    pub(super) fn visit(&self, point: Vector3, mut visit: impl FnMut(u32) -> bool) {
+    pub(super) fn visit(&self, point: Vector3, mut visit: impl FnMut(Face) -> bool) {
         let mut waiting = Stack::default();
         let mut next = Some(0);
         while let Some(index) = next {
-            let node = &self.nodes[index as usize];
+            let node = &self.nodes[index];
             if !node.bounds.contains(point) {
                 next = waiting.pop();
             } else if node.count == 0 {
@@ -111,12 +112,12 @@ impl Tree {
     /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals.
     ///
     /// Element 0 where nothing compares.
-    pub(super) fn nearest(&self, point: Vector3, squared_distance: impl Fn(u32) -> f64) -> u32 {
-        let (mut nearest, mut least) = (0, f64::INFINITY);
+    pub(super) fn nearest(&self, point: Vector3, squared_distance: impl Fn(Face) -> f64) -> Face {
+        let (mut nearest, mut least) = (Face::default(), f64::INFINITY);
         let mut waiting = Stack::default();
         let mut next = Some(0);
         while let Some(index) = next {
-            let node = &self.nodes[index as usize];
+            let node = &self.nodes[index];
             if node.bounds.squared_distance(point) > least {
                 next = waiting.pop();
                 continue;
@@ -136,21 +137,17 @@ impl Tree {
     }
 
     /// The child nearer to the point; the other one waits.
-    fn nearer_child(&self, index: u32, point: Vector3, waiting: &mut Stack) -> u32 {
-        let [one, other] = [index + 1, self.nodes[index as usize].first];
-        let distance = |child: u32| self.nodes[child as usize].bounds.squared_distance(point);
+    fn nearer_child(&self, index: usize, point: Vector3, waiting: &mut Stack) -> usize {
+        let [one, other] = [index + 1, self.nodes[index].first];
+        let distance = |child: usize| self.nodes[child].bounds.squared_distance(point);
         let (near, far) = if distance(other) < distance(one) { (other, one) } else { (one, other) };
         waiting.push(far);
         near
     }
 
     /// The elements of a leaf; none for a fork.
-    fn elements(&self, node: &Node) -> &[u32] {
-        if node.count == 0 {
-            &[]
-        } else {
-            &self.order[node.first as usize..(node.first + node.count) as usize]
-        }
+    fn elements(&self, node: &Node) -> &[Face] {
+        if node.count == 0 { &[] } else { &self.order[node.first..node.first + node.count] }
     }
 }
 
@@ -158,25 +155,25 @@ impl Tree {
 fn branch(
     boxes: &[Bounds],
     centres: &[Vector3],
-    order: &mut [u32],
+    order: &mut [Face],
     first: usize,
     nodes: &mut Vec<Node>,
 ) -> Bounds {
     let index = nodes.len();
     if order.len() <= LEAF {
-        let bounds = order.iter().fold(Bounds::default(), |all, &e| all.union(boxes[e as usize]));
-        nodes.push(Node { bounds, first: first as u32, count: order.len() as u32 });
+        let bounds = order.iter().fold(Bounds::default(), |all, &e| all.union(boxes[e]));
+        nodes.push(Node { bounds, first, count: order.len() });
         return bounds;
     }
     nodes.push(Node { bounds: Bounds::default(), first: 0, count: 0 });
     // the index decides between equal centres: one order on every machine
-    let axis = order.iter().fold(Bounds::default(), |all, &e| all.with(centres[e as usize])).longest_axis();
-    let place = |element: &u32| centres[*element as usize][axis];
+    let axis = order.iter().fold(Bounds::default(), |all, &e| all.with(centres[e])).longest_axis();
+    let place = |element: &Face| centres[*element][axis];
     let middle = order.len() / 2;
     order.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
     let (left, right) = order.split_at_mut(middle);
     let on_the_left = branch(boxes, centres, left, first, nodes);
-    nodes[index].first = nodes.len() as u32;
+    nodes[index].first = nodes.len();
     let on_the_right = branch(boxes, centres, right, first + middle, nodes);
     nodes[index].bounds = on_the_left.union(on_the_right);
     nodes[index].bounds
@@ -184,7 +181,7 @@ fn branch(
 
 /// The nodes still to be looked at.
 struct Stack {
-    nodes: [u32; STACK],
+    nodes: [usize; STACK],
     height: usize,
 }
 
@@ -195,12 +192,12 @@ impl Default for Stack {
 }
 
 impl Stack {
-    fn push(&mut self, node: u32) {
+    fn push(&mut self, node: usize) {
         self.nodes[self.height] = node;
         self.height += 1;
     }
 
-    fn pop(&mut self) -> Option<u32> {
+    fn pop(&mut self) -> Option<usize> {
         self.height = self.height.checked_sub(1)?;
         Some(self.nodes[self.height])
     }

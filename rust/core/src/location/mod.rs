@@ -15,6 +15,7 @@ mod bvh;
 use robust::{Coord3D, orient3d};
 
 use crate::control::Watch;
+use crate::mesh::Face;
 use crate::mesh::geometry::{determinant_rounding, triangle};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -27,7 +28,7 @@ const BETWEEN_QUESTIONS: usize = 64;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Location {
     /// The face.
-    pub triangle: u32,
+    pub triangle: Face,
     /// The weights of its corners: not negative, and 1 in sum.
     pub barycentric: [f64; 3],
 }
@@ -39,7 +40,7 @@ impl Location {
         let mut barycentric = [0.0; 3];
         let k = corner as usize % 3;
         (barycentric[(k + 1) % 3], barycentric[(k + 2) % 3]) = (1.0 - t, t);
-        Self { triangle: corner / 3, barycentric }
+        Self { triangle: Face::of_corner(corner), barycentric }
     }
 
     /// The point of the place where its face has these corners.
@@ -49,7 +50,7 @@ impl Location {
 
     /// The point of the place on a surface.
     pub(crate) fn point_on(&self, points: &[Vector3], faces: &[[u32; 3]]) -> Vector3 {
-        self.point(triangle(points, faces[self.triangle as usize]))
+        self.point(triangle(points, faces[self.triangle]))
     }
 }
 
@@ -86,7 +87,7 @@ impl<'a> Locator<'a> {
     /// counts. In a vertex, its coordinates are exactly 1 and 0.
     pub(crate) fn locate(&self, x: Vector3) -> Location {
         let at = if self.in_plane { x } else { x * (1.0 / x.norm()) };
-        let mut found: Option<(u32, [f64; 3])> = None;
+        let mut found: Option<(Face, [f64; 3])> = None;
         self.tree.visit(at, |face| {
             let Some(weights) = self.weights(face, x) else { return false };
             if found.is_none_or(|(lowest, _)| face < lowest) {
@@ -112,12 +113,12 @@ impl<'a> Locator<'a> {
     }
 
     /// Whether a triangle, its edges included, contains `x`.
-    pub(super) fn contains(&self, face: u32, x: Vector3) -> bool {
+    pub(super) fn contains(&self, face: Face, x: Vector3) -> bool {
         self.weights(face, x).is_some()
     }
 
     /// The place in a given triangle that is meant by `x` near to it: negative coordinates become 0.
-    pub(super) fn clamped(&self, triangle: u32, x: Vector3) -> Location {
+    pub(super) fn clamped(&self, triangle: Face, x: Vector3) -> Location {
         let corners = self.corners(triangle);
         let weights = determinants(corners, x).map(|weight| weight.max(0.0));
         let barycentric = match weights.iter().sum::<f64>() > 0.0 {
@@ -128,17 +129,17 @@ impl<'a> Locator<'a> {
     }
 
     /// The length of the longest edge of a triangle.
-    pub(super) fn longest_edge(&self, face: u32) -> f64 {
+    pub(super) fn longest_edge(&self, face: Face) -> f64 {
         let [a, b, c] = self.corners(face);
         a.distance(b).max(b.distance(c)).max(c.distance(a))
     }
 
-    fn corners(&self, face: u32) -> [Vector3; 3] {
-        triangle(self.positions, self.faces[face as usize])
+    fn corners(&self, face: Face) -> [Vector3; 3] {
+        triangle(self.positions, self.faces[face])
     }
 
     /// The coordinates of `x` in a face that contains it, up to a factor.
-    fn weights(&self, face: u32, x: Vector3) -> Option<[f64; 3]> {
+    fn weights(&self, face: Face, x: Vector3) -> Option<[f64; 3]> {
         let weights = determinants(self.corners(face), x);
         let is_inside =
             weights.iter().all(|&weight| weight >= 0.0) && weights.iter().any(|&weight| weight > 0.0);

@@ -125,18 +125,18 @@ fn hard_points((points, faces): &Map) -> Vec<Vector3> {
 }
 
 /// All triangles that contain `x`, by exact arithmetic alone.
-fn containing((points, faces): &Map, x: Vector3) -> Vec<u32> {
+fn containing((points, faces): &Map, x: Vector3) -> Vec<Face> {
     let coord = |Vector3([x, y, z]): Vector3| Coord3D { x, y, z };
     let sign = |p, q| orient3d(coord(p), coord(q), coord(x), coord(Vector3::ZERO));
-    let holds = |&face: &u32| {
-        let [a, b, c] = triangle(points, faces[face as usize]);
+    let holds = |&face: &Face| {
+        let [a, b, c] = triangle(points, faces[face]);
         sign(a, b) >= 0.0 && sign(b, c) >= 0.0 && sign(c, a) >= 0.0
     };
-    (0..faces.len() as u32).filter(holds).collect()
+    Face::all(faces.len()).filter(holds).collect()
 }
 
 fn place((points, faces): &Map, location: Location) -> Vector3 {
-    let [a, b, c] = triangle(points, faces[location.triangle as usize]);
+    let [a, b, c] = triangle(points, faces[location.triangle]);
     let [x, y, z] = location.barycentric;
     a * x + (b * y + c * z)
 }
@@ -181,7 +181,7 @@ fn a_vertex_is_found_exactly() {
         let locator = Locator::new(&map.0, &map.1);
         for (vertex, &x) in map.0.iter().enumerate() {
             let found = locator.locate(x);
-            let corner = map.1[found.triangle as usize].iter().position(|&v| v as usize == vertex);
+            let corner = map.1[found.triangle].iter().position(|&v| v as usize == vertex);
             let mut exact = [0.0; 3];
             exact[corner.expect("a triangle at the vertex")] = 1.0;
             assert_eq!(found.barycentric, exact);
@@ -208,7 +208,7 @@ fn beyond_a_chord_the_nearest_point_of_the_boundary_is_meant() {
     let beyond = locator.locate(Vector3([30.0, 0.0, 1.0]));
     let corner = map.0.len() as u32 - 18;
     assert_eq!(place(&map, beyond), Vector3([1.0, 0.0, 1.0]));
-    assert_eq!(beyond.triangle as usize, map.1.iter().position(|face| face.contains(&corner)).unwrap());
+    assert_eq!(beyond.triangle.index(), map.1.iter().position(|face| face.contains(&corner)).unwrap());
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //!
 //! Every half has half the area. Lengths may be those of any map of the mesh. Cost: linear.
 
-use super::TriangleMesh;
+use super::{Face, TriangleMesh};
 
 /// A mesh with some faces split. Vertices keep their numbers, and midpoints follow them.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub(crate) struct Bisection {
     /// (m', 3): the faces, oriented as before.
     pub faces: Vec<[u32; 3]>,
     /// (m',): the face that each one is a part of, ascending.
-    pub face_of: Vec<u32>,
+    pub face_of: Vec<Face>,
     /// (m',): how many parts of its size make up that face: 1, 2 or 4.
     pub parts: Vec<u8>,
 }
@@ -37,14 +37,14 @@ pub(crate) fn bisect_longest_edges(
         face_of: Vec::with_capacity(mesh.n_faces()),
         parts: Vec::with_capacity(mesh.n_faces()),
     };
-    for (number, &face) in mesh.faces().iter().enumerate() {
+    for (number, &face) in Face::all(mesh.n_faces()).zip(mesh.faces()) {
         // the longest edge is bc
         let apex = longest[number];
         let [a, b, c] = [0, 1, 2].map(|k| face[(apex + k) % 3]);
-        let [bc, ca, ab] = [0, 1, 2].map(|k| midpoints.of_corner[3 * number + (apex + k) % 3]);
+        let [bc, ca, ab] = [0, 1, 2].map(|k| midpoints.of_corner[number.corner((apex + k) % 3)]);
         let mut push = |corners: [u32; 3], parts: u8| {
             split.faces.push(corners);
-            split.face_of.push(number as u32);
+            split.face_of.push(number);
             split.parts.push(parts);
         };
         let Some(middle) = bc else {
@@ -137,7 +137,7 @@ mod tests {
             bisect_longest_edges(&mesh, &marked, |a, b| points[a as usize].distance(points[b as usize]));
         // 1. Every marked face is split, and some follow
         for (face, _) in marked.iter().enumerate().filter(|(_, is_marked)| **is_marked) {
-            assert!(split.face_of.iter().filter(|&&of| of as usize == face).count() > 1);
+            assert!(split.face_of.iter().filter(|of| of.index() == face).count() > 1);
         }
         assert!(split.face_of.windows(2).all(|pair| pair[0] <= pair[1]));
         // 2. The parts have the area of their face, each its share
@@ -148,9 +148,9 @@ mod tests {
         }
         let mut sums = vec![0.0; mesh.n_faces()];
         for ((&part, &face), &parts) in split.faces.iter().zip(&split.face_of).zip(&split.parts) {
-            let (size, whole) = (area(triangle(&all, part)), mesh.face_areas()[face as usize]);
+            let (size, whole) = (area(triangle(&all, part)), mesh.face_areas()[face]);
             assert!((size - whole / f64::from(parts)).abs() < 1e-12 * whole.max(1.0));
-            sums[face as usize] += size;
+            sums[face] += size;
         }
         assert!(sums.iter().zip(mesh.face_areas()).all(|(sum, whole)| (sum - whole).abs() < 1e-12));
         // 3. Still one disk: a vertex on an edge would open a hole

@@ -8,6 +8,7 @@ pub(crate) mod bisection;
 pub(super) mod corners;
 mod cut;
 pub mod geometry;
+mod indices;
 pub mod orientation;
 pub(crate) mod polygon;
 pub(crate) mod renumbering;
@@ -22,6 +23,7 @@ pub(crate) use corners::{
     EdgeTable, NO_CORNER, VertexCorners, corner_of_entry, half_edge, next_corner, previous_corner, vertex_at,
 };
 pub use cut::Patch;
+pub use indices::Face;
 pub use orientation::{Orientation, consistent};
 pub use surface::{Surface, Triangles};
 pub use topology::Topology;

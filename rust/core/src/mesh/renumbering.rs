@@ -4,9 +4,9 @@
 //! In the order in which a factorisation eliminates them, neighbours in space are neighbours in memory: every pass over
 //! the faces of a large mesh runs several times faster, and no later system has to be ordered again.
 
-use super::TriangleMesh;
 use super::corners::{NO_CORNER, VertexCorners};
 use super::triangle_mesh::mark_boundary;
+use super::{Face, TriangleMesh};
 use crate::parallel;
 
 /// A renumbered mesh with the way back.
@@ -16,7 +16,7 @@ pub(crate) struct Renumbered {
     /// The given vertex of each vertex, (n,).
     pub vertices: Vec<u32>,
     /// The given face of each face, (m,).
-    pub faces: Vec<u32>,
+    pub faces: Vec<Face>,
 }
 
 impl Renumbered {
@@ -25,10 +25,10 @@ impl Renumbered {
     pub(crate) fn new(mesh: &TriangleMesh, vertices: Vec<u32>) -> Self {
         let place = inverse(&vertices);
         let lowest = |face: usize| mesh.faces[face].map(|vertex| place[vertex as usize]).into_iter().min();
-        let keys = parallel::map(mesh.n_faces(), |face| (lowest(face).unwrap_or(0), face as u32));
+        let keys = parallel::map(mesh.n_faces(), |face| (lowest(face).unwrap_or(0), Face::new(face)));
         let mut order = keys;
         order.sort_unstable();
-        let faces: Vec<u32> = order.into_iter().map(|(_, face)| face).collect();
+        let faces: Vec<Face> = order.into_iter().map(|(_, face)| face).collect();
         let mesh = renumbered(mesh, &vertices, &place, &faces);
         Self { mesh, vertices, faces }
     }
@@ -47,32 +47,32 @@ impl Renumbered {
 
     /// Renumbered faces by their given indices.
     pub(crate) fn given_face(&self, face: usize) -> usize {
-        self.faces[face] as usize
+        self.faces[face].index()
     }
 
     /// Values of the renumbered faces, from values of the given ones.
     pub(crate) fn of_faces<T: Copy>(&self, values: &[T]) -> Vec<T> {
-        self.faces.iter().map(|&face| values[face as usize]).collect()
+        self.faces.iter().map(|&face| values[face]).collect()
     }
 }
 
-fn renumbered(mesh: &TriangleMesh, vertices: &[u32], place: &[u32], faces: &[u32]) -> TriangleMesh {
-    let new_face = inverse(faces);
+fn renumbered(mesh: &TriangleMesh, vertices: &[u32], place: &[u32], faces: &[Face]) -> TriangleMesh {
+    let mut new_face = vec![Face::default(); faces.len()];
+    faces.iter().zip(Face::all(faces.len())).for_each(|(&given, new)| new_face[given] = new);
     let corner = |corner: u32| match corner {
         NO_CORNER => NO_CORNER,
-        corner => 3 * new_face[corner as usize / 3] + corner % 3,
+        corner => new_face[Face::of_corner(corner)].corner(corner as usize % 3) as u32,
     };
-    let old = |face: usize| faces[face] as usize;
-    let new_faces = parallel::map(faces.len(), |face| mesh.faces[old(face)].map(|v| place[v as usize]));
+    let new_faces = parallel::map(faces.len(), |face| mesh.faces[faces[face]].map(|v| place[v as usize]));
     let mut topology = mesh.topology.clone();
     topology.boundary_loops.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
-    topology.first_faces.iter_mut().for_each(|face| *face = new_face[*face as usize]);
+    topology.first_faces.iter_mut().for_each(|face| *face = new_face[Face(*face)].0);
     TriangleMesh {
         points: vertices.iter().map(|&vertex| mesh.points[vertex as usize]).collect(),
         scale: mesh.scale,
-        flipped: mesh.flipped.iter().map(|&face| new_face[face as usize]).collect(),
-        areas: parallel::map(faces.len(), |face| mesh.areas[old(face)]),
-        opposite: parallel::map(3 * faces.len(), |k| corner(mesh.opposite[3 * old(k / 3) + k % 3])),
+        flipped: mesh.flipped.iter().map(|&face| new_face[Face(face)].0).collect(),
+        areas: parallel::map(faces.len(), |face| mesh.areas[faces[face]]),
+        opposite: parallel::map(3 * faces.len(), |k| corner(mesh.opposite[faces[k / 3].corner(k % 3)])),
         corners: VertexCorners::new(vertices.len(), &new_faces),
         on_boundary: mark_boundary(vertices.len(), &topology.boundary_loops),
         in_elimination_order: true,

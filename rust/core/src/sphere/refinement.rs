@@ -23,10 +23,10 @@ use crate::codomain::spherical::onto_sphere;
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
 use crate::mesh::bisection::{Bisection, bisect_longest_edges};
 use crate::mesh::geometry::triangle;
 use crate::mesh::ties::tie_breakers;
+use crate::mesh::{Face, TriangleMesh};
 use crate::parallel;
 use crate::vector::{Vector3, coordinates};
 
@@ -56,7 +56,7 @@ pub struct Refinement {
     /// (m', 3): the faces between vertices and split points, oriented as the surface.
     pub faces: Vec<[u32; 3]>,
     /// (m',): the face that each of them is a part of, ascending.
-    pub face_of: Vec<u32>,
+    pub face_of: Vec<Face>,
     /// The figures of these faces.
     pub distortion: Distortion,
 }
@@ -67,7 +67,7 @@ pub(super) struct Refined {
     pub mesh: TriangleMesh,
     pub targets: Vec<f64>,
     parents: Vec<[u32; 2]>,
-    face_of: Vec<u32>,
+    face_of: Vec<Face>,
 }
 
 /// Splits faces until areas are even; returns the map of the vertices and split points, with the status of the last
@@ -116,7 +116,7 @@ pub(super) fn refine(
 impl Refined {
     /// The surface as it is.
     fn new(mesh: &TriangleMesh, targets: &[f64]) -> Self {
-        let face_of = (0..mesh.n_faces() as u32).collect();
+        let face_of = Face::all(mesh.n_faces()).collect();
         Self { mesh: mesh.clone(), targets: targets.to_vec(), parents: Vec::new(), face_of }
     }
 
@@ -156,12 +156,12 @@ impl Refined {
         let on_sphere = parents.iter().map(|&ends| onto_sphere(middle(map, ends)));
         let map: SpatialMap = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
         // 3. Targets
-        let part = |k: usize| self.targets[face_of[k] as usize] / f64::from(parts[k]);
+        let part = |k: usize| self.targets[face_of[k]] / f64::from(parts[k]);
         let split = Self {
             mesh: TriangleMesh::new(&coordinates(points), &faces).ok()?,
             targets: parallel::map(faces.len(), part),
             parents: self.parents.iter().copied().chain(parents).collect(),
-            face_of: face_of.iter().map(|&face| self.face_of[face as usize]).collect(),
+            face_of: face_of.iter().map(|&face| self.face_of[face]).collect(),
         };
         Some((split, map))
     }

@@ -99,7 +99,7 @@ fn assert_sound(
     for location in &found.map.locations {
         let sum: f64 = location.barycentric.iter().sum();
         prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
-        prop_assert!((location.triangle as usize) < meshes[1].n_faces());
+        prop_assert!(location.triangle.index() < meshes[1].n_faces());
     }
     let positions = found.map.positions(meshes[1].points());
     for (ours, theirs) in paths[0].iter().zip(paths[1]) {

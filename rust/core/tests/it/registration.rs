@@ -38,7 +38,7 @@ fn assert_sound(
     for location in &found.locations {
         let sum: f64 = location.barycentric.iter().sum();
         prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
-        prop_assert!((location.triangle as usize) < found.target_faces.len());
+        prop_assert!(location.triangle.index() < found.target_faces.len());
     }
     for (k, error) in found.landmark_error.iter().enumerate() {
         let [[a, b], [c, d]] = [found.registered[pairs[0][k]], found.target_registered[pairs[1][k]]];

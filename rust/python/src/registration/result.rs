@@ -128,7 +128,7 @@ impl Registration {
         };
         let locations = found.locations();
         let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
-        let triangles = locations.iter().map(|location| location.triangle as usize);
+        let triangles = locations.iter().map(|location| location.triangle.index());
         let area_distortion = found.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
         let (missed, status, distortion) =
             either!(&found.outcome, f => (&f.missed, f.status.as_str(), &f.distortion));

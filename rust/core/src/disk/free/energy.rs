@@ -28,8 +28,6 @@ const ROUNDING: f64 = 3.330_669_073_875_471_6e-16;
 /// The matrix of a face over the two unknowns of each of its corners.
 pub(super) type Element = [[f64; 6]; 6];
 
-/// A map of the vertices into the plane.
-
 /// The rest triangles of a surface.
 pub(super) struct Energy<'a> {
     pub mesh: &'a TriangleMesh,

@@ -70,8 +70,6 @@ const QUICK: usize = 50_000;
 
 const MESSAGE: &str = "Start map";
 
-/// A map in the plane z = 1.
-
 /// A surface with its corners.
 struct Rectangle<'a> {
     run: Run<'a>,

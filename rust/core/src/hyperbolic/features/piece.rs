@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a surface is cut along: slits along landmark curves and boundary loops, each with two banks.
 
+use crate::mesh::Face;
 use crate::vector::Vector3;
 
 /// One bank of a feature: vertices from its start to its end, with their parameters.
@@ -63,7 +64,7 @@ pub(crate) struct Piece {
     /// (n,): the vertices of the surface.
     pub vertex_of: Vec<u32>,
     /// (m,): the faces of the surface.
-    pub face_of: Vec<u32>,
+    pub face_of: Vec<Face>,
     /// Slits and all boundary loops.
     pub features: Vec<Feature>,
 }

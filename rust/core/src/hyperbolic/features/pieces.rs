@@ -12,7 +12,7 @@ use super::parameters::{nearest, shares};
 use super::piece::{Bank, Feature, Piece};
 use super::placement::Placement;
 use super::regions::{Divided, Regions};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Face, TriangleMesh};
 use crate::vector::Vector3;
 
 /// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
@@ -56,8 +56,8 @@ struct Surface<'a> {
 
 impl Surface<'_> {
     fn piece(&self, region: u32) -> Piece {
-        let all = 0..self.mesh.n_faces() as u32;
-        let face_of: Vec<u32> = all.filter(|&face| self.regions.of_face[face as usize] == region).collect();
+        let all = Face::all(self.mesh.n_faces());
+        let face_of: Vec<Face> = all.filter(|&face| self.regions.of_face[face] == region).collect();
         let (faces, vertex_of) = renumbered(self.mesh, &face_of);
         let number = |vertex: u32| vertex_of.partition_point(|&of| of < vertex) as u32;
         let features = (0..self.features.len()).filter_map(|curve| self.seen_from(region, curve));
@@ -93,15 +93,15 @@ impl Surface<'_> {
     /// The region on the left of a boundary loop, twice.
     fn loop_sides(&self, feature: &Feature) -> [u32; 2] {
         let corner = self.mesh.vertex_corners(feature.start() as usize)[0];
-        [self.regions.of_face[corner as usize / 3]; 2]
+        [self.regions.of_face[Face::of_corner(corner)]; 2]
     }
 }
 
 /// Faces between the vertices that they use, numbered in ascending order; and those vertices.
-fn renumbered(mesh: &TriangleMesh, face_of: &[u32]) -> (Vec<[u32; 3]>, Vec<u32>) {
+fn renumbered(mesh: &TriangleMesh, face_of: &[Face]) -> (Vec<[u32; 3]>, Vec<u32>) {
     const UNUSED: u32 = u32::MAX;
     let mut number = vec![UNUSED; mesh.n_vertices()];
-    let given = face_of.iter().map(|&face| mesh.faces()[face as usize]);
+    let given = face_of.iter().map(|&face| mesh.faces()[face]);
     given.clone().flatten().for_each(|vertex| number[vertex as usize] = 0);
     let vertex_of: Vec<u32> =
         (0..mesh.n_vertices() as u32).filter(|&v| number[v as usize] != UNUSED).collect();

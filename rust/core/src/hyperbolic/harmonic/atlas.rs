@@ -12,6 +12,7 @@ use crate::hyperbolic::moebius::{
     Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
 };
 use crate::hyperbolic::slice::Opened;
+use crate::mesh::Face;
 use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -42,7 +43,7 @@ pub(crate) struct Atlas<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Walk {
     /// The face.
-    pub face: u32,
+    pub face: Face,
     /// The point in its chart.
     pub x: Complex,
     /// From the chart in which the walk began to this one.
@@ -70,13 +71,13 @@ impl<'a> Atlas<'a> {
     }
 
     /// Walks from a place in the chart of `face` to the face that contains it.
-    pub(crate) fn walk(&self, face: u32, x: Complex) -> Walk {
+    pub(crate) fn walk(&self, face: Face, x: Complex) -> Walk {
         let mut walk = Walk { face, x, motion: Moebius::default(), is_outside: false };
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         for step in 0..MOST_STEPS {
             let heights = self.heights(walk.face, walk.x);
             let crossed =
-                |k: &usize| heights[*k] < -INSIDE && self.opposite[3 * walk.face as usize + k] != NO_CORNER;
+                |k: &usize| heights[*k] < -INSIDE && self.opposite[walk.face.corner(*k)] != NO_CORNER;
             let candidates: Vec<usize> = (0..3).filter(crossed).collect();
             let lowest = || candidates.iter().copied().min_by(|&a, &b| heights[a].total_cmp(&heights[b]));
             let chosen = match candidates.len() {
@@ -87,7 +88,7 @@ impl<'a> Atlas<'a> {
                 walk.is_outside = heights.iter().any(|&height| height < -OUTSIDE);
                 return walk;
             };
-            walk = self.across(&walk, 3 * walk.face as usize + k);
+            walk = self.across(&walk, walk.face.corner(k));
         }
         Walk { is_outside: true, ..walk }
     }
@@ -95,13 +96,13 @@ impl<'a> Atlas<'a> {
     /// The same walk, one face farther.
     fn across(&self, walk: &Walk, corner: usize) -> Walk {
         let transition = self.transitions[corner];
-        let (face, x) = (self.opposite[corner] / 3, transition.apply(walk.x));
+        let (face, x) = (Face::of_corner(self.opposite[corner]), transition.apply(walk.x));
         Walk { face, x, motion: transition * walk.motion, is_outside: false }
     }
 
     /// How far `x` lies inside of the edges opposite to the corners of a face, nearly in its metric.
-    fn heights(&self, face: u32, x: Complex) -> [f64; 3] {
-        let corners = self.charts[face as usize];
+    fn heights(&self, face: Face, x: Complex) -> [f64; 3] {
+        let corners = self.charts[face];
         std::array::from_fn(|k| {
             let (from, to) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
             orientation(from, to, x) / seen_from(from, to).norm().max(f64::MIN_POSITIVE)
@@ -112,19 +113,19 @@ impl<'a> Atlas<'a> {
     ///
     /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map
     /// that keeps circumcircles.
-    pub(crate) fn at(&self, face: u32, barycentric: [f64; 3]) -> Complex {
-        let (corners, mu) = (self.charts[face as usize], self.mu[face as usize]);
+    pub(crate) fn at(&self, face: Face, barycentric: [f64; 3]) -> Complex {
+        let (corners, mu) = (self.charts[face], self.mu[face]);
         let weighted = |k: usize| to_hyperboloid(corners[k]) * (barycentric[k] * mu[k]);
         from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)))
     }
 
     /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not
     /// negative, 1 in sum.
-    pub(crate) fn barycentric(&self, face: u32, x: Complex) -> [f64; 3] {
-        let [a, b, c] = self.charts[face as usize].map(to_hyperboloid);
+    pub(crate) fn barycentric(&self, face: Face, x: Complex) -> [f64; 3] {
+        let [a, b, c] = self.charts[face].map(to_hyperboloid);
         let x = to_hyperboloid(x);
         let volumes = [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)];
-        let mu = self.mu[face as usize];
+        let mu = self.mu[face];
         let weights: [f64; 3] = std::array::from_fn(|k| (volumes[k] / mu[k]).max(0.0));
         let sum: f64 = weights.iter().sum();
         weights.map(|weight| weight / sum)

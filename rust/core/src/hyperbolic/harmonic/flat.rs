@@ -191,7 +191,7 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
             system.solve(&faces, &vec![1.0; 3 * faces.len()], jump, &mut map, watch)?;
             let laid = layout(&map);
             let folded = folded_in_plane(&disk.faces, &laid).into_iter();
-            match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
+            match Elements::collect(folded.map(|face| sliced.places[face].face.index())) {
                 None => Ok(laid),
                 Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
             }
@@ -213,7 +213,7 @@ fn located(
         return Ok(locations);
     }
     let miss = |found: &Location, [x, y]: Planar| {
-        let corners = target.disk.faces[found.triangle as usize].map(|vertex| layout[vertex as usize]);
+        let corners = target.disk.faces[found.triangle].map(|vertex| layout[vertex as usize]);
         let at = |axis: usize| (0..3).map(|k| found.barycentric[k] * corners[k][axis]).sum::<f64>();
         (at(0) - x).hypot(at(1) - y)
     };

@@ -11,6 +11,7 @@
 //!
 //! Cost: two sparse Cholesky factorisations, a point location for each vertex and a short walk for each edge.
 
+use crate::mesh::Face;
 use crate::mesh::NO_CORNER;
 use std::collections::{HashMap, VecDeque};
 use std::f64::consts::PI;
@@ -36,7 +37,7 @@ const MOST_STEPS: usize = 10_000;
 #[derive(Debug, Clone)]
 pub(crate) struct Places {
     /// (n,): the face of the sliced target in whose chart each vertex of the sliced source is.
-    pub faces: Vec<u32>,
+    pub faces: Vec<Face>,
     /// (n,): where in that chart.
     pub positions: Vec<Complex>,
     /// (n,): for the vertices of the boundary, which stay, the barycentric coordinates in that face.
@@ -207,9 +208,9 @@ impl Links {
 }
 
 /// The isometry from the chart of one face to that of another, along faces of the disk between them.
-fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
-    let centre = |face: u32| {
-        let corners = disk.faces[face as usize].map(|vertex| layout[vertex as usize]);
+fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
+    let centre = |face: Face| {
+        let corners = disk.faces[face].map(|vertex| layout[vertex as usize]);
         [0, 1].map(|axis| (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3.0)
     };
     let goal = centre(to);
@@ -219,15 +220,15 @@ fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: u32, to: u32)
         if face == to {
             return motion;
         }
-        let is_beyond = |k: &usize| {
-            let corner = 3 * face as usize + k;
+        let is_beyond = |&k: &usize| {
+            let corner = face.corner(k);
             disk.opposite[corner] != NO_CORNER && is_right_of(edge_of(disk, layout, corner), goal)
         };
         let exits: Vec<usize> = (0..3).filter(is_beyond).collect();
         let Some(&k) = exits.get(random.next() as usize % exits.len().max(1)) else { break };
-        let corner = 3 * face as usize + k;
+        let corner = face.corner(k);
         motion = atlas.transitions[corner] * motion;
-        face = disk.opposite[corner] / 3;
+        face = Face::of_corner(disk.opposite[corner]);
     }
     path(&disk.opposite, atlas, face, to) * motion
 }
@@ -243,7 +244,7 @@ fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {
 }
 
 /// The isometry from the chart of one face to that of another that is near, along the shortest path of faces.
-fn path(opposite: &[u32], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
+fn path(opposite: &[u32], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
     let mut motions = HashMap::from([(from, Moebius::default())]);
     let mut queue = VecDeque::from([from]);
     while let Some(face) = queue.pop_front() {
@@ -251,11 +252,12 @@ fn path(opposite: &[u32], atlas: &Atlas<'_>, from: u32, to: u32) -> Moebius {
         if face == to {
             return motion;
         }
-        for corner in [0, 1, 2].map(|k| 3 * face as usize + k) {
+        for corner in face.corners() {
             let across = opposite[corner];
-            if across != NO_CORNER && !motions.contains_key(&(across / 3)) {
-                motions.insert(across / 3, atlas.transitions[corner] * motion);
-                queue.push_back(across / 3);
+            let beyond = Face::of_corner(across);
+            if across != NO_CORNER && !motions.contains_key(&beyond) {
+                motions.insert(beyond, atlas.transitions[corner] * motion);
+                queue.push_back(beyond);
             }
         }
     }

@@ -14,6 +14,7 @@ use super::initial::segment;
 use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::Location;
+use crate::mesh::Face;
 use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -34,7 +35,7 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
             let inside = barycentric.iter().copied().fold(1.0, f64::min);
             if inside > depth[vertex as usize] {
                 depth[vertex as usize] = inside;
-                found[vertex as usize] = Some(settled(face as u32, barycentric));
+                found[vertex as usize] = Some(settled(Face::new(face), barycentric));
             }
         }
     }
@@ -51,7 +52,7 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
     found
 }
 
-fn settled(triangle: u32, barycentric: [f64; 3]) -> Location {
+fn settled(triangle: Face, barycentric: [f64; 3]) -> Location {
     let clipped = barycentric.map(|weight| weight.max(0.0));
     let sum: f64 = clipped.iter().sum();
     Location { triangle, barycentric: clipped.map(|weight| weight / sum) }
@@ -68,23 +69,24 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
     let mut queue = vec![(first, Moebius::default())];
     let mut visited = vec![first];
     while let Some((at, motion)) = queue.pop() {
-        let chart = map.atlas.charts[at as usize].map(|z| straight(motion.apply(z)));
+        let chart = map.atlas.charts[at].map(|z| straight(motion.apply(z)));
         if at != first && !overlap(&triangle, &chart) {
             continue;
         }
         for (k, &place) in chart.iter().enumerate() {
-            let vertex = target.surface.faces[at as usize][k];
+            let vertex = target.surface.faces[at][k];
             if let Some(barycentric) = barycentric(&triangle, place)
                 && vertices.iter().all(|&(other, _)| other != vertex)
             {
                 vertices.push((vertex, barycentric));
             }
         }
-        for corner in 3 * at as usize..3 * at as usize + 3 {
+        for corner in at.corners() {
             let across = target.surface.opposite[corner];
-            if across != NO_CORNER && visited.len() < MOST_COVERED && !visited.contains(&(across / 3)) {
-                visited.push(across / 3);
-                queue.push((across / 3, motion * map.atlas.transitions[corner].inverse()));
+            let beyond = Face::of_corner(across);
+            if across != NO_CORNER && visited.len() < MOST_COVERED && !visited.contains(&beyond) {
+                visited.push(beyond);
+                queue.push((beyond, motion * map.atlas.transitions[corner].inverse()));
             }
         }
     }

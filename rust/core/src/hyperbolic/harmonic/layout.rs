@@ -39,7 +39,7 @@ pub(crate) fn planar_layout(
     }
     let uniform = harmonic(disk, &vec![1.0; 3 * disk.faces.len()], held, watch)?;
     let folded = folded_in_plane(&disk.faces, &uniform).into_iter();
-    match Elements::collect(folded.map(|face| sliced.places[face].face as usize)) {
+    match Elements::collect(folded.map(|face| sliced.places[face].face.index())) {
         None => Ok(uniform),
         Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
     }

@@ -58,7 +58,7 @@ pub(crate) fn map_piece(
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
         let metric = hyperbolic_metric(&points, &sliced.surface.faces, chi, options.metric, &watch);
         let side = [Side::Source, Side::Target][surface];
-        metric.map_err(|error| error.with_faces(|face| sliced.places[face].face as usize).of_surface(side))
+        metric.map_err(|error| error.with_faces(|face| sliced.places[face].face.index()).of_surface(side))
     };
     let ours = metric(0, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
     let theirs = metric(1, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;

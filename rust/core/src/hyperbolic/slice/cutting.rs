@@ -14,7 +14,7 @@
 
 use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
-use crate::mesh::{EdgeTable, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
+use crate::mesh::{EdgeTable, Face, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
 use crate::vector::Vector3;
 
 /// What an edge is cut for.
@@ -61,7 +61,7 @@ impl Cutting {
             faces: piece.faces.clone(),
             seams: vec![Seam::None; opposite.len()],
             opposite,
-            places: (0..piece.faces.len() as u32).map(|face| Place { face, corners }).collect(),
+            places: Face::all(piece.faces.len()).map(|face| Place { face, corners }).collect(),
             is_cut: vec![false; piece.points.len()],
         }
     }
@@ -205,7 +205,7 @@ impl Cutting {
     /// Appends a copy of the face of a corner, turned so that this corner comes first, without neighbours.
     fn append_copy(&mut self, corner: u32) -> u32 {
         let corners = [corner, next_corner(corner), previous_corner(corner)];
-        let Place { face, corners: weights } = self.places[corner as usize / 3];
+        let Place { face, corners: weights } = self.places[Face::of_corner(corner)];
         self.places.push(Place { face, corners: corners.map(|corner| weights[corner as usize % 3]) });
         self.faces.push(corners.map(|corner| vertex_at(&self.faces, corner)));
         self.seams.extend(corners.map(|corner| self.seams[corner as usize]));
@@ -215,7 +215,7 @@ impl Cutting {
 
     /// Moves a corner to the midpoint of two corners of its face.
     fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: u32) {
-        let weights = &mut self.places[corner as usize / 3].corners;
+        let weights = &mut self.places[Face::of_corner(corner)].corners;
         let [a, b] = [a, b].map(|end| weights[end as usize % 3]);
         weights[corner as usize % 3] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
         self.faces[corner as usize / 3][corner as usize % 3] = midpoint;
@@ -254,7 +254,7 @@ mod tests {
         Cutting::new(&Piece {
             on_sphere: vec![x, y, z, -z],
             vertex_of: (0..4).collect(),
-            face_of: vec![0, 1],
+            face_of: vec![Face(0), Face(1)],
             faces: vec![[0, 1, 2], [1, 0, 3]],
             points,
             features: Vec::new(),
@@ -273,7 +273,7 @@ mod tests {
         for (face, place) in cutting.faces.iter().zip(&cutting.places) {
             for (corner, weights) in face.iter().zip(place.corners) {
                 assert_eq!(weights.iter().sum::<f64>(), 1.0);
-                let whole = two_triangles().faces[place.face as usize];
+                let whole = two_triangles().faces[place.face];
                 let terms = whole.iter().zip(weights).map(|(&v, w)| cutting.points[v as usize] * w);
                 assert_eq!(terms.sum::<Vector3>(), cutting.points[*corner as usize]);
             }

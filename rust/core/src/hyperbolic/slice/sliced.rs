@@ -4,6 +4,7 @@
 use super::openings::Opened;
 use crate::hyperbolic::features::piece::Piece;
 use crate::location::Location;
+use crate::mesh::Face;
 use crate::vector::Vector3;
 
 /// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts
@@ -49,10 +50,10 @@ impl Sliced {
 
     /// A place on the sliced surface as one on the whole surface.
     pub(crate) fn given_place(&self, piece: &Piece, location: &Location) -> Location {
-        let place = &self.places[location.triangle as usize];
+        let place = &self.places[location.triangle];
         let barycentric = [0, 1, 2]
             .map(|k| (0..3).map(|corner| location.barycentric[corner] * place.corners[corner][k]).sum());
-        Location { triangle: piece.face_of[place.face as usize], barycentric }
+        Location { triangle: piece.face_of[place.face], barycentric }
     }
 }
 
@@ -60,7 +61,7 @@ impl Sliced {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     /// The face of the piece.
-    pub face: u32,
+    pub face: Face,
     /// The barycentric coordinates in it of each corner of the part; exact, as all splits are at midpoints.
     pub corners: [[f64; 3]; 3],
 }

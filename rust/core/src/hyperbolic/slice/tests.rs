@@ -9,7 +9,7 @@ use super::*;
 use crate::control::Silent;
 use crate::hyperbolic::features::piece::Bank;
 use crate::mesh::geometry::{area, triangle};
-use crate::mesh::{EdgeTable, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
+use crate::mesh::{EdgeTable, Face, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
 
 /// The icosahedron, each face divided into 4^level.
 fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[u32; 3]>) {
@@ -77,7 +77,7 @@ fn piece(points: Vec<Vector3>, faces: Vec<[u32; 3]>) -> Piece {
     Piece {
         on_sphere: points.clone(),
         vertex_of: (0..points.len() as u32).collect(),
-        face_of: (0..faces.len() as u32).collect(),
+        face_of: Face::all(faces.len()).collect(),
         points,
         faces,
         features: Vec::new(),
@@ -222,13 +222,13 @@ fn check_sliced(piece: &Piece, chain: &[(usize, bool)], sliced: &Sliced) {
 fn check_places(piece: &Piece, sliced: &Sliced) {
     let mut left: Vec<f64> = piece.faces.iter().map(|&face| area(triangle(&piece.points, face))).collect();
     for (&face, place) in sliced.faces.iter().zip(&sliced.places) {
-        let whole = triangle(&piece.points, piece.faces[place.face as usize]);
+        let whole = triangle(&piece.points, piece.faces[place.face]);
         for (corner, weights) in face.iter().zip(place.corners) {
             assert_eq!(weights.iter().sum::<f64>(), 1.0);
             let at = whole.iter().zip(weights).map(|(&x, weight)| x * weight).sum::<Vector3>();
             assert!(at.distance(sliced.points[*corner as usize]) < 1e-15);
         }
-        left[place.face as usize] -= area(triangle(&sliced.points, face));
+        left[place.face] -= area(triangle(&sliced.points, face));
     }
     assert!(left.iter().all(|area| area.abs() < 1e-15));
 }

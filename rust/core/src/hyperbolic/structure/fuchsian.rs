@@ -10,7 +10,7 @@
 //!
 //! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
 
-use crate::mesh::NO_CORNER;
+use crate::mesh::{Face, NO_CORNER};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
@@ -41,21 +41,21 @@ pub(super) struct Development<'a> {
 
 impl<'a> Development<'a> {
     /// Lays the disk out around the chart of one face, which stays where it is.
-    pub(super) fn around(face: u32, sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
+    pub(super) fn around(face: Face, sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
         let mut frames = vec![Moebius::default(); atlas.charts.len()];
         let mut is_placed = vec![false; frames.len()];
-        is_placed[face as usize] = true;
+        is_placed[face] = true;
         let mut queue = VecDeque::from([face]);
         while let Some(face) = queue.pop_front() {
-            for corner in 3 * face..3 * face + 3 {
-                let across = sliced.disk.opposite[corner as usize];
-                if across == NO_CORNER || is_placed[across as usize / 3] {
+            for corner in face.corners() {
+                let across = sliced.disk.opposite[corner];
+                let beyond = Face::of_corner(across);
+                if across == NO_CORNER || is_placed[beyond] {
                     continue;
                 }
-                is_placed[across as usize / 3] = true;
-                frames[across as usize / 3] =
-                    frames[face as usize] * atlas.transitions[corner as usize].inverse();
-                queue.push_back(across / 3);
+                is_placed[beyond] = true;
+                frames[beyond] = frames[face] * atlas.transitions[corner].inverse();
+                queue.push_back(beyond);
             }
         }
         Self { sliced, atlas, frames }
@@ -63,7 +63,7 @@ impl<'a> Development<'a> {
 
     /// Lays the disk out around a face in its middle, so that no part is farther out than it must be.
     pub(super) fn centred(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
-        let first = Self::around(0, sliced, atlas);
+        let first = Self::around(Face(0), sliced, atlas);
         // the mean on the hyperboloid is where the sum of cosh(distance) is least: the farthest count most
         let middle =
             first.frames.iter().fold(Vector3::ZERO, |sum, frame| sum + weighted(frame.apply(ORIGIN)));
@@ -71,7 +71,7 @@ impl<'a> Development<'a> {
         let far =
             parallel::map(first.frames.len(), |face| distance(middle, first.frames[face].apply(ORIGIN)));
         let nearest = (0..far.len()).min_by(|&a, &b| far[a].total_cmp(&far[b])).unwrap_or(0);
-        Self::around(nearest as u32, sliced, atlas)
+        Self::around(Face::new(nearest), sliced, atlas)
     }
 
     /// The places of the vertices of the disk, by those of their faces that lie nearest to the origin.
@@ -103,7 +103,7 @@ impl<'a> Development<'a> {
     fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
         let candidates = side.opposite_corners(corners).map(|corner| {
             let across = self.sliced.surface.opposite[corner as usize];
-            let [left, right] = [corner, across].map(|corner| self.frames[corner as usize / 3]);
+            let [left, right] = [corner, across].map(|corner| self.frames[Face::of_corner(corner)]);
             (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner as usize] * left.inverse())
         });
         let nearest = candidates.min_by(|one, other| one.0.total_cmp(&other.0));

@@ -30,8 +30,8 @@ use super::slice::sliced::{Side, Sliced};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
 use crate::location::Location;
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{Face, TriangleMesh};
 use crate::vector::Vector3;
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
@@ -93,8 +93,7 @@ impl HyperbolicStructure {
     /// # Panics
     /// Where `vertices` are fewer than the surface's.
     pub fn in_space(&self, places: &[Location], vertices: &[Vector3]) -> Vec<Vector3> {
-        let point =
-            |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle as usize]));
+        let point = |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle]));
         places.iter().map(point).collect()
     }
 }
@@ -124,7 +123,7 @@ pub fn hyperbolic_structure(
     let chi = 2 - chain.len() as i64;
     let watch = Watch::new(observer, 0.15, "Hyperbolic metric");
     let metric = hyperbolic_metric(&sliced.surface_points(), &sliced.surface.faces, chi, metric, &watch);
-    let face_of = |face: usize| piece.face_of[sliced.places[face].face as usize] as usize;
+    let face_of = |face: usize| piece.face_of[sliced.places[face].face].index();
     let metric = metric.map_err(|error| error.with_faces(face_of))?;
     // 4. The fundamental domain and the group
     let atlas = Atlas::new(&sliced.surface, &metric);
@@ -187,10 +186,10 @@ fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Ve
     let last = domain.generators().len();
     let of_feature = |k: usize| {
         let bank: Vec<u32> = sliced.sides[2 * k + 2].opposite_corners(&corners).collect();
-        let face = bank[bank.len() / 2] / 3;
+        let face = Face::of_corner(bank[bank.len() / 2]);
         let generators = Development::around(face, sliced, atlas).generators();
         let pants = pants(generators[k], generators[k + 1]);
-        Pants { placement: domain.frames[face as usize] * pants.placement, ..pants }
+        Pants { placement: domain.frames[face] * pants.placement, ..pants }
     };
     (0..last - 1).map(of_feature).collect()
 }
@@ -206,12 +205,12 @@ fn pants_curves(
     let corners = sliced.disk.boundary_corners();
     let generators = domain.generators();
     let traced = (0..generators.len() - 2).map(|k| {
-        let far = |face: u32| {
+        let far = |face: Face| {
             let [from, to] = generators[k + 1].fixed_points();
-            let [from, to] = [from, to].map(|end| domain.frames[face as usize].inverse().apply(end));
+            let [from, to] = [from, to].map(|end| domain.frames[face].inverse().apply(end));
             (from + to).norm()
         };
-        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(|corner| corner / 3);
+        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(Face::of_corner);
         let face = faces.min_by(|&a, &b| far(a).total_cmp(&far(b)))?;
         let generator = Development::around(face, sliced, atlas).generators()[k + 1];
         let line = generator.fixed_points();
@@ -237,7 +236,7 @@ fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<u32>; 2]> {
 /// The lengths of the features once around, by their own numbers.
 fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -> Vec<f64> {
     let corners = sliced.disk.boundary_corners();
-    let length = |corner: u32| metric.lengths[corner as usize / 3][corner as usize % 3];
+    let length = |corner: u32| metric.lengths[Face::of_corner(corner)][corner as usize % 3];
     let mut lengths = vec![0.0; chain.len()];
     for side in sliced.sides.iter().filter(|side| !side.is_arc) {
         lengths[chain[side.index].0] += side.opposite_corners(&corners).map(length).sum::<f64>();
@@ -252,7 +251,7 @@ fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
         for (k, &vertex) in corners.iter().enumerate() {
             let mut barycentric = [0.0; 3];
             barycentric[k] = 1.0;
-            let place = Location { triangle: face as u32, barycentric };
+            let place = Location { triangle: Face::new(face), barycentric };
             vertices[vertex as usize] = sliced.given_place(piece, &place);
         }
     }

@@ -13,7 +13,7 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
 use crate::hyperbolic::slice::Opened;
 use crate::location::Location;
-use crate::mesh::{NO_CORNER, next_corner, previous_corner};
+use crate::mesh::{Face, NO_CORNER, next_corner, previous_corner};
 use crate::vector::Vector3;
 
 /// The line has closed up where it crosses the first edge again after its length but for this share.
@@ -38,7 +38,7 @@ type Line = [Complex; 2];
 pub(super) fn closed_geodesic(
     atlas: &Atlas<'_>,
     surface: &Opened,
-    face: u32,
+    face: Face,
     line: Line,
     length: f64,
 ) -> Option<ClosedGeodesic> {
@@ -78,13 +78,14 @@ fn height([from, to]: Line, point: Vector3) -> f64 {
 
 /// The height of a corner's vertex above a line in the chart of its face.
 fn corner_height(atlas: &Atlas<'_>, corner: u32, line: Line) -> f64 {
-    height(line, to_hyperboloid(atlas.charts[corner as usize / 3][corner as usize % 3]))
+    height(line, to_hyperboloid(atlas.charts[Face::of_corner(corner)][corner as usize % 3]))
 }
 
 /// The corner opposite to the edge through which a line leaves a face; `None` where it misses the face.
-fn exit(atlas: &Atlas<'_>, face: u32, line: Line) -> Option<u32> {
+fn exit(atlas: &Atlas<'_>, face: Face, line: Line) -> Option<u32> {
     let is_left = |corner| corner_height(atlas, corner, line) >= 0.0;
-    (3 * face..3 * face + 3).find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
+    let mut corners = face.corners().into_iter().map(|corner| corner as u32);
+    corners.find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
 }
 
 /// The edges that a line crosses from one on until it closes up, each by the corner opposite to it in the
@@ -153,7 +154,7 @@ fn crossing(atlas: &Atlas<'_>, corner: u32, line: Line) -> (Location, Complex) {
     let [right, left] = ends.map(|corner| corner_height(atlas, corner, line));
     let weights = [left.max(f64::MIN_POSITIVE), (-right).max(f64::MIN_POSITIVE)];
     let [from, to] = [0, 1].map(|k| {
-        let (face, corner) = (ends[k] as usize / 3, ends[k] as usize % 3);
+        let (face, corner) = (Face::of_corner(ends[k]), ends[k] as usize % 3);
         (to_hyperboloid(atlas.charts[face][corner]), weights[k] / atlas.mu[face][corner])
     });
     let place = Location::on_edge(corner, to.1 / (from.1 + to.1));

@@ -7,6 +7,7 @@
 
 use super::{interpolated, rows};
 use crate::location::{Location, Locator, determinant};
+use crate::mesh::Face;
 use crate::mesh::VertexCorners;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
@@ -47,7 +48,7 @@ pub fn pull_corners(
     });
     let places = places.as_flattened();
     rows(places.len(), width, |row, column| {
-        let first = 3 * places[row].triangle as usize;
+        let first = places[row].triangle.corner(0);
         interpolated(places[row], |corner| values[(first + corner) * width + column])
     })
 }
@@ -64,7 +65,7 @@ struct Target<'a> {
 
 impl Target<'_> {
     /// How far the way `from` a point of the triangle `here` gets to `x`, which lies at `goal`: to its end or to a seam.
-    fn reached(&self, mut here: u32, from: Vector3, x: Vector3, goal: Location) -> Location {
+    fn reached(&self, mut here: Face, from: Vector3, x: Vector3, goal: Location) -> Location {
         // a way longer than all triangles would be going in circles
         for _ in 0..self.faces.len() {
             if here == goal.triangle {
@@ -80,8 +81,8 @@ impl Target<'_> {
     }
 
     /// The edge through which the way to `x` leaves a triangle, by the corner opposite; `None` where `x` lies in it.
-    fn way_out(&self, face: u32, from: Vector3, x: Vector3) -> Option<usize> {
-        let corners = triangle(self.positions, self.faces[face as usize]);
+    fn way_out(&self, face: Face, from: Vector3, x: Vector3) -> Option<usize> {
+        let corners = triangle(self.positions, self.faces[face]);
         // what lies on the way counts as left of it, in every triangle alike
         let is_left = corners.map(|corner| determinant(from, x, corner) >= 0.0);
         let leaves = |k: &usize| determinant(corners[(k + 1) % 3], corners[(k + 2) % 3], x) < 0.0;
@@ -90,21 +91,21 @@ impl Target<'_> {
     }
 
     /// The face on the other side of an edge; `None` at a seam or at the boundary.
-    fn across(&self, face: u32, edge: usize) -> Option<u32> {
+    fn across(&self, face: Face, edge: usize) -> Option<Face> {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
-        let [start, end] = [i, j].map(|k| self.faces[face as usize][k]);
+        let [start, end] = [i, j].map(|k| self.faces[face][k]);
         // in the other face the edge runs the other way
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
         let other = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
-        let agrees = |corner: usize, theirs: u32| self.agree(3 * face + corner as u32, theirs);
-        (agrees(j, other) && agrees(i, after(other))).then_some(other / 3)
+        let agrees = |k: usize, theirs: u32| self.agree(face.corner(k), theirs as usize);
+        (agrees(j, other) && agrees(i, after(other))).then_some(Face::of_corner(other))
     }
 
     /// The point of an edge at which the way crosses it.
-    fn crossing(&self, face: u32, edge: usize, from: Vector3, x: Vector3) -> Location {
+    fn crossing(&self, face: Face, edge: usize, from: Vector3, x: Vector3) -> Location {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
-        let corners = triangle(self.positions, self.faces[face as usize]);
+        let corners = triangle(self.positions, self.faces[face]);
         let (right, left) = (-determinant(from, x, corners[i]), determinant(from, x, corners[j]));
         let (right, left) = (right.max(0.0), left.max(0.0));
         if right + left == 0.0 {
@@ -116,14 +117,14 @@ impl Target<'_> {
     }
 
     /// Whether two corners have the same values up to the rounding of single precision; what is no number agrees.
-    fn agree(&self, corner: u32, other: u32) -> bool {
+    fn agree(&self, corner: usize, other: usize) -> bool {
         let is_same = |(a, b): (&f64, &f64)| {
             (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1.0) || a.is_nan() && b.is_nan() || a == b
         };
         self.row(corner).iter().zip(self.row(other)).all(is_same)
     }
 
-    fn row(&self, corner: u32) -> &[f64] {
-        &self.values[corner as usize * self.width..][..self.width]
+    fn row(&self, corner: usize) -> &[f64] {
+        &self.values[corner * self.width..][..self.width]
     }
 }

@@ -29,15 +29,16 @@ const INWARD: f64 = 1e-2;
 /// Where `values` are too few for the indices in `faces`.
 ///
 /// ```
+/// use authalic::mesh::Face;
 /// use authalic::registration::{Location, pull_vertices};
 ///
-/// let middle = Location { triangle: 0, barycentric: [0.5, 0.25, 0.25] };
+/// let middle = Location { triangle: Face(0), barycentric: [0.5, 0.25, 0.25] };
 /// assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2]], &[middle]), [2.5]);
 /// ```
 pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations: &[Location]) -> Vec<f64> {
     rows(locations.len(), width, |row, column| {
         let location = locations[row];
-        let face = faces[location.triangle as usize];
+        let face = faces[location.triangle];
         interpolated(location, |corner| values[face[corner] as usize * width + column])
     })
 }
@@ -47,14 +48,14 @@ pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations
 pub fn nearest_vertices(faces: &[[u32; 3]], locations: &[Location]) -> Vec<u32> {
     parallel::map(locations.len(), |vertex| {
         let location = locations[vertex];
-        faces[location.triangle as usize][heaviest(location)]
+        faces[location.triangle][heaviest(location)]
     })
 }
 
 /// The corner of the target's faces nearest to each corner of the source's, (3 m,): corner `3 * face + k`, on the side
 /// on which the source's face lies.
 pub fn nearest_corners(sides: &[Location]) -> Vec<u32> {
-    parallel::map(sides.len(), |corner| 3 * sides[corner].triangle + heaviest(sides[corner]) as u32)
+    parallel::map(sides.len(), |corner| sides[corner].triangle.corner(heaviest(sides[corner])) as u32)
 }
 
 /// The given rows of data of any type: labels by [`nearest_vertices`] or [`nearest_corners`].

@@ -7,7 +7,8 @@
 
 use sprs::CsMat;
 
-use super::multifrontal::{Element, Factor, Failure, NONE, Order, Place, Symbolic};
+use super::multifrontal::dense::Failure;
+use super::multifrontal::{Element, Factor, NONE, Order, Place, Symbolic};
 use crate::control::{Silent, Watch};
 use crate::error::{Error, NumericsError};
 use crate::mesh::TriangleMesh;

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::UntangleOptions;
+use super::options::UntangleOptions;
 use super::positions::Positions;
 use crate::distortion::Image;
 use crate::error::{Elements, Error, MapError};

@@ -13,10 +13,9 @@
 //!
 //! Cost: up to [`STEPS`] factorizations of the patch for each of about eight μ.
 
-use super::newton::{
-    Corners, FaceEnergy, Hessian, Newton, add_less_area_curvature, add_symmetric, doubled_area,
-};
+use super::newton::{FaceEnergy, Newton};
 use super::patch::Patch;
+use super::triangle::{Corners, Hessian, add_less_area_curvature, add_symmetric, doubled_area};
 use crate::control::Watch;
 
 /// Newton steps for each μ at the most, and for the last.

@@ -13,8 +13,9 @@
 //!
 //! Cost: one factorization of the patch for each of up to [`ITERATIONS`] steps, a dozen as a rule.
 
-use super::newton::{Corners, FaceEnergy, Hessian, Newton, add_area_curvature, add_symmetric, doubled_area};
+use super::newton::{FaceEnergy, Newton};
 use super::patch::Patch;
+use super::triangle::{Corners, Hessian, add_area_curvature, add_symmetric, doubled_area};
 use crate::control::Watch;
 use crate::energy::clamp_negative_eigenvalues;
 use crate::error::Error;

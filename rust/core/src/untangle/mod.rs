@@ -18,9 +18,12 @@ mod checks;
 mod closest;
 mod foldover;
 mod newton;
+pub(super) mod options;
 mod patch;
 mod patches;
-mod positions;
+pub(super) mod positions;
+mod solve;
+mod triangle;
 
 use std::collections::BTreeSet;
 
@@ -28,27 +31,13 @@ use crate::control::{Observer, Status, Watch};
 use crate::distortion::{Distortion, Image, distortion};
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
-use crate::vector::Vector3;
-use patch::{Effort, Outcome, Patch};
+pub use options::UntangleOptions;
+use patch::Patch;
 use positions::Positions;
+pub use positions::UntangledImage;
+use solve::{Effort, Outcome};
 
 const MESSAGE: &str = "Untangling";
-
-/// Options of [`untangle`].
-#[derive(Debug, Clone, Copy)]
-pub struct UntangleOptions<'a> {
-    /// Vertices that stay where they are, beside those of the boundary, which stay anyway.
-    pub fixed: &'a [usize],
-    /// Least area of a face that was folded, or lost area to one, in units of its fair share: the area of its patch
-    /// divided in proportion to the areas on the surface. In `[0, 1)`.
-    pub tolerance: f64,
-}
-
-impl Default for UntangleOptions<'_> {
-    fn default() -> Self {
-        Self { fixed: &[], tolerance: 0.01 }
-    }
-}
 
 /// A map without folds.
 #[derive(Debug, Clone)]
@@ -64,15 +53,6 @@ pub struct Untangled {
     pub status: Status,
     /// The figures of the map, mirrored components turned back.
     pub distortion: Distortion,
-}
-
-/// The positions of a map, owned.
-#[derive(Debug, Clone, PartialEq)]
-pub enum UntangledImage {
-    /// (n, 2) positions in the plane.
-    Plane(Vec<[f64; 2]>),
-    /// (n, 3) positions on the sphere.
-    Sphere(Vec<Vector3>),
 }
 
 /// Removes the folds of `image`, a map of `mesh`, and changes as little as can be.
@@ -122,16 +102,6 @@ pub fn untangle(
     let distortion = distortion(mesh.points(), mesh.faces(), upright.view(), mesh.face_areas())?;
     let image = now.turned_over(&mirrored).written_over(image, &moved);
     Ok(Untangled { image, moved, folded_before, status, distortion })
-}
-
-impl UntangledImage {
-    /// The positions as the other functions take them.
-    pub fn view(&self) -> Image<'_> {
-        match self {
-            Self::Plane(map) => Image::Plane(map),
-            Self::Sphere(map) => Image::Sphere(map),
-        }
-    }
 }
 
 /// One computation.

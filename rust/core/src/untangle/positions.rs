@@ -4,7 +4,6 @@
 //! The sphere's charts are gnomonic: great circles become straight lines, so a face is folded in the chart exactly where it
 //! is folded on the sphere.
 
-use super::UntangledImage;
 use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
 use crate::mesh::TriangleMesh;
 use crate::vector::Vector3;
@@ -55,7 +54,7 @@ impl Positions {
     /// Twice the area of a face, with the sign of its orientation.
     fn signed_area(&self, face: [u32; 3]) -> f64 {
         match self {
-            Self::Plane(map) => super::newton::doubled_area(face.map(|v| map[v as usize])).0,
+            Self::Plane(map) => super::triangle::doubled_area(face.map(|v| map[v as usize])).0,
             Self::Sphere(map) => {
                 let [a, b, c] = face.map(|v| map[v as usize]);
                 a.dot(b.cross(c))
@@ -264,4 +263,23 @@ fn tangent_frame(z: Vector3) -> [Vector3; 3] {
     let least = (0..3).min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs())).expect("three axes");
     let x = unit_vector(Vector3::unit(least).cross(z));
     [x, z.cross(x), z]
+}
+
+/// The positions of a map, owned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum UntangledImage {
+    /// (n, 2) positions in the plane.
+    Plane(Vec<[f64; 2]>),
+    /// (n, 3) positions on the sphere.
+    Sphere(Vec<Vector3>),
+}
+
+impl UntangledImage {
+    /// The positions as the other functions take them.
+    pub fn view(&self) -> Image<'_> {
+        match self {
+            Self::Plane(map) => Image::Plane(map),
+            Self::Sphere(map) => Image::Sphere(map),
+        }
+    }
 }

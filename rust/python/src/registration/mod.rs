@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::registration`.
 
+mod certificates;
 mod curves;
 mod found;
 mod result;
@@ -14,7 +15,8 @@ use crate::arrays::{Pairs, from_points, index_list, rows, vectors};
 use crate::errors::{bad_array, bad_option};
 use crate::run::run;
 use crate::surface::{Given, handle};
-pub use curves::{Certificates, register_hyperbolic};
+pub use certificates::Certificates;
+pub use curves::register_hyperbolic;
 pub(crate) use curves::{choice, metrics, vertex_paths};
 use found::{Found, Outcome, Surface};
 pub use result::Registration;

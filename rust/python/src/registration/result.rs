@@ -8,7 +8,7 @@ use authalic::{DiskMap, History, SphereMap, Status, registration};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use super::curves::Certificates;
+use super::certificates::Certificates;
 use super::found::{Found, Outcome, Per, either};
 use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
 use crate::distortion::Distortion;

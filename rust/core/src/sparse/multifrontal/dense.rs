@@ -5,7 +5,7 @@
 //! fixed size that several threads share and between which a run can be cancelled. What a tile computes does not
 //! depend on who computes it.
 
-use super::{Failure, kernels};
+use super::kernels;
 use crate::control::Watch;
 use crate::parallel;
 use crate::sparse::faer::{
@@ -123,4 +123,13 @@ fn both(
 
 fn go_on(watch: &Watch<'_>) -> Result<(), Failure> {
     if watch.goes_on() { Ok(()) } else { Err(Failure::Cancelled) }
+}
+
+/// Why there is no factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Failure {
+    /// A pivot is not positive, or not finite, to working precision.
+    NotPositiveDefinite,
+    /// The observer asked to stop.
+    Cancelled,
 }

@@ -10,7 +10,7 @@
 //! Input: the cliques of the unknowns' graph, and for each factorisation their matrices. Cost for the n vertices of a
 //! surface: about n log n numbers and n^1.5 multiplications.
 
-mod dense;
+pub(super) mod dense;
 #[cfg(feature = "metis")]
 mod dissection;
 mod elimination;
@@ -24,6 +24,7 @@ mod solve;
 use super::faer::{Scalar, minimum_degree};
 use crate::Error;
 use crate::control::Watch;
+pub(crate) use dense::Failure;
 use elimination::Elimination;
 pub(super) use fronts::Element;
 use fronts::Fronts;
@@ -32,15 +33,6 @@ pub(super) use graph::NONE;
 #[cfg(test)]
 pub(crate) use kernels::processor;
 pub(super) use numeric::Place;
-
-/// Why there is no factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Failure {
-    /// A pivot is not positive, or not finite, to working precision.
-    NotPositiveDefinite,
-    /// The observer asked to stop.
-    Cancelled,
-}
 
 /// In which order to eliminate nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,9 +4,10 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
+use super::dense;
+use super::dense::Failure;
 use super::fronts::{Element, Fronts, Run};
 use super::schedule::Schedule;
-use super::{Failure, dense};
 use crate::control::Watch;
 use crate::parallel;
 use crate::sparse::faer::Scalar;

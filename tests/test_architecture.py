@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from rust_arrows import Crate, without_comments
 
 ROOT = Path(__file__).resolve().parents[1]
 CORE = ROOT / "rust" / "core" / "src"
@@ -24,6 +25,16 @@ CORE_ROOMS = (
     {"hyperbolic"},
 )
 CORE_RANK = {room: rank for rank, rooms in enumerate(CORE_ROOMS) for room in rooms}
+
+# The rooms of `hyperbolic/` likewise.
+HYPERBOLIC_ROOMS = (
+    {"moebius", "features", "metric"},
+    {"options", "slice"},
+    {"harmonic"},
+    {"warnings"},
+    {"assembly"},
+    {"register", "structure"},
+)
 
 # The rooms of the add-on, lowest first: folders, and files beside them.
 ADDON_ROOMS = (
@@ -55,41 +66,6 @@ PYTHON_HOUSES = (ADDON, ROOT / "scripts" / "lib", BINDINGS / "authalic")
 
 def rust_files(folder: Path) -> list[Path]:
     return sorted(folder.rglob("*.rs"))
-
-
-def without_comments(source: str) -> str:
-    """Rust code without its comments (and with string contents, which name no module)."""
-    return re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
-
-
-def module_path(file: Path, folder: Path) -> list[str]:
-    """The module of a file: `mesh/cut.rs` is ["mesh", "cut"], `mesh/mod.rs` is ["mesh"], `lib.rs` is []."""
-    parts = list(file.relative_to(folder).with_suffix("").parts)
-    return parts[:-1] if parts[-1] in ("mod", "lib") else parts
-
-
-def first_names(group: str) -> set[str]:
-    """The first path segments in `a::B` or `{a::B, c::{D, E}}`."""
-    if not group.startswith("{"):
-        return set(re.findall(r"^\w+", group))
-    depth, flat = 0, ""
-    for character in group:
-        depth -= character == "}"
-        flat += character if depth == 1 else ""
-        depth += character == "{"
-        if depth == 0:
-            break
-    return {name.strip().split("::")[0] for name in flat.split(",")}
-
-
-def rooms_used(source: str, module: list[str]) -> set[str]:
-    """The rooms of the crate that a file names through `crate::` or `super::` paths."""
-    used = set()
-    for path in re.finditer(r"\b(crate|(?:super::)*super)::", source):
-        levels = path.group(1).count("super")
-        if path.group(1) == "crate" or levels == len(module):
-            used |= first_names(source[path.end() :])
-    return used & CORE_RANK.keys()
 
 
 def python_imports(file: Path) -> set[tuple[int, str]]:
@@ -158,17 +134,49 @@ def circles(arrows: dict[str, set[str]]) -> list[str]:
         arrows = {node: targets & inner for node, targets in arrows.items() if node in inner}
 
 
-@pytest.mark.parametrize("file", rust_files(CORE), ids=lambda file: str(file.relative_to(CORE)))
-def test_core_uses_lower_rooms_only(file: Path) -> None:
-    module = module_path(file, CORE)
-    if not module:
-        return  # lib.rs only re-exports
-    room = module[0]
-    assert room in CORE_RANK, f"the new room {room} needs its place in CORE_ROOMS"
-    used = rooms_used(without_comments(file.read_text(encoding="utf-8")), module) - {room}
-    upward = {other for other in used if CORE_RANK[other] >= CORE_RANK[room] > 0}
-    assert not upward, f"{room} must not use {sorted(upward)}"
-    assert CORE_RANK[room] > 0 or not used - CORE_ROOMS[0], f"{room} is a base module: it must not use {used}"
+def room_of(module: str, inside: tuple[str, ...]) -> str | None:
+    """The room of a module that lies inside another: the next name of its path."""
+    names = tuple(module.split("::"))
+    return names[len(inside)] if len(names) > len(inside) and names[: len(inside)] == inside else None
+
+
+def upward_arrows(
+    arrows: dict[str, set[str]], rooms: tuple[set[str], ...], inside: tuple[str, ...] = ()
+) -> list[str]:
+    """The arrows between rooms that do not lead to a lower row."""
+    ranks = {room: rank for rank, row in enumerate(rooms) for room in row}
+    unknown = {room_of(module, inside) for module in arrows if module} - ranks.keys() - {None}
+    assert not unknown, f"new rooms need their places in the rows: {unknown}"
+    upward = []
+    for module, targets in arrows.items():
+        room = room_of(module, inside)
+        others = {target: room_of(target, inside) for target in targets} if room else {}
+        upward += [
+            f"{module} -> {target}"
+            for target, other in others.items()
+            if other and other != room and ranks[other] >= ranks[room]
+        ]
+    return sorted(upward)
+
+
+@pytest.fixture(scope="module")
+def core_arrows() -> dict[str, set[str]]:
+    return Crate(CORE).arrows()
+
+
+def test_core_uses_lower_rooms_only(core_arrows: dict[str, set[str]]) -> None:
+    assert upward_arrows(core_arrows, CORE_ROOMS) == []
+
+
+def test_hyperbolic_uses_lower_rooms_only(core_arrows: dict[str, set[str]]) -> None:
+    assert upward_arrows(core_arrows, HYPERBOLIC_ROOMS, ("hyperbolic",)) == []
+
+
+@pytest.mark.parametrize("folder", [CORE, BINDINGS / "src"], ids=["core", "bindings"])
+def test_no_circle_of_rust_files(folder: Path) -> None:
+    arrows = Crate(folder).arrows()
+    assert sum(map(len, arrows.values())) > len(arrows)
+    assert circles(arrows) == []
 
 
 def test_one_file_names_faer() -> None:
@@ -261,8 +269,62 @@ def test_circles_are_seen(tmp_path: Path) -> None:
     assert circles(arrows) == []
 
 
-def test_the_parser_sees_upward_paths() -> None:
-    source = (
-        "use crate::{error::Error, disk::{Start, Map}}; fn f() { super::super::energy::g(); super::cut(); }"
-    )
-    assert rooms_used(source, ["mesh", "cut"]) == {"error", "disk", "energy"}
+@pytest.fixture
+def made_up_crate(tmp_path: Path) -> Path:
+    sources = {
+        "lib.rs": ["mod low;", "pub mod shapes;", "mod top;", "pub use shapes::Square;"],
+        "low.rs": [
+            *("// crate::top::Top", "use std::fmt;", "pub struct Low;"),
+            *("#[cfg(test)]", "mod tests {", "    use crate::top::Top;", "}"),
+        ],
+        "shapes/mod.rs": [
+            *("mod circle;", "mod square;"),
+            *("pub use circle::{Circle, area as circle_area};", "pub use square::Square;"),
+        ],
+        "shapes/square.rs": ["use super::circle_area;", "pub struct Square;"],
+        "shapes/circle.rs": [
+            "use crate::low;",
+            "pub struct Circle;",
+            "pub fn area() -> low::Low { low::Low }",
+        ],
+        "top.rs": [
+            "use crate::{low::Low, shapes::{self, Square as Box}};",
+            *("pub struct Top;", "fn f() { shapes::circle_area(); }"),
+        ],
+    }
+    (tmp_path / "shapes").mkdir()
+    for name, lines in sources.items():
+        (tmp_path / name).write_text("\n".join(lines) + "\n")
+    return tmp_path
+
+
+def test_rust_arrows_lead_to_where_a_name_is_defined(made_up_crate: Path) -> None:
+    assert Crate(made_up_crate).arrows() == {
+        "": set(),
+        "low": set(),
+        "shapes": set(),
+        "shapes::square": {"shapes::circle"},
+        "shapes::circle": {"low"},
+        "top": {"low", "shapes::circle", "shapes::square"},
+    }
+
+
+def test_circles_of_rust_files_are_seen(made_up_crate: Path) -> None:
+    circle = made_up_crate / "shapes" / "circle.rs"
+    assert circles(Crate(made_up_crate).arrows()) == []
+    circle.write_text(circle.read_text() + "fn grown() { crate::Square; }\n")
+    assert circles(Crate(made_up_crate).arrows()) == ["shapes::circle", "shapes::square"]
+
+
+def test_upward_rust_arrows_are_seen(made_up_crate: Path) -> None:
+    arrows = Crate(made_up_crate).arrows()
+    assert upward_arrows(arrows, ({"low"}, {"shapes"}, {"top"})) == []
+    assert upward_arrows(arrows, ({"shapes"}, {"low"}, {"top"})) == ["shapes::circle -> low"]
+    assert upward_arrows(arrows, ({"low", "shapes"}, {"top"})) == ["shapes::circle -> low"]
+    assert upward_arrows(arrows, ({"low"}, {"shapes", "top"})) == [
+        "top -> shapes::circle",
+        "top -> shapes::square",
+    ]
+    assert upward_arrows(arrows, ({"square"}, {"circle"}), ("shapes",)) == [
+        "shapes::square -> shapes::circle"
+    ]

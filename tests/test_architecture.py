@@ -15,7 +15,8 @@ ADDON = ROOT / "addon"
 
 # The rooms of the crate, lowest first: a room may use those of lower rows only, and itself.
 CORE_ROOMS = (
-    {"vector", "arrays", "error", "control", "parallel"},
+    {"vector", "error", "control", "parallel"},
+    {"arrays"},
     {"mesh", "options"},
     {"sparse", "distortion", "codomain", "location"},
     {"energy", "embedding", "alignment"},
@@ -24,7 +25,6 @@ CORE_ROOMS = (
     {"registration"},
     {"hyperbolic"},
 )
-CORE_RANK = {room: rank for rank, rooms in enumerate(CORE_ROOMS) for room in rooms}
 
 # The rooms of `hyperbolic/` likewise.
 HYPERBOLIC_ROOMS = (

@@ -12,10 +12,13 @@
 //!
 //! The cost is linear in the mesh, up to the union-find of its corners.
 
+use ndarray::{CowArray, Ix2};
+
 use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{Surface, geometry, validate};
+use crate::arrays::{row_major, rows};
 use crate::error::{Elements, Error, MeshError};
 
 /// One piece of a cut surface.
@@ -44,8 +47,20 @@ impl Patch {
     }
 }
 
-/// Cuts a surface along `seams`, each the two ends of an edge; see [`Surface::cut`].
-pub(super) fn cut(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
+impl Surface {
+    /// Cuts the surface along `seams` (k, 2), each the two ends of an edge, into patches in the order of their lowest
+    /// faces. Without seams these are the connected components.
+    ///
+    /// # Errors
+    /// Seams that are out of range or no edge of the surface.
+    pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
+        let seams = row_major::<2, _>("seams", seams.into())?;
+        along(self, rows(&seams))
+    }
+}
+
+/// The patches of a surface cut along edges.
+fn along(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
     let (vertices, faces) = (surface.vertex_rows(), surface.face_rows());
     // 1. The seams.
     check_range(vertices.len(), seams)?;

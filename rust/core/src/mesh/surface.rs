@@ -5,7 +5,6 @@ use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, ArrayView2, CowArray, Ix2};
 
-use super::cut::{Patch, cut};
 use super::soup::TriangleSoup;
 use super::{Topology, TriangleMesh, validate};
 use crate::arrays::{from_rows, row_major, rows};
@@ -92,16 +91,6 @@ impl Surface {
     /// vertices in which parts only touch, and vertices without a face.
     pub fn topology(&self) -> Result<&Topology, Error> {
         self.mesh().map(TriangleMesh::topology)
-    }
-
-    /// Cuts the surface along `seams` (k, 2), each the two ends of an edge, into patches in the order of their lowest
-    /// faces. Without seams these are the connected components.
-    ///
-    /// # Errors
-    /// Seams that are out of range or no edge of the surface.
-    pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
-        let seams = row_major::<2, _>("seams", seams.into())?;
-        cut(self, rows(&seams))
     }
 
     /// The surface as an oriented manifold.

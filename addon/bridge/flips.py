@@ -9,6 +9,7 @@ import numpy as np
 import authalic
 
 from .. import messages
+from ..messages import problems
 from ..surfaces import suitability, uv_map
 from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.suitability import Unsuitable
@@ -59,7 +60,7 @@ def _tangles(surfaces: Sequence[Surface], index: int, result: Unflipped) -> Iter
         # A bad coordinate is for the island's own turn.
         patches = authalic.cut(np.nan_to_num(joined.points, posinf=0, neginf=0), joined.faces)
     except authalic.MeshError as error:
-        reason = messages.in_mesh_terms(str(error), joined.polygons, joined.vertices)
+        reason = problems.in_words(error, joined.polygons, joined.vertices)
         result.refusals.append(Refusal(surface.name, None, reason))
         return
     for patch in patches:
@@ -107,7 +108,7 @@ def _untangled(tangle: _Tangle, faces: Integers, result: Unflipped, progress: Pr
     except (authalic.MeshError, authalic.SolverError) as problem:
         if result.ended_early:
             raise Unsuitable(NOT_REACHED) from problem
-        flipped = np.unique(tangle.polygons[np.array(problem.indices or (), int)])
+        flipped = np.unique(tangle.polygons[np.array(problem.indices, int)])
         raise Unsuitable(_why_not(flipped, bool(tangle.pinned.any()), bool(tangle.shared.any()))) from problem
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import authalic
 
 from .. import messages
+from ..messages import problems
 from ..sphere_layout import projection
 from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
@@ -77,7 +78,7 @@ def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterato
         # An island with a bad coordinate is refused by itself when its turn comes.
         patches = authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=number[surface.seams])
     except authalic.MeshError as error:
-        reason = messages.in_mesh_terms(str(error), mesh.polygons, vertices)
+        reason = problems.in_words(error, mesh.polygons, vertices)
         result.refusals.append(Refusal(surface.name, None, reason))
         return
     for patch in patches:

@@ -6,7 +6,7 @@ from typing import Protocol, TypeVar
 
 import authalic
 
-from .. import messages
+from ..messages import problems
 from ..surfaces.arrays import Integers
 from ..surfaces.suitability import Unsuitable
 from .results import Refusal
@@ -58,8 +58,10 @@ def one_by_one(
         step = _sub_progress(listen, done / total, share / total, message)
         try:
             do(piece, step)
-        except (Unsuitable, authalic.MeshError, authalic.SolverError) as error:
-            reason = messages.in_mesh_terms(str(error), piece.polygons, piece.vertices)
+        except Unsuitable as problem:
+            result.refusals.append(Refusal(piece.name, piece.polygon, str(problem)))
+        except (authalic.MeshError, authalic.SolverError) as error:
+            reason = problems.in_words(error, piece.polygons, piece.vertices)
             result.refusals.append(Refusal(piece.name, piece.polygon, reason))
         done += share
 

@@ -8,10 +8,12 @@ import numpy as np
 
 import authalic
 
-from ..registration.curves import check_curves, in_words, registered_by_curves
+from ..messages import problems
+from ..registration.curves import check_curves, registered_by_curves
 from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
-from ..registration.points import check_landmarks, domain, in_mesh_terms
+from ..registration.points import check_landmarks, domain
+from ..registration.problems import in_words
 from ..registration.registered import Registered, registered_by_points
 from ..registration.settings import Settings
 from ..registration.sides import CurvePair, PointPair, Side, boundaries, moved
@@ -45,10 +47,7 @@ def register(
         try:
             found = make(source, target, pairs, settings, progress)
         except (authalic.MeshError, authalic.SolverError) as error:
-            message = in_mesh_terms(str(error), source, target)
-            if settings.method == "CURVES":
-                message = in_words(message, (source, target), pairs)
-            raise Unsuitable(message) from error
+            raise Unsuitable(in_words(error, (source, target), pairs)) from error
         _registrations.put(key, settings, found)
     _registrations.touch(key, settings)
     return found
@@ -106,7 +105,11 @@ def _registered_by_curves(
 
 def _patches(one: Side) -> list[authalic.Patch]:
     """The pieces of a side; a bad coordinate is for the solver to name."""
-    return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
+    try:
+        return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
+    except authalic.MeshError as error:
+        reason = problems.in_words(error, one.polygons, one.vertices)
+        raise Unsuitable(f"{one.name}: {reason}") from error
 
 
 def _registered(

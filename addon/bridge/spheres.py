@@ -6,6 +6,7 @@ import numpy as np
 import authalic
 
 from .. import messages
+from ..messages import problems
 from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
@@ -34,7 +35,7 @@ def sphere_shape(
         suitability.check_closed_mesh(used, len(surface.positions), patches)
         found, positions, turned = sphere_map(mesh.positions, mesh.triangles, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
-        raise Unsuitable(messages.in_mesh_terms(str(error), mesh.polygons, vertices)) from error
+        raise Unsuitable(problems.in_words(error, mesh.polygons, vertices)) from error
     centre = spherical.centroid(mesh.positions, mesh.triangles)
     radius = spherical.radius(mesh.positions, mesh.triangles)
     written = (centre + radius * positions).astype(np.float32)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmark curves of two surfaces that are to be registered, and the figures. Plain numpy, no bpy."""
 
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,19 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import messages
-from ..landmarks import paths
 from ..surfaces.arrays import Integers
 from ..surfaces.suitability import Unsuitable
+from .problems import remarks
 from .registered import Registered
-from .sides import CurvePair, Side, is_open
-
-# "curve 3", "curves 0 and 2", "2 curves (0, 3)".
-_FEATURE = re.compile(r"\bfeature (\d+)\b")
-_NUMBERS = re.compile(r"\bcurves? (\d+)(?: and (\d+))?\b|\b\d+ curves \(([\d, …]+)\)")
-_MIRRORED = "fit far better when one surface is mirrored"
-_BACKWARDS = "fits far better the other way round"
-_OPPOSITE = "look to opposite sides"
-_FLIP = "flip the normals of one (Mesh > Normals > Flip)"
+from .sides import CurvePair, Side
 
 
 def check_curves(
@@ -68,59 +59,8 @@ def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence
         folds=len(native.certificates.folded),
         status=native.status,
         seconds=float(native.seconds),
-        remarks=_remarks(native.warnings, sides, curves),
+        remarks=remarks(native.warnings, sides, curves),
     )
-
-
-def _remarks(warnings: Sequence[str], sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> list[str]:
-    """The library's warnings in words, the cause of most of them first."""
-    found = [in_words(warning, sides, curves) for warning in warnings]
-    backwards = sum(_BACKWARDS in warning for warning in warnings)
-    opened = sum(not paths.is_closed(source) for _, source, _ in curves)
-    are_most = backwards > 1 and 2 * backwards > opened
-    if are_most and _any_open(sides) and not any(_OPPOSITE in warning for warning in warnings):
-        found.insert(0, f"most curves run backwards; if the normals of the two face opposite ways, {_FLIP}")
-    return found
-
-
-def in_words(message: str, sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> str:
-    """The library's message with the names of curves and objects, and with the numbers of their meshes."""
-    for one, argument in zip(sides, ("source_curves: ", "target_curves: "), strict=True):
-        if message.startswith(argument):
-            rest = messages.in_mesh_terms(message.removeprefix(argument), one.polygons, one.vertices)
-            message = f"{one.name}: {rest}"
-    if _MIRRORED in message:
-        message = _mirrored(sides)
-    message = message.replace("flip the faces of one of them", _FLIP)
-    message = _FEATURE.sub(lambda match: _feature(int(match[1]), curves), message)
-    names = [name for name, _, _ in curves]
-
-    def named(match: re.Match[str]) -> str:
-        numbers = [int(digits) for digits in re.findall(r"\d+", match[3] or match[0])]
-        if any(number >= len(names) for number in numbers):
-            return match[0]
-        quoted = [f'"{names[number]}"' for number in numbers]
-        noun = "curve" if len(quoted) == 1 else "curves"
-        return f"{noun} {' and '.join(quoted) if len(quoted) < 3 else ', '.join(quoted)}"
-
-    return _NUMBERS.sub(named, message)
-
-
-def _any_open(sides: tuple[Side, Side]) -> bool:
-    return any(is_open(one) for one in sides)
-
-
-def _mirrored(sides: tuple[Side, Side]) -> str:
-    """What to do where the curves of one surface are a mirror image of the other's."""
-    flip = f"{_FLIP}, or " if _any_open(sides) else ""
-    return f"the curves {_MIRRORED}: {flip}mirror one (Object > Mirror), or check the order of the curves"
-
-
-def _feature(number: int, curves: Sequence[CurvePair]) -> str:
-    """What the library means; closed curves part surfaces into pieces, which have numbers of their own."""
-    if any(paths.is_closed(source) for _, source, _ in curves):
-        return "a curve or boundary"
-    return f'curve "{curves[number][0]}"' if number < len(curves) else "a boundary"
 
 
 def _points(one: Side, name: str, vertices: ArrayLike) -> Integers:

@@ -86,12 +86,3 @@ def _refuse(pairs: Sequence[PointPair], bad: Booleans, problem: str) -> None:
     names = [f'"{pairs[index][0]}"' for index in np.flatnonzero(bad).tolist()]
     if names:
         raise Unsuitable(f"Landmark {messages.listed(names)} {problem}")
-
-
-def in_mesh_terms(message: str, source: Side, target: Side) -> str:
-    """The library's message with the numbers of the mesh that it is about, and that mesh's name."""
-    for one, prefix in ((source, "the source: "), (target, "the target: ")):
-        if message.startswith(prefix):
-            rest = message.removeprefix(prefix)
-            return f"{one.name}: {messages.in_mesh_terms(rest, one.polygons, one.vertices)}"
-    return message

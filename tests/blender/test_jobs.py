@@ -202,21 +202,22 @@ def test_boxes_enclose() -> None:
     assert (box[0] == points.min(axis=0)).all() and (box[2] == points.max(axis=0)).all()
 
 
-def test_messages_name_the_elements_of_the_mesh() -> None:
+def test_sentences_name_the_elements_of_the_mesh() -> None:
     polygons, vertices = np.array([70, 80, 90, 90]), np.array([5, 6, 7, -1])
     expected = {
-        "no area in face 1: dissolve": "no area in face 80: dissolve",
-        "left over: 2 faces (0, 2); remesh": "left over: triangles of faces (70, 90); remesh",
-        "in 2 faces (2, 3): dissolve": "in face 90: dissolve",
-        "no area in 12 faces (0, 2, 3, 1, …)": "no area in triangles of faces (70, 90, 80, …)",
-        "left over: 3 faces (1, 4, 5)": "left over: face 80",
-        "left over: face 4": "left over: faces of a filled hole",
-        "at 9 vertices (0, 1, 2, …): repair": "at 9 vertices (5, 6, 7, …): repair",
-        "at 3 vertices (0, 1, 3): repair": "at vertices (5, 6): repair",
-        "at vertex 3: repair": "at vertices that were filled in: repair",
-        "at edge (1, 2): cut": "at edge (6, 7): cut",
-        "at 3 edges ((0, 1), (1, 2), (2, 3))": "at edges ((5, 6), (6, 7))",
-        "the mesh has 20 faces, more than 3": "the mesh has 20 faces, more than 3",
+        ("face", (1,), 1): "face 80",
+        ("face", (0, 2), 2): "triangles of faces (70, 90)",
+        ("face", (2, 3), 2): "face 90",
+        ("face", (0, 2, 3, 1), 12): "triangles of faces (70, 90, 80, …)",
+        ("face", (1, 4, 5), 3): "face 80",
+        ("face", (4,), 1): "faces of a filled hole",
+        ("vertex", (0, 1, 2), 9): "9 vertices (5, 6, 7, …)",
+        ("vertex", (0, 1, 3), 3): "vertices (5, 6)",
+        ("vertex", (3,), 1): "vertices that were filled in",
+        ("edge", ((1, 2),), 1): "edge (6, 7)",
+        ("edge", ((0, 1), (1, 2), (2, 3)), 3): "edges ((5, 6), (6, 7))",
     }
-    translate = part("messages").in_mesh_terms
-    assert {message: translate(message, polygons, vertices) for message in expected} == expected
+    phrase = part("messages.elements").phrase
+    numbers = {"face": polygons, "vertex": vertices, "edge": vertices}
+    assert {key: phrase(*key, numbers[key[0]]) for key in expected} == expected
+    assert phrase("face", (1,), 1, None) == "some faces"

@@ -11,6 +11,7 @@ import curving
 import meshes
 import numpy as np
 import pairs
+import problems
 import pytest
 import spheres
 from installed import part
@@ -279,28 +280,28 @@ def test_handle_and_pieces() -> None:
     refusal("Torus: has a handle, like a torus; close it up or remesh it")
 
 
-def test_messages_of_the_library_name_curves_and_vertices() -> None:
+def test_sentences_name_curves_and_vertices() -> None:
     balls(count=2)
     sides = part("jobs.register").chosen(bpy.context).sides
     curves: list[Any] = [("Brow", (), ()), ("Jaw", (), ()), ("Ear", (), ())]
 
-    def said(text: str) -> str:
-        return part("registration.curves").in_words(text, sides, curves)
+    def said(kind: str, **facts: Any) -> str:
+        problem = problems.made("MeshError", kind, **facts)
+        return part("registration.problems").in_words(problem, sides, curves)
 
-    assert said("source_curves: curves 0 and 2 meet at vertex 7: shorten one") == (
-        'Icosphere: curves "Brow" and "Ear" meet at vertex 7: shorten one'
+    meeting = said("curves_meet", side="source", curve=0, second_curve=2, indices=(7,), count=1)
+    assert meeting.startswith('Icosphere: curves "Brow" and "Ear" meet at vertex 7: shorten')
+    (warned,) = part("registration.problems").remarks(
+        [problems.warned("backward_curve", curve=1)], sides, curves
     )
-    assert (
-        said("curve 1 fits far better the other way round")
-        == 'curve "Jaw" fits far better the other way round'
-    )
-    assert said("give a partner to 2 curves (0, 1)") == 'give a partner to curves "Brow" and "Jaw"'
-    assert said("curve 9 is unknown") == "curve 9 is unknown"
-    assert said("no path joins feature 2 to the next") == 'no path joins curve "Ear" to the next'
-    assert said("no path joins feature 3 to the next") == "no path joins a boundary to the next"
-    curves[0] = ("Brow", (3, 4, 5, 3), (3, 4, 5, 3))
-    assert said("no path joins feature 2 to the next") == "no path joins a curve or boundary to the next"
-    mirrored = said("the curves fit far better when one surface is mirrored: negate x")
+    assert warned.startswith('curve "Jaw" fits far better the other way round')
+    unpaired = said("curve_counts", indices=(0, 1), count=2)
+    assert unpaired.startswith('give a partner to curves "Brow" and "Jaw"')
+    assert said("no_arc", curve=9).startswith("no path joins curve 9 to the next")
+    assert said("no_arc", curve=2).startswith('no path joins curve "Ear" to the next')
+    assert said("no_arc").startswith("no path joins a boundary to the next")
+    assert said("no_arc", side="target", curve=2).startswith('Twin: no path joins curve "Ear"')
+    mirrored = said("mirrored")
     assert "Object > Mirror" in mirrored and "negate" not in mirrored and "Flip" not in mirrored
 
 

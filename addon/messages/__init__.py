@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Counts and lists in words. No bpy."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Integers = NDArray[np.integer[Any]]
+
+ENDED_EARLY = "ended early, more time makes areas more even"
+ENDED_EARLY_BY_CURVES = "ended early, more time keeps the shapes of faces better"
+ENDED_EARLY_FIXING = "ended early, more time may fix more"
+_NAMED = 3
+_PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
+
+
+def count(number: int, noun: str) -> str:
+    """ "1 island", "2 islands"."""
+    return f"{number} {noun if number == 1 else _PLURALS.get(noun, noun + 's')}"
+
+
+def numbers(elements: Sequence[int] | Integers) -> str:
+    """ "3, 4, 7, …": the first few of some elements (k,)."""
+    return ", ".join(str(int(element)) for element in elements[:_NAMED]) + (", …" * (len(elements) > _NAMED))
+
+
+def listed(items: Sequence[object]) -> str:
+    """The first few of some messages in one line, and how many there are."""
+    named = "; ".join(str(item) for item in items[:_NAMED])
+    more = len(items) - _NAMED
+    return f"{named}; and {more} more" if more > 0 else named

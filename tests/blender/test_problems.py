@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The extension's own sentences for what the library refuses: made from data, whatever the library says."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import bpy
+import curving
+import meshes
+import numpy as np
+import pairs
+import problems
+import pytest
+import spheres
+from installed import library, part
+from meshes import MeshObject
+
+FACTS: tuple[dict[str, Any], ...] = (
+    {},
+    {"indices": (0, 2, 9), "count": 30},
+    {"side": "target", "curve": 1, "second_curve": 0, "indices": (1,), "count": 1},
+)
+Make = Callable[[], MeshObject]
+Spoil = Callable[[MeshObject], None]
+Curves = list[tuple[Any, Any]]
+OF_EDGES = {"non_manifold_edge", "not_orientable"}
+
+
+# Every kind has a sentence
+
+
+def test_every_kind_of_the_library_has_a_sentence() -> None:
+    sentences = part("messages.problems")
+    assert sentences.ERRORS.keys() == library().ERROR_KINDS.keys()
+    assert sentences.WARNINGS.keys() == library().WARNING_KINDS.keys()
+
+
+def all_problems() -> Iterator[Any]:
+    """An error or a warning of each kind, with few and with many facts."""
+    for facts in FACTS:
+        for kind in library().ERROR_KINDS:
+            indices = facts.get("indices", ())
+            pairs_of = tuple((index, index + 1) for index in indices) if kind in OF_EDGES else indices
+            yield problems.made("MeshError", kind, **facts | {"indices": pairs_of})
+        for kind in library().WARNING_KINDS:
+            value = 3.25 if kind in {"strained", "distorted"} else None
+            yield problems.warned(kind, value=value, **facts)
+
+
+def test_no_sentence_has_words_of_the_library() -> None:
+    for problem in all_problems():
+        for numbers in ((None, None), (np.array([5, 6, 7]), np.array([15, 16, -1]))):
+            said = part("messages.problems").in_words(problem, *numbers, names=["Brow", "Jaw"])
+            assert len(said) > 10 and "xyzzy" not in said and "None" not in said and "{" not in said, said
+
+
+def test_an_unknown_kind_is_told_in_the_words_of_the_library() -> None:
+    problem = problems.made("SolverError", "of_tomorrow", indices=(0,), count=1)
+    assert part("messages.problems").in_words(problem, [8], [9]) == problems.GARBLED
+
+
+# The library's messages do not matter
+
+
+def refusal(call: Callable[..., Any], **options: Any) -> str:
+    """What an operator says, with its result or its error."""
+    try:
+        call(**options)
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def mixed(*shapes: tuple[Any, Any]) -> MeshObject:
+    shapes = [(np.array(vertices, float), faces) for vertices, faces in shapes]
+    return meshes.add(*meshes.together(*shapes), "Mixed")
+
+
+def islands() -> str:
+    """Islands without area, with a face twice, one-sided, with a handle, and with a bad coordinate."""
+    flat = ([[9, 0, 0], [10, 0, 0], [11, 0, 0]], [[0, 1, 2]])
+    obj = mixed(meshes.grid(), flat, meshes.moebius(offset=(4, 0, 0)), meshes.ring((0, 5, 0)))
+    obj.data.vertices[7].co.x = float("nan")
+    return refusal(bpy.ops.authalic.unwrap)
+
+
+def repeated_vertex() -> str:
+    vertices, faces = meshes.grid()
+    meshes.add([*vertices, (5, 0, 0), (6, 0, 0)], [*faces, [49, 50, 50]])
+    return refusal(bpy.ops.authalic.unwrap)
+
+
+def holes() -> str:
+    bpy.ops.mesh.primitive_cylinder_add(vertices=12, end_fill_type="NOTHING")
+    return refusal(bpy.ops.authalic.unwrap, fill_holes=False)
+
+
+def branching_edge() -> str:
+    vertices, faces = spheres.icosphere(2)
+    meshes.add([*vertices, (3, 0, 0)], [*faces, [*faces[0][:2], len(vertices)]])
+    return refusal(bpy.ops.authalic.sphere_shape_key)
+
+
+def sphere_with_a_bad_coordinate() -> str:
+    meshes.icosphere(2).data.vertices[5].co.y = float("nan")
+    return refusal(bpy.ops.authalic.sphere_shape_key)
+
+
+def stretched_uvs() -> str:
+    obj = meshes.add_grid("Grid", n=6)
+    obj.data.uv_layers.new(name="UVMap")
+    uv = np.array([obj.data.vertices[loop.vertex_index].co[:2] for loop in obj.data.loops])
+    uv[[loop.vertex_index == 0 for loop in obj.data.loops]] = 3.0
+    meshes.set_uv(obj, uv)
+    return refusal(bpy.ops.authalic.fix_flips)
+
+
+def couple(make: Make, spoil: Spoil | None = None) -> tuple[MeshObject, MeshObject]:
+    source = make()
+    target = pairs.twin(source)
+    if spoil:
+        spoil(target)
+    source.authalic_target = target
+    meshes.select(source)
+    bpy.context.view_layer.update()
+    return source, target
+
+
+def bumpy() -> MeshObject:
+    return meshes.bumpy(meshes.icosphere(3))
+
+
+def sheet() -> MeshObject:
+    return meshes.add_grid("Sheet", n=10)
+
+
+def by_points(make: Make, spoil: Spoil) -> str:
+    source, target = couple(make, spoil)
+    pairs.pair(source, target, [17, 30, 60, 90])
+    return refusal(bpy.ops.authalic.register)
+
+
+def with_bad_coordinate(obj: MeshObject) -> None:
+    obj.data.vertices[3].co.x = float("nan")
+
+
+def without_area(obj: MeshObject) -> None:
+    for vertex in obj.data.polygons[20].vertices:
+        obj.data.vertices[vertex].co = obj.data.vertices[obj.data.polygons[20].vertices[0]].co
+
+
+def registered(
+    curves: Callable[[MeshObject], Curves],
+    make: Make = bumpy,
+    spoil: Spoil | None = None,
+    progress: Callable[..., bool] = lambda *_: True,
+) -> str:
+    """What the bridge says of a registration by curves (source path, target path) of two objects."""
+    source, _ = couple(make, spoil)
+    bridge, sides = part("bridge"), part("jobs.register").chosen(bpy.context).sides
+    named = [(f"Curve {number}", *both) for number, both in enumerate(curves(source), 1)]
+    settings = part("registration.settings").Settings(method="CURVES")
+    part("bridge.registrations")._registrations._found.clear()
+    try:
+        found = bridge.register(*sides, named, settings, progress)
+    except bridge.Unsuitable as error:
+        return str(error)
+    return "; ".join(found.remarks)
+
+
+ARCS = (
+    [(1, 0.3, 0), (0.6, 0.9, 0.3), (0, 1, 0.5)],
+    [(-1, 0.2, 0.4), (-0.6, -0.6, 0.5), (-0.1, -1, 0.2)],
+    [(0.4, -0.5, -1), (-0.3, 0.4, -1)],
+    [(0.3, -0.3, 1), (-0.3, 0.3, 1)],
+)
+
+
+def routes(obj: MeshObject, stops: Sequence[Any] = ARCS) -> list[Any]:
+    return [curving.route(obj, *each) for each in stops]
+
+
+def ring(obj: MeshObject) -> Any:
+    """A closed path around the bottom."""
+    around = [(1, 0, -0.3), (0, 1, -0.3), (-1, 0, -0.3), (0, -1, -0.3), (1, 0, -0.3)]
+    return curving.route(obj, *around)
+
+
+def same(obj: MeshObject) -> Curves:
+    return [(path, path) for path in routes(obj)]
+
+
+def crossing(obj: MeshObject) -> Curves:
+    return [
+        *same(obj)[:1],
+        *[(path, path) for path in routes(obj, [[(0.3, 1, 0), (1, 1, 1)], ARCS[0][::-1]])],
+    ]
+
+
+def meeting_itself(obj: MeshObject) -> Curves:
+    path = routes(obj)[0]
+    return [([*path, path[-2]], path)]
+
+
+def short(obj: MeshObject) -> Curves:
+    return [(path[:2], path) for path in routes(obj)]
+
+
+def closed_once(obj: MeshObject) -> Curves:
+    return [(ring(obj), routes(obj)[0])]
+
+
+def inside_once(obj: MeshObject) -> Curves:
+    inside, outside = routes(obj, ARCS[2:])
+    return [(ring(obj), ring(obj)), (inside, outside)]
+
+
+def swapped(obj: MeshObject) -> Curves:
+    first, second, *others = same(obj)
+    return [(first[0], second[1]), (second[0], first[1]), *others]
+
+
+def reversed_once(obj: MeshObject) -> Curves:
+    (ours, theirs), *others = same(obj)
+    return [(ours, theirs[::-1]), *others]
+
+
+def reversed_all(obj: MeshObject) -> Curves:
+    return [(ours, theirs[::-1]) for ours, theirs in same(obj)]
+
+
+def rows(obj: MeshObject) -> Curves:
+    paths = routes(obj, [[(x, -0.4, 0), (x, 0.4, 0)] for x in (-0.4, 0.4)])
+    return [(path, path) for path in paths]
+
+
+def mirrored(obj: MeshObject) -> None:
+    for vertex in obj.data.vertices:
+        vertex.co.x = -vertex.co.x
+    obj.data.flip_normals()
+
+
+def turned_over(obj: MeshObject) -> None:
+    obj.data.flip_normals()
+
+
+CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
+    "islands": (islands, ["no area in face 36", "vertex 7", "one-sided"]),
+    "repeated_vertex": (repeated_vertex, ["the same vertex twice in face 36"]),
+    "holes": (holes, ["2 boundaries"]),
+    "branching_edge": (branching_edge, []),
+    "sphere_nan": (sphere_with_a_bad_coordinate, ["vertex 5"]),
+    "stretched_uvs": (stretched_uvs, ["Grid at face 0"]),
+    "points_nan": (lambda: by_points(bumpy, with_bad_coordinate), ["Twin: NaN or infinite", "vertex 3"]),
+    "points_area": (lambda: by_points(sheet, without_area), ["Twin: "]),
+    "curves_nan": (
+        lambda: registered(same, spoil=with_bad_coordinate),
+        ["Twin: NaN or infinite", "vertex 3"],
+    ),
+    "crossing": (lambda: registered(crossing), ['Icosphere: curves "Curve 1" and "Curve 2" meet at vertex']),
+    "meeting_itself": (lambda: registered(meeting_itself), ['Icosphere: curve "Curve 1" meets itself']),
+    "short": (lambda: registered(short), ['Icosphere: curve "Curve 1" is too short']),
+    "closed_once": (lambda: registered(closed_once), ['Twin: curve "Curve 1" is open']),
+    "inside_once": (
+        lambda: registered(inside_once),
+        ['curve "Curve 2" lies inside the closed curve "Curve 1"'],
+    ),
+    "mirrored": (lambda: registered(same, spoil=mirrored), ["Object > Mirror"]),
+    "swapped": (lambda: registered(swapped), ["strained"]),
+    "reversed": (lambda: registered(reversed_once), ['curve "Curve 1" fits far better the other way']),
+    "turned_over": (lambda: registered(rows, sheet, turned_over), ["Mesh > Normals > Flip"]),
+    "cancelled": (lambda: registered(same, progress=lambda *_: False), ["cancelled before"]),
+}
+
+
+def told(case: Callable[[], str], capfd: pytest.CaptureFixture[str]) -> str:
+    """All that is said in a case, without the seconds that it took."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    capfd.readouterr()
+    said = case()
+    return re.sub(r"\d+\.\d+ s\b", "", said + capfd.readouterr().out)
+
+
+@pytest.mark.parametrize(("case", "words"), CASES.values(), ids=CASES)
+def test_the_sentences_stay_when_every_message_of_the_library_changes(
+    case: Callable[[], str],
+    words: list[str],
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = told(case, capfd)
+    for word in words:
+        assert word in before, before
+    assert len(before) > 20
+    problems.garble(monkeypatch)
+    after = told(case, capfd)
+    assert "xyzzy" not in after
+    assert after == before

@@ -72,15 +72,11 @@ def refusal(call: Callable[..., Any], **options: Any) -> str:
     return ""
 
 
-def mixed(*shapes: tuple[Any, Any]) -> MeshObject:
-    shapes = [(np.array(vertices, float), faces) for vertices, faces in shapes]
-    return meshes.add(*meshes.together(*shapes), "Mixed")
-
-
 def islands() -> str:
-    """Islands without area, with a face twice, one-sided, with a handle, and with a bad coordinate."""
-    flat = ([[9, 0, 0], [10, 0, 0], [11, 0, 0]], [[0, 1, 2]])
-    obj = mixed(meshes.grid(), flat, meshes.moebius(offset=(4, 0, 0)), meshes.ring((0, 5, 0)))
+    """Islands with a bad coordinate, without area, one-sided, and with a handle."""
+    flat = (np.array([[9.0, 0, 0], [10, 0, 0], [11, 0, 0]]), [[0, 1, 2]])
+    shapes = meshes.grid(), flat, meshes.moebius(offset=(4, 0, 0)), meshes.ring((0, 5, 0))
+    obj = meshes.add(*meshes.together(*shapes), "Mixed")
     obj.data.vertices[7].co.x = float("nan")
     return refusal(bpy.ops.authalic.unwrap)
 
@@ -89,6 +85,16 @@ def repeated_vertex() -> str:
     vertices, faces = meshes.grid()
     meshes.add([*vertices, (5, 0, 0), (6, 0, 0)], [*faces, [49, 50, 50]])
     return refusal(bpy.ops.authalic.unwrap)
+
+
+def handle() -> str:
+    meshes.torus()
+    return refusal(bpy.ops.authalic.unwrap)
+
+
+def landmark_on_the_boundary() -> str:
+    pairs.pair(*couple(sheet), [17, 0])
+    return refusal(bpy.ops.authalic.register)
 
 
 def holes() -> str:
@@ -146,8 +152,9 @@ def with_bad_coordinate(obj: MeshObject) -> None:
 
 
 def without_area(obj: MeshObject) -> None:
-    for vertex in obj.data.polygons[20].vertices:
-        obj.data.vertices[vertex].co = obj.data.vertices[obj.data.polygons[20].vertices[0]].co
+    first, *others = list(obj.data.polygons[20].vertices)
+    for vertex in others:
+        obj.data.vertices[vertex].co = obj.data.vertices[first].co
 
 
 def registered(
@@ -248,6 +255,8 @@ def turned_over(obj: MeshObject) -> None:
 CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
     "islands": (islands, ["no area in face 36", "vertex 7", "one-sided"]),
     "repeated_vertex": (repeated_vertex, ["the same vertex twice in face 36"]),
+    "handle": (handle, ["is closed and has a handle"]),
+    "landmark": (landmark_on_the_boundary, ['Landmark "Landmark 2" is on the boundary of Sheet']),
     "holes": (holes, ["2 boundaries"]),
     "branching_edge": (branching_edge, []),
     "sphere_nan": (sphere_with_a_bad_coordinate, ["vertex 5"]),

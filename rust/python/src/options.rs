@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the bindings of all maps share: options and the history.
+//! What several bindings share: options and the history.
 
 use authalic::Record;
+use authalic::hyperbolic::{FlowOptions, MetricMethod};
 use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -31,4 +32,17 @@ pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
     array.set_item("gradient_norm", column(|record| record.gradient_norm))?;
     array.set_item("seconds", column(|record| record.seconds))?;
     Ok(array.unbind())
+}
+
+/// The ways to a hyperbolic metric by their names.
+pub fn metrics() -> [(&'static str, MetricMethod); 2] {
+    [("newton", MetricMethod::Newton), ("ricci_flow", MetricMethod::RicciFlow(FlowOptions::default()))]
+}
+
+/// The value of an option that has a few names.
+pub fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
+        let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        bad_option(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
+    })
 }

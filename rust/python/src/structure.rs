@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Pairs, from_index_list, from_indices, from_points, rows};
 use crate::errors::bad_option;
-use crate::registration::{choice, metrics, vertex_paths};
+use crate::options::{choice, metrics};
+use crate::registration::vertex_paths;
 use crate::run::run;
 use crate::surface::Given;
 

@@ -72,6 +72,7 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     }
 }
 
-fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector3> {
+/// Points of the domain in space.
+pub fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector3> {
     map.iter().map(|&point| point.lifted()).collect()
 }

@@ -28,7 +28,7 @@ pub use crate::location::Location;
 pub use disk::register_disks;
 pub use figures::{area_ratios, compare, vertex_areas};
 pub use given_faces::{GivenFaces, nearest_given_corners, pull_given_corners};
-pub use inverse::DomainPoint;
+pub use inverse::{DomainPoint, lifted};
 pub use landmarks::Landmarks;
 pub use morph::{aligned_homotopy, homotopy};
 pub use options::RegistrationOptions;

@@ -2,15 +2,15 @@
 //! Bindings of `authalic::hyperbolic`'s registration.
 
 use authalic::Side;
-use authalic::hyperbolic::{self as core, Curves, FlowOptions, HyperbolicOptions, MetricMethod, Solver};
+use authalic::hyperbolic::{self as core, Curves, HyperbolicOptions, Solver};
 use pyo3::prelude::*;
 
-use super::found::Outcome;
+use super::finished::{Finished, Outcome};
 use super::result::Registration;
-use super::{SOURCE, TARGET, checked, found};
-use crate::arrays::{index_list, vectors};
-use crate::errors::{bad_array, bad_option};
-use crate::options::parse_iterations;
+use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
+use crate::arrays::vectors;
+use crate::errors::bad_option;
+use crate::options::{choice, metrics, parse_iterations};
 use crate::run::run;
 use crate::surface::Given;
 
@@ -123,54 +123,16 @@ pub fn register_hyperbolic(
             ));
         }
     };
-    let outcome = run(py, progress, move |observer| {
+    let finished = run(py, progress, move |observer| {
         let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
         let curves = Curves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
         let options = HyperbolicOptions { spheres, ..options };
         let outcome = core::register_hyperbolic(source.mesh()?, target.mesh()?, &curves, &options, observer)?;
-        found(&source, &target, Outcome::Curves(outcome.into()))
+        Finished::of_surfaces(&source, &target, Outcome::Curves(outcome.into()))
     })?;
-    Registration::new(py, outcome)
+    Registration::new(py, finished)
 }
 
+/// The ways to the harmonic map by their names.
 const SOLVERS: [(&str, Solver); 2] = [("newton", Solver::Newton), ("heat", Solver::Heat)];
-
-/// The ways to a hyperbolic metric by their names.
-pub(crate) fn metrics() -> [(&'static str, MetricMethod); 2] {
-    [("newton", MetricMethod::Newton), ("ricci_flow", MetricMethod::RicciFlow(FlowOptions::default()))]
-}
-
-/// The value of an option that has a few names.
-pub(crate) fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
-    choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
-        let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-        bad_option(format!("{name} must be {}, but is \"{given}\"", words.join(" or ")))
-    })
-}
-
-/// Vertex paths.
-pub(crate) fn vertex_paths(
-    object: &Bound<'_, PyAny>,
-    name: &'static str,
-    n_vertices: usize,
-) -> PyResult<Vec<Vec<usize>>> {
-    let Ok(parts) = object.try_iter() else {
-        let found = object.get_type().name()?.to_string();
-        return Err(bad_array(object.py(), name, found, "a list of arrays of vertex indices".into()));
-    };
-    let path = |(curve, part): (usize, PyResult<Bound<'_, PyAny>>)| {
-        let part = part?;
-        index_list(&part, &format!("{name}: curve {curve}"), "place", n_vertices)
-            .map_err(|error| of_curve(part.py(), error, curve))
-    };
-    parts.enumerate().map(path).collect()
-}
-
-/// The error with the curve that it is about.
-fn of_curve(py: Python<'_>, error: PyErr, curve: usize) -> PyErr {
-    match error.value(py).setattr("curve", curve) {
-        Ok(()) => error,
-        Err(failure) => failure,
-    }
-}

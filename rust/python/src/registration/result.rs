@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use super::certificates::Certificates;
-use super::found::{Found, Outcome, Per, either};
+use super::finished::{Finished, Outcome, Per, either};
 use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, warning};
@@ -93,32 +93,32 @@ pub struct Registration {
     /// Wall time of the call.
     #[pyo3(get)]
     seconds: f64,
-    pub(super) found: Arc<Found>,
+    pub(super) finished: Arc<Finished>,
 }
 
 impl Registration {
-    pub(super) fn new(py: Python<'_>, found: Found) -> PyResult<Self> {
-        let (registered, target_registered, source_map, target_map) = match &found.outcome {
+    pub(super) fn new(py: Python<'_>, finished: Finished) -> PyResult<Self> {
+        let (registered, target_registered, source_map, target_map) = match &finished.outcome {
             Outcome::Disk(f) => (
                 from_points(py, &f.registered).into_any(),
                 from_points(py, &f.target_registered).into_any(),
-                disk_map(py, &f.source_map, &found.source.faces)?,
-                disk_map(py, &f.target_map, &found.target.faces)?,
+                disk_map(py, &f.source_map, &finished.source.faces)?,
+                disk_map(py, &f.target_map, &finished.target.faces)?,
             ),
             Outcome::Sphere(f) => (
                 from_points(py, &f.registered).into_any(),
                 from_points(py, &f.target_registered).into_any(),
-                sphere_map(py, &f.source_map, &found.source.faces)?,
-                sphere_map(py, &f.target_map, &found.target.faces)?,
+                sphere_map(py, &f.source_map, &finished.source.faces)?,
+                sphere_map(py, &f.target_map, &finished.target.faces)?,
             ),
             Outcome::Curves(curves) => (
                 from_points(py, &curves.map.registered).into_any(),
                 from_points(py, &curves.spheres[1].positions).into_any(),
-                rough_sphere(py, &curves.spheres[0], &found.source.faces)?,
-                rough_sphere(py, &curves.spheres[1], &found.target.faces)?,
+                rough_sphere(py, &curves.spheres[0], &finished.source.faces)?,
+                rough_sphere(py, &curves.spheres[1], &finished.target.faces)?,
             ),
         };
-        let (certificates, warnings, energies) = match &found.outcome {
+        let (certificates, warnings, energies) = match &finished.outcome {
             Outcome::Curves(curves) => (
                 Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
                 curves.warnings.iter().map(|doubt| warning(py, doubt)).collect::<PyResult<_>>()?,
@@ -126,32 +126,32 @@ impl Registration {
             ),
             _ => (None, Vec::new(), Vec::new()),
         };
-        let locations = found.locations();
+        let locations = finished.locations();
         let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
         let triangles = locations.iter().map(|location| location.triangle.index());
-        let area_distortion = found.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
+        let area_distortion = finished.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
         let (missed, status, distortion) =
-            either!(&found.outcome, f => (&f.missed, f.status.as_str(), &f.distortion));
-        let (landmark_error, target_distortion, iterations, seconds) = match &found.outcome {
+            either!(&finished.outcome, f => (&f.missed, f.status.as_str(), &f.distortion));
+        let (landmark_error, target_distortion, iterations, seconds) = match &finished.outcome {
             Outcome::Disk(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
             Outcome::Sphere(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
             Outcome::Curves(f) => (&f.map.curve_error, &f.inverse.distortion, f.iterations, f.seconds),
         };
         Ok(Self {
-            positions: from_points(py, &found.positions),
+            positions: from_points(py, &finished.positions),
             triangles: from_index_list(py, triangles),
             barycentric: from_points(py, &barycentric),
             registered,
             target_registered,
-            faces: from_indices(py, &found.source.faces),
-            target_faces: from_indices(py, &found.target.faces),
+            faces: from_indices(py, &finished.source.faces),
+            target_faces: from_indices(py, &finished.target.faces),
             source_map,
             target_map,
             landmark_error: PyArray1::from_slice(py, landmark_error).unbind(),
             missed: from_index_list(py, missed.iter().copied()),
             status,
             distortion: Py::new(py, Distortion::new(py, distortion))?,
-            area_ratio: PyArray1::from_slice(py, &found.area_ratio).unbind(),
+            area_ratio: PyArray1::from_slice(py, &finished.area_ratio).unbind(),
             area_distortion: PyArray1::from_vec(py, area_distortion).unbind(),
             target_distortion: Py::new(py, Distortion::new(py, target_distortion))?,
             certificates,
@@ -159,7 +159,7 @@ impl Registration {
             energies,
             iterations,
             seconds,
-            found: Arc::new(found),
+            finished: Arc::new(finished),
         })
     }
 }
@@ -221,12 +221,12 @@ impl Registration {
             None => None,
             Some("vertex") => Some(Per::Vertex),
             Some("corner") => Some(Per::Corner),
-            Some(found) => {
-                let message = format!("per must be \"vertex\", \"corner\" or None, but is \"{found}\"");
+            Some(word) => {
+                let message = format!("per must be \"vertex\", \"corner\" or None, but is \"{word}\"");
                 return Err(bad_option(message));
             }
         };
-        let (source, target) = (&self.found.source, &self.found.target);
+        let (source, target) = (&self.finished.source, &self.finished.target);
         let values = Values::new(values, "values")?;
         let shape = values.shape();
         let Some((per, axes)) = Per::of(&shape, target, wanted) else {
@@ -235,14 +235,14 @@ impl Registration {
             return Err(bad_array(py, "values", values.shape_words(), expected));
         };
         let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
-        let found = self.found.clone();
+        let finished = self.finished.clone();
         if nearest {
-            let rows = run(py, None, move |_| Ok(found.nearest_rows(per)))?;
+            let rows = run(py, None, move |_| Ok(finished.nearest_rows(per)))?;
             return values.taken(axes, &rows, out);
         }
         let width = shape[axes..].iter().product();
         let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
-        let pulled = run(py, None, move |_| Ok(found.interpolated(&numbers, width, per)))?;
+        let pulled = run(py, None, move |_| Ok(finished.interpolated(&numbers, width, per)))?;
         from_values(py, pulled, out)
     }
 
@@ -253,8 +253,8 @@ impl Registration {
     /// -------
     /// Registration
     fn inverse(&self, py: Python<'_>) -> PyResult<Self> {
-        let found = self.found.clone();
-        Self::new(py, run(py, None, move |observer| found.inverse(observer))?)
+        let finished = self.finished.clone();
+        Self::new(py, run(py, None, move |observer| finished.inverse(observer))?)
     }
 
     /// How well scalars of both surfaces agree through the map, weighted by area on the source.
@@ -281,20 +281,20 @@ impl Registration {
         source_values: &Bound<'_, PyAny>,
         target_values: &Bound<'_, PyAny>,
     ) -> PyResult<(f64, f64)> {
-        let ours = scalars(source_values, "source_values", self.found.source.vertices.len())?;
-        let theirs = scalars(target_values, "target_values", self.found.target.vertices.len())?;
-        let found = self.found.clone();
+        let ours = scalars(source_values, "source_values", self.finished.source.vertices.len())?;
+        let theirs = scalars(target_values, "target_values", self.finished.target.vertices.len())?;
+        let finished = self.finished.clone();
         run(py, None, move |_| {
-            let pulled = found.interpolated(&theirs, 1, Per::Vertex);
-            Ok(registration::compare(&ours, &pulled, &found.vertex_areas()))
+            let pulled = finished.interpolated(&theirs, 1, Per::Vertex);
+            Ok(registration::compare(&ours, &pulled, &finished.vertex_areas()))
         })
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "Registration({} onto {} vertices, {} landmarks, {} missed, {} after {} iterations, {:.2} s, {})",
-            self.found.source.vertices.len(),
-            self.found.target.vertices.len(),
+            self.finished.source.vertices.len(),
+            self.finished.target.vertices.len(),
             self.landmark_error.bind(py).len()?,
             self.missed.bind(py).len()?,
             self.status,

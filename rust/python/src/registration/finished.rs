@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A finished registration and what its methods compute, in plain Rust.
+//! A finished registration, on which the methods of its Python class call the core.
 
 use std::sync::Arc;
 
 use authalic::hyperbolic::CurveRegistration;
 use authalic::registration::{
-    DiskRegistration, GivenFaces, Location, SphereRegistration, nearest_given_corners, pull_given_corners,
+    DiskRegistration, GivenFaces, Location, SphereRegistration, lifted, nearest_given_corners,
+    pull_given_corners,
 };
-use authalic::{Error, Observer, Vector3, registration};
+use authalic::{Error, Observer, Surface as CheckedSurface, Vector3, registration};
+
+use crate::arrays::rows;
 
 /// A surface of a registration.
 pub struct Surface {
@@ -19,7 +22,7 @@ pub struct Surface {
 }
 
 /// A registration with all that its methods need.
-pub struct Found {
+pub struct Finished {
     pub source: Arc<Surface>,
     pub target: Arc<Surface>,
     pub outcome: Outcome,
@@ -33,14 +36,14 @@ pub enum Outcome {
     Curves(Box<CurveRegistration>),
 }
 
-/// Evaluates an expression for either kind of outcome.
+/// Evaluates an expression of the map of the source onto the target, whatever kind of outcome it is.
 macro_rules! either {
-    ($outcome:expr, $found:ident => $value:expr) => {
+    ($outcome:expr, $map:ident => $value:expr) => {
         match $outcome {
-            Outcome::Disk($found) => $value,
-            Outcome::Sphere($found) => $value,
+            Outcome::Disk($map) => $value,
+            Outcome::Sphere($map) => $value,
             Outcome::Curves(curves) => {
-                let $found = &curves.map;
+                let $map = &curves.map;
                 $value
             }
         }
@@ -56,23 +59,43 @@ impl Surface {
     }
 }
 
-impl Found {
-    pub fn new(source: Arc<Surface>, target: Arc<Surface>, outcome: Outcome) -> Self {
+impl Finished {
+    /// An outcome with the surfaces as given and as oriented.
+    pub fn of_surfaces(
+        source: &CheckedSurface,
+        target: &CheckedSurface,
+        outcome: Outcome,
+    ) -> Result<Self, Error> {
+        let kept = |surface: &CheckedSurface, faces: &[_]| Surface {
+            vertices: rows(surface.vertices()).to_vec(),
+            given: rows(surface.faces()).to_vec(),
+            faces: faces.to_vec(),
+        };
+        let target_faces = either!(&outcome, map => map.target_faces.clone());
+        let surfaces = (kept(source, source.mesh()?.faces()), kept(target, &target_faces));
+        Ok(Self::new(surfaces.0.into(), surfaces.1.into(), outcome))
+    }
+
+    fn new(source: Arc<Surface>, target: Arc<Surface>, outcome: Outcome) -> Self {
         let vertices: Vec<Vector3> = target.vertices.iter().copied().map(Vector3).collect();
-        let positions = either!(&outcome, found => found.positions(&vertices));
+        let positions = either!(&outcome, map => map.positions(&vertices));
         let area_ratio = registration::area_ratios(&source.vertices, &source.faces, &positions);
         Self { source, target, outcome, positions, area_ratio }
     }
 
     pub fn locations(&self) -> &[Location] {
-        either!(&self.outcome, found => &found.locations)
+        either!(&self.outcome, map => &map.locations)
     }
 
     /// The vertices of source and target in the domain, the disk in the plane z = 1 as the core has it.
     fn in_domain(&self) -> (Vec<Vector3>, Vec<Vector3>) {
         match &self.outcome {
-            Outcome::Disk(found) => (lifted(&found.registered), lifted(&found.target_registered)),
-            Outcome::Sphere(found) => (found.registered.clone(), found.target_registered.clone()),
+            Outcome::Disk(registration) => {
+                (lifted(&registration.registered), lifted(&registration.target_registered))
+            }
+            Outcome::Sphere(registration) => {
+                (registration.registered.clone(), registration.target_registered.clone())
+            }
             Outcome::Curves(curves) => (curves.map.registered.clone(), curves.spheres[1].positions.clone()),
         }
     }
@@ -80,9 +103,9 @@ impl Found {
     pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
         let faces = &self.source.faces;
         let outcome = match &self.outcome {
-            Outcome::Disk(found) => Outcome::Disk(found.inverse(faces, observer)?),
-            Outcome::Sphere(found) => Outcome::Sphere(found.inverse(faces, observer)?),
-            Outcome::Curves(found) => Outcome::Curves(Box::new(found.inverted())),
+            Outcome::Disk(registration) => Outcome::Disk(registration.inverse(faces, observer)?),
+            Outcome::Sphere(registration) => Outcome::Sphere(registration.inverse(faces, observer)?),
+            Outcome::Curves(registration) => Outcome::Curves(Box::new(registration.inverted())),
         };
         Ok(Self::new(self.target.clone(), self.source.clone(), outcome))
     }
@@ -120,11 +143,6 @@ impl Found {
     pub fn vertex_areas(&self) -> Vec<f64> {
         registration::vertex_areas(&self.source.vertices, &self.source.faces)
     }
-}
-
-/// Points of the disk in the plane z = 1, where the core has them.
-fn lifted(points: &[[f64; 2]]) -> Vec<Vector3> {
-    points.iter().map(|&[u, v]| Vector3([u, v, 1.0])).collect()
 }
 
 /// What there is one row of data for.

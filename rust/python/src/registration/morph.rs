@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of the morph along a registration.
+
+use authalic::Vector3;
+use pyo3::prelude::*;
+
+use super::result::Registration;
+use crate::arrays::{Pairs, from_points, rows, vectors};
+use crate::errors::{bad_array, bad_option};
+use crate::run::run;
+use crate::surface::handle;
+
+/// The morph along a registration, from the source at t = 0 to its image on the target at t = 1.
+///
+/// Parameters
+/// ----------
+/// vertices : (n, 3) real array
+///     The source's vertices. Or the source as a Surface.
+/// registration : Registration
+///     Where they go.
+/// t : float
+///     Any finite number; beyond 0 and 1 the morph goes on along the same lines.
+/// align : bool
+///     Move, turn and scale the image onto the source first (the best similarity by area), so that the shape
+///     changes but does not travel.
+///
+/// Returns
+/// -------
+/// (n, 3) float64 array
+///     (1 − t) v + t g(v).
+///
+/// Raises
+/// ------
+/// MeshError
+///     An array that is not of shape (n, 3).
+/// ValueError
+///     A t that is not finite.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+/// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+/// >>> large = [[3 * x for x in corner] for corner in corners]
+/// >>> found = authalic.register_spheres(
+/// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
+/// ... )
+/// >>> authalic.homotopy(corners, found, 0.5).max().round(6).item()
+/// 2.0
+#[pyfunction]
+#[pyo3(signature = (vertices, registration, t, *, align=false))]
+pub fn homotopy(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    registration: &Registration,
+    t: f64,
+    align: bool,
+) -> PyResult<Pairs> {
+    let finished = registration.finished.clone();
+    let (vertices, n) = (vertices_of(vertices)?, finished.positions.len());
+    if vertices.len() != n {
+        let (shape, expected) = (format!("of shape ({}, 3)", vertices.len()), format!("of shape ({n}, 3)"));
+        return Err(bad_array(py, "vertices", shape, expected));
+    }
+    if !t.is_finite() {
+        return Err(bad_option(format!("t must be a finite number, but is {t}")));
+    }
+    let morphed = run(py, None, move |_| Ok(finished.morphed(&vertices, t, align)))?;
+    Ok(from_points(py, &morphed))
+}
+
+/// Vertices, or those of a surface.
+fn vertices_of(object: &Bound<'_, PyAny>) -> PyResult<Vec<Vector3>> {
+    match handle(object) {
+        Some(surface) => Ok(rows(surface.vertices()).iter().copied().map(Vector3).collect()),
+        None => vectors(object, "vertices"),
+    }
+}

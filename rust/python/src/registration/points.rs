@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of the registrations by points.
+
+use authalic::mesh::TriangleMesh;
+use authalic::registration::{self, Landmarks, RegistrationOptions};
+use authalic::{Error, Side};
+use pyo3::prelude::*;
+
+use super::finished::{Finished, Outcome};
+use super::result::Registration;
+use super::surfaces::{SOURCE, TARGET, checked};
+use crate::arrays::index_list;
+use crate::run::run;
+use crate::surface::Given;
+
+/// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to
+/// landmarks.
+///
+/// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without
+/// folding a face (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is looked up on the
+/// target.
+///
+/// Parameters
+/// ----------
+/// source : Surface, or (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: a surface with one boundary loop and no handles.
+/// target : Surface, or (vertices, faces)
+///     Another, with (n_t, 3) and (m_t, 3).
+/// source_landmarks : (k,) integer array
+///     Vertices of the source, at least 1, none on the boundary.
+/// target_landmarks : (k,) integer array
+///     Their partners on the target, in the same order.
+/// weight : float
+///     λ > 0, the weight of the landmark penalty at the beginning; it grows tenfold until the landmarks meet.
+/// angle_weight : float
+///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `disk_map`.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between iterations and in long steps from within; False cancels and returns the best map so
+///     far.
+///
+/// Returns
+/// -------
+/// Registration
+///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
+///     says which.
+///
+/// Raises
+/// ------
+/// MeshError
+///     A surface is no disk, an array does not fit, or landmarks are no pairs: unequal counts, repeated, out
+///     of range, too few, on the boundary; nothing was computed.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     A surface has no map without folds in double precision, or the call was cancelled before both had one.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+/// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]
+/// >>> flat = [[0, 0, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
+/// >>> result = authalic.register_disks(
+/// ...     (pyramid, faces), (flat, faces), source_landmarks=(0,), target_landmarks=(0,)
+/// ... )
+/// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
+/// (True, 0)
+#[pyfunction]
+#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, weight=1.0, angle_weight=0.0,
+                    progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn register_disks(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    target: &Bound<'_, PyAny>,
+    source_landmarks: &Bound<'_, PyAny>,
+    target_landmarks: &Bound<'_, PyAny>,
+    weight: f64,
+    angle_weight: f64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Registration> {
+    let options = RegistrationOptions { weight, angle_weight };
+    let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
+    let finished = run(py, progress, move |observer| {
+        arguments.register(|source, target, landmarks, options| {
+            registration::register_disks(source, target, landmarks, options, observer).map(Outcome::Disk)
+        })
+    })?;
+    Registration::new(py, finished)
+}
+
+/// Registers two closed surfaces: a map of the source onto the target that keeps areas and takes landmarks to
+/// landmarks.
+///
+/// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair
+/// without folding a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is
+/// looked up on the target.
+///
+/// Parameters
+/// ----------
+/// source : Surface, or (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: a closed surface without handles.
+/// target : Surface, or (vertices, faces)
+///     Another, with (n_t, 3) and (m_t, 3). One that is turned inside out beside the source is turned back.
+/// source_landmarks : (k,) integer array
+///     Vertices of the source, at least 2.
+/// target_landmarks : (k,) integer array
+///     Their partners on the target, in the same order.
+/// weight : float
+///     λ > 0, the weight of the landmark penalty at the beginning; it grows tenfold until the landmarks meet.
+/// angle_weight : float
+///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `sphere_map`.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between iterations and in long steps from within; False cancels and returns the best map so
+///     far.
+///
+/// Returns
+/// -------
+/// Registration
+///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
+///     says which.
+///
+/// Raises
+/// ------
+/// MeshError
+///     A surface is no sphere, an array does not fit, or landmarks are no pairs: unequal counts, repeated,
+///     out of range, too few; nothing was computed.
+/// ValueError
+///     An option out of its range.
+/// SolverError
+///     A surface has no map without folds in double precision, or the call was cancelled before both had one.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+/// >>> mesh = corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
+/// >>> result = authalic.register_spheres(mesh, mesh, source_landmarks=[0, 1], target_landmarks=[0, 1])
+/// >>> result.positions.round(6).tolist() == corners, len(result.distortion.folded)
+/// (True, 0)
+#[pyfunction]
+#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, weight=1.0, angle_weight=0.0,
+                    progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn register_spheres(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    target: &Bound<'_, PyAny>,
+    source_landmarks: &Bound<'_, PyAny>,
+    target_landmarks: &Bound<'_, PyAny>,
+    weight: f64,
+    angle_weight: f64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Registration> {
+    let options = RegistrationOptions { weight, angle_weight };
+    let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
+    let finished = run(py, progress, move |observer| {
+        arguments.register(|source, target, landmarks, options| {
+            registration::register_spheres(source, target, landmarks, options, observer).map(Outcome::Sphere)
+        })
+    })?;
+    Registration::new(py, finished)
+}
+
+/// The arguments of a registration as plain data.
+struct Arguments {
+    source: Given,
+    target: Given,
+    source_landmarks: Vec<usize>,
+    target_landmarks: Vec<usize>,
+    options: RegistrationOptions,
+}
+
+impl Arguments {
+    fn new(
+        source: &Bound<'_, PyAny>,
+        target: &Bound<'_, PyAny>,
+        source_landmarks: &Bound<'_, PyAny>,
+        target_landmarks: &Bound<'_, PyAny>,
+        options: RegistrationOptions,
+    ) -> PyResult<Self> {
+        let source = Given::pair(source, SOURCE)?;
+        let target = Given::pair(target, TARGET)?;
+        let source_landmarks = index_list(source_landmarks, "source_landmarks", "pair", source.n_vertices())?;
+        let target_landmarks = index_list(target_landmarks, "target_landmarks", "pair", target.n_vertices())?;
+        Ok(Self { source, target, source_landmarks, target_landmarks, options })
+    }
+
+    /// Checks the meshes and registers them.
+    fn register(
+        self,
+        register: impl FnOnce(
+            &TriangleMesh,
+            &TriangleMesh,
+            &Landmarks<'_>,
+            &RegistrationOptions,
+        ) -> Result<Outcome, Error>,
+    ) -> Result<Finished, Error> {
+        let (source, target) = (checked(self.source, Side::Source)?, checked(self.target, Side::Target)?);
+        let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
+        let outcome = register(source.mesh()?, target.mesh()?, &landmarks, &self.options)?;
+        Finished::of_surfaces(&source, &target, outcome)
+    }
+}

@@ -5,17 +5,18 @@ Its functions are ordinary functions on numpy arrays.
 """
 
 from ..surfaces.suitability import Unsuitable
-from .figures import folds, measure
+from .figures import folds, measure, measure_islands
 from .flips import fix_flips
 from .islands import unwrap
 from .registrations import kept, morphed, pull, register
-from .results import Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
+from .results import Figures, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .settings import UnwrapSettings
 from .shortfall import Shortfall
 from .solver import Solver
 from .spheres import sphere_shape
 
 __all__ = (
+    "Figures",
     "Island",
     "Mapping",
     "Measurement",
@@ -30,6 +31,7 @@ __all__ = (
     "folds",
     "kept",
     "measure",
+    "measure_islands",
     "morphed",
     "pull",
     "register",

@@ -10,19 +10,42 @@ from numpy.typing import NDArray
 import authalic
 
 from ..surfaces import polygons, triangulation
-from ..surfaces.arrays import Booleans, Integers
-from ..surfaces.islands import PlanarIsland
+from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.surface import Surface
-from .results import Measurement
+from .results import Figures, Island, Measurement
 
 
-def folds(island: PlanarIsland) -> bool:
+def folds(island: Island) -> bool:
     """Whether a face of an island is folded over, exactly, in UVs of single precision as Blender has them."""
     try:
-        figures = authalic.distortion(island.points, island.faces, island.uv.astype(np.float32).astype(float))
+        island.figures = None
+        return len(_in_uvs(island).folded) > 0
     except authalic.MeshError:  # the whole island has shrunk to a line or a point
         return True
-    return len(figures.folded) > 0
+
+
+def _in_uvs(island: Island) -> authalic.Distortion:
+    """The figures of an island in single precision, by the library; kept until `folds` is asked again."""
+    if island.figures is None:
+        island.figures = authalic.distortion(island.native, island.uv.astype(np.float32))
+    return island.figures
+
+
+def measure_islands(islands: Sequence[Island]) -> Figures | None:
+    """Figures of islands without folds, in UVs of single precision, all on one scale.
+
+    None where no triangle has an area.
+    """
+    points = np.concatenate([island.points[island.faces] for island in islands])
+    image = np.concatenate([island.uv.astype(np.float32)[island.faces] for island in islands])
+    angles = np.concatenate([np.asarray(_in_uvs(island).angle_distortion) for island in islands])
+    good = triangulation.has_area(points)
+    if not good.any():
+        return None
+    areas, image_areas = _areas(points[good], image[good])
+    return _figures(
+        _ratios(areas, image_areas), np.zeros(len(areas), bool), angles[good], int(np.count_nonzero(~good))
+    )
 
 
 def measure(surfaces: Sequence[Surface]) -> Measurement | None:
@@ -31,28 +54,50 @@ def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     image = np.concatenate([surface.uvs[surface.corners] for surface in surfaces])
     good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
     points, image = points[good], image[good]
-    if not triangulation.signed_areas(image.astype(float)).any():
+    areas, image_areas = _areas(points, image)
+    if not image_areas.any():
         return None
     # With the UV islands in one piece the library turns faces of inconsistent normals by itself.
     first, faces = triangulation.welded(_vertices(surfaces)[good], image)
     corner_points, corner_image = points.reshape(-1, 3)[first], image.reshape(-1, 2)[first]
-    figures = authalic.distortion(corner_points, faces, corner_image.astype(float))
-    log2 = np.clip(figures.log2_area_ratio, -polygons.LOG2_LIMIT, polygons.LOG2_LIMIT)
-    log2[figures.folded] = -polygons.LOG2_LIMIT
-    unfolded = np.ones(len(log2), bool)
-    unfolded[figures.folded] = False
-    angles = figures.angle_distortion[unfolded]
-    spread = [_spread(good, values) for values in (log2, triangulation.areas(points), ~unfolded)]
-    return Measurement(
-        triangles=len(log2),
-        mean=float(figures.area_ratio_mean),
-        deviation=float(figures.area_ratio_std),
+    found = authalic.distortion(corner_points, faces, corner_image)
+    folded = np.zeros(len(areas), bool)
+    folded[found.folded] = True
+    ratios = _ratios(areas, np.where(folded, -image_areas, image_areas))
+    figures = _figures(ratios, folded, np.asarray(found.angle_distortion), int(np.count_nonzero(~good)))
+    spread = [_spread(good, values) for values in (_log2(ratios, folded), areas, folded)]
+    return Measurement(**vars(figures), log2=polygons.log2_area_ratios(surfaces, *spread))
+
+
+def _areas(points: Floats, image: Singles) -> tuple[Floats, Floats]:
+    """The areas (t,) of triangles (t, 3, 3), and of their images (t, 3, 2)."""
+    return triangulation.areas(points), np.abs(triangulation.signed_areas(image.astype(float)))
+
+
+def _ratios(areas: Floats, image_areas: Floats) -> Floats:
+    """Signed image areas (t,) over areas (t,), with a mean of 1 where the whole counts."""
+    return image_areas / areas * (areas.sum() / np.abs(image_areas).sum())
+
+
+def _log2(ratios: Floats, folded: Booleans) -> Floats:
+    """log2 of area ratios (t,), within the limits of what is shown."""
+    log2 = np.full(len(ratios), -polygons.LOG2_LIMIT)
+    log2[~folded] = np.clip(np.log2(ratios[~folded]), -polygons.LOG2_LIMIT, polygons.LOG2_LIMIT)
+    return log2
+
+
+def _figures(ratios: Floats, folded: Booleans, angles: Floats, without_area: int) -> Figures:
+    """Figures of triangles with area ratios (t,) and angle distortions (t,)."""
+    log2, unfolded = _log2(ratios, folded), angles[~folded]
+    return Figures(
+        triangles=len(ratios),
+        mean=float(ratios.mean()),
+        deviation=float(ratios.std()),
         log2_min=float(log2.min()),
         log2_max=float(log2.max()),
-        flips=len(figures.folded),
-        angle=float(angles.mean()) if len(angles) else float("inf"),
-        without_area=int(np.count_nonzero(~good)),
-        log2=polygons.log2_area_ratios(surfaces, *spread),
+        flips=int(folded.sum()),
+        angle=float(unfolded.mean()) if len(unfolded) else float("inf"),
+        without_area=without_area,
     )
 
 

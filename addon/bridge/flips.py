@@ -14,6 +14,7 @@ from ..surfaces import suitability, uv_map
 from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from .patches import checked, cut
 from .progress import NOT_REACHED, Progress, keep_going, one_by_one
 from .results import Refusal, Unflipped
 
@@ -57,8 +58,7 @@ def _tangles(surfaces: Sequence[Surface], index: int, result: Unflipped) -> Iter
     if not uv_map.may_be_flipped(joined.faces, joined.uv):
         return
     try:
-        # A bad coordinate is for the island's own turn.
-        patches = authalic.cut(np.nan_to_num(joined.points, posinf=0, neginf=0), joined.faces)
+        patches = cut(joined.points, joined.faces)
     except authalic.MeshError as error:
         reason = problems.in_words(error, joined.polygons, joined.vertices)
         result.refusals.append(Refusal(surface.name, None, reason))
@@ -84,13 +84,14 @@ def _unflip(tangle: _Tangle, result: Unflipped, progress: Progress) -> None:
     """Adds what an island needs to have no flipped faces to an `Unflipped`."""
     faces = np.asarray(tangle.patch.faces)
     suitability.check_flat(tangle.patch)
-    authalic.distortion(tangle.points, faces, tangle.uv.astype(float))  # raises where the mesh is at fault
-    found = _untangled(tangle, faces, result, progress)
+    native = checked(tangle.patch, tangle.points)
+    authalic.distortion(native, tangle.uv)  # raises where the mesh is at fault
+    found = _untangled(tangle, native, result, progress)
     folded = np.asarray(found.folded_before)
     if len(folded) == 0:  # only normals that are inconsistent
         return
     uv = np.asarray(found.image).astype(np.float32)
-    if not _is_unfolded(tangle.points, faces, uv):
+    if not _is_unfolded(native, uv):
         raise Unsuitable("its faces would flip again in UV precision; scale the island up or unwrap it anew")
     moved = (uv != tangle.uv).any(axis=1)
     write = moved[faces] & (tangle.corners >= 0)
@@ -100,11 +101,12 @@ def _unflip(tangle: _Tangle, result: Unflipped, progress: Progress) -> None:
     result.moved += int(np.count_nonzero(moved & (tangle.vertices >= 0)))
 
 
-def _untangled(tangle: _Tangle, faces: Integers, result: Unflipped, progress: Progress) -> authalic.Untangled:
+def _untangled(
+    tangle: _Tangle, native: authalic.Surface, result: Unflipped, progress: Progress
+) -> authalic.Untangled:
     fixed = np.flatnonzero(tangle.pinned | tangle.shared)
-    image = tangle.uv.astype(float)
     try:
-        return authalic.untangle((tangle.points, faces), image, fixed=fixed, progress=progress)
+        return authalic.untangle(native, tangle.uv, fixed=fixed, progress=progress)
     except (authalic.MeshError, authalic.SolverError) as problem:
         if result.ended_early:
             raise Unsuitable(NOT_REACHED) from problem
@@ -127,7 +129,7 @@ def _why_not(polygons: Integers, has_pins: bool, is_part: bool) -> str:
     )
 
 
-def _is_unfolded(points: Floats, faces: Integers, uv: Singles) -> bool:
+def _is_unfolded(native: authalic.Surface, uv: Singles) -> bool:
     """Whether no face is folded over, exactly, in an image or in its mirror image."""
-    images = [uv.astype(float) * [side, 1] for side in (1, -1)]
-    return any(not len(authalic.distortion(points, faces, image).folded) for image in images)
+    images = [uv * np.array([side, 1], np.float32) for side in (1, -1)]
+    return any(not len(authalic.distortion(native, image).folded) for image in images)

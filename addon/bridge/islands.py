@@ -16,6 +16,7 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from .patches import checked, cut
 from .progress import Progress, keep_going, one_by_one
 from .results import Island, Mapping, Refusal
 from .settings import UnwrapSettings
@@ -75,8 +76,7 @@ def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterato
     # The centre of a divided polygon is no vertex of the mesh.
     vertices = np.where(used < len(surface.positions), used, -1)
     try:
-        # An island with a bad coordinate is refused by itself when its turn comes.
-        patches = authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=number[surface.seams])
+        patches = cut(points, faces, seams=number[surface.seams])
     except authalic.MeshError as error:
         reason = problems.in_words(error, mesh.polygons, vertices)
         result.refusals.append(Refusal(surface.name, None, reason))
@@ -104,21 +104,17 @@ def _map(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
 
 
 def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
+    native = checked(piece.patch, piece.points)
+    found = authalic.disk_map(
+        native, fill_holes=settings.fill_holes, progress=progress, **settings.solver.disk_options()
+    )
     faces = np.asarray(piece.patch.faces)
-    found = _disk_map(piece.points, faces, settings, progress)
     turned = spherical.turned(faces, np.asarray(found.faces))
-    island = _island(piece, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+    island = _island(piece, native, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
     remedy = _CUT if settings.solver.is_free else _NOT_FREE
     island.shortfall = shortfall(found.status, found.distortion, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
-
-
-def _disk_map(
-    points: Floats, faces: Integers, settings: UnwrapSettings, progress: Progress
-) -> authalic.DiskMap:
-    options = settings.solver.disk_options()
-    return authalic.disk_map(points, faces, fill_holes=settings.fill_holes, progress=progress, **options)
 
 
 def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
@@ -138,7 +134,7 @@ def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> I
 
 def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
-    found, positions, turned = sphere_map(piece.points, faces, solver, progress)
+    found, positions, turned = sphere_map(checked(piece.patch, piece.points), solver, progress)
     uv = projection.project(
         positions,
         np.where(turned[:, None], faces[:, ::-1], faces),
@@ -151,13 +147,22 @@ def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress
     )
     uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
     first, corner_point = triangulation.welded(faces, uv)
-    island = _island(piece, uv.reshape(-1, 2)[first], corner_point, turned, faces.ravel()[first])
-    figures = authalic.distortion(island.points, island.faces, island.uv)
+    uv, points = uv.reshape(-1, 2)[first], faces.ravel()[first]
+    native = authalic.Surface(piece.points[points], corner_point)
+    island = _island(piece, native, uv, corner_point, turned, points)
+    figures = authalic.distortion(native, island.uv)
     island.shortfall = shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
     return island
 
 
-def _island(piece: _Piece, uv: Floats, faces: Integers, turned: Booleans, points: Integers) -> Island:
+def _island(
+    piece: _Piece,
+    native: authalic.Surface,
+    uv: Floats,
+    faces: Integers,
+    turned: Booleans,
+    points: Integers,
+) -> Island:
     """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
     real = piece.corners >= 0
     return Island(
@@ -170,4 +175,5 @@ def _island(piece: _Piece, uv: Floats, faces: Integers, turned: Booleans, points
         corner_point=faces.ravel()[real],
         uv=uv,
         turned=np.unique(piece.polygons[turned]),
+        native=native,
     )

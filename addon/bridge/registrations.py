@@ -19,6 +19,7 @@ from ..registration.settings import Settings
 from ..registration.sides import CurvePair, PointPair, Side, boundaries, moved
 from ..surfaces.arrays import Floats, Reals
 from ..surfaces.suitability import Unsuitable
+from .patches import cut
 from .progress import Progress, keep_going
 from .solver import weight
 
@@ -90,12 +91,12 @@ def _registered_by_curves(
     source: Side, target: Side, curves: Sequence[CurvePair], _settings: Settings, progress: Progress
 ) -> Registered:
     sides = source, target
-    patches = [_patches(one) for one in sides]
+    surfaces, patches = zip(*(_in_library(one) for one in sides), strict=True)
     for one, part in zip(sides, patches, strict=True):
         check_piece(one, part)
     paths = check_curves(sides, curves, [boundaries(part) for part in patches])
     native = authalic.register_hyperbolic(
-        *((one.points, one.faces) for one in sides),
+        *surfaces,
         source_curves=paths[0],
         target_curves=paths[1],
         progress=progress,
@@ -103,26 +104,29 @@ def _registered_by_curves(
     return registered_by_curves(native, sides, curves)
 
 
-def _patches(one: Side) -> list[authalic.Patch]:
-    """The pieces of a side; a bad coordinate is for the solver to name."""
+def _in_library(side: Side) -> tuple[Any, list[authalic.Patch]]:
+    """A side as the library takes it, and its pieces; a bad coordinate is for the registration to name."""
     try:
-        return authalic.cut(np.nan_to_num(one.points, posinf=0, neginf=0), one.faces)
+        if not np.isfinite(side.points).all():
+            return (side.points, side.faces), cut(side.points, side.faces)
+        surface = authalic.Surface(side.points, side.faces)
+        return surface, surface.cut()
     except authalic.MeshError as error:
-        reason = problems.in_words(error, one.polygons, one.vertices)
-        raise Unsuitable(f"{one.name}: {reason}") from error
+        reason = problems.in_words(error, side.polygons, side.vertices)
+        raise Unsuitable(f"{side.name}: {reason}") from error
 
 
 def _registered(
     source: Side, target: Side, pairs: Sequence[PointPair], settings: Settings, progress: Progress
 ) -> Registered:
     sides = source, target
-    patches = [_patches(one) for one in sides]
+    surfaces, patches = zip(*(_in_library(one) for one in sides), strict=True)
     shape = domain(sides, patches, settings.domain)
     borders = [np.concatenate([np.empty(0, int), *boundaries(part)]) for part in patches]
     landmarks = check_landmarks(sides, pairs, shape, borders)
     make = authalic.register_disks if shape == "DISK" else authalic.register_spheres
     native = make(
-        *((one.points, one.faces) for one in sides),
+        *surfaces,
         source_landmarks=landmarks[0],
         target_landmarks=landmarks[1],
         weight=settings.weight,

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass, field
 
+import authalic
+
 from ..surfaces.arrays import Floats, Integers, Singles
 from ..surfaces.islands import PlanarIsland
 from .shortfall import Shortfall
@@ -14,8 +16,9 @@ class Island(PlanarIsland):
 
     A point of the surface occurs once for each of its UVs. The mesh corners `corners` (k,) have the UVs of
     the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the rest;
-    they are mirrored in the map. `shortfall` says where the map is not as good as it should be, else it is
-    None. `may_turn` says that the outline has no upper side.
+    they are mirrored in the map. `native` are points and faces as the native library holds them; `figures`
+    those of the UVs in single precision, None until asked for. `shortfall` says where the map is not as good
+    as it should be, else it is None. `may_turn` says that the outline has no upper side.
     """
 
     name: str
@@ -24,8 +27,15 @@ class Island(PlanarIsland):
     corners: Integers
     corner_point: Integers
     turned: Integers
+    native: authalic.Surface
+    figures: authalic.Distortion | None = None
     shortfall: Shortfall | None = None
     may_turn: bool = False
+
+    @property
+    def has_divided_polygons(self) -> bool:
+        """Whether triangles are other than Blender's, as around the centers of divided polygons."""
+        return len(self.corners) < self.faces.size
 
 
 @dataclass
@@ -51,8 +61,8 @@ class Mapping:
 
 
 @dataclass
-class Measurement:
-    """Area ratio figures over the triangles of all surfaces; `log2` has an array (polygons,) for each."""
+class Figures:
+    """Area ratios, angles and flips of UVs, over the triangles of all surfaces."""
 
     triangles: int
     mean: float
@@ -62,6 +72,12 @@ class Measurement:
     flips: int
     angle: float
     without_area: int
+
+
+@dataclass
+class Measurement(Figures):
+    """Figures with the log2 of the area ratio of each polygon, (polygons,) for each surface."""
+
     log2: list[Floats]
 
 

@@ -11,6 +11,7 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from .patches import checked, cut
 from .progress import Progress, keep_going
 from .results import SphereShape
 from .shortfall import UNEVEN_SPHERE, shortfall
@@ -33,16 +34,18 @@ def sphere_shape(
     try:
         used, patches = _whole(mesh)
         suitability.check_closed_mesh(used, len(surface.positions), patches)
-        found, positions, turned = sphere_map(mesh.positions, mesh.triangles, solver, progress)
+        # one piece of all vertices: numbered as the mesh is
+        native = checked(patches[0], mesh.positions)
+        found, positions, turned = sphere_map(native, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
         raise Unsuitable(problems.in_words(error, mesh.polygons, vertices)) from error
     centre = spherical.centroid(mesh.positions, mesh.triangles)
     radius = spherical.radius(mesh.positions, mesh.triangles)
     written = (centre + radius * positions).astype(np.float32)
     faces = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    if spherical.volume(mesh.positions, faces) < 0:
-        faces = faces[:, ::-1]
-    figures = authalic.distortion(mesh.positions, faces, written - centre)
+    # a mesh whose faces look inwards lies mirrored on the sphere
+    outward = -1 if spherical.volume(mesh.positions, faces) < 0 else 1
+    figures = authalic.distortion(native, outward * (written - centre))
     if len(figures.folded):
         raise Unsuitable(
             f"{messages.count(len(figures.folded), 'triangle')} would fold over in the precision of "
@@ -62,23 +65,21 @@ def sphere_shape(
 def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch]]:
     """The vertices (u,) that have triangles, and the pieces that these make up."""
     used, faces = np.unique(mesh.triangles, return_inverse=True)
-    # A bad coordinate is for the solver to name.
-    points = np.nan_to_num(mesh.positions[used], posinf=0, neginf=0)
-    return used, authalic.cut(points, faces.reshape(-1, 3))
+    return used, cut(mesh.positions[used], faces.reshape(-1, 3))
 
 
 def sphere_map(
-    points: Floats, faces: Integers, solver: Solver, progress: Progress
+    surface: authalic.Surface, solver: Solver, progress: Progress
 ) -> tuple[authalic.SphereMap, Floats, Booleans]:
     """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
-    found = authalic.sphere_map(points, faces, progress=progress, **solver.sphere_options())
+    found = authalic.sphere_map(surface, progress=progress, **solver.sphere_options())
     is_poor = found.status == "stalled" and solver.puts_areas_first
     if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
-        start = authalic.sphere_map(points, faces, method="fixed_point", max_iterations=0)
+        start = authalic.sphere_map(surface, method="fixed_point", max_iterations=0)
         found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
     oriented = np.asarray(found.faces)
-    over = spherical.over_surface(points, oriented, np.array(found.positions))
-    return found, over, spherical.turned(faces, oriented)
+    over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.array(found.positions))
+    return found, over, spherical.turned(np.asarray(surface.faces), oriented)
 
 
 def _is_thin(found: authalic.SphereMap) -> bool:

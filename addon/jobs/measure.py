@@ -35,7 +35,7 @@ def job(context: bpy.types.Context) -> Job[bridge.Measurement | None, bridge.Mea
     return Job(lambda progress: bridge.measure(surfaces), finish)
 
 
-def line(figures: bridge.Measurement) -> str:
+def line(figures: bridge.Figures) -> str:
     """The figures in one line."""
     parts = [
         f"area ratio mean {figures.mean:.3f}",

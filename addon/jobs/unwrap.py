@@ -44,7 +44,7 @@ class Report:
     """What was done: the mapped islands, their measurement, and what was left as it was."""
 
     islands: int
-    figures: bridge.Measurement | None
+    figures: bridge.Figures | None
     refusals: list[bridge.Refusal]
     notes: list[str]
     seconds: float
@@ -124,12 +124,11 @@ def _check_unchanged(chosen: Sequence[Chosen]) -> None:
             raise CannotUnwrap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
-def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSettings) -> bridge.Measurement:
+def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSettings) -> bridge.Figures:
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
     _place(mapping, settings)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
-    mapped = [_mapped(surface, *gathered) for (_, _, surface), gathered in zip(chosen, parts, strict=True)]
-    figures = bridge.measure(mapped)
+    figures = _figures([surface for _, _, surface in chosen], parts, mapping.islands)
     if figures is None:
         raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
     for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
@@ -166,6 +165,15 @@ def _gather(islands: Sequence[bridge.Island], index: int) -> tuple[Integers, Sin
     return corners, uv.astype(np.float32)
 
 
+def _figures(
+    surfaces: Sequence[Surface], parts: Sequence[tuple[Integers, Singles]], islands: Sequence[bridge.Island]
+) -> bridge.Figures | None:
+    """The figures of what was mapped, by Blender's triangles where these are not those of the islands."""
+    if not any(island.has_divided_polygons for island in islands):
+        return bridge.measure_islands(islands)
+    return bridge.measure([_mapped(surface, *part) for surface, part in zip(surfaces, parts, strict=True)])
+
+
 def _mapped(surface: Surface, corners: Integers, uv: Singles) -> Surface:
     """The part of a surface that was mapped, with its new UVs."""
     values = np.full((len(surface.corner_vertex), 2), np.nan, np.float32)
@@ -173,9 +181,7 @@ def _mapped(surface: Surface, corners: Integers, uv: Singles) -> Surface:
     return surface.restricted(np.isfinite(values[surface.corners]).all(axis=(1, 2)), values)
 
 
-def _notes(
-    chosen: Sequence[Chosen], islands: Sequence[bridge.Island], figures: bridge.Measurement
-) -> list[str]:
+def _notes(chosen: Sequence[Chosen], islands: Sequence[bridge.Island], figures: bridge.Figures) -> list[str]:
     """What was written but may not be what was wanted."""
     short = [(island, island.shortfall) for island in islands if island.shortfall is not None]
     short.sort(key=lambda pair: -pair[1].deviation)

@@ -110,7 +110,7 @@ def test_not_finite_results_are_not_written(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_unmeasurable_results_are_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     obj = meshes.add_grid()
-    monkeypatch.setattr(part("bridge"), "measure", lambda surfaces: None)
+    monkeypatch.setattr(part("bridge"), "measure_islands", lambda islands: None)
     with pytest.raises(RuntimeError, match="nothing was changed"):
         bpy.ops.authalic.unwrap(uv_layer="New")
     assert not obj.data.uv_layers

@@ -305,8 +305,8 @@ def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache: dict[float, Any] = {}
     last: list[Any] = []
 
-    def remembered(points: Array, faces: Array, solver: Any, progress: Callable[[float, str], Any]) -> Any:
-        last[:] = [cache.get(solver.angle_weight) or bridge_map(points, faces, solver, progress)]
+    def remembered(whole: Any, solver: Any, progress: Callable[[float, str], Any]) -> Any:
+        last[:] = [cache.get(solver.angle_weight) or bridge_map(whole, solver, progress)]
         cache[solver.angle_weight] = last[0]
         return last[0]
 

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes cut into patches: the one time that their arrays go to the native library."""
+
+import numpy as np
+
+import authalic
+
+from ..surfaces.arrays import Floats, Integers
+
+
+def cut(points: Floats, faces: Integers, seams: Integers | None = None) -> list[authalic.Patch]:
+    """The patches of triangles `faces` (m, 3) between `points` (n, 3).
+
+    A coordinate that is not finite counts as 0 here; `checked` refuses its patch when that has its turn.
+    """
+    return authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=seams)
+
+
+def checked(patch: authalic.Patch, points: Floats) -> authalic.Surface:
+    """The surface of a patch whose vertices are `points` (n, 3); raises MeshError unless all are finite."""
+    if np.isfinite(points).all():
+        return patch.surface
+    return authalic.Surface(points, patch.faces)

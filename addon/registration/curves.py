@@ -27,19 +27,19 @@ def check_curves(
         raise Unsuitable(
             f"{sides[0].name} needs a landmark curve; select edges that belong together on both and add them"
         )
-    found, left = [], []
-    for number, (one, loops) in enumerate(zip(sides, boundaries, strict=True), 1):
-        own = [_points(one, curve[0], curve[number]) for curve in curves]
-        _check_edges(one, curves, own)
-        left.append(_without_curves(one, curves, own, loops))
-        found.append(own)
+    lines, left = [], []
+    for number, (side, loops) in enumerate(zip(sides, boundaries, strict=True), 1):
+        side_lines = [_points(side, curve[0], curve[number]) for curve in curves]
+        _check_edges(side, curves, side_lines)
+        left.append(_without_curves(side, curves, side_lines, loops))
+        lines.append(side_lines)
     if left[0] != left[1]:
-        counts = [messages.count(*part) for part in zip(left, ["open boundary"] * 2, strict=True)]
+        counts = [messages.count(number, "open boundary") for number in left]
         raise Unsuitable(
             f"{sides[0].name} has {counts[0]} and {sides[1].name} {counts[1]}, without those that are "
             "curves; both must have as many: fill holes, or delete faces"
         )
-    return found
+    return lines
 
 
 def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> Registered:
@@ -63,38 +63,38 @@ def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence
     )
 
 
-def _points(one: Side, name: str, vertices: ArrayLike) -> Integers:
+def _points(side: Side, name: str, vertices: ArrayLike) -> Integers:
     """A path as points of a side."""
     vertices = np.asarray(vertices)
-    if not len(vertices) or vertices.min() < 0 or vertices.max() >= one.count:
-        raise Unsuitable(f'Curve "{name}" is not on vertices of {one.name}; add it again')
-    points = one.points_of(vertices)
+    if not len(vertices) or vertices.min() < 0 or vertices.max() >= side.count:
+        raise Unsuitable(f'Curve "{name}" is not on vertices of {side.name}; add it again')
+    points = side.points_of(vertices)
     if (points < 0).any():
         loose = messages.numbers(vertices[points < 0])
-        raise Unsuitable(f'Curve "{name}" is on loose vertices of {one.name} ({loose}); add one with faces')
+        raise Unsuitable(f'Curve "{name}" is on loose vertices of {side.name} ({loose}); add one with faces')
     return points
 
 
-def _check_edges(one: Side, curves: Sequence[CurvePair], own: Sequence[Integers]) -> None:
+def _check_edges(side: Side, curves: Sequence[CurvePair], lines: Sequence[Integers]) -> None:
     """Raises `Unsuitable` where an edge of a curve has no face."""
-    ends = np.sort(one.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
-    there = np.unique(ends[:, 0] * len(one.points) + ends[:, 1])
-    for (name, *_), path in zip(curves, own, strict=True):
+    ends = np.sort(side.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
+    existing = np.unique(ends[:, 0] * len(side.points) + ends[:, 1])
+    for (name, *_), path in zip(curves, lines, strict=True):
         pairs = np.sort(np.column_stack([path[:-1], path[1:]]), axis=1).astype(np.int64)
-        bad = np.flatnonzero(~np.isin(pairs[:, 0] * len(one.points) + pairs[:, 1], there))
+        bad = np.flatnonzero(~np.isin(pairs[:, 0] * len(side.points) + pairs[:, 1], existing))
         if len(bad):
-            first, second = one.vertices[path[bad[0] : bad[0] + 2]].tolist()
+            first, second = side.vertices[path[bad[0] : bad[0] + 2]].tolist()
             raise Unsuitable(
-                f'Curve "{name}" has the edge ({first}, {second}) of {one.name}, which has no face'
+                f'Curve "{name}" has the edge ({first}, {second}) of {side.name}, which has no face'
             )
 
 
 def _without_curves(
-    one: Side, curves: Sequence[CurvePair], own: Sequence[Integers], loops: Sequence[Integers]
+    side: Side, curves: Sequence[CurvePair], lines: Sequence[Integers], loops: Sequence[Integers]
 ) -> int:
     """How many boundary loops are no curves. Raises `Unsuitable` where a curve has a part of one."""
     left = len(loops)
-    for (name, *_), path in zip(curves, own, strict=True):
+    for (name, *_), path in zip(curves, lines, strict=True):
         for loop in loops:
             shared = np.intersect1d(path, loop)
             if path[0] == path[-1] and len(shared) == len(loop) == len(path) - 1:
@@ -102,8 +102,8 @@ def _without_curves(
             elif len(shared):
                 noun = "vertex" if len(shared) == 1 else "vertices"
                 raise Unsuitable(
-                    f'Curve "{name}" meets the boundary of {one.name} at {noun} '
-                    f"{messages.numbers(one.vertices[shared])}; end it inside, or make it a closed curve "
+                    f'Curve "{name}" meets the boundary of {side.name} at {noun} '
+                    f"{messages.numbers(side.vertices[shared])}; end it inside, or make it a closed curve "
                     "along the whole boundary"
                 )
     return left

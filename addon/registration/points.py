@@ -19,17 +19,17 @@ def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted:
 
     Raises `Unsuitable` where one of them is neither, where they differ, or where they are not what is wanted.
     """
-    found = [_shape(*part) for part in zip(sides, patches, strict=True)]
-    for one, shape in zip(sides, found, strict=True):
+    shapes = [_shape(side, pieces) for side, pieces in zip(sides, patches, strict=True)]
+    for side, shape in zip(sides, shapes, strict=True):
         if wanted not in ("AUTO", shape):
-            raise Unsuitable(f"{one.name}: {_NOT_WANTED[wanted]}")
-    if found[0] != found[1]:
-        opened, closed = (sides[found.index(shape)].name for shape in ("DISK", "SPHERE"))
+            raise Unsuitable(f"{side.name}: {_NOT_WANTED[wanted]}")
+    if shapes[0] != shapes[1]:
+        opened, closed = (sides[shapes.index(shape)].name for shape in ("DISK", "SPHERE"))
         raise Unsuitable(
             f"{opened} is open and {closed} is closed; both must be open or both closed: fill the hole of "
             f"{opened} or delete faces of {closed}"
         )
-    return found[0]
+    return shapes[0]
 
 
 _NOT_WANTED = {
@@ -38,13 +38,13 @@ _NOT_WANTED = {
 }
 
 
-def _shape(one: Side, patches: Sequence[Patch]) -> str:
+def _shape(side: Side, patches: Sequence[Patch]) -> str:
     """What one side is, which must be a single piece without handles and with one boundary at the most."""
-    patch = check_piece(one, patches)
-    loops = [one.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
+    patch = check_piece(side, patches)
+    loops = [side.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
     if len(loops) > 1:
         holes = _holes(loops[1:])
-        raise Unsuitable(f"{one.name}: has {len(loops)} boundaries where one is allowed; fill {holes}")
+        raise Unsuitable(f"{side.name}: has {len(loops)} boundaries where one is allowed; fill {holes}")
     return "DISK" if loops else "SPHERE"
 
 
@@ -65,21 +65,23 @@ def check_landmarks(
     if len(pairs) < _FEWEST[shape]:
         few = "a landmark pair" if shape == "DISK" else "at least two landmark pairs, better four or more"
         raise Unsuitable(f"{sides[0].name} needs {few}; add vertices that belong together")
-    found = []
-    for number, (one, border) in enumerate(zip(sides, boundaries, strict=True), 1):
+    landmarks = []
+    for number, (side, border) in enumerate(zip(sides, boundaries, strict=True), 1):
         vertices = np.array([pair[number] for pair in pairs])
-        outside = (vertices < 0) | (vertices >= one.count)
-        _refuse(pairs, outside, f"is on no vertex of {one.name}; pick it again")
-        points = one.points_of(vertices)
-        _refuse(pairs, points < 0, f"is on a loose vertex of {one.name}; pick one that has faces")
+        outside = (vertices < 0) | (vertices >= side.count)
+        _refuse(pairs, outside, f"is on no vertex of {side.name}; pick it again")
+        points = side.points_of(vertices)
+        _refuse(pairs, points < 0, f"is on a loose vertex of {side.name}; pick one that has faces")
         first = np.unique(points, return_index=True)[1]
         again = ~np.isin(np.arange(len(points)), first)
-        _refuse(pairs, again, f"is on a vertex of {one.name} that has a landmark already; remove one of them")
+        _refuse(
+            pairs, again, f"is on a vertex of {side.name} that has a landmark already; remove one of them"
+        )
         if shape == "DISK":
-            problem = f"is on the boundary of {one.name}, which becomes a circle; pick a vertex inside"
+            problem = f"is on the boundary of {side.name}, which becomes a circle; pick a vertex inside"
             _refuse(pairs, np.isin(points, border), problem)
-        found.append(points)
-    return np.array(found)
+        landmarks.append(points)
+    return np.array(landmarks)
 
 
 def _refuse(pairs: Sequence[PointPair], bad: Booleans, problem: str) -> None:

@@ -23,8 +23,8 @@ def in_words(
         )
     if error.side is None:
         return problems.in_words(error, names=names)
-    one = sides[_SIDES.index(error.side)]
-    return f"{one.name}: {problems.in_words(error, one.polygons, one.vertices, names)}"
+    side = sides[_SIDES.index(error.side)]
+    return f"{side.name}: {problems.in_words(error, side.polygons, side.vertices, names)}"
 
 
 def remarks(warnings: Sequence[Problem], sides: tuple[Side, Side], curves: Sequence[CurvePair]) -> list[str]:
@@ -42,4 +42,4 @@ def remarks(warnings: Sequence[Problem], sides: tuple[Side, Side], curves: Seque
 
 
 def _any_open(sides: tuple[Side, Side]) -> bool:
-    return any(is_open(one) for one in sides)
+    return any(is_open(side) for side in sides)

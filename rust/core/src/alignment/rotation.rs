@@ -8,10 +8,10 @@ use crate::parallel;
 use crate::sparse::top_eigenvector;
 use crate::vector::Vector3;
 
-/// The rotation R, by rows, that maximises Σ w_i (R x_i)·y_i, `from` x and `to` y.
+/// The rotation R, by rows, that maximizes Σ w_i (R x_i)·y_i, `from` x and `to` y.
 ///
-/// With y less its [`centroid`], it is the one that minimises Σ w_i |R x_i + b − y_i|² over all R and b; with both
-/// on the sphere, the one that minimises Σ w_i |R x_i − y_i|².
+/// With y less its [`centroid`], it is the one that minimizes Σ w_i |R x_i + b − y_i|² over all R and b; with both
+/// on the sphere, the one that minimizes Σ w_i |R x_i − y_i|².
 pub(crate) fn best_rotation(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> [Vector3; 3] {
     let total = parallel::sum(weights.len(), |v| weights[v]);
     // S_ab = Σ w x_a y_b
@@ -69,9 +69,9 @@ mod tests {
             let rotation = rotation_of(turn);
             let turned: Vec<Vector3> = points.iter().map(|&x| rotate(rotation, x)).collect();
             let shifted: Vec<Vector3> = points.iter().map(|&x| x * 3.0 + Vector3([1.0, 0.0, -7.0])).collect();
-            let centre = centroid(&shifted, &weights);
-            let centred: Vec<Vector3> = shifted.iter().map(|&y| y - centre).collect();
-            let back = best_rotation(&turned, &centred, &weights);
+            let center = centroid(&shifted, &weights);
+            let centered: Vec<Vector3> = shifted.iter().map(|&y| y - center).collect();
+            let back = best_rotation(&turned, &centered, &weights);
             for (&moved, &point) in turned.iter().zip(&points) {
                 assert!(rotate(back, moved).distance(point) < 1e-12);
             }

@@ -23,7 +23,7 @@ impl Similarity {
     }
 }
 
-/// The similarity that brings `from` (n, 3) nearest to `to` (n, 3): it minimises Σ w_i |s R x_i + b − y_i|² (Horn 1987,
+/// The similarity that brings `from` (n, 3) nearest to `to` (n, 3): it minimizes Σ w_i |s R x_i + b − y_i|² (Horn 1987,
 /// Umeyama 1991), `weights` w (n,) not negative and not all 0.
 ///
 /// Where all of `from` is one point, the scale is 1.
@@ -33,8 +33,8 @@ impl Similarity {
 pub fn similarity(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> Similarity {
     assert!(from.len() == to.len() && from.len() == weights.len(), "as many points as weights");
     // 1. Both about their centroids, and of size 1: no square over- or underflows.
-    let (x, centre, size) = centred(from, weights);
-    let (y, to_centre, to_size) = centred(to, weights);
+    let (x, center, size) = centered(from, weights);
+    let (y, to_center, to_size) = centered(to, weights);
     // 2. The best rotation does not depend on the scale; the best scale for it is a quotient.
     let rotation = best_rotation(&x, &y, weights);
     let [along, square] = parallel::sums(x.len(), |v| {
@@ -42,17 +42,17 @@ pub fn similarity(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> Similari
     });
     let scale = if square > 0.0 { along.max(0.0) / square * (to_size / size) } else { 1.0 };
     // 3. Centroid to centroid.
-    let translation = to_centre - rotate(rotation, centre) * scale;
+    let translation = to_center - rotate(rotation, center) * scale;
     Similarity { scale, rotation, translation }
 }
 
 /// Points about their centroid divided by their largest coordinate there, with both.
-fn centred(points: &[Vector3], weights: &[f64]) -> (Vec<Vector3>, Vector3, f64) {
-    let centre = centroid(points, weights);
-    let about = parallel::map(points.len(), |v| points[v] - centre);
+fn centered(points: &[Vector3], weights: &[f64]) -> (Vec<Vector3>, Vector3, f64) {
+    let center = centroid(points, weights);
+    let about = parallel::map(points.len(), |v| points[v] - center);
     let size = about.iter().fold(0.0, |most, x| f64::max(most, x.max_abs()));
     let size = if size > 0.0 { size } else { 1.0 };
-    (parallel::map(about.len(), |v| about[v].map(|x| x / size)), centre, size)
+    (parallel::map(about.len(), |v| about[v].map(|x| x / size)), center, size)
 }
 
 #[cfg(test)]

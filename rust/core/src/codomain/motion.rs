@@ -60,7 +60,7 @@ impl Motion {
     }
 
     /// The place reached from `x` by `unknowns` along its frame: straight in the plane, by a true rotation on the
-    /// circle, by the normalising retraction on the sphere.
+    /// circle, by the normalizing retraction on the sphere.
     pub(crate) fn moved(self, x: Vector3, frame: &Frame, unknowns: [f64; 2]) -> Vector3 {
         let [a, b] = unknowns;
         match self {

@@ -7,7 +7,7 @@
 //! Where the quick way leaves folds, the guarded descent starts from Tutte's embedding, and where double precision does
 //! not suffice for that, from the [progressive](crate::embedding) one.
 //!
-//! Cost: about five factorisations of the interior vertices with one unknown each, about fifteen with two.
+//! Cost: about five factorizations of the interior vertices with one unknown each, about fifteen with two.
 
 use super::options::{Boundary, DiskMapOptions};
 use super::published::fixed_point::fixed_point;

@@ -66,14 +66,14 @@ fn spanned_area(corners: &[Vector3]) -> f64 {
 
 /// Σ of the area vectors of the fan around the centroid.
 fn loop_normal(corners: &[Vector3]) -> Vector3 {
-    let centre = centroid(corners);
-    edges(corners).fold(Vector3::ZERO, |sum, (from, to)| sum + area_vector([centre, from, to]))
+    let center = centroid(corners);
+    edges(corners).fold(Vector3::ZERO, |sum, (from, to)| sum + area_vector([center, from, to]))
 }
 
 /// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
 /// is fattest.
 fn apex_of(corners: &[Vector3]) -> Vector3 {
-    let (centre, normal) = (centroid(corners), loop_normal(corners));
+    let (center, normal) = (centroid(corners), loop_normal(corners));
     let length: f64 = edges(corners).map(|(from, to)| (to - from).norm()).sum();
     let mut directions = vec![Vector3::ZERO];
     directions.extend([0, 1, 2].map(Vector3::unit));
@@ -82,7 +82,7 @@ fn apex_of(corners: &[Vector3]) -> Vector3 {
         directions.push(unit);
         directions.extend(edges(corners).take(1).map(|(from, to)| unit.cross(to - from)));
     }
-    let candidates = directions.into_iter().map(|direction| centre + direction * (0.1 * length));
+    let candidates = directions.into_iter().map(|direction| center + direction * (0.1 * length));
     let thinnest = |apex: &Vector3| {
         edges(corners)
             .map(|(from, to)| area([from, to, *apex]) / (to - from).dot(to - from))

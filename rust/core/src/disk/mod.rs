@@ -7,7 +7,7 @@
 //! repeated from Tutte's embedding without ever leaving it. Every result is checked by exact predicates.
 //!
 //! Input: a [`TriangleMesh`] that is a disk, or one with holes and [`DiskMapOptions::fill_holes`]. Cost:
-//! about 5 sparse Cholesky factorisations of the interior vertices, then about 12 with two unknowns per
+//! about 5 sparse Cholesky factorizations of the interior vertices, then about 12 with two unknowns per
 //! vertex (Gauss–Newton) or one solve per iteration (conjugate gradients).
 
 mod boundary;
@@ -88,7 +88,7 @@ pub fn disk_map(
         _ => Some(holes::fill_holes(mesh, &given)?),
     };
     let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
-    // 3. Minimise the energy, unfold what folded
+    // 3. Minimize the energy, unfold what folded
     let run = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() };
     let (mut uv, status) = match options.method {
         Method::GaussNewton if options.boundary == Boundary::Rectangle => {

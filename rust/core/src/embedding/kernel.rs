@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Room for a vertex inside the polygon of its neighbours.
+//! Room for a vertex inside the polygon of its neighbors.
 
 use crate::vector::Vector3;
 
-/// The centroid of the kernel of a polygon, in coordinates along `basis` from `centre`: of the points from
+/// The centroid of the kernel of a polygon, in coordinates along `basis` from `center`: of the points from
 /// which all its edges, given by their ends, are seen to run counter-clockwise.
 ///
-/// `centre` is a corner of the polygon from which all its edges are seen so, but for the two at it. `room` is
+/// `center` is a corner of the polygon from which all its edges are seen so, but for the two at it. `room` is
 /// a buffer.
 pub(super) fn kernel_centroid(
-    centre: Vector3,
+    center: Vector3,
     basis: [Vector3; 2],
     edges: impl Iterator<Item = [Vector3; 2]> + Clone,
     room: &mut [Vec<[f64; 2]>; 2],
 ) -> [f64; 2] {
-    let reach = edges.clone().map(|[one, _]| (one - centre).norm()).fold(0.0, f64::max);
+    let reach = edges.clone().map(|[one, _]| (one - center).norm()).fold(0.0, f64::max);
     let [polygon, next] = room;
     polygon.clear();
     polygon.extend([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]]);
     for [one, two] in edges {
         let normal = one.cross(two - one);
-        // exactly 0 for the two edges that end at the centre itself
-        let constant = centre.dot((one - centre).cross(two - centre));
+        // exactly 0 for the two edges that end at the center itself
+        let constant = center.dot((one - center).cross(two - center));
         let [a, b] = basis.map(|axis| axis.dot(normal));
         clip(polygon, |z| constant + a * z[0] + b * z[1], next);
         std::mem::swap(polygon, next);

@@ -4,7 +4,7 @@
 //! The surface is decimated to a tetrahedron, which is laid onto the sphere, or to a triangle, which is laid
 //! into the disk, and gets its vertices back one by one. The vertices around the one that comes back form a
 //! polygon that is star-shaped from the vertex it went onto, so there is room for it near that one; it is
-//! placed there and then moved, with its neighbours, to lower an energy of area and shape that is infinite at
+//! placed there and then moved, with its neighbors, to lower an energy of area and shape that is infinite at
 //! a fold. No face is ever folded, by a filtered determinant, whatever the shape: a conformal or Tutte map
 //! shrinks a tentacle of length L and girth c by exp(−2π L/c), beyond double precision, and this one does
 //! not.
@@ -33,8 +33,8 @@ const NEWTON_STEPS: usize = 5;
 /// Sweeps over all vertices whenever their number has doubled.
 const SWEEPS: usize = 2;
 
-/// A neighbour with more neighbours of its own is not moved for one vertex that has come back.
-const MANY_NEIGHBOURS: usize = 40;
+/// A neighbor with more neighbors of its own is not moved for one vertex that has come back.
+const MANY_NEIGHBORS: usize = 40;
 
 /// The observer is asked once for so many vertices.
 const BEAT: usize = 1024;
@@ -202,7 +202,7 @@ impl<'a> Embedding<'a> {
         None
     }
 
-    /// Places a vertex that has come back, and moves it and its neighbours.
+    /// Places a vertex that has come back, and moves it and its neighbors.
     fn insert(&mut self, collapse: Collapse) -> Option<()> {
         let Collapse { vertex, onto } = collapse;
         let motion = self.motion(vertex);
@@ -219,29 +219,29 @@ impl<'a> Embedding<'a> {
         }
         self.places[vertex as usize] = place;
         self.placed.push(vertex);
-        // 3. With its neighbours, from the one it went onto
+        // 3. With its neighbors, from the one it went onto
         let mut ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
-        let first = ring.iter().position(|&neighbour| neighbour == onto).unwrap_or(0);
+        let first = ring.iter().position(|&neighbor| neighbor == onto).unwrap_or(0);
         ring.rotate_left(first);
-        for neighbour in ring {
-            if neighbour != self.decimation.apex() && self.decimation.degree(neighbour) <= MANY_NEIGHBOURS {
-                self.relax(neighbour);
+        for neighbor in ring {
+            if neighbor != self.decimation.apex() && self.decimation.degree(neighbor) <= MANY_NEIGHBORS {
+                self.relax(neighbor);
             }
         }
         self.relax(vertex);
         Some(())
     }
 
-    /// A place inside the polygon around a vertex that went onto the one at `centre`.
-    fn place_in_kernel(&mut self, centre: Vector3, motion: Motion) -> Option<Vector3> {
-        let frame = motion.frame(centre);
-        let centroid = kernel_centroid(centre, frame.axes, self.star.edges(), &mut self.room);
+    /// A place inside the polygon around a vertex that went onto the one at `center`.
+    fn place_in_kernel(&mut self, center: Vector3, motion: Motion) -> Option<Vector3> {
+        let frame = motion.frame(center);
+        let centroid = kernel_centroid(center, frame.axes, self.star.edges(), &mut self.room);
         // towards the vertex it went onto, where the kernel is
-        let mut places = (0..12).map(|k| motion.moved(centre, &frame, centroid.map(|x| 0.1f64.powi(k) * x)));
+        let mut places = (0..12).map(|k| motion.moved(center, &frame, centroid.map(|x| 0.1f64.powi(k) * x)));
         places.find(|&place| self.star.energy(place, self.shape).is_some())
     }
 
-    /// The best place on the arc between the neighbours of a vertex of the boundary.
+    /// The best place on the arc between the neighbors of a vertex of the boundary.
     fn place_on_arc(&self) -> Option<Vector3> {
         let [(before, _), (behind, _)] = self.star.arcs?;
         let arc = angle(before, behind);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One vertex inside the polygon of its neighbours: its energy, and a Newton step on it that folds no face.
+//! One vertex inside the polygon of its neighbors: its energy, and a Newton step on it that folds no face.
 //!
 //! On the sphere |x| = 1; the disk lies in the plane z = 1, its boundary on the unit circle, so that one
 //! formula serves both. Per face with target T, D = det(x, p, q) and Q = Σ edge²/2√3:
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! D is linear in x and is evaluated as (p × (q − p))·(x − p). A vertex on the circle has besides, for the
-//! arcs α to its two neighbours there with shares s, Σ s²/α times [`ARC`], which keeps arcs from closing.
+//! arcs α to its two neighbors there with shares s, Σ s²/α times [`ARC`], which keeps arcs from closing.
 //!
 //! Cost: about a hundred operations for each face and step.
 
@@ -33,7 +33,7 @@ const WORTH: f64 = 1e-6;
 #[derive(Debug, Default)]
 pub(super) struct Star {
     faces: Vec<Face>,
-    /// For a vertex on the circle, its neighbours before and behind it, counter-clockwise, each with the
+    /// For a vertex on the circle, its neighbors before and behind it, counter-clockwise, each with the
     /// share of the arc to it.
     pub arcs: Option<[(Vector3, f64); 2]>,
     measure: f64,
@@ -100,7 +100,7 @@ impl Star {
         self.measure = 0.0;
     }
 
-    /// Adds the face between the vertex and two neighbours, which follow it counter-clockwise.
+    /// Adds the face between the vertex and two neighbors, which follow it counter-clockwise.
     pub(super) fn push(&mut self, one: Vector3, two: Vector3, target: f64) {
         self.faces.push(Face::new(one, two, target));
         self.measure += target;
@@ -172,7 +172,7 @@ impl Star {
         Some(sum)
     }
 
-    /// Adds what a step along the sphere or the circle bends towards its centre, and the arcs.
+    /// Adds what a step along the sphere or the circle bends towards its center, and the arcs.
     fn bend(&self, x: Vector3, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
         match motion {
             Motion::Held | Motion::Side(_) | Motion::Plane => {}

@@ -68,12 +68,12 @@ pub(crate) fn correct(
             Weights::MeanValue => mean_value_weights(mesh, map, vertex as usize),
             Weights::Uniform => uniform_weights(mesh, vertex as usize),
         };
-        for (neighbour, weight) in one_ring {
+        for (neighbor, weight) in one_ring {
             matrix.add_triplet(i, i, weight);
-            match unknown[neighbour] {
+            match unknown[neighbor] {
                 usize::MAX => {
-                    rhs[i] += weight * map[neighbour][0];
-                    rhs[n + i] += weight * map[neighbour][1];
+                    rhs[i] += weight * map[neighbor][0];
+                    rhs[n + i] += weight * map[neighbor][1];
                 }
                 j => matrix.add_triplet(i, j, -weight),
             }
@@ -86,7 +86,7 @@ pub(crate) fn correct(
     Some(())
 }
 
-/// Equal weights of the one-ring of `vertex` that sum to 1; a neighbour appears once per shared face.
+/// Equal weights of the one-ring of `vertex` that sum to 1; a neighbor appears once per shared face.
 fn uniform_weights(mesh: &TriangleMesh, vertex: usize) -> Vec<(usize, f64)> {
     let corners = mesh.vertex_corners(vertex);
     let weight = 0.5 / corners.len() as f64;
@@ -97,7 +97,7 @@ fn uniform_weights(mesh: &TriangleMesh, vertex: usize) -> Vec<(usize, f64)> {
     others.map(|other| (other, weight)).collect()
 }
 
-/// The weights (6.3b) of the one-ring of `vertex`, scaled to sum 1; a neighbour appears once per shared face.
+/// The weights (6.3b) of the one-ring of `vertex`, scaled to sum 1; a neighbor appears once per shared face.
 fn mean_value_weights(mesh: &TriangleMesh, map: &[[f64; 2]], vertex: usize) -> Vec<(usize, f64)> {
     let mut weights = Vec::with_capacity(16);
     for &corner in mesh.vertex_corners(vertex) {

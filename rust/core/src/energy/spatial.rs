@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The normalised stretch energy of a map into space, its gradient, its Laplacian and its Hessian.
+//! The normalized stretch energy of a map into space, its gradient, its Laplacian and its Hessian.
 //!
 //! Sutti & Yueh (2024), equations (2.2) to (2.6) and appendices A and B. With a_τ = ½‖N_τ‖ the area of the
 //! image of face τ, |τ| its target area, A = Σ a_τ and |M| = Σ |τ|,
@@ -12,7 +12,7 @@
 //! the whole gradient. With targets rescaled so that |M| = A, E = E_A + A with the authalic energy E_A = Σ
 //! (a_τ − |τ|)²/|τ|. That form is used here because E_S − A cancels near the minimum.
 //!
-//! A smaller image lowers E even where no area ratio improves. A descent that is not to drift there minimises 4π/A · E
+//! A smaller image lowers E even where no area ratio improves. A descent that is not to drift there minimizes 4π/A · E
 //! instead ([`SpatialStretchEnergy::scale_free`]), which is 4π (1 + E_A/A).
 //!
 //! A descent that must not fold puts [`Profile::Barrier`] in place of (ρ − 1)² for the area ratio ρ =
@@ -140,9 +140,9 @@ impl<'a> SpatialStretchEnergy<'a> {
             scale * parallel::sum(areas.len(), |face| self.targets[face] * cost(face))
         };
         let authalic_energy = total(Profile::Stretch);
-        let minimised = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
+        let minimized = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
         let factor = if self.scale_free { 4.0 * PI / area } else { 1.0 };
-        Value { authalic_energy, area, objective: factor * (minimised + area) }
+        Value { authalic_energy, area, objective: factor * (minimized + area) }
     }
 
     fn corners(&self, map: &[Vector3], face: usize) -> [Vector3; 3] {

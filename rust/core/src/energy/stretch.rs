@@ -15,7 +15,7 @@
 //! E_A(f) = E_S(f) − A = Σ (a_τ − |τ|)² / |τ| ≥ 0.
 //! ```
 //!
-//! What is minimised is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to
+//! What is minimized is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to
 //! the unit disk's area. For a fixed boundary A is constant and this is the papers' stretch energy up to
 //! constants; for a sliding one the factor removes the false minimum A → 0. The residual form is used
 //! because E_S − A cancels: near the minimum E_S ≈ π and E_A ≈ 10⁻⁶.
@@ -83,8 +83,8 @@ pub struct Value {
     pub authalic_energy: f64,
     /// Area A of the image, signed in the plane.
     pub area: f64,
-    /// What the optimisers minimise: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
-    /// Σ |τ| ψ(ρ) + A, which is their normalised energy E_A + A, or 4π/A times that.
+    /// What the optimizers minimize: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
+    /// Σ |τ| ψ(ρ) + A, which is their normalized energy E_A + A, or 4π/A times that.
     pub objective: f64,
 }
 
@@ -158,8 +158,8 @@ impl<'a> StretchEnergy<'a> {
             scale * parallel::sum(areas.len(), |face| self.targets[face] * cost(face))
         };
         let authalic_energy = total(Profile::Stretch);
-        let minimised = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
-        Value { authalic_energy, area, objective: minimised * PI / area }
+        let minimized = if self.profile == Profile::Stretch { authalic_energy } else { total(self.profile) };
+        Value { authalic_energy, area, objective: minimized * PI / area }
     }
 
     fn corners(&self, map: &[[f64; 2]], face: usize) -> [[f64; 2]; 3] {

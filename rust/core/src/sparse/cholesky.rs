@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Factorisations of matrices that are given entry by entry.
+//! Factorizations of matrices that are given entry by entry.
 //!
 //! A mesh's matrices share one pattern, so [`Cholesky::analyse`] orders and analyses it once and
 //! [`Cholesky::refactor`] only computes numbers. Input: the upper triangle in compressed columns. Cost and method: see
@@ -13,7 +13,7 @@ use crate::control::{Silent, Watch};
 use crate::error::{Error, NumericsError};
 use crate::mesh::TriangleMesh;
 
-/// A Cholesky factorisation `P A Pᵀ = L Lᵀ` with a fill-reducing ordering P.
+/// A Cholesky factorization `P A Pᵀ = L Lᵀ` with a fill-reducing ordering P.
 #[derive(Debug)]
 pub struct Cholesky {
     symbolic: Symbolic,
@@ -40,7 +40,7 @@ impl Cholesky {
     }
 
     fn analyse_in(order: Order, upper: &CsMat<f64>) -> Result<Self, Error> {
-        assert!(upper.is_csc(), "the factorisations take compressed columns");
+        assert!(upper.is_csc(), "the factorizations take compressed columns");
         let entry = |(_, (row, column)): (&f64, (usize, usize))| match row == column {
             true => [row as u32, NONE, NONE],
             false => [row as u32, column as u32, NONE],

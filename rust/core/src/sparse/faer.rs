@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Dense kernels, orderings and general systems. The only file that names the library behind them.
 //!
-//! All run on one thread: threads go over the fronts of a factorisation, not inside them.
+//! All run on one thread: threads go over the fronts of a factorization, not inside them.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -164,22 +164,22 @@ pub(super) fn subtract_product<T: Scalar>(
 }
 
 /// An order of the nodes of a graph that keeps the factor sparse, by approximate minimum degree (Amestoy,
-/// Davis and Duff 1996); the neighbours of node v are those from `starts[v]` to `starts[v + 1]`.
+/// Davis and Duff 1996); the neighbors of node v are those from `starts[v]` to `starts[v + 1]`.
 ///
 /// # Errors
 /// [`NumericsError::FactorizationFailed`] where there are too many edges for 32-bit indices.
-pub(super) fn minimum_degree(starts: &[u32], neighbours: &[u32]) -> Result<Vec<u32>, Error> {
+pub(super) fn minimum_degree(starts: &[u32], neighbors: &[u32]) -> Result<Vec<u32>, Error> {
     let n = starts.len() - 1;
-    let graph = SymbolicSparseColMatRef::new_checked(n, n, starts, None, neighbours);
+    let graph = SymbolicSparseColMatRef::new_checked(n, n, starts, None, neighbors);
     let (mut order, mut position) = (vec![0; n], vec![0; n]);
-    let mut memory = MemBuffer::new(amd::order_scratch::<u32>(n, neighbours.len()));
+    let mut memory = MemBuffer::new(amd::order_scratch::<u32>(n, neighbors.len()));
     amd::order(&mut order, &mut position, graph, amd::Control::default(), MemStack::new(&mut memory))
         .map_err(|error| failed(format!("ordering {n} unknowns: {error:?}")))?;
     Ok(order)
 }
 
 fn pattern(matrix: &CsMat<f64>) -> SymbolicSparseColMatRef<'_, usize> {
-    assert!(matrix.is_csc(), "the factorisations take compressed columns");
+    assert!(matrix.is_csc(), "the factorizations take compressed columns");
     let (starts, rows) = (matrix.indptr().into_raw_storage(), matrix.indices());
     SymbolicSparseColMatRef::new_checked(matrix.rows(), matrix.cols(), starts, None, rows)
 }

@@ -105,8 +105,8 @@ fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: usize) 
     let mut sum = [0.0; 2];
     for &corner in mesh.vertex_corners(vertex) {
         let (face, k) = (corner as usize / 3, corner as usize % 3);
-        for (neighbour, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
-            let other = map[mesh.faces()[face][neighbour] as usize];
+        for (neighbor, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
+            let other = map[mesh.faces()[face][neighbor] as usize];
             let weight = weights[3 * face + facing];
             sum[0] += weight * (map[vertex][0] - other[0]);
             sum[1] += weight * (map[vertex][1] - other[1]);
@@ -143,10 +143,10 @@ fn upper_columns(mesh: &TriangleMesh, free: &[u32], unknown: &[u32]) -> Vec<Vec<
         for &corner in mesh.vertex_corners(vertex as usize) {
             let face = mesh.faces()[corner as usize / 3];
             let base = corner / 3 * 3;
-            for (neighbour, facing) in [(1, 2), (2, 1)] {
-                let neighbour = face[((corner + neighbour) % 3) as usize];
+            for (neighbor, facing) in [(1, 2), (2, 1)] {
+                let neighbor = face[((corner + neighbor) % 3) as usize];
                 let facing = base + (corner % 3 + facing) % 3;
-                add_neighbour(&mut rows, unknown[neighbour as usize], column as u32, facing);
+                add_neighbor(&mut rows, unknown[neighbor as usize], column as u32, facing);
             }
         }
         rows.sort_unstable();
@@ -155,7 +155,7 @@ fn upper_columns(mesh: &TriangleMesh, free: &[u32], unknown: &[u32]) -> Vec<Vec<
 }
 
 /// Adds the corner `facing` to the entry (row, column), which an earlier face may have begun.
-fn add_neighbour(rows: &mut Vec<(u32, EdgeCorners)>, row: u32, column: u32, facing: u32) {
+fn add_neighbor(rows: &mut Vec<(u32, EdgeCorners)>, row: u32, column: u32, facing: u32) {
     if row == NONE || row > column {
         return;
     }

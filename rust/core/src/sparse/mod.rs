@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Sparse systems on a mesh: assembly with a fixed pattern, and factorisation behind one interface.
+//! Sparse systems on a mesh: assembly with a fixed pattern, and factorization behind one interface.
 
 mod cholesky;
 mod dirichlet;

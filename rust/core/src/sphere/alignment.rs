@@ -2,7 +2,7 @@
 //! The rotation that lays a sphere map over its surface.
 //!
 //! An area-preserving map of the sphere is free up to rotations (and more), so that of all rotated copies the
-//! one that lies over the surface best is returned: it maximises Σ w_i (R f_i)·(v_i − c), c the centroid of
+//! one that lies over the surface best is returned: it maximizes Σ w_i (R f_i)·(v_i − c), c the centroid of
 //! the surface's measure w.
 
 use crate::alignment::rotation::{best_rotation, centroid, rotate};
@@ -14,9 +14,9 @@ use crate::parallel;
 /// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
 /// folds a sliver.
 pub(super) fn aligned(mesh: &TriangleMesh, map: SpatialMap, weights: &[f64]) -> SpatialMap {
-    let (points, centre) = (mesh.points(), centroid(mesh.points(), weights));
-    let centred = parallel::map(points.len(), |vertex| points[vertex] - centre);
-    let rotation = best_rotation(&map, &centred, weights);
+    let (points, center) = (mesh.points(), centroid(mesh.points(), weights));
+    let centered = parallel::map(points.len(), |vertex| points[vertex] - center);
+    let rotation = best_rotation(&map, &centered, weights);
     let turned = parallel::map(map.len(), |vertex| {
         let turned = rotate(rotation, map[vertex]);
         turned * (1.0 / turned.norm())

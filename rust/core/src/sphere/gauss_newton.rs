@@ -6,7 +6,7 @@
 //! [progressive](crate::embedding) embedding. From there the descent goes on behind a barrier
 //! ([`gauss_newton`](crate::optimize::gauss_newton)).
 //!
-//! Cost: about six factorisations with one unknown per vertex, about twelve with two.
+//! Cost: about six factorizations with one unknown per vertex, about twelve with two.
 
 use std::f64::consts::PI;
 

@@ -8,7 +8,7 @@
 //! without folds and never leaves it. Every result is checked by exact predicates.
 //!
 //! Input: a [`TriangleMesh`] that is closed, connected and without handles. Cost: one sparse Cholesky
-//! factorisation of all vertices, about ten of six tenths of them, and one gradient per iteration.
+//! factorization of all vertices, about ten of six tenths of them, and one gradient per iteration.
 
 mod alignment;
 mod gauss_newton;
@@ -89,7 +89,7 @@ pub fn sphere_map(
         None => mesh.face_areas().into(),
     };
     let weights = mesh.vertex_shares(&targets);
-    // 3. Minimise the energy, unfold what folded
+    // 3. Minimize the energy, unfold what folded
     let run = Run { mesh, targets: &targets, weights: &weights, options };
     let to = if options.refine { UNREFINED } else { 1.0 };
     let mut phase = Phase { whole: observer, from: 0.0, to };

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Start maps onto the sphere: conformal by Laplacian linearisation, or progressive.
+//! Start maps onto the sphere: conformal by Laplacian linearization, or progressive.
 //!
 //! Angenent, Haker, Tannenbaum & Kikinis (1999), as used by Sutti & Yueh (2024), section 6.3: one face is
 //! removed, its corners are held at a triangle in the plane, all others are harmonic, and the inverse
 //! stereographic projection takes the plane to the sphere. Such a map is unique up to a Möbius
 //! transformation, and the raw one puts nearly all of the surface next to one point: the one taken here has
-//! the centroid of the surface's measure at the sphere's centre.
+//! the centroid of the surface's measure at the sphere's center.
 //!
 //! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts
 //! beyond double precision, which cannot; then the [progressive](progressive_sphere) map is taken.
 //!
-//! Cost: one sparse Cholesky factorisation of all vertices but three.
+//! Cost: one sparse Cholesky factorization of all vertices but three.
 
 use std::f64::consts::PI;
 
@@ -29,10 +29,10 @@ use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 use crate::vector::Vector3;
 
-/// Newton steps of the centring; three or four are the rule.
+/// Newton steps of the centering; three or four are the rule.
 const CENTRING_STEPS: usize = 50;
 
-/// The centroid is at the centre when it is nearer than this.
+/// The centroid is at the center when it is nearer than this.
 const CENTRED: f64 = 1e-9;
 
 /// A conformal face below this part of its target has collapsed for all that a descent can see.
@@ -108,7 +108,7 @@ fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector3]) -> bool 
     !parallel::all(areas.len(), |face| areas[face] > least * targets[face])
 }
 
-/// The spherical conformal map, centred; it may fold where cotangents are negative.
+/// The spherical conformal map, centered; it may fold where cotangents are negative.
 ///
 /// # Errors
 /// [`NumericsError::FactorizationFailed`] where slivers make the cotangents too large.
@@ -142,8 +142,8 @@ fn conformal_within(
     let by_corner: Vec<f64> = by_face.iter().flatten().map(half).collect();
     let removed = roundest_face(mesh);
     let mut plane = harmonic(mesh, removed, &by_corner, watch)?;
-    normalise(&mut plane, weights);
-    let map = centred(Chart::South.lift_all(&plane), weights);
+    normalize(&mut plane, weights);
+    let map = centered(Chart::South.lift_all(&plane), weights);
     Ok(upright(map, mesh.faces()[removed]))
 }
 
@@ -209,7 +209,7 @@ fn mirrored_triangle([a, b, c]: [Vector3; 3]) -> [[f64; 2]; 3] {
 }
 
 /// Moves the median of the measure to the origin and scales its median modulus to 1.
-fn normalise(plane: &mut [[f64; 2]], weights: &[f64]) {
+fn normalize(plane: &mut [[f64; 2]], weights: &[f64]) {
     let medians = [0, 1].map(|axis| {
         let values: Vec<f64> = plane.iter().map(|z| z[axis]).collect();
         weighted_median(&values, weights)
@@ -222,11 +222,11 @@ fn normalise(plane: &mut [[f64; 2]], weights: &[f64]) {
     }
 }
 
-/// Moves the centroid of the measure to the centre by Möbius transformations of the sphere.
+/// Moves the centroid of the measure to the center by Möbius transformations of the sphere.
 ///
 /// Newton's method: the boost towards −b moves x by −(b − (b·x) x) to first order, so the b that brings the
-/// centroid c to the centre solves (I − Σ w x xᵀ) b = c.
-fn centred(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
+/// centroid c to the center solves (I − Σ w x xᵀ) b = c.
+fn centered(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let total: f64 = weights.iter().sum();
     for _ in 0..CENTRING_STEPS {
         let moment = |value: &(dyn Fn(Vector3) -> f64 + Sync)| {
@@ -247,7 +247,7 @@ fn centred(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     map
 }
 
-/// The Möbius transformation of the unit ball that takes `a` to the centre, at a point of the sphere.
+/// The Möbius transformation of the unit ball that takes `a` to the center, at a point of the sphere.
 fn boosted(x: Vector3, a: Vector3) -> Vector3 {
     let offset = x - a;
     let moved = offset * ((1.0 - a.dot(a)) / offset.dot(offset)) - a;

@@ -3,7 +3,7 @@
 //!
 //! L. Liu, L. Zhang, Y. Xu, C. Gotsman and S. J. Gortler, A local/global approach to mesh parameterization, SGP 2008. The
 //! local step turns each rest triangle as its image is turned, the global one solves a Poisson equation for the map. Cost:
-//! one factorisation of one unknown per vertex, [`STEPS`] solves for both coordinates. Faces may fold.
+//! one factorization of one unknown per vertex, [`STEPS`] solves for both coordinates. Faces may fold.
 
 use super::energy::Energy;
 use crate::codomain::planar::PlanarMap;

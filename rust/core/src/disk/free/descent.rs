@@ -7,7 +7,7 @@
 //! 3. The descent has converged when the decrement −gᵀd of a full step is next to nothing: the map is stationary.
 //!
 //! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it as much of the
-//! curvature counts as leaves the Hessian positive definite, at last all of it, and the descent converges quadratically. Cost of one iteration: one factorisation of two
+//! curvature counts as leaves the Hessian positive definite, at last all of it, and the descent converges quadratically. Cost of one iteration: one factorization of two
 //! unknowns per vertex, and some ten solves where contacts act.
 
 use super::contact::{Contact, Outline, Stiffness, roots};

@@ -7,7 +7,7 @@
 //!    (`contact`), until the map is stationary.
 //! 3. Where contacts remain, the same again with contacts that act only nearer by.
 //!
-//! Holes are outlines like the longest loop. Cost: some four factorisations of two unknowns per vertex for the start, and ten
+//! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start, and ten
 //! to fifty for the descent.
 
 mod arap;
@@ -251,14 +251,14 @@ impl Free<'_> {
             Some(_) => map.to_vec(),
         };
         let candidates = [(&*turned, true), (map, true), (&*turned, false), (map, false)];
-        let placed = |(map, to_rim)| scaled_into_the_disk(map, centre(map), to_rim);
+        let placed = |(map, to_rim)| scaled_into_the_disk(map, center(map), to_rim);
         let sound = candidates.into_iter().map(placed).find(is_sound);
         sound.unwrap_or_else(|| scaled_into_the_disk(map, [0.0; 2], false))
     }
 }
 
 /// The middle of the bounding box.
-fn centre(map: &[[f64; 2]]) -> [f64; 2] {
+fn center(map: &[[f64; 2]]) -> [f64; 2] {
     let extreme =
         |axis: usize, sign: f64| map.iter().fold(f64::NEG_INFINITY, |most, x| most.max(sign * x[axis]));
     [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)))
@@ -330,10 +330,10 @@ fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {
     })
 }
 
-/// The map around `centre`, scaled into the unit disk: to its rim, or by a power of two, which keeps the orientation of
+/// The map around `center`, scaled into the unit disk: to its rim, or by a power of two, which keeps the orientation of
 /// every face bit for bit.
-fn scaled_into_the_disk(map: &[[f64; 2]], centre: [f64; 2], to_rim: bool) -> PlanarMap {
-    let offset = |x: &[f64; 2]| [x[0] - centre[0], x[1] - centre[1]];
+fn scaled_into_the_disk(map: &[[f64; 2]], center: [f64; 2], to_rim: bool) -> PlanarMap {
+    let offset = |x: &[f64; 2]| [x[0] - center[0], x[1] - center[1]];
     let radius = map.iter().map(offset).map(|[u, v]| u.hypot(v)).fold(0.0, f64::max);
     let scale =
         if to_rim { (1.0 - 4.0 * f64::EPSILON) / radius } else { (1.0 / radius).log2().floor().exp2() };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The fixed-point iteration of stretch energy minimisation on the disk.
+//! The fixed-point iteration of stretch energy minimization on the disk.
 //!
 //! Liu & Yueh (2023), equation (2.5): [L_S(f⁽ᵏ⁾)]_II f_I⁽ᵏ⁺¹⁾ = −[L_S(f⁽ᵏ⁾)]_IB b. Subtracting the same
 //! product with f⁽ᵏ⁾ gives the form used here: f⁽ᵏ⁺¹⁾ = f⁽ᵏ⁾ − M_k⁻¹ ∇E(f⁽ᵏ⁾) with M_k = 2 I₂ ⊗ L_S(f⁽ᵏ⁾),
@@ -7,7 +7,7 @@
 //!
 //! The energy may rise from one iteration to the next; the map with the lowest is returned.
 //!
-//! Cost of one iteration: one numeric Cholesky factorisation of the interior and two solves.
+//! Cost of one iteration: one numeric Cholesky factorization of the interior and two solves.
 
 use super::objective::DiskDomain;
 use crate::codomain::planar::PlanarMap;

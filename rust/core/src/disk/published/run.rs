@@ -21,7 +21,7 @@ const FIXED_POINT_STEPS: usize = 5;
 /// Conjugate gradient iterations with one preconditioner, the paper's 50.
 const ROUND: usize = 50;
 
-const MESSAGE: &str = "Minimising the stretch energy";
+const MESSAGE: &str = "Minimizing the stretch energy";
 
 impl Run<'_> {
     /// The papers' method, then whatever it takes to have no folded face.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Which vertex collapses next, and onto which neighbour: the cheapest, by the measure of its star, its
+//! Which vertex collapses next, and onto which neighbor: the cheapest, by the measure of its star, its
 //! degree and the shapes and degrees it leaves.
 //!
 //! A queue of all vertices by the costs they had when they were last looked at. Most costs only rise, so a
@@ -24,9 +24,9 @@ const ROUND: usize = 16_384;
 /// vertices behind it.
 const BOUNDARY: f64 = 12.0;
 
-/// The shapes around a vertex with more neighbours are not looked at before it comes to the front of the
+/// The shapes around a vertex with more neighbors are not looked at before it comes to the front of the
 /// queue; by then it has fewer.
-const MANY_NEIGHBOURS: usize = 32;
+const MANY_NEIGHBORS: usize = 32;
 
 /// A vertex in the queue: cheap ones first, of equal ones the lowest.
 #[derive(PartialEq)]
@@ -49,10 +49,10 @@ impl PartialOrd for Candidate {
     }
 }
 
-/// The neighbours of a vertex, counter-clockwise, and the measure of its star.
+/// The neighbors of a vertex, counter-clockwise, and the measure of its star.
 #[derive(Default)]
 struct Ring {
-    /// The corners at the vertex whose next corners are the neighbours.
+    /// The corners at the vertex whose next corners are the neighbors.
     corners: Vec<u32>,
     vertices: Vec<u32>,
     points: Vec<Vector3>,
@@ -69,24 +69,24 @@ impl Ring {
         self.measure * degree * boundary
     }
 
-    /// Whether a collapse onto the neighbour keeps the boundary what it is.
-    fn keeps_the_boundary(&self, neighbour: usize) -> bool {
+    /// Whether a collapse onto the neighbor keeps the boundary what it is.
+    fn keeps_the_boundary(&self, neighbor: usize) -> bool {
         let n = self.vertices.len();
-        self.apex.is_none_or(|apex| (apex + 1) % n == neighbour || (neighbour + 1) % n == apex)
+        self.apex.is_none_or(|apex| (apex + 1) % n == neighbor || (neighbor + 1) % n == apex)
     }
 
-    /// How bad the shapes and the degree are that a collapse onto a neighbour of some degree leaves; 1/1.05 or more.
-    fn shape(&self, neighbour: usize, degree: usize) -> f64 {
+    /// How bad the shapes and the degree are that a collapse onto a neighbor of some degree leaves; 1/1.05 or more.
+    fn shape(&self, neighbor: usize, degree: usize) -> f64 {
         let degree = (degree + self.vertices.len()) as f64 - 4.0;
-        (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (self.worst_shape(neighbour) + 0.05)
+        (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (self.worst_shape(neighbor) + 0.05)
     }
 
-    /// 4√3·area/Σ edge² of the worst face that a collapse onto a neighbour makes; 1 is equilateral.
-    fn worst_shape(&self, neighbour: usize) -> f64 {
+    /// 4√3·area/Σ edge² of the worst face that a collapse onto a neighbor makes; 1 is equilateral.
+    fn worst_shape(&self, neighbor: usize) -> f64 {
         let n = self.vertices.len();
-        let onto = self.points[neighbour];
+        let onto = self.points[neighbor];
         let mut worst = 1.0;
-        for k in neighbour + 1..neighbour + n - 1 {
+        for k in neighbor + 1..neighbor + n - 1 {
             let [one, two] = [k, k + 1].map(|k| if k < n { k } else { k - n });
             if self.apex.is_some_and(|apex| apex == one || apex == two) {
                 continue;
@@ -122,7 +122,7 @@ impl Decimation<'_> {
                 queue.push(Reverse(Candidate { cost: now, vertex }));
                 continue;
             }
-            // 2. Collapse; neighbours that could not collapse may be able to now
+            // 2. Collapse; neighbors that could not collapse may be able to now
             self.collapse(corner);
             for &vertex in &ring.vertices {
                 if std::mem::take(&mut waiting[vertex as usize]) {
@@ -155,7 +155,7 @@ impl Decimation<'_> {
     /// What it costs to collapse a vertex, or less.
     fn first_cost(&self, vertex: u32) -> f64 {
         let mut ring = Ring::default();
-        if self.degree(vertex) > MANY_NEIGHBOURS {
+        if self.degree(vertex) > MANY_NEIGHBORS {
             self.fill_ring(vertex, &mut ring);
             return self.tie_breakers[vertex as usize] * ring.weight() / 1.05f64.sqrt();
         }
@@ -164,7 +164,7 @@ impl Decimation<'_> {
         if cost.is_finite() { cost } else { 0.0 }
     }
 
-    /// What it costs to collapse a vertex and the corner at it that is followed by the neighbour it goes
+    /// What it costs to collapse a vertex and the corner at it that is followed by the neighbor it goes
     /// onto; infinite where it cannot be.
     fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
         self.fill_ring(vertex, ring);
@@ -172,9 +172,9 @@ impl Decimation<'_> {
         let mut rated: Vec<(f64, u32, u32)> = (0..ring.vertices.len())
             .filter(allowed)
             .map(|k| {
-                let neighbour = ring.vertices[k];
-                let shape = self.tie_breakers[neighbour as usize] * ring.shape(k, self.degree(neighbour));
-                (shape, neighbour, ring.corners[k])
+                let neighbor = ring.vertices[k];
+                let shape = self.tie_breakers[neighbor as usize] * ring.shape(k, self.degree(neighbor));
+                (shape, neighbor, ring.corners[k])
             })
             .collect();
         // the link condition costs most, so only of the best is it asked, then of the second best
@@ -194,18 +194,18 @@ impl Decimation<'_> {
         ring.points.clear();
         (ring.measure, ring.apex) = (0.0, None);
         for corner in self.around(self.corners[vertex as usize]) {
-            let neighbour = self.vertex(next_corner(corner));
-            if neighbour == self.apex() {
+            let neighbor = self.vertex(next_corner(corner));
+            if neighbor == self.apex() {
                 ring.apex = Some(ring.vertices.len());
             }
             ring.measure += self.faces[corner as usize / 3].target;
             ring.corners.push(corner);
-            ring.vertices.push(neighbour);
-            ring.points.push(self.mesh.points().get(neighbour as usize).copied().unwrap_or_default());
+            ring.vertices.push(neighbor);
+            ring.points.push(self.mesh.points().get(neighbor as usize).copied().unwrap_or_default());
         }
     }
 
-    /// The link condition: exactly two common neighbours.
+    /// The link condition: exactly two common neighbors.
     fn keeps_the_sphere(&self, ring: &Ring, onto: u32) -> bool {
         let around = self.around(self.corners[onto as usize]);
         around.filter(|&corner| ring.vertices.contains(&self.vertex(next_corner(corner)))).count() == 2

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Decimation of a closed surface of genus 0 to a tetrahedron, and its undoing one vertex at a time.
 //!
-//! Half-edge collapses: a vertex v moves onto a neighbour w, and the two faces between them vanish. A
-//! collapse keeps the surface a sphere where v and w have exactly two common neighbours (link condition);
+//! Half-edge collapses: a vertex v moves onto a neighbor w, and the two faces between them vanish. A
+//! collapse keeps the surface a sphere where v and w have exactly two common neighbors (link condition);
 //! with more than four vertices there always is one. The next vertex is the one whose star has least target
 //! measure, weighed by its degree and the shapes it would leave, so that the vertices of every coarse mesh
 //! are spread evenly over the measure. The measure of a star is handed on to the faces that fill it, so the
 //! sum over all faces stays the same.
 //!
 //! A surface with one boundary loop is closed by an apex, a vertex without place or measure that is joined
-//! to the whole loop. The apex never collapses, and a vertex of the loop only onto a neighbour in the loop.
+//! to the whole loop. The apex never collapses, and a vertex of the loop only onto a neighbor in the loop.
 //!
 //! Cost: O(n log n), the stars of about four vertices looked at for each one.
 
@@ -28,7 +28,7 @@ pub(crate) struct Decimation<'a> {
     faces: Vec<Face>,
     /// A corner at each vertex; of a vertex that is gone, the one whose next corner it went onto.
     corners: Vec<u32>,
-    /// How many neighbours each vertex has; of a vertex that is gone, those it had.
+    /// How many neighbors each vertex has; of a vertex that is gone, those it had.
     degrees: Vec<u32>,
     gone: Vec<bool>,
     collapses: Vec<Collapse>,
@@ -47,12 +47,12 @@ struct Face {
     target: f64,
 }
 
-/// A vertex that moved onto a neighbour.
+/// A vertex that moved onto a neighbor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Collapse {
     /// The vertex that went.
     pub vertex: u32,
-    /// The neighbour it went onto.
+    /// The neighbor it went onto.
     pub onto: u32,
 }
 
@@ -125,7 +125,7 @@ impl<'a> Decimation<'a> {
         })
     }
 
-    /// How many neighbours a vertex has.
+    /// How many neighbors a vertex has.
     pub(crate) fn degree(&self, vertex: u32) -> usize {
         self.degrees[vertex as usize] as usize
     }
@@ -140,7 +140,7 @@ impl<'a> Decimation<'a> {
         let collapse = self.collapses.pop()?;
         let Collapse { vertex, onto } = collapse;
         let corner = self.corners[vertex as usize];
-        // 1. The dead faces come back between their neighbours
+        // 1. The dead faces come back between their neighbors
         for corner in self.dead_faces(corner).into_iter().flat_map(|face| 3 * face..3 * face + 3) {
             let across = self.twin(corner);
             *self.twin_mut(across) = corner;
@@ -156,7 +156,7 @@ impl<'a> Decimation<'a> {
         }
         self.corners[onto as usize] = next_corner(corner);
         self.gone[vertex as usize] = false;
-        self.count_neighbours(collapse, corner, 1);
+        self.count_neighbors(collapse, corner, 1);
         // 3. And its measure
         let faces: Vec<u32> = self.measured_faces(corner).collect();
         let begin = self.old_targets.len() - faces.len();
@@ -171,7 +171,7 @@ impl<'a> Decimation<'a> {
         let collapse = Collapse { vertex: self.vertex(corner), onto: self.vertex(next_corner(corner)) };
         let dead = self.dead_faces(corner);
         let heirs: Vec<u32> = self.measured_faces(corner).collect();
-        self.count_neighbours(collapse, corner, -1);
+        self.count_neighbors(collapse, corner, -1);
         // 1. The star gets its new vertex
         let mut last = corner;
         loop {
@@ -182,7 +182,7 @@ impl<'a> Decimation<'a> {
             }
             last = next;
         }
-        // 2. The faces beside each dead one become neighbours
+        // 2. The faces beside each dead one become neighbors
         for [one, two] in [[corner, next_corner(corner)], [last, previous_corner(last)]] {
             let [one, two] = [one, two].map(|corner| self.twin(corner));
             *self.twin_mut(one) = two;
@@ -215,9 +215,9 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// Adds to the degrees of a vertex's neighbours what it means to them that it comes back (`sign` 1) or
+    /// Adds to the degrees of a vertex's neighbors what it means to them that it comes back (`sign` 1) or
     /// goes (−1).
-    fn count_neighbours(&mut self, collapse: Collapse, corner: u32, sign: i32) {
+    fn count_neighbors(&mut self, collapse: Collapse, corner: u32, sign: i32) {
         let beyond = self.degrees[collapse.vertex as usize] as i32 - 4;
         let across = self.twin(previous_corner(corner));
         let beside = [previous_corner(corner), across].map(|corner| (self.vertex(corner), sign));

@@ -3,7 +3,7 @@
 
 use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
 use super::problem::{GaussNewtonOptions, Problem, State};
-use super::system::{LARGE, Linearised, NEAR, Newton};
+use super::system::{LARGE, Linearized, NEAR, Newton};
 use super::trial::{Trial, shrinkage};
 use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Status, Watch};
@@ -98,12 +98,12 @@ pub(crate) fn minimize(
             history.push_start(sums.authalic_energy, 0.0);
             return (descent.best_of(best, &sums, state.map, history), status);
         }
-        // 2. One factorisation, the direction
+        // 2. One factorization, the direction
         let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
         let damping = descent.damping_of(&sums);
         let is_near = descent.is_near();
         let newton =
-            match descent.linearised.direction(problem, &state.map, &weights, damping, is_near, &watch) {
+            match descent.linearized.direction(problem, &state.map, &weights, damping, is_near, &watch) {
                 Ok(newton) => newton,
                 Err(failure) => {
                     history.push_start(sums.authalic_energy, 0.0);
@@ -151,7 +151,7 @@ impl Trend {
 struct Descent<'a> {
     problem: &'a Problem,
     options: GaussNewtonOptions,
-    linearised: Linearised,
+    linearized: Linearized,
     schedule: AngleSchedule,
     /// The deviation to end with after the usual iterations.
     even_enough: f64,
@@ -180,7 +180,7 @@ impl<'a> Descent<'a> {
         Self {
             problem,
             options,
-            linearised: Linearised::new(problem.motions.len() >= LARGE),
+            linearized: Linearized::new(problem.motions.len() >= LARGE),
             schedule: AngleSchedule::new(
                 options.path,
                 options.angle_weight,
@@ -295,7 +295,7 @@ impl<'a> Descent<'a> {
         // a correction that was of no use seldom is in the next iteration
         if step == 1.0 && !std::mem::take(&mut self.is_straight) {
             let correction =
-                self.linearised.correction(problem, &state.map, &trial.state.map, newton, weights);
+                self.linearized.correction(problem, &state.map, &trial.state.map, newton, weights);
             let corrected =
                 Trial::new(problem, self.path(&state.map, newton, Some(&correction), step), weights);
             self.is_straight = corrected.value >= trial.value;

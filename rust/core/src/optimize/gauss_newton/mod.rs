@@ -21,7 +21,7 @@
 //! not positive by more than rounding. [`Profile::Stretch`](crate::energy::stretch::Profile) drops the barrier and the angles (Levenberg–Marquardt on
 //! E_A); in the plane, where areas have signs, it unfolds faces on its way.
 //!
-//! Cost of one iteration: one factorisation of two unknowns per vertex, two solves, some seven passes over the faces.
+//! Cost of one iteration: one factorization of two unknowns per vertex, two solves, some seven passes over the faces.
 
 pub(crate) mod angle_schedule;
 pub(crate) mod area_tolerance;

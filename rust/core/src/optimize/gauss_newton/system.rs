@@ -51,7 +51,7 @@ struct Place<'a> {
 ///
 /// In single precision its rounding errors, some 1e-3 of a direction along the family of area-preserving maps, would
 /// decide where in it the descent ends.
-pub(super) struct Linearised {
+pub(super) struct Linearized {
     single: Option<Factor<f32>>,
     double: Option<Factor<f64>>,
     single_failed: usize,
@@ -61,7 +61,7 @@ pub(super) struct Linearised {
     slope: f64,
 }
 
-impl Linearised {
+impl Linearized {
     /// None yet; in single precision while that holds where asked for.
     pub(super) fn new(in_single: bool) -> Self {
         let single_failed = if in_single { 0 } else { usize::MAX };

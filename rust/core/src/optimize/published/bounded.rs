@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Minimisation of a function of one variable on an interval, without derivatives.
+//! Minimization of a function of one variable on an interval, without derivatives.
 //!
 //! Brent (1973), chapter 5, the method behind MATLAB's `fminbnd`, the first line search of Sutti & Yueh
-//! (2024): golden sections, replaced by the minimiser of the parabola through the three best points wherever
+//! (2024): golden sections, replaced by the minimizer of the parabola through the three best points wherever
 //! that falls inside the interval and the steps shrink.
 //!
 //! The function may be +∞ or NaN; such a point never becomes the best. Cost: about a dozen evaluations for
@@ -72,7 +72,7 @@ pub(super) fn minimize(end: f64, tolerance: f64, mut function: impl FnMut(f64) -
     best.at
 }
 
-/// The step from the best point to the minimiser of the parabola through all three, where they make one.
+/// The step from the best point to the minimizer of the parabola through all three, where they make one.
 fn parabolic_step(best: Point, second: Point, third: Point) -> Option<f64> {
     let [to_second, to_third] = [second, third].map(|point| best.at - point.at);
     let r = to_second * (best.value - third.value);

@@ -20,7 +20,7 @@ pub enum LineSearch {
     /// Sufficient decrease by safeguarded quadratic and cubic interpolation.
     #[default]
     Interpolation,
-    /// Brent's minimiser on a bounded interval, as MATLAB's `fminbnd`.
+    /// Brent's minimizer on a bounded interval, as MATLAB's `fminbnd`.
     Bounded,
 }
 
@@ -63,7 +63,7 @@ pub fn minimize<D: Domain>(
             None => history.push_start(energies.authalic_energy, norm),
             Some((step, _)) => history.push(energies.authalic_energy, step, norm),
         }
-        if let Some(status) = options.stopping.verdict(done, norm, "Minimising the stretch energy", observer)
+        if let Some(status) = options.stopping.verdict(done, norm, "Minimizing the stretch energy", observer)
         {
             return (map, status);
         }

@@ -8,7 +8,7 @@
 //! φ(α) ≤ φ(0) + c₁ α φ'(0),
 //! ```
 //!
-//! is replaced by the minimiser of the quadratic through φ(0), φ'(0), φ(α), and after that by the minimiser
+//! is replaced by the minimizer of the quadratic through φ(0), φ'(0), φ(α), and after that by the minimizer
 //! of the cubic through φ(0), φ'(0) and the last two values, each kept within [0.1, 0.5] of the step before.
 //!
 //! The objective may be +∞ (a map that is not allowed); such a step is halved. Cost: one evaluation where
@@ -56,13 +56,13 @@ pub(super) fn backtrack<S, T>(
     None
 }
 
-/// The minimiser of the quadratic through φ(0), φ'(0) and the trial.
+/// The minimizer of the quadratic through φ(0), φ'(0) and the trial.
 fn quadratic<S, T>(start: &Trial<S>, trial: &Trial<T>) -> f64 {
     let bend = trial.value - start.value - start.slope * trial.step;
     -0.5 * start.slope * trial.step * trial.step / bend
 }
 
-/// The minimiser of the cubic through φ(0), φ'(0) and the last two trials, each (α, φ(α)).
+/// The minimizer of the cubic through φ(0), φ'(0) and the last two trials, each (α, φ(α)).
 fn cubic<S>(start: &Trial<S>, (one, value_one): (f64, f64), (two, value_two): (f64, f64)) -> f64 {
     let [rest_one, rest_two] =
         [(one, value_one), (two, value_two)].map(|(step, value)| value - start.value - start.slope * step);

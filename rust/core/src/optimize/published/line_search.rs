@@ -92,7 +92,7 @@ pub fn strong_wolfe<T: Clone>(
     (low.step > 0.0).then_some(low)
 }
 
-/// The minimiser of the quadratic through φ(low), φ'(low), φ(high), kept off both ends by a tenth of the
+/// The minimizer of the quadratic through φ(low), φ'(low), φ(high), kept off both ends by a tenth of the
 /// bracket.
 fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
     let width = high.step - low.step;

@@ -9,7 +9,7 @@ pub mod nonlinear_cg;
 
 use crate::control::{Observer, Status};
 
-/// When an optimiser ends.
+/// When an optimizer ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stopping {
     /// Iterations at the most; the paper's 50.
@@ -49,13 +49,13 @@ impl Stopping {
 /// The energies of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
-    /// What is minimised; +∞ where the map is not allowed.
+    /// What is minimized; +∞ where the map is not allowed.
     pub objective: f64,
     /// E_A, as reported in histories.
     pub authalic_energy: f64,
 }
 
-/// A space of maps with an energy: what an optimiser needs to know of it.
+/// A space of maps with an energy: what an optimizer needs to know of it.
 ///
 /// Directions, gradients and preconditioned gradients are vectors in coordinates of the domain, in which its
 /// retraction starts as a straight line: one number per degree of freedom on the disk, three per vertex,

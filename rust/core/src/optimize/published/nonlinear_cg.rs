@@ -48,7 +48,7 @@ pub fn minimize<D: Domain>(
     history.push_start(state.energies.authalic_energy, norm2.max(0.0).sqrt());
     for done in 0.. {
         let norm = norm2.max(0.0).sqrt();
-        if let Some(status) = options.stopping.verdict(done, norm, "Minimising the stretch energy", observer)
+        if let Some(status) = options.stopping.verdict(done, norm, "Minimizing the stretch energy", observer)
         {
             return (state.map, status);
         }

@@ -42,10 +42,10 @@ static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 fn partition(graph: &Graph, n_parts: i32) -> Option<Vec<i32>> {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let signed = |all: &[u32]| all.iter().map(|&index| i32::try_from(index)).collect::<Result<Vec<_>, _>>();
-    let (starts, neighbours) = graph.compressed();
-    let (starts, neighbours) = (signed(starts).ok()?, signed(neighbours).ok()?);
+    let (starts, neighbors) = graph.compressed();
+    let (starts, neighbors) = (signed(starts).ok()?, signed(neighbors).ok()?);
     let mut parts = vec![0; graph.n_nodes()];
-    metis::Graph::new(1, n_parts, &starts, &neighbours).ok()?.part_recursive(&mut parts).ok()?;
+    metis::Graph::new(1, n_parts, &starts, &neighbors).ok()?.part_recursive(&mut parts).ok()?;
     Some(parts)
 }
 
@@ -70,7 +70,7 @@ fn smallest_cover(
     is_left: impl Fn(u32) -> bool,
 ) -> Vec<u32> {
     let (nodes, is_cut) = (0..graph.n_nodes() as u32, &is_cut);
-    let cut = |node: u32| graph.neighbours(node).iter().copied().filter(move |&to| is_cut(node, to));
+    let cut = |node: u32| graph.neighbors(node).iter().copied().filter(move |&to| is_cut(node, to));
     let left: Vec<u32> = nodes.filter(|&node| is_left(node) && cut(node).next().is_some()).collect();
     let mut matching = Matching::new(graph.n_nodes());
     for &node in &left {
@@ -167,13 +167,13 @@ fn order_inside(graph: &Graph, is_separator: &[bool]) -> Result<Vec<u32>, Error>
     let nodes: Vec<u32> = (0..graph.n_nodes() as u32).filter(|&node| !is_separator[node as usize]).collect();
     let mut index = vec![NONE; graph.n_nodes()];
     nodes.iter().enumerate().for_each(|(k, &node)| index[node as usize] = k as u32);
-    let (mut starts, mut neighbours) = (vec![0], Vec::new());
+    let (mut starts, mut neighbors) = (vec![0], Vec::new());
     for &node in &nodes {
-        let inside = graph.neighbours(node).iter().map(|&to| index[to as usize]);
-        neighbours.extend(inside.filter(|&to| to != NONE));
-        starts.push(neighbours.len() as u32);
+        let inside = graph.neighbors(node).iter().map(|&to| index[to as usize]);
+        neighbors.extend(inside.filter(|&to| to != NONE));
+        starts.push(neighbors.len() as u32);
     }
-    let order = minimum_degree(&starts, &neighbours)?;
+    let order = minimum_degree(&starts, &neighbors)?;
     Ok(order.into_iter().map(|k| nodes[k as usize]).collect())
 }
 
@@ -207,7 +207,7 @@ mod tests {
         let mut is_separator = vec![false; 1600];
         assert_eq!(separate(&graph, &parts, 0, &mut is_separator).len(), 40);
         for node in 0..1600_u32 {
-            for &to in graph.neighbours(node) {
+            for &to in graph.neighbors(node) {
                 let is_cut = parts[node as usize] != parts[to as usize];
                 assert!(!is_cut || is_separator[node as usize] || is_separator[to as usize]);
             }

@@ -52,8 +52,8 @@ fn elimination_tree(graph: &Graph, order: &[u32], position: &[u32]) -> Vec<u32> 
     let mut ancestor = vec![NONE; order.len()];
     for (row, &node) in order.iter().enumerate() {
         let row = row as u32;
-        for &neighbour in graph.neighbours(node) {
-            let mut column = position[neighbour as usize];
+        for &neighbor in graph.neighbors(node) {
+            let mut column = position[neighbor as usize];
             // climbs to the root of what is known so far, and makes all on the way point to this row
             while column < row {
                 let next = std::mem::replace(&mut ancestor[column as usize], row);
@@ -135,8 +135,8 @@ fn column_heights(graph: &Graph, order: &[u32], position: &[u32], parent: &[u32]
         if parent[column] != NONE {
             change[parent[column] as usize] -= weight(column);
         }
-        for &neighbour in graph.neighbours(order[column]) {
-            let row = position[neighbour as usize] as usize;
+        for &neighbor in graph.neighbors(order[column]) {
+            let row = position[neighbor as usize] as usize;
             if row > column && leaves.is_leaf(row, first[column]) {
                 change[column] += weight(row);
                 if let Some(branching) = leaves.add(row, column) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The fronts: groups of columns of the factor with (nearly) one pattern, eliminated as one dense block.
 //!
-//! A front is a dense symmetric block over its own columns and the rows below them. Small neighbouring columns
+//! A front is a dense symmetric block over its own columns and the rows below them. Small neighboring columns
 //! share a front even where that stores some zeros, because one larger block is faster than two small ones.
 
 use std::ops::Range;
@@ -304,7 +304,7 @@ impl<'a> Builder<'a> {
         });
     }
 
-    /// The rows below a front: those of its children and the neighbours of its columns.
+    /// The rows below a front: those of its children and the neighbors of its columns.
     fn find_rows(&mut self, front: usize) {
         let (range, mark) = (self.range(front), front as u32);
         let mut rows = Vec::new();
@@ -315,8 +315,8 @@ impl<'a> Builder<'a> {
             }
         };
         for &node in &self.tree.order[range.clone()] {
-            for &neighbour in self.graph.neighbours(node) {
-                meet(&mut self.met, self.tree.position[neighbour as usize]);
+            for &neighbor in self.graph.neighbors(node) {
+                meet(&mut self.met, self.tree.position[neighbor as usize]);
             }
         }
         for child in self.out.children(front) {

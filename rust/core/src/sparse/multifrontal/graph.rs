@@ -4,14 +4,14 @@
 /// No node: a corner that is held, or a place that an element does not use.
 pub(in crate::sparse) const NONE: u32 = u32::MAX;
 
-/// The neighbours of every node, ascending, without the node itself.
+/// The neighbors of every node, ascending, without the node itself.
 pub(super) struct Graph {
     starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbors: Vec<u32>,
 }
 
 impl Graph {
-    /// The graph in which the nodes of each clique are neighbours of each other; [`NONE`] is no node.
+    /// The graph in which the nodes of each clique are neighbors of each other; [`NONE`] is no node.
     pub(super) fn of_cliques(n_nodes: usize, cliques: &[[u32; 3]]) -> Self {
         let mut starts = vec![0_u32; n_nodes + 1];
         for_each_pair(cliques, |from, _| starts[from as usize + 1] += 1);
@@ -19,12 +19,12 @@ impl Graph {
             starts[node + 1] += starts[node];
         }
         let mut ends = starts.clone();
-        let mut neighbours = vec![0; starts[n_nodes] as usize];
+        let mut neighbors = vec![0; starts[n_nodes] as usize];
         for_each_pair(cliques, |from, to| {
-            neighbours[ends[from as usize] as usize] = to;
+            neighbors[ends[from as usize] as usize] = to;
             ends[from as usize] += 1;
         });
-        let mut graph = Self { starts, neighbours };
+        let mut graph = Self { starts, neighbors };
         graph.sort_and_drop_repeats();
         graph
     }
@@ -34,33 +34,33 @@ impl Graph {
         let mut start = 0;
         for node in 0..self.n_nodes() {
             let end = self.starts[node + 1] as usize;
-            self.neighbours[start..end].sort_unstable();
+            self.neighbors[start..end].sort_unstable();
             let first = kept;
             for k in start..end {
-                if kept == first || self.neighbours[kept - 1] != self.neighbours[k] {
-                    self.neighbours[kept] = self.neighbours[k];
+                if kept == first || self.neighbors[kept - 1] != self.neighbors[k] {
+                    self.neighbors[kept] = self.neighbors[k];
                     kept += 1;
                 }
             }
             start = end;
             self.starts[node + 1] = kept as u32;
         }
-        self.neighbours.truncate(kept);
-        self.neighbours.shrink_to_fit();
+        self.neighbors.truncate(kept);
+        self.neighbors.shrink_to_fit();
     }
 
     pub(super) fn n_nodes(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// The neighbours of `node`, ascending.
-    pub(super) fn neighbours(&self, node: u32) -> &[u32] {
-        &self.neighbours[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
+    /// The neighbors of `node`, ascending.
+    pub(super) fn neighbors(&self, node: u32) -> &[u32] {
+        &self.neighbors[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
     }
 
-    /// All neighbours, those of node v from `starts[v]` to `starts[v + 1]`.
+    /// All neighbors, those of node v from `starts[v]` to `starts[v + 1]`.
     pub(super) fn compressed(&self) -> (&[u32], &[u32]) {
-        (&self.starts, &self.neighbours)
+        (&self.starts, &self.neighbors)
     }
 }
 
@@ -82,9 +82,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_are_ascending_and_named_once() {
+    fn neighbors_are_ascending_and_named_once() {
         let graph = Graph::of_cliques(5, &[[2, 1, 0], [1, 2, 3], [NONE, 3, 0], [4, NONE, NONE]]);
-        let all: Vec<&[u32]> = (0..5).map(|node| graph.neighbours(node)).collect();
+        let all: Vec<&[u32]> = (0..5).map(|node| graph.neighbors(node)).collect();
         assert_eq!(all, [&[1, 2, 3][..], &[0, 2, 3], &[0, 1, 3], &[0, 1, 2], &[]]);
     }
 

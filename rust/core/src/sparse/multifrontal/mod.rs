@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A multifrontal Cholesky factorisation for systems on the vertices of a mesh.
+//! A multifrontal Cholesky factorization for systems on the vertices of a mesh.
 //!
 //! J. W. H. Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992). The matrix is a sum of
 //! small dense elements (of faces, or single entries). It is eliminated along a tree of dense fronts: each takes its
@@ -7,7 +7,7 @@
 //! Subtrees are independent and run on threads of their own; within a front all additions have a fixed order, so the
 //! result does not depend on the number of threads.
 //!
-//! Input: the cliques of the unknowns' graph, and for each factorisation their matrices. Cost for the n vertices of a
+//! Input: the cliques of the unknowns' graph, and for each factorization their matrices. Cost for the n vertices of a
 //! surface: about n log n numbers and n^1.5 multiplications.
 
 pub(super) mod dense;
@@ -123,7 +123,7 @@ impl Symbolic {
     }
 }
 
-/// Nodes from which an order that takes longer to find pays for itself within a few factorisations.
+/// Nodes from which an order that takes longer to find pays for itself within a few factorizations.
 #[cfg(feature = "metis")]
 const LARGE: usize = 200_000;
 
@@ -135,8 +135,8 @@ fn fill_reducing_order(graph: &Graph) -> Result<Vec<u32>, Error> {
     {
         return Ok(order);
     }
-    let (starts, neighbours) = graph.compressed();
-    minimum_degree(starts, neighbours)
+    let (starts, neighbors) = graph.compressed();
+    minimum_degree(starts, neighbors)
 }
 
 fn unknowns_in_order(order: &[u32], dofs: &[u8]) -> Vec<u32> {
@@ -154,7 +154,7 @@ fn unknowns_in_order(order: &[u32], dofs: &[u8]) -> Vec<u32> {
 #[derive(Debug, Clone)]
 pub(crate) struct Factor<T> {
     values: Vec<T>,
-    /// Memory for the next factorisation.
+    /// Memory for the next factorization.
     scratch: Vec<numeric::Updates<T>>,
 }
 

@@ -166,7 +166,7 @@ fn indefinite_singular_and_broken_matrices_are_refused() {
 }
 
 #[test]
-fn a_factorisation_can_be_cancelled_and_done_again() {
+fn a_factorization_can_be_cancelled_and_done_again() {
     let (n, faces) = grid(400);
     let analysis = Analysis::new(n, &faces, &vec![2; n], Order::Sparse).unwrap();
     let mut factor = Factor::<f64>::new(&analysis);

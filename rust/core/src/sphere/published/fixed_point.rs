@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The fixed-point iteration of stretch energy minimisation on the sphere.
+//! The fixed-point iteration of stretch energy minimization on the sphere.
 //!
 //! Yueh, Lin, Lin & Yau (2019) as restated by Sutti & Yueh (2024), Algorithm 2: hemisphere by hemisphere, in
 //! the stereographic chart of the one whose turn it is, the vertices |h_i| < r solve
@@ -16,7 +16,7 @@
 //! on one hemisphere pushes area across the equator after every step; here it counts target area, which an
 //! area-preserving map does halve. On meshes of even density the two agree.
 //!
-//! Cost of one iteration: one Cholesky analysis and factorisation of about 0.6 n vertices.
+//! Cost of one iteration: one Cholesky analysis and factorization of about 0.6 n vertices.
 
 use super::objective::SphereDomain;
 use crate::codomain::SpatialMap;

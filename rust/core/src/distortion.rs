@@ -289,10 +289,7 @@ fn singular_value_ratio(rest: [Vector3; 3], image: [Vector3; 3]) -> f64 {
     let (a, d) = (to_base / base, to_height / height);
     let b = (to_x - x * a) / height;
     let (sum, difference) = ((a + d).hypot(b), (a - d).hypot(b));
-    match sum > difference {
-        true => (sum + difference) / (sum - difference),
-        false => f64::INFINITY,
-    }
+    if sum > difference { (sum + difference) / (sum - difference) } else { f64::INFINITY }
 }
 
 /// A triangle as (0, 0), (base, 0), (x, height).
@@ -309,10 +306,7 @@ fn summary(values: &[f64]) -> (f64, f64, f64) {
     let last = sorted.len() - 1;
     let position = 0.99 * last as f64;
     let (low, part) = (position as usize, position.fract());
-    let p99 = match part > 0.0 {
-        true => sorted[low] * (1.0 - part) + sorted[low + 1] * part,
-        false => sorted[low],
-    };
+    let p99 = if part > 0.0 { sorted[low] * (1.0 - part) + sorted[low + 1] * part } else { sorted[low] };
     (mean, p99, sorted[last])
 }
 

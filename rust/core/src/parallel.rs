@@ -114,7 +114,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum(a.len(), |i| a[i] * b[i])
 }
 
-/// Whether `holds(i)` for all `i` in `0..n`.
+/// True if `holds(i)` for all `i` in `0..n`.
 pub(crate) fn all(n: usize, holds: impl Fn(usize) -> bool + Sync + Send) -> bool {
     sum(n, |i| if holds(i) { 0.0 } else { 1.0 }) == 0.0
 }

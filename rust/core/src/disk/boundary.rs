@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Boundary maps onto the unit circle.
+//! Boundary maps onto the unit circle, and the barrier that keeps sliding arcs open.
 
 use std::f64::consts::TAU;
 
@@ -40,7 +40,7 @@ pub(super) fn arcs(boundary: &[u32], map: &[[f64; 2]]) -> Option<Vec<f64>> {
     (once && arcs.iter().all(|&arc| arc > 0.0)).then_some(arcs)
 }
 
-/// Whether the loop runs once around the circle, counter-clockwise, without turning back.
+/// True if the loop runs once around the circle, counter-clockwise, without turning back.
 pub(super) fn runs_once_around(boundary: &[u32], map: &[[f64; 2]]) -> bool {
     arcs(boundary, map).is_some()
 }
@@ -73,7 +73,7 @@ impl ArcBarrier {
         arcs.iter().zip(&self.shares).map(excess).sum()
     }
 
-    /// Its derivative by the angle of each vertex of the loop.
+    /// The derivative of the cost by the angle of each vertex of the loop.
     pub(super) fn slopes(&self, arcs: &[f64]) -> Vec<f64> {
         let by_arc = |k: usize| {
             let ratio = SHORTEST * self.shares[k] / arcs[k];

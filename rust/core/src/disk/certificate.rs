@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Whether a map to the disk is one-to-one, decided exactly.
+//! Certificates: exact tests that a map to the disk is one-to-one.
 //!
 //! A map of a disk whose boundary runs once around a convex curve and whose faces all have positive
 //! orientation is a bijection.
@@ -9,7 +9,7 @@ use crate::distortion::folded_in_plane;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
-/// A face below this part of its target is as good as folded: single precision, in which UVs are stored,
+/// A face below this part of its target counts as nearly folded: single precision, in which UVs are stored,
 /// may fold it.
 const SMALLEST_RATIO: f64 = 1e-3;
 
@@ -18,18 +18,18 @@ pub(super) fn folded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Vec<usize> {
     folded_in_plane(mesh.faces(), map)
 }
 
-/// Whether `map` is a bijection onto its image: no folded face, boundary once around.
+/// True if `map` is a bijection onto its image: no folded face, boundary once around.
 pub(super) fn is_bijective(mesh: &TriangleMesh, map: &[[f64; 2]]) -> bool {
     runs_once_around(&mesh.boundary_loops()[0], map) && folded(mesh, map).is_empty()
 }
 
-/// Whether some face is left with less than [`SMALLEST_RATIO`] of its target area.
+/// True if some face is left with less than [`SMALLEST_RATIO`] of its target area.
 pub(super) fn nearly_folded(areas: &[f64], targets: &[f64]) -> bool {
     let scale = areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
     !parallel::all(areas.len(), |face| areas[face] >= SMALLEST_RATIO * scale * targets[face])
 }
 
-/// Whether every face is positive by more than its rounding error; never true for a folded face.
+/// True if every face is positive by more than its rounding error; never true for a folded face.
 pub(super) fn clearly_unfolded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> bool {
     parallel::all(mesh.n_faces(), |face| {
         let [a, b, c] = mesh.faces()[face].map(|vertex| map[vertex as usize]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What a disk map refuses before any work.
+//! Checks of surface and options before a disk map is computed.
 
 use super::options::{Boundary, DiskMapOptions, Method};
 use super::{boundary, rectangle};
@@ -7,7 +7,7 @@ use crate::error::{Elements, Error, MapError, MeshError};
 use crate::mesh::TriangleMesh;
 use crate::options::{check_angle_weight, check_area_tolerance};
 
-/// Refuses what is no disk, and options out of range.
+/// Refuses a surface that is no disk, and options out of range.
 pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<(), Error> {
     match mesh.require_disk() {
         Err(Error::Mesh(MeshError::SeveralBoundaries { .. })) if options.fill_holes => {}

@@ -4,8 +4,8 @@
 //! The few steps of the papers' fixed point bring most disks near the minimum with some faces folded. Signed areas
 //! unfold these on the way of an unguarded descent, nearly always all of them. From the first map without folds the
 //! descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)) and never folds a face again.
-//! Where the quick way leaves folds, the guarded descent starts from Tutte's embedding, and where double precision does
-//! not suffice for that, from the [progressive](crate::embedding) one.
+//! Where this leaves folds, the guarded descent starts from Tutte's embedding, or where double precision does not suffice
+//! for that, from the [progressive](crate::embedding) one.
 //!
 //! Cost: about five factorizations of the interior vertices with one unknown each, about fifteen with two.
 
@@ -28,35 +28,35 @@ use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, more_
 use crate::optimize::published::Stopping;
 use crate::sparse::{Order, elimination_order};
 
-/// Fixed-point steps at the most.
+/// Limit of the fixed-point steps.
 const FIXED_POINT_STEPS: usize = 5;
 
-/// They end when √(gᵀM⁻¹g) is below this, at an E_A of about 0.05: Gauss–Newton gains more from there.
+/// The fixed-point steps end when √(gᵀM⁻¹g) is below this, at an E_A of about 0.05: Gauss–Newton gains more from there.
 const NEAR: f64 = 0.15;
 
-/// Unguarded iterations, which lose angles: at the most, and so many also where nothing is folded on large surfaces.
+/// Unguarded iterations, which lose angles: the number on large surfaces without folds, and the limit.
 const OPEN_ITERATIONS: [usize; 2] = [8, 12];
 
-/// Guarded iterations where those leave the area ratio a small deviation, and at the most: no descent takes as many.
+/// Guarded iterations: the number that suffices where it leaves a small area deviation, and a limit that no descent reaches.
 const GUARDED_ITERATIONS: [usize; 2] = [11, 1000];
 
-/// On surfaces with fewer vertices three times as many cost next to nothing.
+/// Surfaces with fewer vertices get three times as many guarded iterations, which are cheap there.
 const SMALL: usize = 10_000;
 
-/// On surfaces with more vertices unguarded iterations, which may be in single precision, take the place of guarded ones
-/// also where nothing is folded.
+/// On surfaces with more vertices, unguarded iterations, which may be in single precision, replace guarded ones even
+/// where nothing is folded.
 const LARGE: usize = 500_000;
 
-/// A map whose smallest face has less than this part of its target has collapsed for all that a descent can see.
+/// A map with a face below this part of its target has collapsed beyond what a descent can mend.
 const COLLAPSED: f64 = 1e-9;
 
-/// A result is uneven when E_A is more than this part of the area; then another start may do better.
+/// A result with an E_A above this part of the area is uneven; another start may do better.
 const UNEVEN: f64 = 2e-4;
 
-/// Area deviation of the result below which nothing is left to gain.
+/// The descent has converged when the area deviation is below this.
 const TOLERANCE: f64 = 2e-4;
 
-/// Up to so many vertices a cancelled run computes an embedding where it has none yet.
+/// A cancelled run without a map still computes an embedding on surfaces of up to this many vertices.
 const QUICK: usize = 50_000;
 
 const MESSAGE: &str = "Start map";
@@ -90,8 +90,8 @@ impl Run<'_> {
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
-    /// there was a map without folds.
+    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run
+    /// before there was a map without folds.
     fn gauss_newton(
         &self,
         is_cancelled: bool,
@@ -102,13 +102,14 @@ impl Run<'_> {
         let floor = target_floors::floors(self.targets)[0];
         let energy = target_floors::energy(self.mesh, self.targets, Codomain::Disk, floor);
         let problem = Problem::new(energy, self.motions(), Order::AsGiven)?;
-        // 2. The quick start; what folds is unfolded by an unguarded descent
+        // 2. The quick start: fixed-point steps, folds removed by an unguarded descent
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.4 };
-        let (quick, status) = match is_cancelled {
-            true => (None, Status::Cancelled),
-            false => self.quick_start(&problem, history, &mut phase),
+        let (quick, status) = if is_cancelled {
+            (None, Status::Cancelled)
+        } else {
+            self.quick_start(&problem, history, &mut phase)
         };
-        // 3. Where that fails, an embedding that holds on any disk
+        // 3. Where that fails, an embedding that exists for any disk
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.5 };
         let (map, status) = match quick {
             Some(map) => (map, status),
@@ -118,13 +119,13 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.5, to: 0.9 };
         let (problem, map, status) =
             self.guarded_descent(problem, map, AnglePath::Balanced, status, history, &mut phase);
-        // 5. Another one from the progressive embedding where the result is uneven
+        // 5. Where the result is uneven, another descent from the progressive embedding
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         let (map, status) = self.second_try(problem, map, status, history, &mut phase);
         Ok((flat(&map), status))
     }
 
-    /// How the vertices may move.
+    /// The motions that the vertices are allowed.
     fn motions(&self) -> Vec<Motion> {
         let on_boundary =
             if self.options.boundary == Boundary::Sliding { Motion::Circle } else { Motion::Held };
@@ -132,7 +133,7 @@ impl Run<'_> {
         (0..self.mesh.n_vertices()).map(motion).collect()
     }
 
-    /// A map without folds near the minimum by fixed-point steps and an unguarded descent; `None` where some stay.
+    /// A map without folds near the minimum by fixed-point steps and an unguarded descent; `None` where folds remain.
     fn quick_start(
         &self,
         problem: &Problem,
@@ -150,7 +151,7 @@ impl Run<'_> {
         if status == Status::Cancelled || (is_embedding && self.options.initial.is_some()) {
             return (is_embedding.then_some(stepped), status);
         }
-        // 2. Unguarded steps until nothing is folded; angles would be lost on the way, so none more where these count
+        // 2. Unguarded steps until nothing is folded; no further ones where angles count, which they lose
         let [least, most] = OPEN_ITERATIONS;
         let is_done = self.options.angle_weight > 0.0 || self.options.area_tolerance.is_some();
         let least = match self.mesh.n_vertices() {
@@ -167,7 +168,7 @@ impl Run<'_> {
         };
         let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
         let (open, status) = minimize(problem, stepped.clone(), &options, history, &mut phase);
-        // 3. The best of these without folds
+        // 3. The best of these maps without folds
         if problem.energy.is_embedding(&open) {
             return (Some(open), status);
         }
@@ -246,7 +247,7 @@ impl Run<'_> {
         }
     }
 
-    /// The guarded descent from a map without folds; a run already cancelled only keeps the map.
+    /// The guarded descent from a map without folds; a run already cancelled returns the map unchanged.
     fn guarded_descent(
         &self,
         problem: Problem,
@@ -269,14 +270,15 @@ impl Run<'_> {
             }
             None => target_floors::descend(&surface, problem, map, &options, history, observer),
         };
-        match certificate::is_bijective(self.mesh, &flat(&map)) {
-            true => (problem, map, status),
+        if certificate::is_bijective(self.mesh, &flat(&map)) {
+            (problem, map, status)
+        } else {
             // no step folds a face, so only a boundary that turned twice leads here
-            false => (problem, begun, Status::Stalled),
+            (problem, begun, Status::Stalled)
         }
     }
 
-    /// The better of an uneven map and what the progressive embedding leads to.
+    /// The more even of an uneven map and the descent from the progressive embedding.
     fn second_try(
         &self,
         problem: Problem,
@@ -297,19 +299,19 @@ impl Run<'_> {
             return (map, status);
         }
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let other = match progressive_disk(self.mesh, problem.energy.targets(), &mut phase) {
-            Ok(other) => lifted(&other),
+        let progressive = match progressive_disk(self.mesh, problem.energy.targets(), &mut phase) {
+            Ok(map) => lifted(&map),
             Err(Stop::Cancelled) => return (map, Status::Cancelled),
             Err(Stop::NoRoom) => return (map, status),
         };
-        if !problem.energy.is_embedding(&other) {
-            // an arc of more than half the circle, for one
+        if !problem.energy.is_embedding(&progressive) {
+            // for example an arc of more than half the circle
             return (map, status);
         }
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
-        let (problem, other, ended) =
-            self.guarded_descent(problem, other, AnglePath::Staged, status, history, &mut phase);
-        more_even((first, map, status), (problem.unevenness(&other), other, ended))
+        let (problem, second, second_status) =
+            self.guarded_descent(problem, progressive, AnglePath::Staged, status, history, &mut phase);
+        more_even((first, map, status), (problem.unevenness(&second), second, second_status))
     }
 
     fn has_not_collapsed(&self, problem: &Problem, map: &SpatialMap) -> bool {
@@ -318,7 +320,7 @@ impl Run<'_> {
         areas.iter().zip(targets).all(|(area, target)| *area > least * target)
     }
 
-    /// Iterations after which nearly even areas are enough for those who asked for nothing else.
+    /// Iterations after which nearly even areas suffice, unless the caller asked for more.
     fn usual_iterations(&self) -> usize {
         let [usual, ..] = GUARDED_ITERATIONS;
         match self.mesh.n_vertices() {

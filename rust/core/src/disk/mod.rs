@@ -45,19 +45,19 @@ pub struct DiskMap {
     pub uv: Vec<[f64; 2]>,
     /// Why the run ended.
     pub status: Status,
-    /// The energy after every iteration, that of the virtually filled surface where holes were filled.
+    /// The energy after every iteration; where holes were filled, that of the filled surface.
     pub history: History,
-    /// The figures of the map on the faces given.
+    /// The distortion of the map on the given faces.
     pub distortion: Distortion,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
 
-/// Maps a disk to the unit disk so that areas are kept.
+/// Maps a disk to the unit disk so that areas are preserved.
 ///
 /// # Errors
-/// Input that is no disk, and options out of range, are refused before any work. [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where
-/// every start folds in double precision.
+/// Input that is no disk, and options out of range, are refused before any work.
+/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds in double precision.
 ///
 /// ```
 /// use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};
@@ -75,7 +75,7 @@ pub fn disk_map(
     observer: &mut dyn Observer,
 ) -> Result<DiskMap, Error> {
     let mut history = History::start();
-    // 1. Refuse what is no disk before any work
+    // 1. Check the surface and the options
     checks::check(mesh, options)?;
     // 2. Targets; holes filled virtually
     let given: Cow<'_, [f64]> = match options.density {
@@ -88,7 +88,7 @@ pub fn disk_map(
         _ => Some(holes::fill_holes(mesh, &given)?),
     };
     let (surface, targets) = filled.as_ref().map_or((mesh, &*given), |fill| (&fill.mesh, &fill.targets));
-    // 3. Minimize the energy, unfold what folded
+    // 3. Minimize the energy without folds
     let run = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() };
     let (mut uv, status) = match options.method {
         Method::GaussNewton if options.boundary == Boundary::Rectangle => {
@@ -101,22 +101,23 @@ pub fn disk_map(
         Method::GaussNewton => run.renumbered(&mut history, observer)?,
         Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
     };
-    let status = match status != Status::Cancelled && !observer.progress(1.0, "Done") {
-        true => Status::Cancelled,
-        false => status,
+    let status = if status != Status::Cancelled && !observer.progress(1.0, "Done") {
+        Status::Cancelled
+    } else {
+        status
     };
-    // 4. Of all rotated copies the one that does not depend on the way there
+    // 4. Choose the rotation that does not depend on the run
     if options.boundary == Boundary::Sliding && options.initial.is_none() {
         uv = turned(surface, uv);
     }
-    // 5. Figures of the faces given
+    // 5. Figures of the given faces
     uv.truncate(mesh.n_vertices());
     let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
     Ok(DiskMap { uv, status, seconds: history.seconds(), history, distortion })
 }
 
-/// The map turned so that the first vertex of the boundary loop lies at (1, 0); as it was where the rounding of the
-/// rotation folds a sliver.
+/// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the rotation
+/// folds a sliver.
 fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let boundary = &mesh.boundary_loops()[0];
     let [x, y] = map[boundary[0] as usize];
@@ -126,7 +127,7 @@ fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     });
     for &v in boundary {
         let [u, w] = turned[v as usize];
-        // no coordinate beyond the circle by rounding
+        // rounding may leave no coordinate beyond the circle
         turned[v as usize] = [u, w].map(|c| c / u.hypot(w));
     }
     turned[boundary[0] as usize] = [1.0, 0.0];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The options of disk maps.
 
-/// How a disk map is computed.
+/// The method of a disk map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Method {
@@ -9,40 +9,38 @@ pub enum Method {
     FixedPoint,
     /// Preconditioned nonlinear conjugate gradients (Liu & Yueh 2023, Algorithm 3.1).
     ConjugateGradient,
-    /// Guarded Gauss–Newton, our own: more exact by orders of magnitude, and never a folded face on the way.
+    /// Guarded Gauss–Newton, our own: orders of magnitude more exact, and never folds a face on the way.
     #[default]
     GaussNewton,
 }
 
-/// What the boundary vertices may do.
+/// The boundary condition of a disk map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Boundary {
-    /// Held on the circle at arcs proportional to the edge lengths, as in the papers.
+    /// Boundary vertices are held on the circle at arcs proportional to the edge lengths, as in the papers.
     ArcLength,
-    /// Free to slide along the circle in their order, which lets the faces at the boundary keep their areas
-    /// too.
+    /// Boundary vertices slide along the circle in their order, so that the faces at the boundary keep their areas too.
     #[default]
     Sliding,
-    /// Free to take any shape that does not cross itself, for Gauss–Newton only: with a weight of angles it
-    /// takes the shape that suits these. The map lies inside the unit circle.
+    /// The boundary takes any shape that does not cross itself, for Gauss–Newton only; with a weight of angles the shape
+    /// that suits these. The map lies inside the unit circle.
     Free,
-    /// On the sides of a rectangle, for Gauss–Newton only: four vertices at its corners, the others sliding along its sides.
-    /// The map lies in `[0, w] × [0, h]` with a longer side of 1.
+    /// The boundary is a rectangle, for Gauss–Newton only: four vertices lie at its corners, the others slide along its
+    /// sides. The map lies in `[0, w] × [0, h]` with a longer side of 1.
     Rectangle,
 }
 
 /// Options of [`disk_map`](super::disk_map).
 #[derive(Debug, Clone, Default)]
 pub struct DiskMapOptions<'a> {
-    /// The method; guarded Gauss–Newton.
+    /// The method; by default guarded Gauss–Newton.
     pub method: Method,
-    /// The boundary; sliding.
+    /// The boundary; by default sliding.
     pub boundary: Boundary,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
-    /// alone.
+    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 preserves areas alone.
     pub angle_weight: f64,
     /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
     /// where `None`, `angle_weight` decides.
@@ -51,20 +49,18 @@ pub struct DiskMapOptions<'a> {
     /// a free boundary any outline that does not cross itself; the fixed-point steps from the harmonic map where
     /// `None`.
     pub initial: Option<&'a [[f64; 2]]>,
-    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
-    /// takes, with a weight of 0 11 (33 below 10,000 vertices) where those leave the area ratio a deviation of
-    /// .5 % (.2 % below 10,000 vertices); the papers' methods: 50, as in the paper's tables. The five fixed-point
-    /// steps that come first, the unguarded steps that unfold (12 at the most) and a descent that follows where folds were mended
-    /// come on top, and where some targets are below 1 % of the mean up to eight for each of the floors that
-    /// are lowered step by step.
+    /// Iteration limit. `None` for Gauss–Newton: none, but with a weight of 0 and no tolerance it stops after 11 iterations
+    /// (33 below 10,000 vertices) once the area deviation is below .5 % (.2 %). `None` for the papers' methods: 50, as in the
+    /// paper's tables. Not counted are the five fixed-point steps at the start, up to 12 unguarded steps that unfold, a
+    /// descent after folds were mended, and up to eight iterations per floor where targets are below 1 % of the mean.
     pub max_iterations: Option<usize>,
-    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
-    /// where `None`. For the papers' methods √(gᵀM⁻¹g); 10⁻⁸ where `None`.
+    /// Gauss–Newton has converged when the area deviation √(E_A/A) is below this; `None`: 2·10⁻⁴. The papers' methods have
+    /// converged when √(gᵀM⁻¹g) is; `None`: 10⁻⁸.
     pub tolerance: Option<f64>,
-    /// Fill all boundary loops but the longest virtually instead of refusing them; off. With a free boundary they stay
-    /// open and are as free as the longest one.
+    /// Fill holes virtually instead of refusing them; by default off. With a free boundary they stay open and are as free
+    /// as the longest loop.
     pub fill_holes: bool,
-    /// Let a free boundary cross itself; off.
+    /// Let a free boundary cross itself; by default off.
     pub overlap: bool,
     /// The vertices at the corners of a rectangle, counter-clockwise from the lower left one; sought where `None`.
     pub corners: Option<[usize; 4]>,

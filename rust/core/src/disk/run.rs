@@ -10,12 +10,12 @@ pub(super) struct Run<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub options: &'a DiskMapOptions<'a>,
-    /// Faces from here on fill holes; no message may name them.
+    /// Later faces fill holes; no message may name them.
     pub n_given_faces: usize,
 }
 
 impl Run<'_> {
-    /// The face itself, or for one that fills a hole the given face at its edge of the hole.
+    /// The given face that stands for `face`: itself, or for a face that fills a hole its neighbor across the hole's edge.
     pub(super) fn given_face(&self, face: usize) -> usize {
         // the third corner of a fan's face is its apex, which faces the edge
         let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);

@@ -38,7 +38,7 @@ pub(super) fn tutte(
     domain: &mut DiskDomain<'_>,
     watch: &Watch<'_>,
 ) -> Result<PlanarMap, Error> {
-    // half an edge's weight per face, so that every interior edge has weight 1
+    // half of each edge's weight per face, so that every interior edge has weight 1
     solve(mesh, domain, &vec![0.5; 3 * mesh.n_faces()], watch)
 }
 

@@ -2,7 +2,7 @@
 //! Unfolds the few folded faces that an unguarded method leaves on the disk.
 //!
 //! The disk counterpart of the bijectivity correction of Sutti & Yueh (2024), section 6.2, see
-//! [`mean_value`]. Freed are the vertices within a few rings of the folded faces, more where that does not
+//! [`mean_value`]. It frees the vertices within a few rings of the folded faces, and more where that does not
 //! suffice; with the whole interior free the map is a convex combination map into a convex boundary, which
 //! is an embedding.
 //!
@@ -22,7 +22,7 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Option<Vec<[f64; 
     unfold_within(mesh, map, usize::MAX)
 }
 
-/// The same with no more than so many rings around the folded faces free.
+/// [`unfold`] with at most `most_rings` rings around the folded faces free.
 pub(crate) fn unfold_within(
     mesh: &TriangleMesh,
     map: &[[f64; 2]],
@@ -38,7 +38,7 @@ pub(crate) fn unfold_within(
         if let Some(mended) = mend(mesh, map, &free) {
             return Some(mended);
         }
-        // 3. Once more with twice the rings, until the whole interior was free
+        // 3. Repeat with twice the rings, until the whole interior was free
         if free.len() == n_interior || 2 * rings > most_rings {
             return None;
         }

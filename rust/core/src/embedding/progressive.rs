@@ -181,11 +181,10 @@ impl<'a> Embedding<'a> {
         self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
         let (c, s) = (-0.5, 0.75f64.sqrt());
-        let corners: &[Vector3] = match self.travelled.is_empty() {
-            true => {
-                &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| Vector3(x) * third)
-            }
-            false => &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]].map(Vector3),
+        let corners: &[Vector3] = if self.travelled.is_empty() {
+            &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| Vector3(x) * third)
+        } else {
+            &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]].map(Vector3)
         };
         if base.len() != corners.len() {
             return None;

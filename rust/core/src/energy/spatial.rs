@@ -79,14 +79,18 @@ impl<'a> SpatialStretchEnergy<'a> {
         let scale = value.area / self.total_target;
         let slope = |face: usize| self.profile.slope(areas[face] / (scale * self.targets[face]));
         let moment = parallel::sum(areas.len(), |face| areas[face] * slope(face));
-        let (factor, shift) = match self.scale_free {
-            true => (4.0 * PI / value.area, -moment / value.area),
-            false => (1.0, (value.objective - moment) / value.area),
+        let (factor, shift) = if self.scale_free {
+            (4.0 * PI / value.area, -moment / value.area)
+        } else {
+            (1.0, (value.objective - moment) / value.area)
         };
         // half the unit normal of each face times the derivative by its area; a face without area has none
-        let pull = parallel::map(areas.len(), |face| match areas[face] > 0.0 {
-            true => vectors[face] * (0.5 * factor * (slope(face) + shift) / areas[face]),
-            false => Vector3::ZERO,
+        let pull = parallel::map(areas.len(), |face| {
+            if areas[face] > 0.0 {
+                vectors[face] * (0.5 * factor * (slope(face) + shift) / areas[face])
+            } else {
+                Vector3::ZERO
+            }
         });
         (value, self.gather(map, &pull))
     }
@@ -167,8 +171,5 @@ impl<'a> SpatialStretchEnergy<'a> {
 /// Entry (s, t) of the 3 × 3 block of two corners with opposite edges `p` and `q`: Σ_{ℓ≠s} p^ℓ q^ℓ on the
 /// diagonal, p^s q^t − 2 p^t q^s off it.
 fn hessian_entry(p: Vector3, q: Vector3, s: usize, t: usize) -> f64 {
-    match s == t {
-        true => p.dot(q) - p[s] * q[s],
-        false => p[s] * q[t] - 2.0 * p[t] * q[s],
-    }
+    if s == t { p.dot(q) - p[s] * q[s] } else { p[s] * q[t] - 2.0 * p[t] * q[s] }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Factorizations of matrices that are given entry by entry.
 //!
-//! A mesh's matrices share one pattern, so [`Cholesky::analyse`] orders and analyses it once and
+//! A mesh's matrices share one pattern, so [`Cholesky::analyze`] orders and analyzes it once and
 //! [`Cholesky::refactor`] only computes numbers. Input: the upper triangle in compressed columns. Cost and method: see
 //! [`super::multifrontal`], of which each entry is an element.
 
@@ -21,29 +21,28 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Orders and analyses the pattern of a symmetric matrix given by its upper triangle; nothing is
+    /// Orders and analyzes the pattern of a symmetric matrix given by its upper triangle; nothing is
     /// factored yet.
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
-    pub fn analyse(upper: &CsMat<f64>) -> Result<Self, Error> {
-        Self::analyse_in(Order::Sparse, upper)
+    pub fn analyze(upper: &CsMat<f64>) -> Result<Self, Error> {
+        Self::analyze_in(Order::Sparse, upper)
     }
 
     /// The same for the system of some vertices of a mesh, in ascending order; what is known of their order is used.
     ///
     /// # Errors
-    /// As [`Self::analyse`].
-    pub(crate) fn analyse_on(mesh: &TriangleMesh, upper: &CsMat<f64>) -> Result<Self, Error> {
+    /// As [`Self::analyze`].
+    pub(crate) fn analyze_on(mesh: &TriangleMesh, upper: &CsMat<f64>) -> Result<Self, Error> {
         let order = if mesh.in_elimination_order() { Order::AsGiven } else { Order::Sparse };
-        Self::analyse_in(order, upper)
+        Self::analyze_in(order, upper)
     }
 
-    fn analyse_in(order: Order, upper: &CsMat<f64>) -> Result<Self, Error> {
+    fn analyze_in(order: Order, upper: &CsMat<f64>) -> Result<Self, Error> {
         assert!(upper.is_csc(), "the factorizations take compressed columns");
-        let entry = |(_, (row, column)): (&f64, (usize, usize))| match row == column {
-            true => [row as u32, NONE, NONE],
-            false => [row as u32, column as u32, NONE],
+        let entry = |(_, (row, column)): (&f64, (usize, usize))| {
+            if row == column { [row as u32, NONE, NONE] } else { [row as u32, column as u32, NONE] }
         };
         let entries: Vec<[u32; 3]> = upper.iter().map(entry).collect();
         let symbolic = Symbolic::new(&entries, &vec![1; upper.cols()], order)?;
@@ -51,7 +50,7 @@ impl Cholesky {
         Ok(Self { symbolic, factor })
     }
 
-    /// Factors a matrix of the analysed pattern, given by its upper triangle.
+    /// Factors a matrix of the analyzed pattern, given by its upper triangle.
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`] where the matrix is not positive definite to working precision.
@@ -123,7 +122,7 @@ mod tests {
     fn solves_one_two_and_three_columns() {
         for n in [1, 3, 30, 90] {
             let matrix = grid_laplacian(n);
-            let mut factor = Cholesky::analyse(&matrix).unwrap();
+            let mut factor = Cholesky::analyze(&matrix).unwrap();
             factor.refactor(&matrix).unwrap();
             for columns in 1..=3 {
                 let b: Vec<f64> = (0..columns * n * n).map(|i| (0.37 * i as f64).cos()).collect();
@@ -139,7 +138,7 @@ mod tests {
     #[test]
     fn refactoring_uses_the_new_values() {
         let mut matrix = grid_laplacian(5);
-        let mut factor = Cholesky::analyse(&matrix).unwrap();
+        let mut factor = Cholesky::analyze(&matrix).unwrap();
         factor.refactor(&matrix).unwrap();
         matrix.data_mut().iter_mut().for_each(|value| *value *= 2.0);
         factor.refactor(&matrix).unwrap();
@@ -156,7 +155,7 @@ mod tests {
             indefinite.add_triplet(i, j, value);
         }
         let indefinite: CsMat<f64> = indefinite.to_csc();
-        assert!(Cholesky::analyse(&indefinite).unwrap().refactor(&indefinite).is_err());
+        assert!(Cholesky::analyze(&indefinite).unwrap().refactor(&indefinite).is_err());
         let mut singular = TriMat::new((2, 2));
         for (i, j, value) in [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 2.0), (1, 1, 4.0)] {
             singular.add_triplet(i, j, value);
@@ -167,7 +166,7 @@ mod tests {
     #[test]
     fn empty_systems_are_solved() {
         let empty: CsMat<f64> = TriMat::new((0, 0)).to_csc();
-        let mut factor = Cholesky::analyse(&empty).unwrap();
+        let mut factor = Cholesky::analyze(&empty).unwrap();
         factor.refactor(&empty).unwrap();
         factor.solve(&mut []);
     }

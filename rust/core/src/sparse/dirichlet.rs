@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 
 /// Solves L_II f_I = −L_IB f_B in place for one weight per corner, the vertices that are not free in `laplacian` held;
-/// `factor` must have analysed its pattern.
+/// `factor` must have analyzed its pattern.
 ///
 /// # Errors
 /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where L_II is not positive definite to working precision, [`Error::CancelledEarly`]

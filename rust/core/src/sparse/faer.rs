@@ -39,9 +39,10 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
     let solution = MatMut::from_column_major_slice_mut(rhs, n, columns);
     factor.solve_in_place_with_conj(Conj::No, solution, Par::Seq, MemStack::new(&mut memory));
-    match rhs.iter().all(|x| x.is_finite()) {
-        true => Ok(()),
-        false => Err(failed(format!("LU of {n} unknowns: the matrix is singular"))),
+    if rhs.iter().all(|x| x.is_finite()) {
+        Ok(())
+    } else {
+        Err(failed(format!("LU of {n} unknowns: the matrix is singular")))
     }
 }
 

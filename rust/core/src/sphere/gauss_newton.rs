@@ -214,10 +214,11 @@ impl Run<'_> {
             }
             None => target_floors::descend(&surface, problem, map, &options, history, observer),
         };
-        match self.is_bijective(&map) {
-            true => (problem, map, status),
+        if self.is_bijective(&map) {
+            (problem, map, status)
+        } else {
             // no step folds a face, so only a one-ring that turned twice around its vertex leads here
-            false => (problem, begun, Status::Stalled),
+            (problem, begun, Status::Stalled)
         }
     }
 
@@ -243,7 +244,7 @@ impl Run<'_> {
         more_even((first, map, status), (problem.unevenness(&other), other, ended))
     }
 
-    /// Whether no face is folded and the faces cover the sphere once.
+    /// True if no face is folded and the faces cover the sphere once.
     fn is_bijective(&self, map: &SpatialMap) -> bool {
         let covered = parallel::sum(self.mesh.n_faces(), |face| {
             let [a, b, c] = triangle(map, self.mesh.faces()[face]);

@@ -105,9 +105,10 @@ pub fn sphere_map(
     } else {
         (None, map, status)
     };
-    let status = match status != Status::Cancelled && !observer.progress(1.0, "Done") {
-        true => Status::Cancelled,
-        false => status,
+    let status = if status != Status::Cancelled && !observer.progress(1.0, "Done") {
+        Status::Cancelled
+    } else {
+        status
     };
     // 5. Of all rotated copies the one that lies over the surface; figures
     let (positions, distortion, refinement) = match refined {

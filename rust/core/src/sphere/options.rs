@@ -100,9 +100,8 @@ impl SphereMapOptions<'_> {
             });
         }
         let fixed_point = self.method == SphereMethod::FixedPoint;
-        let in_range = |tolerance: f64| match fixed_point {
-            true => tolerance < f64::INFINITY,
-            false => tolerance >= 0.0 && tolerance.is_finite(),
+        let in_range = |tolerance: f64| {
+            if fixed_point { tolerance < f64::INFINITY } else { tolerance >= 0.0 && tolerance.is_finite() }
         };
         match self.tolerance {
             Some(tolerance) if !in_range(tolerance) => Err(Error::InvalidOption {

@@ -30,10 +30,10 @@ use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 use crate::vector::Vector3;
 
 /// Newton steps of the centering; three or four are the rule.
-const CENTRING_STEPS: usize = 50;
+const CENTERING_STEPS: usize = 50;
 
 /// The centroid is at the center when it is nearer than this.
-const CENTRED: f64 = 1e-9;
+const CENTERED: f64 = 1e-9;
 
 /// A conformal face below this part of its target has collapsed for all that a descent can see.
 const COLLAPSED: f64 = 1e-9;
@@ -101,7 +101,7 @@ fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<SpatialMap> {
     folded_on_sphere(mesh.faces(), &map).is_empty().then_some(map)
 }
 
-/// Whether some face has next to nothing of its target area.
+/// True if some face has next to nothing of its target area.
 fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector3]) -> bool {
     let energy = SpatialStretchEnergy::new(mesh, targets);
     let (areas, least) = (energy.areas(map), COLLAPSED * 4.0 * PI / targets.iter().sum::<f64>());
@@ -194,7 +194,7 @@ fn harmonic(
         plane[vertex as usize] = place;
     }
     let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&(vertex as u32)));
-    let mut factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
+    let mut factor = Cholesky::analyze_on(mesh, laplacian.matrix())?;
     solve_dirichlet(mesh, &mut laplacian, &mut factor, by_corner, &mut plane, watch)?;
     Ok(plane)
 }
@@ -228,12 +228,12 @@ fn normalize(plane: &mut [[f64; 2]], weights: &[f64]) {
 /// centroid c to the center solves (I − Σ w x xᵀ) b = c.
 fn centered(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let total: f64 = weights.iter().sum();
-    for _ in 0..CENTRING_STEPS {
+    for _ in 0..CENTERING_STEPS {
         let moment = |value: &(dyn Fn(Vector3) -> f64 + Sync)| {
             parallel::sum(map.len(), |v| weights[v] / total * value(map[v]))
         };
         let centroid = Vector3::from_fn(|axis| moment(&|x| x[axis]));
-        if centroid.norm() < CENTRED {
+        if centroid.norm() < CENTERED {
             break;
         }
         let jacobian: [Vector3; 3] = std::array::from_fn(|row| {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What keeps an outline from crossing itself: an energy where it comes near to itself, and a bound on every step.
+//! Contacts of an outline with itself: an energy that repels near boundaries, and a bound on every step.
 //!
 //! A boundary vertex v and a boundary edge e that is neither at v nor opposite to it in its face cost κ h l b(d / h) where
 //! their distance d is below h, b(x) = −(x − 1)² ln x, as in M. Li et al., Incremental potential contact, ACM Trans. Graph.
@@ -41,7 +41,7 @@ pub(super) struct Contact {
     gap: f64,
     /// h.
     reach: f64,
-    /// The derivatives of d by the places of the three vertices.
+    /// The derivatives of d by the positions of the three vertices.
     pub slopes: [f64; 6],
     /// The second derivative of d as a bilinear form.
     curvature: Curvature,
@@ -56,7 +56,7 @@ enum Curvature {
     Inner { turning: [f64; 6], along: [f64; 6], distance: f64 },
 }
 
-/// How strong contacts are.
+/// The strength of contacts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stiffness {
     /// κ l.
@@ -184,7 +184,7 @@ impl Outline {
         step
     }
 
-    /// Whether no outline crosses or touches itself or another one, decided exactly.
+    /// True if no outline crosses or touches itself or another outline, decided exactly.
     pub(super) fn is_simple(&self, map: &[[f64; 2]]) -> bool {
         let corners: PlanarMap = self.vertices.iter().map(|&v| map[v as usize]).collect();
         is_simple_outline(&corners, &self.next)
@@ -192,12 +192,12 @@ impl Outline {
 }
 
 impl Contact {
-    /// What the contact costs; infinite where vertex and edge meet.
+    /// The energy of the contact; infinite where vertex and edge meet.
     pub(super) fn value(&self, stiffness: Stiffness) -> f64 {
         stiffness.factor * self.reach * -(self.gap - 1.0).powi(2) * self.gap.ln()
     }
 
-    /// Its first and second derivative by the distance.
+    /// The first and second derivative of the energy by the distance.
     pub(super) fn derivatives(&self, stiffness: Stiffness) -> [f64; 2] {
         let (x, y, log) = (self.gap, self.gap - 1.0, self.gap.ln());
         let first = -2.0 * y * log - y * y / x;
@@ -220,12 +220,12 @@ impl Contact {
         }
     }
 
-    /// The least height beside the vertex and the edge, where `range` was asked for.
+    /// The least height beside the vertex and the edge; `range` is that of the search.
     pub(super) fn height_of_reach(&self, range: f64) -> f64 {
         self.reach / range
     }
 
-    /// What could be gained to first order if the distance fell to nothing.
+    /// The first-order gain if the distance fell to zero.
     pub(super) fn possible_gain(&self, stiffness: Stiffness) -> f64 {
         -self.derivatives(stiffness)[0] * self.gap * self.reach
     }
@@ -289,20 +289,20 @@ impl Extent {
     }
 }
 
-/// Calls `visit` for every box of `first` that overlaps one of `second`, with their places.
+/// Calls `visit` with the indices of every box of `first` and box of `second` that overlap.
 fn for_each_overlap(first: &[Extent], second: &[Extent], mut visit: impl FnMut(usize, usize)) {
-    // 1. All boxes by where they begin
+    // 1. Sort all boxes by their lower ends
     let entry = |set: usize| move |(place, extent): (usize, &Extent)| (extent.low[0], set, place);
     let mut order: Vec<(f64, usize, usize)> =
         first.iter().enumerate().map(entry(0)).chain(second.iter().enumerate().map(entry(1))).collect();
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    // 2. Each with those of the other set that have begun and not ended
+    // 2. Compare each with the open boxes of the other set
     let sets = [first, second];
     let mut open: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
     for (begin, set, place) in order {
-        let (own, other) = (&sets[set][place], 1 - set);
-        open[other].retain(|&k| sets[other][k].high[0] >= begin);
-        for &k in open[other].iter().filter(|&&k| own.overlaps_in_height(&sets[other][k])) {
+        let (extent, opposite) = (&sets[set][place], 1 - set);
+        open[opposite].retain(|&k| sets[opposite][k].high[0] >= begin);
+        for &k in open[opposite].iter().filter(|&&k| extent.overlaps_in_height(&sets[opposite][k])) {
             if set == 0 { visit(place, k) } else { visit(k, place) }
         }
         open[set].push(place);

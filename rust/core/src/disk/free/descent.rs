@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Newton's method on the energy of a free outline and of its contacts.
 //!
-//! 1. The Hessians of the faces are factored, with the contacts' share at each vertex; conjugate gradients with this factor
-//!    solve the system of faces and contacts, which have no place in the pattern of the mesh.
+//! 1. The Hessians of the faces are factored, with the contacts' diagonal block at each vertex. Conjugate gradients with this
+//!    factor solve the system of faces and contacts, whose other blocks do not fit into the pattern of the mesh.
 //! 2. A step ends before a face folds or an outline meets itself, and where the energy falls.
 //! 3. The descent has converged when the decrement −gᵀd of a full step is next to nothing: the map is stationary.
 //!
-//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it as much of the
-//! curvature counts as leaves the Hessian positive definite, at last all of it, and the descent converges quadratically. Cost of one iteration: one factorization of two
-//! unknowns per vertex, and some ten solves where contacts act.
+//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it the Hessian
+//! takes as much of the curvature as leaves it positive definite, in the end all, and the descent converges quadratically.
+//! Cost of one iteration: one factorization of two unknowns per vertex, and some ten solves where contacts act.
 
 use super::contact::{Contact, Outline, Stiffness, roots};
 use super::energy::{Element, Energy, Hessian};
@@ -22,34 +22,40 @@ const MESSAGE: &str = "Evening out areas";
 /// μ, the damping of a face that is wholly off its target.
 const DAMPING: f64 = 0.005;
 
-/// Every face counts as off its target by so much, between these.
+/// Bounds of the deviation that the damping adds to every face.
 const LEAST_DEVIATIONS: [f64; 2] = [1e-6, 1e-3];
 
-/// Shifts of the Hessian in units of its diagonal, one after the other where the one before is not enough.
+/// Shifts of the Hessian in units of its diagonal, tried in this order until it is positive definite.
 const SHIFTS: [f64; 5] = [1e-12, 1e-10, 1e-8, 1e-6, 1e-4];
 
-/// A step takes at most this part of the way to a fold or to a meeting of outlines.
+/// A step covers at most this part of the way to the first fold or meeting of outlines.
 const MARGIN: f64 = 0.9;
 
 /// Steps tried along one direction.
 const MOST_TRIALS: usize = 40;
 
-/// The decrement's share that a step must gain.
+/// A step must gain this part of what the decrement promises.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A decrement below this, or below this part of the energy, is rounding.
+/// A decrement below this is rounding.
 const NOTHING: f64 = 1e-16;
+
+/// A decrement below this part of the energy is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// The descent has stalled when this many iterations have lowered the energy by less than [`LEAST_GAIN`] of it, or where
-/// that is more by so many times the precision that is wanted.
+/// Iterations over which the descent must gain something, or it has stalled.
 const PATIENCE: usize = 50;
+
+/// The part of the energy that [`PATIENCE`] iterations must gain.
 const LEAST_GAIN: f64 = 1e-4;
+
+/// That bound in units of the precision asked for; the larger of the two counts.
 const IN_PRECISIONS: f64 = 100.0;
 
-/// The conjugate gradients end when they have reduced the residual to this part, the more exactly the nearer the minimum
-/// is, and after so many steps.
+/// Bounds of the relative residual that ends the conjugate gradients; it falls towards the minimum.
 const RESIDUALS: [f64; 2] = [1e-4, 0.1];
+
+/// Limit of the conjugate gradient steps.
 const MOST_INNER: usize = 60;
 
 /// κ in units of λ.
@@ -58,18 +64,21 @@ const CONTACT: f64 = 0.1;
 /// The whole Hessian is tried where the decrement is below this part of the energy.
 const NEAR: f64 = 1e-2;
 
-/// How often the part of the curvature that counts is reduced before none does, and by how much; and by how much more of it
-/// is tried the next time where the Hessian was positive definite.
+/// Reductions of the curvature before it is left out.
 const MOST_ATTEMPTS: usize = 2;
+
+/// Factor of the curvature where the Hessian was not positive definite.
 const SHRINK: f64 = 0.6;
+
+/// Factor of the curvature for the next iteration where the Hessian was positive definite.
 const GROW: f64 = 1.6;
 
-/// What to descend on.
+/// The energy to lower, with its linear system and its contacts.
 pub(super) struct Problem<'a> {
     pub energy: &'a Energy<'a>,
     /// The system of the faces, two unknowns at every vertex.
     pub analysis: &'a Analysis,
-    /// What must not cross itself, if anything.
+    /// The outline that must not cross itself; `None` where it may.
     pub outline: Option<&'a Outline>,
 }
 
@@ -78,15 +87,15 @@ pub(super) struct Problem<'a> {
 pub(super) struct Goal {
     /// λ.
     pub weight: f64,
-    /// How near outlines come to each other, in units of the heights beside them.
+    /// The distance below which outlines repel each other, in units of the heights beside them.
     pub range: f64,
-    /// Iterations at the most, those of earlier runs included.
+    /// Iteration limit, which counts the iterations of earlier runs too.
     pub most_iterations: usize,
-    /// Converged where the decrement is below this part of the energy.
+    /// The descent has converged when the decrement is below this part of the energy.
     pub precision: f64,
 }
 
-/// What there is to know of a map.
+/// A map with its energy and its contacts.
 struct Place {
     map: PlanarMap,
     value: f64,
@@ -99,12 +108,12 @@ struct Direction {
     decrement: f64,
 }
 
-/// The iterations' memory.
+/// The state of the iterations.
 pub(super) struct Descent<'a> {
     problem: Problem<'a>,
     factor: Factor<f64>,
     elements: Vec<Element>,
-    /// How much of the curvature of areas is tried next.
+    /// The part of the curvature of areas to try next.
     curvature: f64,
     /// The last decrement in units of the energy.
     ratio: f64,
@@ -134,7 +143,7 @@ impl<'a> Descent<'a> {
         }
         let mut values = vec![place.value];
         loop {
-            // 1. Whether to go on
+            // 1. Stop where asked to
             if self.done >= goal.most_iterations {
                 return (place.map, Status::MaxIterations);
             }
@@ -181,7 +190,7 @@ impl<'a> Descent<'a> {
         self.problem.energy.unevenness(map).sqrt()
     }
 
-    /// Whether what the contacts could still give away is less than `part` of the energy.
+    /// True if the contacts could give away less than `part` of the energy.
     pub(super) fn is_worth_less(&self, map: &[[f64; 2]], goal: &Goal, part: f64) -> bool {
         let Some(outline) = self.problem.outline else { return true };
         let stiffness = self.stiffness(outline, goal.weight);
@@ -194,7 +203,7 @@ impl<'a> Descent<'a> {
         outline.stiffness(CONTACT * weight)
     }
 
-    /// What there is to know of a map; its value is infinite where it is not allowed.
+    /// The map with its energy, infinite where the map is not allowed, and its contacts.
     fn place(&self, map: PlanarMap, goal: &Goal) -> Place {
         let mut value = self.problem.energy.value(&map, goal.weight);
         let mut contacts = Vec::new();
@@ -211,7 +220,7 @@ impl<'a> Descent<'a> {
     /// The Newton direction.
     fn direction(&mut self, place: &Place, weight: f64, watch: &Watch<'_>) -> Result<Direction, Failure> {
         let energy = self.problem.energy;
-        // 1. The gradient, that of contacts included
+        // 1. The gradient of faces and contacts
         let mut gradient = energy.gradient(&place.map, weight);
         let springs = self.springs(place, weight);
         for (contact, [force, _]) in place.contacts.iter().zip(&springs) {
@@ -219,7 +228,7 @@ impl<'a> Descent<'a> {
                 (0..2).for_each(|axis| gradient[v as usize][axis] += force * contact.slopes[2 * k + axis]);
             }
         }
-        // 2. The Hessian, whole where that is positive definite
+        // 2. The Hessian, exact where that is positive definite
         let deviation = energy.parts(&place.map).deviation.sqrt();
         let least = deviation.clamp(LEAST_DEVIATIONS[0], LEAST_DEVIATIONS[1]);
         if self.ratio < NEAR {
@@ -249,7 +258,7 @@ impl<'a> Descent<'a> {
         Err(Failure::NotPositiveDefinite)
     }
 
-    /// The first and second derivatives of all contacts by their distances.
+    /// The first and second derivatives of all contact energies by the distances.
     fn springs(&self, place: &Place, weight: f64) -> Vec<[f64; 2]> {
         let Some(outline) = self.problem.outline else { return Vec::new() };
         let stiffness = self.stiffness(outline, weight);
@@ -267,7 +276,7 @@ impl<'a> Descent<'a> {
         watch: &Watch<'_>,
     ) -> Result<Direction, Failure> {
         let (energy, analysis) = (self.problem.energy, self.problem.analysis);
-        // 1. The elements, shifted alike for both unknowns of a corner, so that turning the map turns the result
+        // 1. The elements, shifted by one value for both unknowns of a corner, so that the step turns with the map
         parallel::fill(&mut self.elements, |face| {
             let mut element = energy.element(&place.map, face, how);
             for c in 0..3 {
@@ -277,7 +286,7 @@ impl<'a> Descent<'a> {
             }
             element
         });
-        // 2. The contacts' share at each vertex, in the first of its corners
+        // 2. The contacts' block at each vertex, in the first of its corners
         let shares = shares(energy, &place.contacts, springs);
         let elements = &self.elements;
         let with_contacts = |face: usize| {
@@ -325,8 +334,8 @@ impl<'a> Descent<'a> {
     ) -> PlanarMap {
         let energy = self.problem.energy;
         let by_face: Vec<[f64; 6]> = parallel::map(energy.mesh.n_faces(), |face| {
-            let at = energy.mesh.faces()[face].map(|v| x[v as usize]);
-            std::array::from_fn(|i| (0..6).map(|j| self.elements[face][i][j] * at[j / 2][j % 2]).sum())
+            let corners = energy.mesh.faces()[face].map(|v| x[v as usize]);
+            std::array::from_fn(|i| (0..6).map(|j| self.elements[face][i][j] * corners[j / 2][j % 2]).sum())
         });
         let mut product = energy.gathered(|corner| {
             let (of_face, c) = (&by_face[corner / 3], corner % 3);
@@ -383,7 +392,7 @@ impl<'a> Descent<'a> {
         Ok(x)
     }
 
-    /// The next map, with the step's length; `None` where no step lowers the energy.
+    /// The next map and the length of the step; `None` where no step lowers the energy.
     fn step(&self, place: &Place, direction: &Direction, goal: &Goal) -> Option<(Place, f64)> {
         let along = &direction.along;
         let mut step = (MARGIN * self.first_fold(&place.map, along)).min(1.0);
@@ -421,7 +430,7 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// Whether the last iterations gained less than a part of the energy.
+/// True if the last [`PATIENCE`] iterations gained less than a part of the energy.
 fn has_stalled(values: &[f64], least_gain: f64) -> bool {
     let last = values[values.len() - 1];
     let before = values.len().checked_sub(PATIENCE + 1).map(|k| values[k]);

@@ -6,8 +6,8 @@
 //! ½ (σ₁/σ₂ + σ₂/σ₁) − 1. Rest triangles have the area of their target, and targets add up to one, so there is no scale to
 //! be found. ψ is infinite where a face folds.
 //!
-//! For the Hessian m − 1 is taken as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing;
-//! every term is positive semidefinite but that of the curvature of ρ, which is left out or added on demand.
+//! The Hessian takes m − 1 as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing. Every
+//! term is positive semidefinite except the curvature of ρ, which is left out or added on demand.
 
 use crate::codomain::planar::PlanarMap;
 use crate::mesh::TriangleMesh;
@@ -37,7 +37,7 @@ pub(super) struct Energy<'a> {
     hats: Vec<[[f64; 2]; 3]>,
 }
 
-/// E_A and what angles cost, without their weight.
+/// E_A and the angle term without its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Parts {
     /// Σ T (ρ − 1)².
@@ -46,16 +46,16 @@ pub(super) struct Parts {
     pub angles: f64,
 }
 
-/// How the Hessian of a face is made.
+/// The choices for the Hessian of a face.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hessian {
     /// λ.
     pub weight: f64,
-    /// What a face that is wholly off its target is damped by.
+    /// The damping of a face that is wholly off its target.
     pub damping: f64,
-    /// What every face is damped by in units of the deviation of its area ratio.
+    /// Lower bound of the damping of a face, in units of the deviation of its area ratio.
     pub least: f64,
-    /// How much of the curvature of the area counts, from none to all: 1 gives the exact Hessian.
+    /// The part of the curvature of the area that is added, from 0 to 1; 1 gives the exact Hessian.
     pub curvature: f64,
 }
 
@@ -107,7 +107,7 @@ impl<'a> Energy<'a> {
         Jacobian { entries: self.entries(map, face), ratio }
     }
 
-    /// Whether every face is positive by more than rounding.
+    /// True if every face is positive by more than rounding.
     pub(super) fn is_unfolded(&self, map: &[[f64; 2]]) -> bool {
         parallel::all(self.mesh.n_faces(), |face| self.jacobian(map, face).ratio > 0.0)
     }
@@ -125,7 +125,7 @@ impl<'a> Energy<'a> {
         })
     }
 
-    /// What areas and angles cost.
+    /// The terms of areas and of angles.
     pub(super) fn parts(&self, map: &[[f64; 2]]) -> Parts {
         let [deviation, angles] = parallel::sums(self.mesh.n_faces(), |face| {
             let jacobian = self.jacobian(map, face);
@@ -186,7 +186,7 @@ impl<'a> Energy<'a> {
         for row in jacobian.quadratic_over_linear(&cofactors) {
             add_square(&mut element, target * how.weight * stiffness, hats, &row);
         }
-        // 3. The curvature of the area, as far as it counts
+        // 3. The given part of the curvature of the area
         let of_area = 0.5 * (2.0 * rho - 1.0 - 1.0 / (rho * rho));
         let stress = of_area - how.weight * stiffness * shear / rho;
         add_area_curvature(&mut element, target * how.curvature * stress, hats);
@@ -244,7 +244,7 @@ fn rest_hats(corners: [Vector3; 3], target: f64) -> [[f64; 2]; 3] {
     let along = (right - left) * (1.0 / base);
     let foot = (top - left).dot(along);
     let height = ((right - left).cross(top - left).norm() / base).max(FLATTEST * base);
-    // of the rest triangle's own size, then of the target's
+    // the size of the rest triangle, then that of the target
     let scale = (0.5 * base * height / target).sqrt();
     let of_top = [0.0, scale / height];
     let of_left = [-scale / base, -scale * (1.0 - foot / base) / height];

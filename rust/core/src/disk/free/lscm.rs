@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Spectral conformal maps: the outline as the conformal energy wants it.
+//! Spectral conformal maps: the outline of least conformal energy.
 //!
 //! P. Mullen, Y. Tong, P. Alliez and M. Desbrun, Spectral conformal parameterization, SGP 2008. Among the maps with a fixed
 //! moment of inertia of their boundary the one of least conformal energy is the first eigenvector of L_C x = μ B x after the
@@ -16,7 +16,7 @@ use crate::sparse::{Analysis, Factor, Failure};
 /// Inverse iterations; a few are enough for a start.
 const ITERATIONS: usize = 12;
 
-/// Shifts of the singular matrix in units of its diagonal, one after the other where the one before is not enough.
+/// Shifts of the singular matrix in units of its diagonal, tried in this order until it is positive definite.
 const SHIFTS: [f64; 4] = [1e-12, 1e-10, 1e-8, 1e-6];
 
 /// A conformal map of area one, by the system of `analysis` with two unknowns at every vertex.
@@ -76,7 +76,7 @@ fn conformal_element(energy: &Energy<'_>, face: usize, shift: f64) -> Element {
     element
 }
 
-/// The longest loop on a circle by its edge lengths, all else at the origin: it turns with the surface's numbering only.
+/// The longest loop on a circle by its edge lengths, all other vertices at the origin.
 fn around_a_circle(energy: &Energy<'_>) -> PlanarMap {
     let (mesh, outline) = (energy.mesh, &energy.mesh.boundary_loops()[0]);
     let point = |k: usize| mesh.points()[outline[k % outline.len()] as usize];

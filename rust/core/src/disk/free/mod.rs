@@ -5,7 +5,7 @@
 //!    one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one always.
 //! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
 //!    (`contact`), until the map is stationary.
-//! 3. Where contacts remain, the same again with contacts that act only nearer by.
+//! 3. Where contacts remain, further descents with contacts of shorter range.
 //!
 //! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start, and ten
 //! to fifty for the descent.
@@ -32,42 +32,49 @@ use descent::{Descent, Goal, Problem};
 use energy::Energy;
 use lscm::of_area_one;
 
-/// How near outlines come to each other, in units of the heights beside them, one after the other.
+/// Ranges of the contacts, from the first descent to the last, in units of the heights beside them.
 const RANGES: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];
 
 /// The next range follows where contacts might give away this part of the energy.
 const WORTHWHILE: f64 = 3e-3;
 
-/// Converged where the decrement is below this part of the energy.
+/// The descent has converged when the decrement is below this part of the energy.
 const STATIONARY: f64 = 1e-9;
 
-/// With no weight of angles, converged where √(E_A/A) is below this.
+/// Without a weight of angles the descent has converged when √(E_A/A) is below this.
 const TOLERANCE: f64 = 2e-4;
 
-/// Where no start of free outline is one-to-one, a map to the disk is, with this weight of angles, so that it is hardly
-/// sheared, and after so many iterations.
+/// Weight of angles of the map to the disk that takes the place of a start; it keeps the shear low.
 const DISK_WEIGHT: f64 = 1.0;
+
+/// Iteration limit of that map.
 const DISK_ITERATIONS: usize = 15;
 
-/// A start has collapsed, as conformal maps of long tubes do, where its energy is above this: the map to the disk is
-/// tried too.
+/// A start with an energy above this has collapsed, as conformal maps of long tubes do; the map to the disk is tried too.
 const COLLAPSED: f64 = 1e4;
 
 /// Starts are compared with at least this weight of angles.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Weights of angles tried for a deviation of areas: from a heavy one, or from a light one where areas alone count, each by
-/// so much lighter, to the lightest; or heavier and heavier where even the first leaves areas that even.
+/// First weight of angles in the search for an area tolerance.
 const HEAVIEST: f64 = 1.0;
+
+/// First weight of angles where areas alone count.
 const HEAVY: f64 = 1e-3;
+
+/// Upper bound of the weights tried where even the first keeps areas within the tolerance.
 const MOST: f64 = 1e4;
+
+/// Factor from one weight to the next lighter one, √0.1.
 const LEVEL: f64 = 0.316_227_766_016_837_94;
+
+/// Lower bound of the weights tried.
 const LIGHTEST: f64 = 1e-7;
 
 /// A weight of angles is judged where the decrement is below this part of the energy.
 const ROUGHLY: f64 = 1e-4;
 
-/// What is computed once for a surface.
+/// The energy, system and outline of a surface, computed once.
 struct Surface<'a> {
     energy: &'a Energy<'a>,
     analysis: &'a Analysis,
@@ -85,8 +92,8 @@ impl Free<'_> {
     /// The map within the unit disk.
     ///
     /// # Errors
-    /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds, [`Error::CancelledEarly`] where the observer ended the run before there
-    /// was a map without folds.
+    /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds,
+    /// [`Error::CancelledEarly`] where the observer ended the run before there was a map without folds.
     pub(super) fn map(
         &self,
         history: &mut History,
@@ -131,7 +138,7 @@ impl Free<'_> {
         Ok((map, status))
     }
 
-    /// Descents with contacts that act nearer and nearer by.
+    /// Descents with contacts of shorter and shorter range.
     fn descend(
         &self,
         surface: &Surface<'_>,
@@ -169,13 +176,13 @@ impl Free<'_> {
         (map, status)
     }
 
-    /// The deviation of areas down to which λ is to fall; `None` where it is given.
+    /// The deviation of areas down to which λ falls; `None` where λ is given.
     fn wanted_deviation(&self) -> Option<f64> {
         let is_weighted = self.options.angle_weight > 0.0;
         self.options.area_tolerance.or((!is_weighted).then(|| self.options.tolerance.unwrap_or(TOLERANCE)))
     }
 
-    /// A map that is one-to-one to start from, and whether the observer ended the run.
+    /// A one-to-one map to start from, and a flag that the observer ended the run.
     fn start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(PlanarMap, bool), Error> {
         let outline = (!self.options.overlap).then_some(surface.outline);
         if let Some(initial) = self.options.initial {
@@ -194,7 +201,7 @@ impl Free<'_> {
         }
     }
 
-    /// The start of lower energy: the one at hand or the map to the disk.
+    /// The given start or the map to the disk, whichever has the lower energy.
     fn better_start(
         &self,
         surface: &Surface<'_>,
@@ -239,13 +246,12 @@ impl Free<'_> {
         evened_out(0.0, None)
     }
 
-    /// The map turned, moved and scaled into the unit disk; as much of that as rounding allows without folding a face that
-    /// is next to nothing.
+    /// The map turned, moved and scaled into the unit disk, as far as rounding folds no tiny face.
     fn within_the_disk(&self, outline: &Outline, map: &[[f64; 2]]) -> PlanarMap {
         let is_sound = |map: &PlanarMap| {
             (self.options.overlap || outline.is_simple(map)) && certificate::folded(self.mesh, map).is_empty()
         };
-        // a start that was given keeps its rotation
+        // a given start keeps its rotation
         let turned = match self.options.initial {
             None => turned(self.mesh, map.to_vec()),
             Some(_) => map.to_vec(),
@@ -264,8 +270,8 @@ fn center(map: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| 0.5 * (extreme(axis, 1.0) - extreme(axis, -1.0)))
 }
 
-/// Lowers λ from that of `goal` until the deviation of areas is within `tolerance`, or raises it up to `most` as long as it
-/// is, to the heaviest λ at which it is, and leaves it in `goal`; converged where it is.
+/// Lowers λ of `goal` until the deviation of areas is within `tolerance`, or raises it up to `most` while it stays within:
+/// `goal` ends with the heaviest such λ. Converged where there is one.
 fn least_shear(
     descent: &mut Descent<'_>,
     mut map: PlanarMap,
@@ -293,7 +299,7 @@ fn least_shear(
             return (map, Status::Stalled);
         }
         goal.weight = match heavier {
-            // between the two, on a straight line of logarithms and a little to the side of the tolerance
+            // interpolate the logarithms linearly, a little to the side of the tolerance
             Some([heavy, more]) if is_within => {
                 let part = (more / (0.95 * tolerance)).ln() / (more / deviation).ln();
                 heavy * (weight / heavy).powf(part.clamp(0.1, 1.0))
@@ -308,8 +314,7 @@ fn least_shear(
     }
 }
 
-/// The map turned around the mean of its vertices so that the first vertex of the longest boundary loop lies to the right
-/// of that.
+/// The map turned so that the first vertex of the longest boundary loop lies to the right of the mean of all vertices.
 fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let mean = parallel::sums(map.len(), |v| map[v]).map(|sum| sum / map.len() as f64);
     let first = map[mesh.boundary_loops()[0][0] as usize];

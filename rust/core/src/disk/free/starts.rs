@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Maps of free outline to start from: plan view, as rigid as possible, conformal; the best of those that are one-to-one.
+//! Start maps of free outline: plan view, as rigid as possible, conformal; the best of those that are one-to-one.
 
 use std::f64::consts::TAU;
 
@@ -13,10 +13,10 @@ use crate::mesh::geometry::{area_vector, triangle};
 use crate::sparse::{Analysis, Failure};
 use crate::vector::Vector3;
 
-/// A later start replaces an earlier one where its energy is below this part of it: no tie is left to rounding.
+/// A later start replaces an earlier one only if its energy is below this part of it, so that rounding breaks no tie.
 const MARGIN: f64 = 0.9;
 
-/// No plan view where the area vectors of the faces add up to less than this part of the area.
+/// There is no plan view where the area vectors of the faces add up to less than this part of the area.
 const STEEPEST: f64 = 0.05;
 
 /// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.
@@ -74,7 +74,7 @@ pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: Plana
     (energy.is_unfolded(&pulled) && outline.is_simple(&pulled)).then_some(pulled)
 }
 
-/// Whether the faces around every inner vertex turn around it once.
+/// True if the faces around every inner vertex turn around it once.
 fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool {
     let mesh = energy.mesh;
     let angle = |corner: u32| {

@@ -49,7 +49,7 @@ pub(crate) fn fixed_point(
             0 => history.push_start(energies.authalic_energy, norm),
             _ => history.push(energies.authalic_energy, step, norm),
         }
-        // 2. Enough?
+        // 2. Stop where converged or at a limit
         if let Some(status) = stopping.verdict(done, norm, MESSAGE, observer) {
             return (best.1, status);
         }

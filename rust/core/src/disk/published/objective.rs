@@ -30,14 +30,13 @@ struct Block {
 }
 
 impl Block {
-    fn analyse(mesh: &TriangleMesh, laplacian: Laplacian) -> Result<Self, Error> {
-        let factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
+    fn analyze(mesh: &TriangleMesh, laplacian: Laplacian) -> Result<Self, Error> {
+        let factor = Cholesky::analyze_on(mesh, laplacian.matrix())?;
         Ok(Self { laplacian, factor })
     }
 }
 
-/// What a boundary that slides needs: its block of the preconditioner, and the barrier that keeps its arcs
-/// open.
+/// The parts of a sliding boundary: its block of the preconditioner, and the barrier that keeps its arcs open.
 #[derive(Debug)]
 struct SlidingBoundary {
     block: Block,
@@ -59,13 +58,13 @@ pub(crate) struct DiskDomain<'a> {
 }
 
 impl<'a> DiskDomain<'a> {
-    /// Analyses the systems of the domain; the preconditioner must be set before it is used.
+    /// Analyzes the systems of the domain; the preconditioner must be set before it is used.
     pub(crate) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
-        let interior = Block::analyse(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
+        let interior = Block::analyze(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
         let boundary = match boundary {
             Boundary::ArcLength | Boundary::Free | Boundary::Rectangle => None,
             Boundary::Sliding => {
-                let block = Block::analyse(mesh, Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
+                let block = Block::analyze(mesh, Laplacian::new(mesh, |vertex| mesh.is_boundary(vertex)))?;
                 Some(SlidingBoundary { block, barrier: ArcBarrier::new(mesh) })
             }
         };
@@ -112,7 +111,7 @@ impl<'a> DiskDomain<'a> {
         Ok(())
     }
 
-    /// Whether some face of `map` is nearly folded.
+    /// True if some face of `map` is nearly folded.
     pub(super) fn nearly_folds(&self, map: &[[f64; 2]]) -> bool {
         certificate::nearly_folded(&self.energy.areas(map), self.energy.targets())
     }
@@ -142,8 +141,7 @@ impl<'a> DiskDomain<'a> {
         boundary::arcs(&self.mesh.boundary_loops()[0], map)
     }
 
-    /// Adds the slopes of the arc barrier, along the loop, to the gradient by angles, in the order of the
-    /// unknowns.
+    /// Adds the slopes of the arc barrier to the gradient by angles, in the order of the unknowns.
     fn add_barrier(&self, map: &[[f64; 2]], by_angle: &mut [f64]) {
         let (Some(boundary), Some(arcs)) = (&self.boundary, self.arcs(map)) else {
             return;

@@ -24,7 +24,7 @@ const ROUND: usize = 50;
 const MESSAGE: &str = "Minimizing the stretch energy";
 
 impl Run<'_> {
-    /// The papers' method, then whatever it takes to have no folded face.
+    /// The papers' method, then the steps that leave no folded face.
     pub(crate) fn solve(
         &self,
         history: &mut History,
@@ -37,12 +37,12 @@ impl Run<'_> {
         if bijective && (status == Status::Cancelled || !domain.nearly_folds(&map)) {
             return Ok((map, status));
         }
-        // 2. Unfold what folded, then a descent that keeps every face open
+        // 2. Unfold folded faces, then a descent that keeps every face open
         domain.guard();
         let mended = if bijective { Some(map) } else { unfold::unfold(self.mesh, &map) };
         let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
         let mended = mended.map(|map| self.descend(&mut domain, map, status, history, &mut phase));
-        // 3. Where that fails or leaves a face as good as folded, the same descent from Tutte's embedding
+        // 3. Where that fails or leaves a face nearly folded, the same descent from Tutte's embedding
         match mended {
             Some((map, status)) if status == Status::Cancelled || !domain.nearly_folds(&map) => {
                 Ok((map, status))
@@ -70,9 +70,9 @@ impl Run<'_> {
             (Some(_), Some(mended)) => Ok(mended),
             (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
             (None, Some(mended)) => {
-                let other = self.descend(domain, tutte, status, history, observer);
-                let prefer_other = domain.objective(&other.0) < domain.objective(&mended.0);
-                Ok(if prefer_other { other } else { mended })
+                let descended = self.descend(domain, tutte, status, history, observer);
+                let is_better = domain.objective(&descended.0) < domain.objective(&mended.0);
+                Ok(if is_better { descended } else { mended })
             }
         }
     }
@@ -140,8 +140,7 @@ impl Run<'_> {
         }
     }
 
-    /// Conjugate gradients from an unfolded map that stay unfolded; a run already cancelled only keeps the
-    /// map.
+    /// Conjugate gradients that keep an unfolded map unfolded; a run already cancelled returns the map unchanged.
     fn descend(
         &self,
         domain: &mut DiskDomain<'_>,
@@ -164,7 +163,7 @@ impl Run<'_> {
         }
     }
 
-    /// The paper's few steps before conjugate gradients, all of them where the fixed point is the method.
+    /// The paper's few steps before conjugate gradients, or all where the fixed point is the method.
     fn fixed_point_stopping(&self) -> Stopping {
         let whole = self.stopping();
         match self.options.method {

@@ -16,7 +16,7 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::vector::Vector3;
 
-/// Four places along the boundary loop, ascending but for where the loop ends; the first goes to the lower left.
+/// Four places along the boundary loop in cyclic order; the first goes to the lower left.
 pub(super) type Corners = [usize; 4];
 
 /// A boundary that turns by this part of a right angle may be a corner.
@@ -28,24 +28,24 @@ const MOST_CANDIDATES: usize = 24;
 /// Radii within which turns are summed up, in units of the boundary's length: the first that leaves few enough.
 const WINDOWS: [f64; 3] = [0.0, 0.01, 0.03];
 
-/// What a logarithm of the ratio of opposite sides costs, in right angles.
+/// Weight of the logarithm of the ratio of opposite sides in the score, in right angles.
 const IMBALANCE: f64 = 0.2;
 
-/// What a logarithm of the ratio of a given aspect to that of the sides costs when the lower left corner is chosen.
+/// Weight of the logarithm of given aspect over aspect of the sides in the choice of the lower left corner.
 const MISFIT: f64 = 4.0;
 
-/// Scores this near to each other are equal.
+/// Scores that differ by less count as equal.
 const MARGIN: f64 = 1e-7;
 
 /// The boundary loop of a surface.
 pub(super) struct Outline<'a> {
     mesh: &'a TriangleMesh,
     pub vertices: &'a [u32],
-    /// The length up to each vertex, and the whole one at last.
+    /// The length up to each vertex, then the total.
     lengths: Vec<f64>,
-    /// Parts of the loop (first place and how many more) that each need a corner, disjoint.
+    /// Disjoint parts of the loop (first place and number of further ones) that each need a corner.
     cut_off: Vec<[usize; 2]>,
-    /// The edges that cut these off.
+    /// The edges that cut off these parts.
     chords: Vec<[u32; 2]>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Outline<'a> {
         Self { mesh, vertices, lengths, cut_off, chords }
     }
 
-    /// The places of corners that are given as vertices.
+    /// The places of given corner vertices.
     ///
     /// # Errors
     /// [`MapError::NoRectangle`] where they are not on the boundary or not in its order, or press a face flat.
@@ -97,13 +97,14 @@ impl<'a> Outline<'a> {
         if n < 4 || self.cut_off.len() > 4 {
             let tips = self.cut_off.iter().map(|&[first, _]| self.vertices[first] as usize);
             let all = self.vertices.iter().map(|&v| v as usize);
-            let (vertices, reason) = match n < 4 {
-                true => (Elements::collect(all), "a rectangle needs a boundary of at least four edges"),
-                false => (
+            let (vertices, reason) = if n < 4 {
+                (Elements::collect(all), "a rectangle needs a boundary of at least four edges")
+            } else {
+                (
                     Elements::collect(tips),
                     "each needs a corner of its own, because an edge inside the surface joins its neighbors along the \
                      boundary, but a rectangle has four: split these edges, or choose another boundary",
-                ),
+                )
             };
             return Err(MapError::NoRectangle {
                 vertices: vertices.expect("there are some"),
@@ -111,9 +112,9 @@ impl<'a> Outline<'a> {
             }
             .into());
         }
-        // 1. Sharp turns; for each part that needs a corner its sharpest one
+        // 1. Sharp turns; in each part that needs a corner its sharpest turn
         let (candidates, turns) = self.candidates();
-        // 2. The best four of them, or as many as there are and the middles of the longest sides
+        // 2. The best four of them, or all of them and the middles of the longest sides
         let corners = self.best_four(&candidates, &turns).unwrap_or_else(|| self.halved(&candidates, &turns));
         self.check(&corners)?;
         // 3. Upright
@@ -228,7 +229,7 @@ impl<'a> Outline<'a> {
         best.map(|(_, _, corners)| corners)
     }
 
-    /// How much four places look like the corners of a rectangle.
+    /// The score of four places as corners of a rectangle.
     fn score(&self, corners: &Corners, turns: &[f64]) -> f64 {
         let sharpness: f64 = corners.iter().map(|&k| turns[k].min(1.0)).sum();
         let [bottom, right, top, left] = self.sides(corners);
@@ -265,7 +266,7 @@ impl<'a> Outline<'a> {
         corners.try_into().expect("four")
     }
 
-    /// The place that lies lowest in a direction that is that of no axis.
+    /// The lowest place in a direction along no axis.
     fn lowest(&self) -> usize {
         let least = (0..self.vertices.len()).map(|k| self.height(k)).fold(f64::INFINITY, f64::min);
         (0..self.vertices.len()).find(|&k| self.height(k) <= least + MARGIN).expect("there is a lowest")
@@ -283,7 +284,7 @@ impl<'a> Outline<'a> {
         self.mesh.points()[self.vertices[place] as usize]
     }
 
-    /// The corners from the lower left one, with z up, or where the surface lies flat y, and x to the right; a given
+    /// The corners from the lower left one, with x to the right and z up, or y where the surface lies flat; fitting a given
     /// aspect comes first.
     fn turned_upright(&self, corners: Corners, aspect: Option<f64>) -> Corners {
         let turned = |by: usize| -> Corners { [0, 1, 2, 3].map(|k| corners[(k + by) % 4]) };

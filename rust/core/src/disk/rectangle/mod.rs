@@ -12,7 +12,7 @@
 //! Inside, rectangles are centered on (0, 0) and have the area of the unit disk; results have their lower left corner in
 //! (0, 0) and a longer side of 1.
 //!
-//! Cost: that of the disk, and some iterations more for each correction of the aspect.
+//! Cost: that of a disk map, and a few iterations for each correction of the aspect.
 
 mod corners;
 
@@ -41,31 +41,31 @@ use crate::sparse::{Order, elimination_order};
 use crate::vector::Vector3;
 use corners::Outline;
 
-/// Fixed-point steps at the most, and where √(gᵀM⁻¹g) ends them.
+/// Limit of the fixed-point steps, and the √(gᵀM⁻¹g) that ends them.
 const FIXED_POINT: Stopping = Stopping { max_iterations: 5, tolerance: 0.15 };
 
-/// Unguarded iterations that unfold, at the most.
+/// Limit of the unguarded iterations that unfold.
 const OPEN_ITERATIONS: usize = 12;
 
-/// Guarded iterations where those leave the area ratio a small deviation, and at the most.
+/// Guarded iterations: the number that suffices where it leaves a small area deviation, and the limit.
 const GUARDED_ITERATIONS: [usize; 2] = [27, 1000];
 
-/// Area deviation of the result below which nothing is left to gain.
+/// The descent has converged when the area deviation is below this.
 const TOLERANCE: f64 = 2e-4;
 
-/// Corrections of a free aspect where angles count, at the most.
+/// Limit of the corrections of a free aspect where angles count.
 const MOST_CORRECTIONS: usize = 30;
 
-/// By what part of itself a correction but the first and the last is taken: over-relaxation, which saves every other one.
+/// Over-relaxation: factor of every correction but the first and the last, which saves about half of them.
 const RELAXATION: f64 = 1.5;
 
-/// A correction of the logarithm of the aspect below this is none.
+/// The aspect is settled when the correction of its logarithm is below this.
 const SETTLED: f64 = 1e-4;
 
-/// Aspects, and one over them, up to this.
+/// Upper bound of an aspect and of its inverse.
 const MOST_ASPECT: f64 = 1e4;
 
-/// Up to so many vertices a cancelled run computes a map where it has none yet.
+/// A cancelled run without a map still computes one on surfaces of up to this many vertices.
 const QUICK: usize = 50_000;
 
 const MESSAGE: &str = "Start map";
@@ -73,13 +73,13 @@ const MESSAGE: &str = "Start map";
 /// A surface with its corners.
 struct Rectangle<'a> {
     run: Run<'a>,
-    /// The boundary vertices of the sides, bottom, right, top and left: each from its first corner, its last left out.
+    /// The boundary vertices of the bottom, right, top and left side, each without its last corner.
     sides: [Vec<u32>; 4],
-    /// The aspect that is given.
+    /// The given aspect.
     aspect: Option<f64>,
 }
 
-/// Refuses options that do not fit a rectangle, or that only a rectangle has.
+/// Refuses options that do not fit a rectangle, and options of rectangles elsewhere.
 pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<(), Error> {
     if options.boundary != Boundary::Rectangle {
         let given = [("corners", options.corners.is_some()), ("aspect", options.aspect.is_some())];
@@ -188,11 +188,11 @@ fn sides(outline: &[u32], corners: &[usize; 4]) -> [Vec<u32>; 4] {
     })
 }
 
-/// Maps a surface onto a rectangle; the map as it is handed out.
+/// Maps a surface onto a rectangle with its lower left corner at (0, 0) and a longer side of 1.
 ///
 /// # Errors
-/// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
-/// there was a map without folds.
+/// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run
+/// before there was a map without folds.
 pub(super) fn solve(
     run: &Run<'_>,
     history: &mut History,
@@ -252,7 +252,7 @@ impl Rectangle<'_> {
         if status == Status::Cancelled {
             return Ok((map, status));
         }
-        // 2. A guarded descent, the aspect, and so on
+        // 2. Guarded descents and corrections of the aspect by turns
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let begun = history.iterations();
         let surface = target_floors::Surface {
@@ -264,7 +264,7 @@ impl Rectangle<'_> {
             let options = self.options();
             let (problem, map, status) =
                 within_tolerance(&surface, problem, map, tolerance, &options, history, &mut phase);
-            // stretching the whole changes no area ratio
+            // a stretch of the whole changes no area ratio
             return Ok((self.with_best_aspect(&problem, &map, 1.0).0, status));
         }
         let (problem, map, status) =
@@ -285,7 +285,7 @@ impl Rectangle<'_> {
     ) -> (SpatialMap, Status) {
         let mut options = self.options();
         for round in 0..MOST_CORRECTIONS {
-            // 1. The best aspect; on the way a little more, as far down again on the other side of the minimum
+            // 1. The best aspect, over-relaxed on the way
             let (stretched, change) = self.with_best_aspect(problem, &map, 1.0);
             let counts_angles = self.run.options.angle_weight > 0.0;
             let done = history.iterations() - begun;
@@ -308,7 +308,7 @@ impl Rectangle<'_> {
         (self.with_best_aspect(problem, &map, 1.0).0, status)
     }
 
-    /// The map stretched towards the aspect of least angle energy, and the logarithm by which it is off; as it is where the
+    /// The map stretched towards the aspect of least angle energy, and the logarithm by which it is off; unchanged where the
     /// aspect is given.
     fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, part: f64) -> (SpatialMap, f64) {
         if self.aspect.is_some() {
@@ -333,7 +333,7 @@ impl Rectangle<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        // 1. The map given, or some steps of the papers' fixed point from the harmonic map
+        // 1. The given map, or some steps of the papers' fixed point from the harmonic map
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
         let (near, mut status) = match (is_cancelled, self.run.options.initial) {
             (_, Some(initial)) => (Some(self.given(initial, &boundary)), Status::MaxIterations),
@@ -343,7 +343,7 @@ impl Rectangle<'_> {
         if is_cancelled {
             status = Status::Cancelled;
         }
-        // 2. What folds there is unfolded by an unguarded descent, or by mean values
+        // 2. Folds removed by an unguarded descent, or by mean values
         if let Some(near) = near {
             if problem.energy.is_embedding(&near) {
                 return Ok((near, status));
@@ -427,7 +427,7 @@ impl Rectangle<'_> {
         }
     }
 
-    /// How the vertices may move.
+    /// The motions that the vertices are allowed.
     fn motions(&self) -> Vec<Motion> {
         let mut motions = vec![Motion::Plane; self.run.mesh.n_vertices()];
         for (k, side) in self.sides.iter().enumerate() {
@@ -450,7 +450,7 @@ impl Rectangle<'_> {
                     0 => 0.0,
                     _ => outline.length(corners[k], (corners[k] + step) % outline.vertices.len()) / whole,
                 };
-                // the coordinate across the side is exactly that of both its ends
+                // both ends share this coordinate exactly
                 map[vertex as usize] =
                     [0, 1].map(|c| if from[c] == to[c] { from[c] } else { from[c] + t * (to[c] - from[c]) });
             }
@@ -458,7 +458,7 @@ impl Rectangle<'_> {
         map
     }
 
-    /// The start map given, on the rectangle of `boundary`.
+    /// The given start map, on the rectangle of `boundary`.
     fn given(&self, initial: &[[f64; 2]], boundary: &PlanarMap) -> SpatialMap {
         let outline = &self.run.mesh.boundary_loops()[0];
         let ([low, high], [to_low, to_high]) = (bounds(outline, initial), bounds(outline, boundary));
@@ -480,13 +480,13 @@ impl Rectangle<'_> {
         let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
         let sides = [high[0] - low[0], high[1] - low[1]];
         let longer = sides[0].max(sides[1]);
-        // the farther sides exactly on one line, the longer one exactly 1
+        // the top and right sides exactly straight, the longer one exactly 1
         let place = |x: &Vector3, k: usize| if x[k] == high[k] { sides[k] } else { x[k] - low[k] } / longer;
         let moved: PlanarMap = map.iter().map(|x| [place(x, 0), place(x, 1)]).collect();
         if certificate::folded(self.run.mesh, &moved).is_empty() {
             return (moved, 1.0 / longer);
         }
-        // the rounding of the shift folded a face that is next to nothing; a power of two rounds nothing
+        // rounding the shift has folded a tiny face; scaling by a power of two rounds nothing
         let scale = (1.0 / longer).log2().floor().exp2();
         (map.iter().map(|&Vector3([x, y, _])| [x * scale, y * scale]).collect(), scale)
     }

@@ -69,7 +69,7 @@ impl Ring {
         self.measure * degree * boundary
     }
 
-    /// Whether a collapse onto the neighbor keeps the boundary what it is.
+    /// True if a collapse onto the neighbor keeps the boundary what it is.
     fn keeps_the_boundary(&self, neighbor: usize) -> bool {
         let n = self.vertices.len();
         self.apex.is_none_or(|apex| (apex + 1) % n == neighbor || (neighbor + 1) % n == apex)

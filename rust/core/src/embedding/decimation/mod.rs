@@ -130,7 +130,7 @@ impl<'a> Decimation<'a> {
         self.degrees[vertex as usize] as usize
     }
 
-    /// Whether a vertex has been collapsed.
+    /// True if a vertex has been collapsed.
     pub(crate) fn is_gone(&self, vertex: u32) -> bool {
         self.gone[vertex as usize]
     }

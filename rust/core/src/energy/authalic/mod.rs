@@ -120,7 +120,7 @@ impl AuthalicEnergy {
         self.corners.of(vertex)
     }
 
-    /// Whether no face of `map` is folded and no boundary edge turned.
+    /// True if no face of `map` is folded and no boundary edge turned.
     pub(crate) fn is_embedding(&self, map: &[Vector3]) -> bool {
         parallel::all(self.faces.len(), |face| self.is_open(&self.triangle(map, face), face))
     }
@@ -265,7 +265,7 @@ impl AuthalicEnergy {
         Outer { by_area, by_determinant: -by_angle * angle, by_quadratic: by_angle }
     }
 
-    /// Whether the face is unfolded by more than rounding and its boundary edges run counter-clockwise around the
+    /// True if the face is unfolded by more than rounding and its boundary edges run counter-clockwise around the
     /// circle.
     fn is_open(&self, corners: &Triangle, face: usize) -> bool {
         let runs_forward = |c: usize| {

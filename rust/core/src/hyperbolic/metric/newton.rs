@@ -55,7 +55,7 @@ pub(super) struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// Numbers the edges and analyses the Hessian's pattern.
+    /// Numbers the edges and analyzes the Hessian's pattern.
     pub(super) fn new(n_vertices: usize, faces: &'a [[u32; 3]]) -> Result<Self, Error> {
         let edges = Edges::new(n_vertices, faces);
         let angle_sums = edges.on_boundary.iter().map(|&is| if is { PI } else { TAU }).collect();

@@ -85,7 +85,7 @@ pub(super) struct Progress {
     pub deviation: f64,
     /// The length of the last step.
     pub step: f64,
-    /// Whether next to nothing is left to gain at the last λ.
+    /// True if next to nothing is left to gain at the last λ.
     pub is_flat: bool,
 }
 
@@ -108,10 +108,8 @@ pub(super) struct AngleSchedule {
 impl AngleSchedule {
     pub(super) fn new(path: AnglePath, least: f64, n_vertices: usize, has_landmarks: bool) -> Self {
         let (is_small, is_large) = (n_vertices < SMALL, n_vertices >= MANY);
-        let balance = match has_landmarks {
-            true => [WITH_LANDMARKS; 2],
-            false => [BALANCE, LAST_BALANCE[usize::from(is_large)]],
-        };
+        let balance =
+            if has_landmarks { [WITH_LANDMARKS; 2] } else { [BALANCE, LAST_BALANCE[usize::from(is_large)]] };
         let stages = match path {
             AnglePath::Balanced if least == 0.0 || least >= HEAVY || !is_small || has_landmarks => None,
             AnglePath::Staged if least == 0.0 => Some(&TO_AREAS),
@@ -146,12 +144,12 @@ impl AngleSchedule {
         self.weight
     }
 
-    /// Whether λ has fallen to the weight that was asked for, and that is not 0.
+    /// True if λ has fallen to the weight that was asked for, and that is not 0.
     pub(super) fn is_held(&self) -> bool {
         self.least > 0.0 && self.weight <= self.least
     }
 
-    /// Whether stages are still to come.
+    /// True if stages are still to come.
     pub(super) fn is_staged(&self) -> bool {
         self.stage.is_some()
     }
@@ -164,7 +162,7 @@ impl AngleSchedule {
         }
     }
 
-    /// Whether λ stays until the map is stationary.
+    /// True if λ stays until the map is stationary.
     pub(super) fn is_thorough(&self) -> bool {
         self.stages.is_some() && (self.is_staged() || self.is_held())
     }

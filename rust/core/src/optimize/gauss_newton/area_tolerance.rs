@@ -40,7 +40,7 @@ struct Found {
 }
 
 impl Found {
-    /// Whether the run has ended before the minimum was reached.
+    /// True if the run has ended before the minimum was reached.
     fn is_final(&self) -> bool {
         matches!(self.status, Status::Cancelled | Status::MaxIterations)
     }
@@ -173,10 +173,7 @@ impl Search<'_> {
             if next.is_final() {
                 return Found { status: next.status, ..finer };
             }
-            match next.deviation <= self.goal {
-                true => finer = next,
-                false => coarser = next,
-            }
+            if next.deviation <= self.goal { finer = next } else { coarser = next }
         }
         finer
     }

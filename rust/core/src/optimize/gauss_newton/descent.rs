@@ -138,7 +138,7 @@ struct Trend {
 }
 
 impl Trend {
-    /// Whether the last iterations gained next to nothing, and were not about to leave a saddle.
+    /// True if the last iterations gained next to nothing, and were not about to leave a saddle.
     fn is_slow(&self) -> bool {
         let Some(before) = self.norms.len().checked_sub(PATIENCE) else { return false };
         let [then, now] = [before, self.norms.len()].map(|k| self.energies[k]);
@@ -155,9 +155,9 @@ struct Descent<'a> {
     schedule: AngleSchedule,
     /// The deviation to end with after the usual iterations.
     even_enough: f64,
-    /// Whether iterations cost.
+    /// True if iterations cost.
     is_large: bool,
-    /// Whether the last second-order correction was of no use.
+    /// True if the last second-order correction was of no use.
     is_straight: bool,
     /// What targets are multiplied by; NaN before the first iteration.
     scale: f64,
@@ -168,7 +168,7 @@ struct Descent<'a> {
     total_target: f64,
     /// The part of the energy that the last slope promised.
     promise: f64,
-    /// Whether it was next to nothing.
+    /// True if it was next to nothing.
     flat: bool,
 }
 
@@ -203,7 +203,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Whether E_A alone decides which map is the best: it may rise where a barrier or angles count on the way.
+    /// True if E_A alone decides which map is the best: it may rise where a barrier or angles count on the way.
     fn keeps_the_best(&self) -> bool {
         self.options.angle_weight == 0.0 && self.options.profile == Profile::Barrier
     }
@@ -324,7 +324,7 @@ impl<'a> Descent<'a> {
         self.problem.moved(map, &newton.frames, &direction)
     }
 
-    /// Whether λ stays until the map is stationary, which is not far.
+    /// True if λ stays until the map is stationary, which is not far.
     fn is_near(&self) -> bool {
         self.schedule.is_thorough() && self.promise < NEAR
     }

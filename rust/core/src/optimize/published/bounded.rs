@@ -84,9 +84,10 @@ fn parabolic_step(best: Point, second: Point, third: Point) -> Option<f64> {
 /// A step that lands within two tolerances of an end goes one tolerance towards the middle instead.
 fn away_from_ends(step: f64, at: f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let to = at + step;
-    match to - low < 2.0 * tolerance || high - to < 2.0 * tolerance {
-        true => tolerance.copysign(0.5 * (low + high) - at),
-        false => step,
+    if to - low < 2.0 * tolerance || high - to < 2.0 * tolerance {
+        tolerance.copysign(0.5 * (low + high) - at)
+    } else {
+        step
     }
 }
 

@@ -22,7 +22,7 @@ const DECREASE: f64 = 1e-4;
 /// Trials before the search gives up.
 const MAX_TRIALS: usize = 40;
 
-/// Whether `trial` decreases enough, up to the rounding of the value itself.
+/// True if `trial` decreases enough, up to the rounding of the value itself.
 pub(super) fn decreases<S, T>(start: &Trial<S>, trial: &Trial<T>) -> bool {
     let rounding = 8.0 * f64::EPSILON * start.value.abs();
     trial.value <= start.value + DECREASE * trial.step * start.slope + rounding
@@ -69,9 +69,10 @@ fn cubic<S>(start: &Trial<S>, (one, value_one): (f64, f64), (two, value_two): (f
     let [scaled_one, scaled_two] = [rest_one / (one * one), rest_two / (two * two)];
     let a = (scaled_one - scaled_two) / (one - two);
     let b = (one * scaled_two - two * scaled_one) / (one - two);
-    match a.abs() * one > 1e-12 * b.abs() {
-        true => (-b + (b * b - 3.0 * a * start.slope).sqrt()) / (3.0 * a),
-        false => -0.5 * start.slope / b,
+    if a.abs() * one > 1e-12 * b.abs() {
+        (-b + (b * b - 3.0 * a * start.slope).sqrt()) / (3.0 * a)
+    } else {
+        -0.5 * start.slope / b
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Trial<T> {
 }
 
 impl WolfeOptions {
-    /// Whether a trial satisfies both conditions.
+    /// True if a trial satisfies both conditions.
     pub fn accepts<T>(&self, start: &Trial<T>, trial: &Trial<T>) -> bool {
         self.decreases(start, trial) && trial.slope.abs() <= self.curvature * start.slope.abs()
     }
@@ -97,10 +97,8 @@ pub fn strong_wolfe<T: Clone>(
 fn inside<T>(low: &Trial<T>, high: &Trial<T>) -> f64 {
     let width = high.step - low.step;
     let bend = high.value - low.value - low.slope * width;
-    let fraction = match bend.is_finite() && bend > 0.0 {
-        true => (-0.5 * low.slope * width / bend).clamp(0.1, 0.9),
-        false => 0.5,
-    };
+    let fraction =
+        if bend.is_finite() && bend > 0.0 { (-0.5 * low.slope * width / bend).clamp(0.1, 0.9) } else { 0.5 };
     low.step + fraction * width
 }
 

@@ -45,7 +45,7 @@ pub(super) struct Front {
     pub(super) n_rows: u32,
     /// How many of these rows are columns of the parent.
     pub(super) n_shared: u32,
-    /// Whether its depth in the tree is odd.
+    /// True if its depth in the tree is odd.
     pub(super) is_odd: bool,
     runs: Range<u32>,
     elements: Range<u32>,
@@ -198,7 +198,7 @@ fn merge_columns(tree: &Elimination, columns: &Columns) -> Vec<usize> {
     starts
 }
 
-/// Whether the column after `position` has the same rows, its own excepted.
+/// True if the column after `position` has the same rows, its own excepted.
 fn has_same_pattern(tree: &Elimination, columns: &Columns, position: usize) -> bool {
     let below = tree.height[position] as usize - columns.width(&(position..position + 1));
     tree.parent[position] as usize == position + 1 && tree.height[position + 1] as usize == below

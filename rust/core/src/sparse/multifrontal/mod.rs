@@ -62,7 +62,7 @@ pub(crate) struct Analysis {
 }
 
 impl Analysis {
-    /// Orders and analyses the matrices that faces assemble, `dofs[v]` (0 where it is held, 1 or 2) unknowns at vertex v.
+    /// Orders and analyzes the matrices that faces assemble, `dofs[v]` (0 where it is held, 1 or 2) unknowns at vertex v.
     ///
     /// The unknowns are numbered by ascending vertex.
     ///
@@ -110,7 +110,7 @@ pub(super) struct Symbolic {
 }
 
 impl Symbolic {
-    /// Orders and analyses the sum of matrices over cliques of nodes; [`NONE`] is no node.
+    /// Orders and analyzes the sum of matrices over cliques of nodes; [`NONE`] is no node.
     pub(super) fn new(cliques: &[[u32; 3]], dofs: &[u8], order: Order) -> Result<Self, Error> {
         let graph = Graph::of_cliques(dofs.len(), cliques);
         let order = match order {
@@ -159,7 +159,7 @@ pub(crate) struct Factor<T> {
 }
 
 impl<T: Scalar> Factor<T> {
-    /// Room for the factors of the analysed pattern.
+    /// Room for the factors of the analyzed pattern.
     pub(crate) fn new(analysis: &Analysis) -> Self {
         Self::of(&analysis.symbolic)
     }

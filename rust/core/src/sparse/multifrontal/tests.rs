@@ -154,9 +154,12 @@ fn indefinite_singular_and_broken_matrices_are_refused() {
         // the only face of one corner of the grid
         let lonely = 2 * (size - 2);
         for wrong in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
-            let matrix = |face: usize| match face == lonely {
-                true => element(face).map(|row| row.map(|value| value * wrong)),
-                false => element(face).map(|row| row.map(|value| value * 1e-3)),
+            let matrix = |face: usize| {
+                if face == lonely {
+                    element(face).map(|row| row.map(|value| value * wrong))
+                } else {
+                    element(face).map(|row| row.map(|value| value * 1e-3))
+                }
             };
             let (mut silent, mut factor) = (Silent, Factor::<f64>::new(&analysis));
             let outcome = factor.refactor(&analysis, &matrix, &Watch::new(&mut silent, 0.0, ""));
@@ -254,7 +257,7 @@ fn assembled(n: usize, faces: &[[u32; 3]], dofs: usize) -> sprs::CsMat<f64> {
 fn times_of_entries(analysis: &Analysis, faces: &[[u32; 3]], dofs: usize) {
     let n = analysis.n_unknowns();
     let matrix = assembled(n, faces, dofs);
-    let mut factor = super::super::Cholesky::analyse(&matrix).unwrap();
+    let mut factor = super::super::Cholesky::analyze(&matrix).unwrap();
     let refactor = milliseconds(|| factor.refactor(&matrix).unwrap());
     let mut rhs = vec![1.0; 2 * n];
     let two = milliseconds(|| factor.solve(&mut rhs));

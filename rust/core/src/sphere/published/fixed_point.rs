@@ -99,7 +99,7 @@ fn iterate(
     let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
     // 1. Solve for the vertices inside
     let mut laplacian = Laplacian::new(mesh, |vertex| modulus(plane[vertex]) < RADIUS);
-    let mut factor = Cholesky::analyse_on(mesh, laplacian.matrix())?;
+    let mut factor = Cholesky::analyze_on(mesh, laplacian.matrix())?;
     solve_dirichlet(mesh, &mut laplacian, &mut factor, &by_corner, &mut plane, watch)?;
     // 2. Divide by the median modulus
     let scale = weighted_median(&parallel::map(plane.len(), |v| modulus(plane[v])), weights);
@@ -112,8 +112,9 @@ fn iterate(
 fn record(domain: &SphereDomain<'_>, map: &SpatialMap, history: &mut History, is_start: bool) {
     let (energies, gradient) = domain.gradient(map);
     let norm = parallel::dot(&gradient, &gradient).sqrt();
-    match is_start {
-        true => history.push_start(energies.authalic_energy, norm),
-        false => history.push(energies.authalic_energy, 1.0, norm),
+    if is_start {
+        history.push_start(energies.authalic_energy, norm)
+    } else {
+        history.push(energies.authalic_energy, 1.0, norm)
     }
 }

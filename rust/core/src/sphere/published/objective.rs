@@ -66,7 +66,7 @@ impl<'a> SphereDomain<'a> {
             Some(block) => block,
             None => {
                 let laplacian = Laplacian::new(self.mesh, |_| true);
-                let factor = Cholesky::analyse_on(self.mesh, laplacian.matrix())?;
+                let factor = Cholesky::analyze_on(self.mesh, laplacian.matrix())?;
                 (laplacian, factor)
             }
         };
@@ -78,10 +78,7 @@ impl<'a> SphereDomain<'a> {
     }
 
     fn full_objective(&self, map: &[Vector3], value: Value) -> f64 {
-        match self.guarded && !clearly_unfolded(self.mesh, map) {
-            true => f64::INFINITY,
-            false => value.objective,
-        }
+        if self.guarded && !clearly_unfolded(self.mesh, map) { f64::INFINITY } else { value.objective }
     }
 }
 
@@ -125,13 +122,13 @@ fn tangent(x: Vector3, z: Vector3) -> Vector3 {
     z - x * x.dot(z)
 }
 
-/// Whether every face is positive around the origin by more than its rounding error; never true for a folded
+/// True if every face is positive around the origin by more than its rounding error; never true for a folded
 /// face.
 fn clearly_unfolded(mesh: &TriangleMesh, map: &[Vector3]) -> bool {
     parallel::all(mesh.n_faces(), |face| is_clearly_positive(triangle(map, mesh.faces()[face])))
 }
 
-/// Whether det(a, b, c) is positive by more than its rounding error.
+/// True if det(a, b, c) is positive by more than its rounding error.
 fn is_clearly_positive([a, b, c]: [Vector3; 3]) -> bool {
     let (p, q) = (b - a, c - a);
     a.dot(p.cross(q)) > determinant_rounding(a, p, q)

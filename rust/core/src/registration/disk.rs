@@ -2,8 +2,8 @@
 //! Registration of two disks (Liu & Yueh 2023, section 6): φ = g⁻¹ ∘ h ∘ f.
 //!
 //! f and g are the area-preserving maps of source and target to the unit disk, h moves the source's landmarks onto the
-//! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which leaves the
-//! faces next to it their areas too.
+//! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which preserves
+//! the areas of the faces next to it too.
 
 use super::Landmarks;
 use super::landmark_descent::Carrying;
@@ -24,8 +24,8 @@ use crate::vector::Vector3;
 /// Registers two disks by landmarks inside them.
 ///
 /// # Errors
-/// Surfaces that are no disks, landmarks that are no pairs of vertices inside them, and options out of range are refused
-/// before any work. What [`disk_map`] fails with, and [`Error::CancelledEarly`].
+/// Surfaces that are no disks, landmarks that are no pairs of interior vertices, and options out of range, all before
+/// any work; the errors of [`disk_map`]; [`Error::CancelledEarly`].
 ///
 /// ```
 /// use authalic::registration::{Landmarks, RegistrationOptions, register_disks};
@@ -33,9 +33,9 @@ use crate::vector::Vector3;
 /// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
 /// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
 /// let landmarks = Landmarks { source: &[0], target: &[0] };
-/// let found = register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
-/// assert!(found.distortion.folded.is_empty() && found.missed.is_empty());
-/// assert_eq!(found.positions(&vertices)[0], vertices[0]);
+/// let registration = register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// assert!(registration.distortion.folded.is_empty() && registration.missed.is_empty());
+/// assert_eq!(registration.positions(&vertices)[0], vertices[0]);
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn register_disks(
@@ -61,7 +61,7 @@ pub fn register_disks(
     // 3. The best rotation of the landmarks
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
-    // 4. h: the landmarks carried to their places; where some are missed, those of the target carried the other way
+    // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
     let ours: Vec<Vector3> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
     let disk = |mesh, landmarks, places| Carrying {
         mesh,
@@ -74,17 +74,16 @@ pub fn register_disks(
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
     let (carried, status) = there.carry(turned.clone(), &mut history, &mut phase)?;
     let there = Meeting { gap: there.farthest(&carried), source: carried, target: lifted(&g.uv), status };
-    let met = match there.gap > MISSED && status != Status::Cancelled {
-        false => there,
-        true => {
-            let back = disk(target, landmarks.target, &ours);
-            let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
-            let (carried, status) = back.carry(lifted(&g.uv), &mut history, &mut phase)?;
-            let back = Meeting { gap: back.farthest(&carried), source: turned, target: carried, status };
-            if back.gap < there.gap { back } else { there }
-        }
+    let met = if there.gap > MISSED && status != Status::Cancelled {
+        let back = disk(target, landmarks.target, &ours);
+        let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
+        let (carried, status) = back.carry(lifted(&g.uv), &mut history, &mut phase)?;
+        let back = Meeting { gap: back.farthest(&carried), source: turned, target: carried, status };
+        if back.gap < there.gap { back } else { there }
+    } else {
+        there
     };
-    // 5. g⁻¹: where that is on the target
+    // 5. g⁻¹: the locations on the target
     let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
     let locator = Locator::new(&met.target, target.faces());
     let (locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
@@ -120,7 +119,7 @@ pub fn register_disks(
     })
 }
 
-/// Both surfaces in the disk with their landmarks together, but for a gap.
+/// Both surfaces in the disk with their landmarks together, up to a gap.
 struct Meeting {
     source: Vec<Vector3>,
     target: Vec<Vector3>,
@@ -128,15 +127,12 @@ struct Meeting {
     status: Status,
 }
 
-/// A map rotated by an angle, unless the rounding of that folds a sliver.
+/// A map rotated by an angle, or as it is if rounding would fold a sliver.
 fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector3> {
     let (sine, cosine) = turn.sin_cos();
     let turned: Vec<[f64; 2]> =
         map.uv.iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
-    match folded_in_plane(mesh.faces(), &turned).is_empty() {
-        true => lifted(&turned),
-        false => lifted(&map.uv),
-    }
+    if folded_in_plane(mesh.faces(), &turned).is_empty() { lifted(&turned) } else { lifted(&map.uv) }
 }
 
 /// The images of some vertices.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How good a registration is: area ratios, and the agreement of data on both surfaces.
+//! Figures of quality of a registration: area ratios, and the agreement of data on both surfaces.
 
 use crate::mesh::geometry::{face_areas, normalized};
 use crate::parallel;
 use crate::vector::Vector3;
 
 /// The area of each face's image over its own, (m,), rescaled so that the whole image is as large as the surface: 1
-/// everywhere where g keeps areas.
+/// everywhere if g preserves areas.
 ///
 /// `points` (n, 3) and `faces` (m, 3) are the source, each face with an area; `positions` (n, 3) are g. All are 0 where
 /// the image has no area.
@@ -15,10 +15,10 @@ pub fn area_ratios(points: &[[f64; 3]], faces: &[[u32; 3]], positions: &[Vector3
         (face_areas(&normalized(points).0, faces), face_areas(&normalized(positions).0, faces));
     let total = |areas: &[f64]| parallel::sum(areas.len(), |face| areas[face]);
     let (whole, image) = (total(&areas), total(&images));
-    parallel::map(faces.len(), |face| match image > 0.0 {
-        true => (images[face] / image) / (areas[face] / whole),
-        false => 0.0,
-    })
+    parallel::map(
+        faces.len(),
+        |face| if image > 0.0 { (images[face] / image) / (areas[face] / whole) } else { 0.0 },
+    )
 }
 
 /// A third of the area of the faces at each vertex, (n,), of the surface scaled to a bounding box with a diagonal of 1.
@@ -31,13 +31,13 @@ pub fn vertex_areas(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<f64> {
     at_vertex
 }
 
-/// How well data on the source agree with those `pulled` from the target: Pearson's correlation and the mean of the
-/// absolute difference, both weighted, each (n,).
+/// The agreement of data on the source with those `pulled` from the target, both (n,): the weighted Pearson correlation
+/// and the weighted mean of the absolute difference.
 ///
-/// The correlation is NaN where one side is constant: it is not defined.
+/// The correlation is NaN, as undefined, if one side is constant.
 ///
 /// # Panics
-/// Where the lengths differ.
+/// If the lengths differ.
 pub fn compare(source: &[f64], pulled: &[f64], weights: &[f64]) -> (f64, f64) {
     assert!(source.len() == pulled.len() && source.len() == weights.len(), "as many values as weights");
     let [total, x, y, difference] = parallel::sums(source.len(), |v| {
@@ -49,11 +49,12 @@ pub fn compare(source: &[f64], pulled: &[f64], weights: &[f64]) -> (f64, f64) {
         let (dx, dy) = (source[v] - x, pulled[v] - y);
         [weights[v] * dx * dx, weights[v] * dy * dy, weights[v] * dx * dy]
     });
-    // what rounding leaves of a constant does not count as its variance
+    // the rounding of a constant is no variance
     let varies = |square: f64, mean: f64| square > total * (1e-14 * mean).powi(2);
-    let correlation = match varies(xx, x) && varies(yy, y) {
-        true => (xy / (xx.sqrt() * yy.sqrt())).clamp(-1.0, 1.0),
-        false => f64::NAN,
+    let correlation = if varies(xx, x) && varies(yy, y) {
+        (xy / (xx.sqrt() * yy.sqrt())).clamp(-1.0, 1.0)
+    } else {
+        f64::NAN
     };
     (correlation, difference / total)
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Data at the corners of faces as given, of which orienting a surface has turned some.
+//! Data at the corners of faces as given; orienting a surface has flipped some of these faces.
 
 use super::transfer::{corner_sides, nearest_corners, pull_corners, pull_rows};
 use crate::location::Location;
 use crate::vector::Vector3;
 
-/// A registered surface with its faces as given, which say in what order data at corners come.
+/// A registered surface with its faces as given, whose corners the data follow.
 #[derive(Debug, Clone, Copy)]
 pub struct GivenFaces<'a> {
     /// (m, 3): the faces as given.
@@ -30,10 +30,10 @@ impl GivenFaces<'_> {
 
 /// The row of the target's data nearest to each corner of the source, (3 m,), both in the order of the corners given.
 ///
-/// `locations` (n,) say where on the target the vertices of the source lie.
+/// `locations` (n,) are those of the source vertices on the target.
 ///
 /// # Panics
-/// Where a face as oriented has other vertices than as given.
+/// If a face as oriented has other vertices than as given.
 pub fn nearest_given_corners(
     source: &GivenFaces<'_>,
     target: &GivenFaces<'_>,
@@ -49,10 +49,10 @@ pub fn nearest_given_corners(
     rows
 }
 
-/// As [`pull_corners`], with the rows of both surfaces in the order of the corners given.
+/// [`pull_corners`] with the rows of both surfaces in the order of the corners given.
 ///
 /// # Panics
-/// As [`pull_corners`], and where a face as oriented has other vertices than as given.
+/// As [`pull_corners`], and if a face as oriented has other vertices than as given.
 pub fn pull_given_corners(
     values: &[f64],
     width: usize,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The way back: the registration of the target onto the source by the maps that a registration has found.
+//! The inverse of a registration: the target registered onto the source by the same maps.
 //!
 //! Cost: one point location per vertex of the target.
 
@@ -47,10 +47,10 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     /// `source_faces` (m, 3) are the faces of the source as oriented.
     ///
     /// # Errors
-    /// [`Error::CancelledEarly`] where the observer ends it.
+    /// [`Error::CancelledEarly`] if the observer cancels.
     ///
     /// # Panics
-    /// Where the arrays are not those of the surfaces registered.
+    /// If the arrays are not those of the registered surfaces.
     pub fn inverse(&self, source_faces: &[[u32; 3]], observer: &mut dyn Observer) -> Result<Self, Error> {
         let source = lifted(&self.registered);
         let watch = Watch::new(observer, 0.0, "Looking up places");
@@ -72,7 +72,7 @@ impl<Map: Clone, Point: DomainPoint> Registration<Map, Point> {
     }
 }
 
-/// Points of the domain in space.
+/// The points of a map in space.
 pub fn lifted<Point: DomainPoint>(map: &[Point]) -> Vec<Vector3> {
     map.iter().map(|&point| point.lifted()).collect()
 }

@@ -2,13 +2,13 @@
 //! Carries the landmarks of an area-preserving map to their places: the map h of Liu & Yueh (2023), section 6, and the
 //! maps h₀ and h₁ of Sutti & Yueh (2024), section 6.6, applied to the surface's own map.
 //!
-//! The papers minimise E_S(h) + λ Σ |h(x_i) − q_i|² from a few fixed-point steps. A landmark is a single vertex, and in
+//! The papers minimize E_S(h) + λ Σ |h(x_i) − q_i|² from a few fixed-point steps. A landmark is a single vertex, and in
 //! two dimensions a single point can be pulled anywhere at next to no cost: such steps pull spikes out of the map and fold
 //! the faces around it. So the start is a smooth area-preserving [`flow`](super::flow) that takes the landmarks along,
 //! and from there the guarded Gauss–Newton descent lowers the papers' energy without ever folding a face. λ grows tenfold
-//! until the landmarks meet or do not come any nearer; what rounding leaves of their way they are moved last.
+//! until the landmarks meet or come no nearer; at last they are moved the rest of the way, of the order of rounding.
 //!
-//! Cost: the flow, and about ten factorisations with two unknowns per vertex.
+//! Cost: the flow, and about ten factorizations with two unknowns per vertex.
 
 use super::flow::flow;
 use super::options::RegistrationOptions;
@@ -26,54 +26,60 @@ use crate::sparse::{Order, elimination_order};
 use crate::vector::Vector3;
 use crate::{disk, sphere};
 
-/// How often flow and pull take turns at the most.
+/// Most rounds of flow and pull in turn.
 const ROUNDS: usize = 4;
 
-/// More landmarks than these are pulled from the beginning: the flow solves dense systems of all of them.
+/// Most landmarks that the flow carries, since it solves dense systems of all; more are pulled from the beginning.
 const MOST_IN_FLOW: usize = 1000;
 
-/// The flow ends where the angle energy becomes more than this part of the area.
+/// Angle energy, relative to the area, above which the flow ends.
 const SHEARED: f64 = 5.0;
 
-/// While landmarks are pulled, angles have this weight at least, more each time, and λ is so many times the one given.
+/// Least angle weight while landmarks are pulled; it grows from round to round.
 const BALANCED: f64 = 0.03;
+
+/// Factor on the λ given while landmarks are pulled.
 const STIFF: f64 = 1e4;
 
-/// The landmarks contradict the areas where E_A is more than this part of the area with them in place.
+/// E_A, relative to the area, above which landmarks in place contradict the areas.
 const CONTRADICTED: f64 = 0.05;
 
-/// Rings around folded faces that may move to unfold them on the way.
+/// Rings around folded faces that may move to unfold them during the flow.
 const RINGS: usize = 4;
 
 const MESSAGE: &str = "Carrying landmarks";
 
-/// Landmarks this near to their places need not be carried.
+/// Distance to their places below which landmarks need not be carried.
 const THERE: f64 = 1e-9;
 
-/// λ grows until the farthest landmark is this near to its place.
+/// Distance of the farthest landmark to its place at which λ stops growing.
 const NEAR: f64 = 1e-6;
 
-/// Landmarks this near are moved onto their places in the end.
+/// Distance below which a landmark is finally moved onto its place.
 const WITHIN_REACH: f64 = 1e-4;
 
-/// What λ is multiplied by, and how often at the most.
+/// Factor by which λ grows from stage to stage.
 const GROWTH: f64 = 10.0;
+
+/// Most stages.
 const STAGES: usize = 15;
 
-/// A stage in which the farthest landmark keeps more than this part of its way brings it no nearer,
+/// Part of its distance that the farthest landmark keeps in a stage that brings it no nearer.
 const NO_NEARER: f64 = 0.9;
 
-/// and after so many of them λ grows no more.
+/// Successive stages of this kind after which λ stops growing.
 const PATIENCE: usize = 2;
 
-/// Iterations of the first stage and of those that follow, where they suffice and at the most.
+/// Usual and most iterations of the first stage.
 const FIRST: [usize; 2] = [6, 40];
+
+/// Usual and most iterations of the later stages.
 const LATER: [usize; 2] = [3, 15];
 
-/// Area deviation of the result below which nothing is left to gain.
+/// Area deviation at which a descent has nothing left to gain.
 const TOLERANCE: f64 = 2e-4;
 
-/// What a descent begins with: λ, and the weight of angles.
+/// The weights with which a descent begins: λ, and the angle weight.
 #[derive(Debug, Clone, Copy)]
 struct Goals {
     weight: f64,
@@ -86,7 +92,7 @@ pub(super) struct Carrying<'a> {
     pub domain: CanonicalDomain,
     /// The landmarks of this surface, (k,).
     pub landmarks: &'a [usize],
-    /// Where they are wanted, (k,).
+    /// The places to carry them to, (k,).
     pub places: &'a [Vector3],
     pub options: &'a RegistrationOptions,
 }
@@ -95,7 +101,7 @@ impl Carrying<'_> {
     /// The map with its landmarks carried to their places as far as no face folds.
     ///
     /// # Errors
-    /// Where the system cannot be ordered.
+    /// If the system cannot be ordered.
     pub(super) fn carry(
         &self,
         map: SpatialMap,
@@ -115,11 +121,11 @@ impl Carrying<'_> {
         // 3. A guarded descent with a penalty that grows
         let mut phase = Phase { whole: observer, from: 0.6, to: 1.0 };
         let (problem, map, status) = self.descend(&by_order.mesh, problem, map, goals, history, &mut phase);
-        // 4. What rounding has left of their way
+        // 4. The landmarks set down on their places
         Ok((by_order.given(&self.set_down(&problem, map)), status))
     }
 
-    /// How far each landmark of a map is from its place.
+    /// The distance of each landmark of a map to its place.
     fn gaps(&self, map: &[Vector3]) -> Vec<f64> {
         let gap = |(&vertex, &place): (&usize, &Vector3)| map[vertex].distance(place);
         self.landmarks.iter().zip(self.places).map(gap).collect()
@@ -144,8 +150,8 @@ impl Carrying<'_> {
         Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
     }
 
-    /// A map with the landmarks at or near their places, by an area-preserving flow; where that gets stuck, because faces
-    /// are too coarse or too thin to follow, by turns with a descent that pulls at the landmarks and mends shapes.
+    /// A map with the landmarks at or near their places, by an area-preserving flow. Where faces too coarse or too thin
+    /// to follow hold it up, a descent that pulls at the landmarks and mends shapes takes turns with it.
     fn start(
         &self,
         mesh: &TriangleMesh,
@@ -176,7 +182,7 @@ impl Carrying<'_> {
             }
             pulling.angle_weight *= GROWTH;
         }
-        // areas are not kept at all costs where landmarks contradict them
+        // landmarks that contradict the areas go before them
         let stiff = self.stiff();
         let is_contradicted = problem.unevenness(&map) > CONTRADICTED;
         (map, if is_contradicted { stiff } else { Goals { weight: stiff.weight, ..given } })
@@ -188,7 +194,7 @@ impl Carrying<'_> {
         Goals { weight: STIFF * weight, angle_weight: angle_weight.max(BALANCED) }
     }
 
-    /// A map with the few faces unfolded that were too thin or too coarse to follow the flow; `None` where some stay.
+    /// A map with the few faces unfolded that were too thin or too coarse to follow the flow; `None` if some stay so.
     fn mended(&self, mesh: &TriangleMesh, problem: &Problem, map: SpatialMap) -> Option<SpatialMap> {
         if problem.energy.is_embedding(&map) {
             return self.is_sound(problem, &map).then_some(map);
@@ -202,7 +208,7 @@ impl Carrying<'_> {
         mended.filter(|map: &SpatialMap| problem.energy.is_embedding(map) && self.is_sound(problem, map))
     }
 
-    /// Whether no part of a map is sheared so much that going on would only make it worse.
+    /// Whether the angle energy of a map is low enough for the flow to go on.
     fn is_sound(&self, problem: &Problem, map: &SpatialMap) -> bool {
         let sums = problem.energy.sums(&problem.energy.costs(map));
         sums.angle_energy <= SHEARED * sums.area
@@ -230,7 +236,7 @@ impl Carrying<'_> {
             (problem, map, status) =
                 target_floors::descend(&surface, problem, map, &options, history, &mut phase);
             let now = farthest(&problem, &map);
-            // a λ that weighs less than what it works against says nothing yet
+            // a λ that weighs less than the energy it works against proves nothing yet
             let is_weighty = problem.penalty.weight >= 1.0 + goals.angle_weight;
             no_nearer = if is_weighty && now > NO_NEARER * before { no_nearer + 1 } else { 0 };
             if status == Status::Cancelled || now <= NEAR || no_nearer >= PATIENCE {
@@ -241,7 +247,7 @@ impl Carrying<'_> {
         (problem, map, status)
     }
 
-    /// The map with its landmarks at their very places, where they are within reach and that folds nothing.
+    /// The map with the landmarks within reach exactly on their places, unless that folds a face.
     fn set_down(&self, problem: &Problem, map: SpatialMap) -> SpatialMap {
         let mut there = map.clone();
         for (k, gap) in problem.penalty.gaps(&map).into_iter().enumerate() {
@@ -253,7 +259,7 @@ impl Carrying<'_> {
     }
 }
 
-/// A guarded descent with so many iterations, where they suffice and at the most.
+/// The options of a guarded descent with these usual and most iterations.
 fn descent(goals: Goals, [usual_iterations, most_iterations]: [usize; 2]) -> GaussNewtonOptions {
     GaussNewtonOptions {
         profile: Profile::Barrier,

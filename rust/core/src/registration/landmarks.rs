@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Pairs of landmarks, their check, and the rotations that lay them over each other.
+//! Pairs of landmarks, their check, and the best rotation of one side onto the other in the disk.
 
 use crate::codomain::CanonicalDomain;
 use crate::error::{Elements, Error, LandmarkError, Side};
 use crate::mesh::TriangleMesh;
 use crate::vector::Vector3;
 
-/// Pairs of vertices, one on the source and one on the target, that belong together.
+/// Pairs of corresponding vertices, one on the source and one on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Landmarks<'a> {
     /// (k,): vertices of the source.
@@ -23,12 +23,12 @@ impl Landmarks<'_> {
         target: &TriangleMesh,
         domain: CanonicalDomain,
     ) -> Result<(), Error> {
-        let (ours, theirs) = (self.source.len(), self.target.len());
-        if ours != theirs {
-            return Err(LandmarkError::Counts { source_count: ours, target_count: theirs }.into());
+        let (source_count, target_count) = (self.source.len(), self.target.len());
+        if source_count != target_count {
+            return Err(LandmarkError::Counts { source_count, target_count }.into());
         }
-        if ours < fewest(domain) {
-            return Err(LandmarkError::TooFew { found: ours, needed: fewest(domain) }.into());
+        if source_count < fewest(domain) {
+            return Err(LandmarkError::TooFew { found: source_count, needed: fewest(domain) }.into());
         }
         check_side(Side::Source, self.source, source)?;
         check_side(Side::Target, self.target, target)?;
@@ -57,7 +57,7 @@ fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<()
     Ok(())
 }
 
-/// How many pairs it takes to determine a rotation.
+/// The least number of pairs that determines a rotation.
 fn fewest(domain: CanonicalDomain) -> usize {
     match domain {
         CanonicalDomain::Disk => 1,
@@ -65,19 +65,16 @@ fn fewest(domain: CanonicalDomain) -> usize {
     }
 }
 
-/// The angle by which to rotate points of the plane z = 1 about the origin so that they come nearest to others.
+/// The angle of the rotation of points `from` in the plane z = 1 about the origin that brings them nearest to `to`.
 ///
-/// The best R of SO(2) by Σ |R p_i − q_i|²; by no angle where the points say nothing, as at the centre.
+/// R of SO(2) minimizes Σ |R p_i − q_i|²; the angle is 0 where the points determine none, as at the center.
 pub(super) fn best_turn(from: &[Vector3], to: &[Vector3]) -> f64 {
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (p, q) in from.iter().zip(to) {
         sine += p[0] * q[1] - p[1] * q[0];
         cosine += p[0] * q[0] + p[1] * q[1];
     }
-    match sine.hypot(cosine) > 1e-12 {
-        true => sine.atan2(cosine),
-        false => 0.0,
-    }
+    if sine.hypot(cosine) > 1e-12 { sine.atan2(cosine) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 //!
 //! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6)
 //! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
-//! look up where each vertex of the source has come to lie on the target. [`homotopy`] morphs along g.
+//! locate each vertex of the source on the target. [`homotopy`] morphs along g.
 //!
-//! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es that are both disks or both spheres, and pairs of [`Landmarks`]. Cost: the
-//! two maps, and about as much again for carrying the landmarks.
+//! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
+//! Cost: the two maps, and about as much again for carrying the landmarks.
 
 mod disk;
 mod figures;

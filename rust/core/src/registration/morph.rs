@@ -8,7 +8,7 @@ use crate::vector::Vector3;
 /// The morph (1 − t) v + t g(v) from `vertices` (n, 3) at t = 0 to their `positions` (n, 3) on the target at t = 1.
 ///
 /// # Panics
-/// Where the lengths differ.
+/// If the lengths differ.
 ///
 /// ```
 /// use authalic::{Vector3, registration::homotopy};
@@ -21,11 +21,11 @@ pub fn homotopy(vertices: &[Vector3], positions: &[Vector3], t: f64) -> Vec<Vect
     parallel::map(vertices.len(), |v| vertices[v] * (1.0 - t) + positions[v] * t)
 }
 
-/// The morph to the `positions` brought onto the `vertices` by the best similarity by `weights` (n,), so that the shape
-/// changes but does not travel.
+/// The morph from `vertices` to `positions` after the best similarity, with `weights` (n,), of `positions` onto
+/// `vertices`: the shape changes but does not travel.
 ///
 /// # Panics
-/// Where the lengths differ.
+/// If the lengths differ.
 pub fn aligned_homotopy(
     vertices: &[Vector3],
     positions: &[Vector3],

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Registration of two closed surfaces of genus 0 (Sutti & Yueh 2024, section 6.6): g = f₁⁻¹ ∘ h₁⁻¹ ∘ h₀ ∘
-//! f₀.
+//! Registration of two closed surfaces of genus 0 (Sutti & Yueh 2024, section 6.6): g = f₁⁻¹ ∘ h₁⁻¹ ∘ h₀ ∘ f₀.
 //!
 //! f₀ and f₁ are the area-preserving maps of source and target to the sphere. After the best rotation h₀ and
-//! h₁ move both landmarks of a pair to the middle between them, so that either surface is moved half the way
-//! only.
+//! h₁ move both landmarks of a pair to the middle between them, so that each surface moves only half the way.
 
 use super::Landmarks;
 use super::landmark_descent::Carrying;
@@ -23,20 +21,19 @@ use crate::parallel;
 use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
 use crate::vector::Vector3;
 
-/// Two middles are crowded that are nearer to each other than this part of the distance of the landmarks on
-/// either side.
+/// Two meeting places are too close below this part of the distance of their landmarks on either surface.
 const CROWDED: f64 = 0.3;
 
-/// What a turn by itself weighs against landmarks.
+/// Weight, against that of a landmark, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
 
 /// Registers two closed surfaces of genus 0 by landmarks.
 ///
-/// A target that is turned inside out beside the source is turned back first.
+/// A target that is inside out relative to the source is turned over first.
 ///
 /// # Errors
-/// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range are
-/// refused before any work. What [`sphere_map`] fails with, and [`Error::CancelledEarly`].
+/// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range, all before
+/// any work; the errors of [`sphere_map`]; [`Error::CancelledEarly`].
 ///
 /// ```
 /// use authalic::registration::{Landmarks, RegistrationOptions, register_spheres};
@@ -45,8 +42,8 @@ const LEAST_TURN: f64 = 1e-9;
 /// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 /// let mesh = TriangleMesh::new(&vertices, &faces)?;
 /// let landmarks = Landmarks { source: &[0, 2], target: &[0, 2] };
-/// let found = register_spheres(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
-/// assert!(found.distortion.folded.is_empty() && found.missed.is_empty());
+/// let registration = register_spheres(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// assert!(registration.distortion.folded.is_empty() && registration.missed.is_empty());
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn register_spheres(
@@ -63,12 +60,11 @@ pub fn register_spheres(
     landmarks.check(source, target, CanonicalDomain::Sphere)?;
     options.check()?;
     let same_side;
-    let target = match inside_out(source, target) {
-        false => target,
-        true => {
-            same_side = target.turned_over();
-            &same_side
-        }
+    let target = if inside_out(source, target) {
+        same_side = target.turned_over();
+        &same_side
+    } else {
+        target
     };
     // 2. Both surfaces to the sphere
     let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
@@ -82,7 +78,7 @@ pub fn register_spheres(
     let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| turned[p]).collect();
     let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
     let places = meeting_places(&ours, &theirs);
-    // 4. h₀ and h₁: the landmarks of both carried there
+    // 4. h₀ and h₁: the landmarks of both carried to the middles
     let carrying = |mesh, landmarks| Carrying {
         mesh,
         domain: CanonicalDomain::Sphere,
@@ -95,7 +91,7 @@ pub fn register_spheres(
     let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
     let (target_registered, second) =
         carrying(target, landmarks.target).carry(f1.positions.clone(), &mut history, &mut phase)?;
-    // 5. h₁⁻¹: where the source is on the target
+    // 5. h₁⁻¹: the locations of the source on the target
     let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
     let (locations, status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
@@ -129,12 +125,12 @@ pub fn register_spheres(
     })
 }
 
-/// Whether one of two surfaces is turned inside out beside the other, by the sign of the volume inside.
+/// Whether one of two surfaces is inside out relative to the other, by the signs of their volumes.
 pub(crate) fn inside_out(source: &TriangleMesh, target: &TriangleMesh) -> bool {
     volume(source) * volume(target) < 0.0
 }
 
-/// Six times the volume inside.
+/// Six times the signed volume inside.
 fn volume(mesh: &TriangleMesh) -> f64 {
     parallel::sum(mesh.n_faces(), |face| {
         let corners = triangle(mesh.points(), mesh.faces()[face]);
@@ -142,12 +138,12 @@ fn volume(mesh: &TriangleMesh) -> f64 {
     })
 }
 
-/// The source's map rotated so that its landmarks come nearest to the target's, unless the rounding of that
-/// folds a sliver.
+/// The source's map rotated so that its landmarks come nearest to the target's, or as it is if rounding would
+/// fold a sliver.
 fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector3> {
     let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
     let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
-    // of equally good rotations, as about the axis of two opposite landmarks, the least
+    // the least of equally good rotations, as about the axis of two opposite landmarks
     let axes = [0, 1, 2].map(Vector3::unit);
     let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
     let (ours, theirs) = ([&ours[..], &axes].concat(), [&theirs[..], &axes].concat());
@@ -156,27 +152,21 @@ fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: 
         let turned = rotate(rotation, f0.positions[vertex]);
         turned * (1.0 / turned.norm())
     });
-    match folded_on_sphere(source.faces(), &turned).is_empty() {
-        true => turned,
-        false => f0.positions.clone(),
-    }
+    if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0.positions.clone() }
 }
 
-/// Where the landmarks of each pair meet: in the middle, or at the target's where some pairs would meet in
-/// one place, as two that change places do.
+/// The meeting places of the pairs: their middles, or the target's landmarks if some middles would coincide, as those
+/// of two landmarks that change places.
 fn meeting_places(ours: &[Vector3], theirs: &[Vector3]) -> Vec<Vector3> {
     let middle: Vec<Vector3> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
     let is_crowded = |i: usize, j: usize| {
         let apart = |points: &[Vector3]| points[i].distance(points[j]);
         apart(&middle) < CROWDED * apart(ours).min(apart(theirs))
     };
-    match (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j))) {
-        true => theirs.to_vec(),
-        false => middle,
-    }
+    if (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j))) { theirs.to_vec() } else { middle }
 }
 
-/// The point of the sphere in the middle of two; of opposite points the second.
+/// The midpoint of two points of the sphere; of opposite points the second.
 fn between(a: Vector3, b: Vector3) -> Vector3 {
     let sum = a + b;
     match sum.norm() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How a registration by points ended: places on the target, pairs that did not meet, and the status.
+//! The end of a registration by points: locations on the target, pairs that did not meet, and the status.
 
 use super::landmarks::Landmarks;
 use crate::control::{Observer, Silent, Status, Watch};
@@ -9,13 +9,13 @@ use crate::location::{Location, Locator};
 use crate::mesh::TriangleMesh;
 use crate::vector::Vector3;
 
-/// A landmark that ends farther than this from its place, in a domain of radius 1, was missed.
+/// Largest final distance of a landmark from its place, in a domain of radius 1; beyond it the pair is missed.
 pub const MISSED: f64 = 1e-3;
 
-/// So was one that ends farther than this part of the target's size from its partner.
+/// Largest final distance of a landmark from its partner on the target, relative to the target's size.
 const MISSED_ON_TARGET: f64 = 5e-3;
 
-/// The locations of points; a cancelled run still gets them, that takes seconds at a million.
+/// The locations of points. A cancelled run gets them too: a million take seconds.
 pub(super) fn located(
     locator: &Locator,
     points: &[Vector3],
@@ -49,11 +49,11 @@ pub(super) fn missed(
     (0..landmark_error.len()).filter(is_missed).collect()
 }
 
-/// An area ratio with a smaller deviation is even enough to end with, whatever the descent says.
+/// Standard deviation of the area ratios below which the areas are even, whatever the descent reports.
 const EVEN_ENOUGH: f64 = 0.01;
 
-/// The status of a registration: what the descent says unless all landmarks met and areas are even, and no
-/// better than those of the two maps.
+/// The status of a registration: converged if all landmarks met and the areas are even, else that of the descent; no
+/// better than the statuses of the two maps.
 pub(super) fn verdict(
     carried: Status,
     maps: [Status; 2],
@@ -69,7 +69,7 @@ pub(super) fn verdict(
     }
 }
 
-/// The least good of several statuses.
+/// The worst of several statuses.
 pub(super) fn worst<const N: usize>(statuses: [Status; N]) -> Status {
     let rank = |status: &Status| match status {
         Status::Cancelled => 3,

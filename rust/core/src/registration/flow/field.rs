@@ -4,8 +4,8 @@
 //! Its stream function ψ is a Gaussian process with a Matérn kernel φ(|x − y|) of order 5/2 on the sphere, and with
 //! b(x) b(y) φ(|x − y|) in the disk, where b = 1 − |x|² keeps ψ zero on the circle. The velocity is ∇ψ turned by a
 //! right angle, so it changes no area, and on the circle it runs along it. Both kernels have a term for rotations of the
-//! whole domain, which change no angle either: x · y on the sphere, b(x) b(y) in the disk. Given k velocities, the most probable field
-//! is a sum over the k points whose weights solve a positive definite system of 2k unknowns.
+//! whole domain, which change no angle either: x · y on the sphere, b(x) b(y) in the disk. Given k velocities, the most
+//! probable field is a sum over the k points whose weights solve a positive definite system of 2k unknowns.
 //!
 //! Cost: k³ for the weights, k for the velocity at a point.
 
@@ -15,10 +15,10 @@ use crate::parallel;
 use crate::sparse::solve_positive_definite;
 use crate::vector::Vector3;
 
-/// What is added to the diagonal of the system, relative to its largest entry.
+/// Ridge on the diagonal of the system, relative to its largest entry.
 const RIDGE: f64 = 1e-10;
 
-/// How much more likely a rotation of the whole domain is than a velocity felt around one point.
+/// Variance of the rotation of the whole domain, relative to that of the Matérn kernel.
 const ROTATION: f64 = 1.0;
 
 /// A divergence-free velocity field on the domain.
@@ -29,8 +29,8 @@ pub(super) struct Field {
     sources: Vec<Source>,
 }
 
-/// What one point adds to the stream function: at D = scale · (x − place), `mass` φ + g `pull` · D with g = −φ'/|D|; in
-/// the disk that times b(x).
+/// The term of one point in the stream function: with D = scale · (x − place) and g = −φ'/|D| it is
+/// `mass` φ + g `pull` · D, times b(x) in the disk.
 #[derive(Debug, Clone, Copy, Default)]
 struct Source {
     place: Vector3,
@@ -39,8 +39,8 @@ struct Source {
 }
 
 impl Field {
-    /// The field that has `velocities` at `places`, up to the ridge; `length` is how far a velocity is felt. `None`
-    /// where the places are too close for that.
+    /// The field that has `velocities` at `places`, up to the ridge; `length` is the length scale of the kernel. `None`
+    /// if the places are too close to each other.
     pub(super) fn through(
         domain: CanonicalDomain,
         length: f64,
@@ -49,11 +49,11 @@ impl Field {
     ) -> Option<Self> {
         let scale = 5f64.sqrt() / length;
         let frames: Vec<Frame> = places.iter().map(|&x| domain.motion(false).frame(x)).collect();
-        // 1. The velocities along the axes of each place, and how each would answer to a weight at another
+        // 1. The velocities along the axes of each place, and their covariance
         let mut weights: Vec<f64> =
             (0..2 * places.len()).map(|row| velocities[row / 2].dot(frames[row / 2].axes[row % 2])).collect();
         let mut matrix = responses(domain, scale, places, &frames);
-        // 2. The weights that make them as they should be
+        // 2. The weights that yield these velocities
         let size = weights.len();
         let largest = (0..size).fold(0.0, |largest, i| f64::max(largest, matrix[i * (size + 1)]));
         (0..size).for_each(|i| matrix[i * (size + 1)] += RIDGE * largest);
@@ -69,7 +69,7 @@ impl Field {
         Some(Self { domain, scale, sources: (0..places.len()).map(source).collect() })
     }
 
-    /// The velocity at a point, also of one slightly off the domain.
+    /// The velocity at a point, which may lie slightly off the domain.
     pub(super) fn velocity(&self, x: Vector3) -> Vector3 {
         velocity(self.domain, self.scale, &self.sources, x)
     }

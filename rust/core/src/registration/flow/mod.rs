@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A smooth flow of the whole domain that carries landmarks to given places and changes no area.
 //!
-//! Each landmark moves straight to its place, on the sphere along the shortest arc, but around others that it would run
-//! into, so that two can change places. The [`Field`] through these
-//! velocities moves everything else. A flow along smooth fields is one-to-one, and as they are free of divergence it
-//! changes no area; so a map that folds nothing stays nearly as good as it was, up to what its faces are too coarse to
-//! follow.
+//! Each landmark moves straight to its place, on the sphere along the shortest arc, but around landmarks that it would
+//! run into, so that two can change places. The [`Field`] with these velocities moves everything else. A flow along
+//! smooth fields is one-to-one, and preserves areas since the fields are free of divergence; so a map without folds
+//! stays nearly as good as it was, except where its faces are too coarse to follow.
 //!
 //! Input: a map, landmark vertices and their places. Cost: four velocities per step and vertex, each a sum over the k
 //! landmarks, and three systems of 2k unknowns.
@@ -21,29 +20,29 @@ use crate::parallel;
 use crate::vector::Vector3;
 use field::Field;
 
-/// A landmark this close to its place has arrived.
+/// Distance to its place at which a landmark has arrived.
 const ARRIVED: f64 = 1e-9;
-/// Nothing moves farther in one step.
+/// Longest move of a vertex in one step.
 const LONGEST_MOVE: f64 = 0.1;
-/// No two landmarks move relative to each other by more than this share of their distance in one step.
+/// Longest relative move of two landmarks in one step, relative to their distance.
 const LARGEST_STRAIN: f64 = 0.25;
 /// Steps after which the flow ends wherever it is.
 const MOST_STEPS: usize = 120;
-/// Two landmarks would collide whose straight ways bring them nearer than this part of what lies between them before or
-/// after. They turn aside by this angle, all to the same side, and so turn around each other.
+/// Two landmarks collide if their straight ways bring them nearer than this part of their distance before or after.
 const COLLISION: f64 = 0.3;
+/// Angle by which colliding landmarks turn aside, all to the same side, so that they go around each other.
 const ASIDE: f64 = PI / 3.0;
-/// How often a step that the caller does not accept is halved.
+/// Most halvings of a step that the caller does not accept.
 const HALVINGS: usize = 6;
-/// Points at most this far from the circle, in squared distance from the centre, lie on it.
+/// Largest deviation of the squared distance from the center from 1 at which a point lies on the circle.
 const ON_CIRCLE: f64 = 1e-12;
-/// Vertices between two questions whether to go on.
+/// Vertices between two checks for cancellation.
 const BREATH: usize = 512;
 
 /// Carries the `landmarks`, vertices of `map`, towards their `places`, and all other vertices along.
 ///
-/// `mended` returns a moved map without the folds that its coarse faces may have, `None` where there are too many. Returns
-/// the last map, the landmarks as near to their places as it came; the very map given where they are there already.
+/// `mended` removes the folds that coarse faces of a moved map may have, or returns `None` if there are too many.
+/// Returns the last accepted map; the map given, unchanged, if the landmarks are at their places already.
 pub(super) fn flow(
     domain: CanonicalDomain,
     map: Vec<Vector3>,
@@ -54,12 +53,12 @@ pub(super) fn flow(
 ) -> Vec<Vector3> {
     let mut map = map;
     for steps_left in (1..=MOST_STEPS).rev() {
-        // 1. Where the landmarks are and how far they have to go
+        // 1. The paths that the landmarks still have to go
         let paths = Paths::new(domain, &map, landmarks, places);
         if paths.ways.iter().all(|&way| way.norm() <= ARRIVED) || !watch.goes_on() {
             break;
         }
-        // 2. The velocities that would take them there in a unit of time, and the part of that for this step
+        // 2. The velocities that take them there in a unit of time, and the share of it for this step
         let Some(velocities) = paths.velocities(&map, watch) else { break };
         let share = 1.0 / paths.steps_needed(&velocities).clamp(1.0, steps_left as f64);
         // 3. The longest step that the caller accepts
@@ -74,7 +73,7 @@ pub(super) fn flow(
     map
 }
 
-/// The ways of all landmarks from where they are, each in a unit of time.
+/// The ways of all landmarks from their present places, each in a unit of time.
 struct Paths {
     domain: CanonicalDomain,
     now: Vec<Vector3>,
@@ -92,7 +91,7 @@ impl Paths {
         Self { domain, now, ways }
     }
 
-    /// Into how many steps the way from here has to be cut.
+    /// The number of steps that the remaining ways take.
     fn steps_needed(&self, velocities: &[Vector3]) -> f64 {
         let Self { now, ways, .. } = self;
         let fastest = velocities.iter().fold(0.0, |fastest, &v| f64::max(fastest, v.norm()));
@@ -110,7 +109,7 @@ impl Paths {
         Field::through(self.domain, self.domain.reach(), &places, &velocities)
     }
 
-    /// The velocity of every vertex; `None` where cancelled or where landmarks are too close to each other.
+    /// The velocity of every vertex; `None` if cancelled or if landmarks are too close to each other.
     fn velocities(&self, map: &[Vector3], watch: &Watch<'_>) -> Option<Vec<Vector3>> {
         let field = self.field(0.0)?;
         for_all(map.len(), watch, |vertex| field.velocity(map[vertex]))
@@ -138,21 +137,21 @@ impl Paths {
 }
 
 /// Whether two points run into each other on their straight ways.
-fn collide([x, y]: [Vector3; 2], [way, other]: [Vector3; 2]) -> bool {
-    let (apart, drift) = (x - y, way - other);
+fn collide([x, y]: [Vector3; 2], [x_way, y_way]: [Vector3; 2]) -> bool {
+    let (apart, drift) = (x - y, x_way - y_way);
     let when = (-apart.dot(drift) / drift.dot(drift).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     let nearest = (apart + drift * when).norm();
     nearest < COLLISION * apart.norm().min((apart + drift).norm())
 }
 
 impl CanonicalDomain {
-    /// A velocity at `x` turned aside.
+    /// A velocity at `x` turned aside by [`ASIDE`].
     fn aside(self, x: Vector3, way: Vector3) -> Vector3 {
         let normal = if self == Self::Disk { Vector3::unit(2) } else { x };
         way * ASIDE.cos() + normal.cross(way) * ASIDE.sin()
     }
 
-    /// How far the velocity of a landmark is felt: as far as keeps angles best, by measurement.
+    /// The length scale of the field around a landmark; measured to distort angles least.
     fn reach(self) -> f64 {
         match self {
             Self::Disk => 0.6,
@@ -186,7 +185,7 @@ impl CanonicalDomain {
         (point, way * cosine - x * (speed * sine))
     }
 
-    /// A moved point back on the domain: on the sphere, or on the circle if it was there.
+    /// A moved point back on the domain: on the sphere, or on the circle if it was on it before.
     fn settled(self, before: Vector3, moved: Vector3) -> Vector3 {
         match self {
             Self::Sphere => moved * (1.0 / moved.norm()),
@@ -201,7 +200,7 @@ impl CanonicalDomain {
     }
 }
 
-/// The vectors `value(0), …, value(n − 1)`; `None` where cancelled.
+/// The vectors `value(0), …, value(n − 1)`; `None` if cancelled.
 fn for_all(
     n: usize,
     watch: &Watch<'_>,

@@ -33,7 +33,7 @@ fn octasphere(level: u32) -> Mesh {
     (points, faces)
 }
 
-/// Rings about a centre in the plane z = 1, `6 r` vertices on ring `r`, the last on the circle.
+/// Rings about a center in the plane z = 1, `6 r` vertices on ring `r`, the last on the circle.
 fn disk(rings: u32) -> Mesh {
     let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
     let on = |ring: u32, i: u32| first(ring) + if ring == 0 { 0 } else { i % (6 * ring) };

@@ -2,8 +2,8 @@
 //! Data by corners of faces, carried without smearing a face over a seam.
 //!
 //! A seam is an edge of the target at which the data of its two faces differ, as the border of an island of a UV map.
-//! Faces of the source may lie across it. So the value at a corner is the one met on the straight way to it from the
-//! centroid of its face: in the corner itself, or where the way comes to a seam first, at the seam on this side of it.
+//! Faces of the source may lie across it. So the value at a corner is found on the straight way to it from the centroid
+//! of its face: at the corner itself, or at the first seam on the way, on the near side.
 
 use super::{interpolated, rows};
 use crate::location::{Location, Locator, determinant};
@@ -13,18 +13,18 @@ use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// Values that differ by less than this, of themselves or of 1, are the same on both sides of an edge.
+/// Largest difference of equal values on both sides of an edge, relative to the larger of them and 1.
 const ROUNDING: f64 = 1e-6;
 
 /// Per-corner data of the target at the corners of the source's faces.
 ///
 /// `values` are rows of `width` numbers, three per face of the target. `registered` and `target_registered` are the
-/// vertices of both in the domain, either on the unit sphere or in the plane z = 1, and `locations` (n,) say where in
-/// the target the vertices of the source lie. Returns (3 m, width): the values at the vertices, save where a seam of
-/// the data runs through a face or along its edges; there a face takes the values on the side of its centroid.
+/// vertices of both in the domain, either on the unit sphere or in the plane z = 1, and `locations` (n,) those of the
+/// source vertices in the target. Returns (3 m, width): the values at the vertices; where a seam of the data runs
+/// through a face or along its edges, the face takes the values on the side of its centroid.
 ///
 /// # Panics
-/// Where `values` are fewer than the corners of `target_faces`.
+/// If `values` has fewer rows than `target_faces` has corners.
 pub fn pull_corners(
     values: &[f64],
     width: usize,
@@ -64,9 +64,9 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// How far the way `from` a point of the triangle `here` gets to `x`, which lies at `goal`: to its end or to a seam.
+    /// The end of the way `from` a point of the triangle `here` to `x` at `goal`: `goal` itself, or the first seam.
     fn reached(&self, mut here: Face, from: Vector3, x: Vector3, goal: Location) -> Location {
-        // a way longer than all triangles would be going in circles
+        // a way through more triangles than there are goes in circles
         for _ in 0..self.faces.len() {
             if here == goal.triangle {
                 return goal;
@@ -83,7 +83,7 @@ impl Target<'_> {
     /// The edge through which the way to `x` leaves a triangle, by the corner opposite; `None` where `x` lies in it.
     fn way_out(&self, face: Face, from: Vector3, x: Vector3) -> Option<usize> {
         let corners = triangle(self.positions, self.faces[face]);
-        // what lies on the way counts as left of it, in every triangle alike
+        // in every triangle alike, a corner on the way counts as left of it
         let is_left = corners.map(|corner| determinant(from, x, corner) >= 0.0);
         let leaves = |k: &usize| determinant(corners[(k + 1) % 3], corners[(k + 2) % 3], x) < 0.0;
         let crosses = |k: &usize| !is_left[(k + 1) % 3] && is_left[(k + 2) % 3];
@@ -94,15 +94,15 @@ impl Target<'_> {
     fn across(&self, face: Face, edge: usize) -> Option<Face> {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
         let [start, end] = [i, j].map(|k| self.faces[face][k]);
-        // in the other face the edge runs the other way
+        // in the adjacent face the edge runs the other way
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
-        let other = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
-        let agrees = |k: usize, theirs: u32| self.agree(face.corner(k), theirs as usize);
-        (agrees(j, other) && agrees(i, after(other))).then_some(Face::of_corner(other))
+        let across = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
+        let agrees = |k: usize, corner: u32| self.agree(face.corner(k), corner as usize);
+        (agrees(j, across) && agrees(i, after(across))).then_some(Face::of_corner(across))
     }
 
-    /// The point of an edge at which the way crosses it.
+    /// The location at which the way crosses an edge.
     fn crossing(&self, face: Face, edge: usize, from: Vector3, x: Vector3) -> Location {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
         let corners = triangle(self.positions, self.faces[face]);
@@ -116,12 +116,12 @@ impl Target<'_> {
         Location { triangle: face, barycentric }
     }
 
-    /// Whether two corners have the same values up to the rounding of single precision; what is no number agrees.
-    fn agree(&self, corner: usize, other: usize) -> bool {
+    /// Whether two corners have the same values up to the rounding of single precision; two NaNs agree.
+    fn agree(&self, a: usize, b: usize) -> bool {
         let is_same = |(a, b): (&f64, &f64)| {
             (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1.0) || a.is_nan() && b.is_nan() || a == b
         };
-        self.row(corner).iter().zip(self.row(other)).all(is_same)
+        self.row(a).iter().zip(self.row(b)).all(is_same)
     }
 
     fn row(&self, corner: usize) -> &[f64] {

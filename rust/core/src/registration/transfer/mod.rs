@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Data of the target carried to the source: by vertices, by corners of faces, and labels.
 //!
-//! Data have a number of columns, their width, and one row per vertex, or three per face for corners. What a vertex of
-//! the source gets is interpolated in the triangle of the target in which it lies. The corners of faces around a vertex
-//! may lie on different sides of a seam of the data, as of a UV map: each takes the value of the side on which its face
-//! lies. For data in which seams can be seen this is done by [`pull_corners`]. Labels have none; there a point moved
-//! from the vertex a little into the face says which side it is.
+//! Data have a number of columns, their width, and one row per vertex, or three per face for corners. The value at a
+//! vertex of the source is interpolated in the triangle of the target in which it lies. The corners of faces around a
+//! vertex may lie on different sides of a seam of the data, as of a UV map: each takes the value of the side on which
+//! its face lies. [`pull_corners`] finds the seams where the data jump. Labels show no seams; there a point moved from
+//! the vertex a little into the face determines the side.
 
 mod corners;
 
@@ -16,17 +16,17 @@ use crate::vector::Vector3;
 
 pub use corners::pull_corners;
 
-/// How far a corner is moved into its face to find its side: this part of the way to the face's centroid, or of the
-/// longest edge of the target's triangle there where that is shorter.
+/// Move of a corner into its face that determines its side, relative to the way to the face's centroid or, if shorter,
+/// to the longest edge of the target's triangle there.
 const INWARD: f64 = 1e-2;
 
 /// Per-vertex data of the target at the vertices of the source.
 ///
-/// `values` are rows of `width` numbers, one per vertex of the target, `faces` its faces, and `locations` (n,) say where
-/// on them the vertices of the source lie. Returns (n, width).
+/// `values` are rows of `width` numbers, one per vertex of the target, `faces` its faces, and `locations` (n,) those of
+/// the source vertices on them. Returns (n, width).
 ///
 /// # Panics
-/// Where `values` are too few for the indices in `faces`.
+/// If there are too few `values` for the indices in `faces`.
 ///
 /// ```
 /// use authalic::mesh::Face;
@@ -43,8 +43,8 @@ pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations
     })
 }
 
-/// The vertex of the target nearest to each vertex of the source, (n,): that of the largest weight in its triangle, the
-/// first of equals.
+/// The vertex of the target nearest to each vertex of the source, (n,): the one of the largest weight in the triangle,
+/// the first of equals.
 pub fn nearest_vertices(faces: &[[u32; 3]], locations: &[Location]) -> Vec<u32> {
     parallel::map(locations.len(), |vertex| {
         let location = locations[vertex];
@@ -61,17 +61,17 @@ pub fn nearest_corners(sides: &[Location]) -> Vec<u32> {
 /// The given rows of data of any type: labels by [`nearest_vertices`] or [`nearest_corners`].
 ///
 /// # Panics
-/// Where a row is out of range.
+/// If a row is out of range.
 pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[u32]) -> Vec<T> {
     let row = |row: u32| &values[row as usize * width..][..width];
     rows.iter().flat_map(|&index| row(index)).copied().collect()
 }
 
-/// Where the corners of the source's faces lie in the target: as their vertices, but in a triangle on that side of the
-/// vertex on which the face lies, (3 m,).
+/// The locations of the corners of the source's faces in the target, (3 m,): those of their vertices, but in a triangle
+/// on the side of the vertex on which the face lies.
 ///
 /// `registered` and `target_registered` are the vertices of both in the domain, either on the unit sphere or in the
-/// plane z = 1, and `locations` (n,) say where in the target the vertices of the source lie. Cost: O(log m) for a corner.
+/// plane z = 1, and `locations` (n,) those of the source vertices in the target. Cost: O(log m) for a corner.
 pub fn corner_sides(
     source_faces: &[[u32; 3]],
     registered: &[Vector3],
@@ -90,11 +90,11 @@ pub fn corner_sides(
     sides.into_flattened()
 }
 
-/// Where a corner at `x` lies on the side of `inner`.
+/// The location of a corner at `x` on the side of the point `inner`.
 fn corner_side(target: &Locator<'_>, at_vertex: Location, x: Vector3, inner: Vector3) -> Location {
     let here = at_vertex.triangle;
-    let part = INWARD * (target.longest_edge(here) / x.distance(inner)).min(1.0);
-    let moved = x + (inner - x) * part;
+    let fraction = INWARD * (target.longest_edge(here) / x.distance(inner)).min(1.0);
+    let moved = x + (inner - x) * fraction;
     if target.contains(here, moved) {
         return at_vertex;
     }
@@ -109,11 +109,11 @@ fn heaviest(Location { barycentric, .. }: Location) -> usize {
     (1..3).fold(0, |best, k| if barycentric[k] > barycentric[best] { k } else { best })
 }
 
-/// Σ λ_k value(k), a constant and the value at a corner to the bit.
+/// Σ λ_k value(k); exact for a constant and at a corner.
 fn interpolated(location: Location, value: impl Fn(usize) -> f64) -> f64 {
     let heaviest = heaviest(location);
     let base = value(heaviest);
-    // a corner without weight has no say, not even by a value that is not finite
+    // a corner without weight does not count even if its value is not finite
     let others = (0..3).filter(|&k| k != heaviest && location.barycentric[k] > 0.0);
     others.fold(base, |sum, k| sum + location.barycentric[k] * (value(k) - base))
 }

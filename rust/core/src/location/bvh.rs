@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A tree of boxes, to find the few elements among many that a point may lie in or near to.
+//! A bounding volume hierarchy: a tree of boxes that finds the few faces, of many, in or near to which a point may lie.
 //!
-//! Built by halving the elements along the longest side of their centres' box, so that it is as deep as log₂ of their
+//! Each node halves its faces along the longest side of the box of their centers, so that the depth is log₂ of their
 //! number whatever their shapes. Cost: O(n log² n) to build, O(log n) for a point in boxes that overlap little.
 
 use crate::mesh::Face;
 use crate::vector::Vector3;
 
-/// Elements in a leaf at the most.
+/// Most elements in a leaf.
 const LEAF: usize = 3;
 
-/// Nodes that can wait at once: one for each level of a tree of 2³² elements, and some.
+/// Most nodes that wait at once: one for each level of a tree of 2³² elements, and some.
 const STACK: usize = 40;
 
-/// A box with sides along the axes, its faces included.
+/// A closed box with sides along the axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     pub low: Vector3,
@@ -28,7 +28,7 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The smallest box that has this one and a point in it.
+    /// The smallest box that contains this one and a point.
     pub(super) fn with(self, point: Vector3) -> Self {
         self.union(Self { low: point, high: point })
     }
@@ -45,7 +45,7 @@ impl Bounds {
         }
     }
 
-    fn centre(&self) -> Vector3 {
+    fn center(&self) -> Vector3 {
         Vector3::from_fn(|k| 0.5 * self.low[k] + 0.5 * self.high[k])
     }
 
@@ -82,15 +82,15 @@ pub(super) struct Tree {
 impl Tree {
     /// Builds the tree over at least one box.
     pub(super) fn new(boxes: &[Bounds]) -> Self {
-        let centres: Vec<Vector3> = boxes.iter().map(Bounds::centre).collect();
+        let centers: Vec<Vector3> = boxes.iter().map(Bounds::center).collect();
         let mut order: Vec<Face> = Face::all(boxes.len()).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
-        branch(boxes, &centres, &mut order, 0, &mut nodes);
+        branch(boxes, &centers, &mut order, 0, &mut nodes);
         Self { nodes, order }
     }
 
-    /// Calls `visit` with every element whose leaf's box contains the point, in no particular order, until it says
-    /// that this is enough.
+    /// Calls `visit` with every element whose leaf's box contains the point, in no particular order, until it returns
+    /// true.
     pub(super) fn visit(&self, point: Vector3, mut visit: impl FnMut(Face) -> bool) {
         let mut waiting = Stack::default();
         let mut next = Some(0);
@@ -109,9 +109,8 @@ impl Tree {
         }
     }
 
-    /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals.
-    ///
-    /// Element 0 where nothing compares.
+    /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals,
+    /// element 0 if all are NaN.
     pub(super) fn nearest(&self, point: Vector3, squared_distance: impl Fn(Face) -> f64) -> Face {
         let (mut nearest, mut least) = (Face::default(), f64::INFINITY);
         let mut waiting = Stack::default();
@@ -136,11 +135,11 @@ impl Tree {
         nearest
     }
 
-    /// The child nearer to the point; the other one waits.
+    /// The child nearer to the point; the farther one waits.
     fn nearer_child(&self, index: usize, point: Vector3, waiting: &mut Stack) -> usize {
-        let [one, other] = [index + 1, self.nodes[index].first];
+        let [left, right] = [index + 1, self.nodes[index].first];
         let distance = |child: usize| self.nodes[child].bounds.squared_distance(point);
-        let (near, far) = if distance(other) < distance(one) { (other, one) } else { (one, other) };
+        let (near, far) = if distance(right) < distance(left) { (right, left) } else { (left, right) };
         waiting.push(far);
         near
     }
@@ -154,7 +153,7 @@ impl Tree {
 /// Adds the nodes over `order`, which begins at `first` in the tree's order; returns their box.
 fn branch(
     boxes: &[Bounds],
-    centres: &[Vector3],
+    centers: &[Vector3],
     order: &mut [Face],
     first: usize,
     nodes: &mut Vec<Node>,
@@ -166,16 +165,16 @@ fn branch(
         return bounds;
     }
     nodes.push(Node { bounds: Bounds::default(), first: 0, count: 0 });
-    // the index decides between equal centres: one order on every machine
-    let axis = order.iter().fold(Bounds::default(), |all, &e| all.with(centres[e])).longest_axis();
-    let place = |element: &Face| centres[*element][axis];
+    // the index decides between equal centers, so that the order does not depend on the machine
+    let axis = order.iter().fold(Bounds::default(), |all, &e| all.with(centers[e])).longest_axis();
+    let place = |element: &Face| centers[*element][axis];
     let middle = order.len() / 2;
     order.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
     let (left, right) = order.split_at_mut(middle);
-    let on_the_left = branch(boxes, centres, left, first, nodes);
+    let left_bounds = branch(boxes, centers, left, first, nodes);
     nodes[index].first = nodes.len();
-    let on_the_right = branch(boxes, centres, right, first + middle, nodes);
-    nodes[index].bounds = on_the_left.union(on_the_right);
+    let right_bounds = branch(boxes, centers, right, first + middle, nodes);
+    nodes[index].bounds = left_bounds.union(right_bounds);
     nodes[index].bounds
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Point location: the triangle of a map in which a point lies, and where in it.
+//! Point location: the triangle of a map in which a point lies, and its barycentric coordinates.
 //!
 //! Maps live in space as in [`motion`](crate::codomain::motion): in the plane z = 1, or on the sphere around
 //! the origin. A point x lies in the triangle (a, b, c) where det(a, b, x), det(b, c, x) and det(c, a, x) are
@@ -7,8 +7,8 @@
 //! determinants are its barycentric coordinates up to a factor: on the sphere those of its central projection
 //! onto the flat triangle.
 //!
-//! Input: a map all of whose faces are positively oriented, of a disk into the plane or onto the whole
-//! sphere. Cost: O(m log² m) for the tree, O(log m) for a point.
+//! Input: a map with all faces positively oriented, of a disk into the plane or onto the whole sphere.
+//! Cost: O(m log² m) for the tree, O(log m) for a point.
 
 mod bvh;
 
@@ -21,10 +21,10 @@ use crate::parallel;
 use crate::vector::Vector3;
 use bvh::{Bounds, Tree};
 
-/// How many points are located between two questions whether to go on.
-const BETWEEN_QUESTIONS: usize = 64;
+/// Points located between two checks for cancellation.
+const BETWEEN_CHECKS: usize = 64;
 
-/// A place on a surface: a triangle, and coordinates in it.
+/// A place on a surface: a face, and barycentric coordinates in it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Location {
     /// The face.
@@ -34,8 +34,8 @@ pub struct Location {
 }
 
 impl Location {
-    /// The place at part `t` of the way along the edge opposite to a corner, from the corner after it to the
-    /// one after that.
+    /// The place at the parameter `t` of the edge opposite to a corner, which runs from the next corner to the one
+    /// after that.
     pub(crate) fn on_edge(corner: u32, t: f64) -> Self {
         let mut barycentric = [0.0; 3];
         let k = corner as usize % 3;
@@ -43,7 +43,7 @@ impl Location {
         Self { triangle: Face::of_corner(corner), barycentric }
     }
 
-    /// The point of the place where its face has these corners.
+    /// The point of the place, given the corners of its face.
     pub(crate) fn point(&self, corners: [Vector3; 3]) -> Vector3 {
         Vector3::from_fn(|axis| (0..3).map(|k| self.barycentric[k] * corners[k][axis]).sum())
     }
@@ -80,35 +80,36 @@ impl<'a> Locator<'a> {
         Self { positions, faces, in_plane, tree: Tree::new(&bounds) }
     }
 
-    /// The triangle of the lowest index that contains `x`; where there is none, the nearest point of the
-    /// nearest one.
+    /// The triangle of the lowest index that contains `x`; if there is none, the nearest point of the map.
     ///
     /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction
-    /// counts. In a vertex, its coordinates are exactly 1 and 0.
+    /// counts. At a vertex the coordinates are exactly 1 and 0.
     pub(crate) fn locate(&self, x: Vector3) -> Location {
-        let at = if self.in_plane { x } else { x * (1.0 / x.norm()) };
-        let mut found: Option<(Face, [f64; 3])> = None;
-        self.tree.visit(at, |face| {
+        let on_map = if self.in_plane { x } else { x * (1.0 / x.norm()) };
+        let mut containing: Option<(Face, [f64; 3])> = None;
+        self.tree.visit(on_map, |face| {
             let Some(weights) = self.weights(face, x) else { return false };
-            if found.is_none_or(|(lowest, _)| face < lowest) {
-                found = Some((face, weights));
+            if containing.is_none_or(|(lowest, _)| face < lowest) {
+                containing = Some((face, weights));
             }
-            // inside, and so in no other
+            // a point inside a face lies in no other
             weights.iter().all(|&weight| weight > 0.0)
         });
-        match found {
+        match containing {
             Some((triangle, weights)) => Location { triangle, barycentric: normalized(weights) },
-            None => self.nearest(at),
+            None => self.nearest(on_map),
         }
     }
 
-    /// The locations of many points; `None` where the watch was told to stop.
+    /// The locations of many points; `None` if cancelled.
     pub(crate) fn locate_all(&self, points: &[Vector3], watch: &Watch<'_>) -> Option<Vec<Location>> {
-        let locations =
-            parallel::map(points.len(), |i| match i % BETWEEN_QUESTIONS == 0 && !watch.goes_on() {
-                true => Location::default(),
-                false => self.locate(points[i]),
-            });
+        let locations = parallel::map(points.len(), |i| {
+            if i % BETWEEN_CHECKS == 0 && !watch.goes_on() {
+                Location::default()
+            } else {
+                self.locate(points[i])
+            }
+        });
         watch.goes_on().then_some(locations)
     }
 
@@ -117,13 +118,14 @@ impl<'a> Locator<'a> {
         self.weights(face, x).is_some()
     }
 
-    /// The place in a given triangle that is meant by `x` near to it: negative coordinates become 0.
+    /// The place of `x` in a triangle that contains it up to rounding: negative coordinates become 0.
     pub(super) fn clamped(&self, triangle: Face, x: Vector3) -> Location {
         let corners = self.corners(triangle);
         let weights = determinants(corners, x).map(|weight| weight.max(0.0));
-        let barycentric = match weights.iter().sum::<f64>() > 0.0 {
-            true => normalized(weights),
-            false => nearest_on_edges(corners, x).1,
+        let barycentric = if weights.iter().sum::<f64>() > 0.0 {
+            normalized(weights)
+        } else {
+            nearest_on_edges(corners, x).1
         };
         Location { triangle, barycentric }
     }
@@ -138,7 +140,7 @@ impl<'a> Locator<'a> {
         triangle(self.positions, self.faces[face])
     }
 
-    /// The coordinates of `x` in a face that contains it, up to a factor.
+    /// The barycentric coordinates, up to a factor, of `x` in a face; `None` if the face does not contain it.
     fn weights(&self, face: Face, x: Vector3) -> Option<[f64; 3]> {
         let weights = determinants(self.corners(face), x);
         let is_inside =
@@ -146,7 +148,7 @@ impl<'a> Locator<'a> {
         is_inside.then_some(weights)
     }
 
-    /// The point nearest to one that lies outside every triangle.
+    /// The nearest place to a point outside every triangle.
     fn nearest(&self, x: Vector3) -> Location {
         let triangle = self.tree.nearest(x, |face| nearest_on_edges(self.corners(face), x).0);
         Location { triangle, barycentric: nearest_on_edges(self.corners(triangle), x).1 }
@@ -157,8 +159,7 @@ impl<'a> Locator<'a> {
 fn spherical_bounds(corners: [Vector3; 3]) -> Bounds {
     let [a, b, c] = corners.map(|x| x * (1.0 / x.norm()));
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    // |q|² = 1 − Σ λ_i λ_j |x_i − x_j|² for q = Σ λ_i x_i, and Σ λ_i λ_j ≤ 1/3: as far as q moves out to the
-    // sphere
+    // how far q = Σ λ_i x_i moves out to the sphere: |q|² = 1 − Σ λ_i λ_j |x_i − x_j|², and Σ λ_i λ_j ≤ 1/3
     let height = 1.0 - (1.0 - longest * longest / 3.0).max(0.0).sqrt();
     [a, b, c].into_iter().fold(Bounds::default(), Bounds::with).padded(height + 1e-12)
 }
@@ -168,7 +169,7 @@ fn determinants([a, b, c]: [Vector3; 3], x: Vector3) -> [f64; 3] {
     [determinant(b, c, x), determinant(c, a, x), determinant(a, b, x)]
 }
 
-/// det(p, q, x) with its exact sign: as x · (p − x) × (q − x), whose rounding falls with the distances.
+/// det(p, q, x) with its exact sign, as x · (p − x) × (q − x), whose rounding falls with the distances.
 pub(super) fn determinant(p: Vector3, q: Vector3, x: Vector3) -> f64 {
     if p == x || q == x {
         return 0.0;
@@ -187,19 +188,19 @@ fn normalized(weights: [f64; 3]) -> [f64; 3] {
     weights.map(|weight| weight / sum)
 }
 
-/// The point of a triangle's edges that is nearest to `x`: the square of its distance, and its coordinates.
+/// The point of a triangle's edges nearest to `x`: its squared distance and its barycentric coordinates.
 fn nearest_on_edges(corners: [Vector3; 3], x: Vector3) -> (f64, [f64; 3]) {
     let on_edges = (0..3).map(|k| {
         let (from, to) = ((k + 1) % 3, (k + 2) % 3);
         let edge = corners[to] - corners[from];
-        let part = (x - corners[from]).dot(edge) / edge.dot(edge);
-        let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+        let t = (x - corners[from]).dot(edge) / edge.dot(edge);
+        let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
         let mut barycentric = [0.0; 3];
-        (barycentric[from], barycentric[to]) = (1.0 - part, part);
-        let away = x - (corners[from] * (1.0 - part) + corners[to] * part);
+        (barycentric[from], barycentric[to]) = (1.0 - t, t);
+        let away = x - (corners[from] * (1.0 - t) + corners[to] * t);
         (away.dot(away), barycentric)
     });
-    on_edges.reduce(|best, other| if other.0 < best.0 { other } else { best }).expect("three edges")
+    on_edges.reduce(|best, next| if next.0 < best.0 { next } else { best }).expect("three edges")
 }
 
 #[cfg(test)]

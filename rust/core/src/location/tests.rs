@@ -59,7 +59,7 @@ fn spindle(n: u32) -> Map {
     (points, upper.clone().chain(upper.map(|[a, b, _]| [b, a, n + 1])).collect())
 }
 
-/// Rings of the unit disk around its centre, `6 j` points in ring j.
+/// Rings of the unit disk around its center, `6 j` points in ring j.
 pub(crate) fn rings(n: u32) -> Map {
     let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
     let mut points = vec![Vector3([0., 0., 1.])];
@@ -152,10 +152,10 @@ fn every_direction_is_found_where_exact_arithmetic_puts_it() {
         let locator = Locator::new(&map.0, &map.1);
         let anywhere = (0..600).map(|i| random_direction(i) * (1.0 + 0.5 * number(i)));
         for x in hard_points(&map).into_iter().chain(anywhere) {
-            let found = locator.locate(x);
-            assert_eq!(Some(&found.triangle), containing(&map, x).first());
-            assert!(is_barycentric(found));
-            assert!(unit(place(&map, found)).distance(unit(x)) < 1e-14);
+            let location = locator.locate(x);
+            assert_eq!(Some(&location.triangle), containing(&map, x).first());
+            assert!(is_barycentric(location));
+            assert!(unit(place(&map, location)).distance(unit(x)) < 1e-14);
         }
     }
 }
@@ -166,11 +166,11 @@ fn every_point_of_a_disk_is_found_where_exact_arithmetic_puts_it() {
     for (map, tolerance) in disks().into_iter().zip([1e-15, 1e-15, 1e-15, 1e-14, 1e-8]) {
         let locator = Locator::new(&map.0, &map.1);
         for x in hard_points(&map) {
-            let (found, all) = (locator.locate(x), containing(&map, x));
+            let (location, all) = (locator.locate(x), containing(&map, x));
             // a point of a boundary edge may lie outside by rounding
-            assert!(all.is_empty() || found.triangle == all[0]);
-            assert!(is_barycentric(found));
-            assert!(place(&map, found).distance(x) < tolerance);
+            assert!(all.is_empty() || location.triangle == all[0]);
+            assert!(is_barycentric(location));
+            assert!(place(&map, location).distance(x) < tolerance);
         }
     }
 }
@@ -180,11 +180,11 @@ fn a_vertex_is_found_exactly() {
     for map in spheres().into_iter().chain(disks()) {
         let locator = Locator::new(&map.0, &map.1);
         for (vertex, &x) in map.0.iter().enumerate() {
-            let found = locator.locate(x);
-            let corner = map.1[found.triangle].iter().position(|&v| v as usize == vertex);
+            let location = locator.locate(x);
+            let corner = map.1[location.triangle].iter().position(|&v| v as usize == vertex);
             let mut exact = [0.0; 3];
             exact[corner.expect("a triangle at the vertex")] = 1.0;
-            assert_eq!(found.barycentric, exact);
+            assert_eq!(location.barycentric, exact);
         }
     }
 }
@@ -197,12 +197,12 @@ fn beyond_a_chord_the_nearest_point_of_the_boundary_is_meant() {
     for i in 0..500 {
         let angle = std::f64::consts::TAU * (0.5 + 0.5 * number(i));
         let x = Vector3([angle.cos(), angle.sin(), 1.0]);
-        let found = place(&map, locator.locate(x));
+        let nearest = place(&map, locator.locate(x));
         // a search along the chords, by steps
         let steps = (0..18).flat_map(|k| (0..=200).map(move |s| (k, f64::from(s) / 200.0)));
         let on_rim = steps.map(|(k, s)| rim[k] * (1.0 - s) + rim[(k + 1) % 18] * s);
         let least = on_rim.map(|y| x.distance(y)).fold(f64::INFINITY, f64::min);
-        assert!(found.distance(x) <= least && found.distance(x) > least - 1e-3);
+        assert!(nearest.distance(x) <= least && nearest.distance(x) > least - 1e-3);
     }
     // far away, past a corner of the rim: between two triangles, the first
     let beyond = locator.locate(Vector3([30.0, 0.0, 1.0]));
@@ -228,7 +228,7 @@ fn many_points_at_once_are_those_one_by_one_unless_cancelled() {
     let points: Vec<Vector3> = (0..10_000).map(random_direction).collect();
     let mut silent = Silent;
     let all = locator.locate_all(&points, &Watch::new(&mut silent, 0.0, "locating")).unwrap();
-    assert!(points.iter().zip(&all).all(|(&x, &found)| locator.locate(x) == found));
+    assert!(points.iter().zip(&all).all(|(&x, &location)| locator.locate(x) == location));
     let mut stop = |_: f64, _: &str| false;
     let watch = Watch::new(&mut stop, 0.0, "locating");
     std::thread::sleep(std::time::Duration::from_millis(100));

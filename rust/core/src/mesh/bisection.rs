@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Longest-edge bisection: splits faces at the midpoints of edges so that no vertex hangs on an edge (Rivara 1984).
 //!
-//! 1. An edge to be split takes the longest edges of its faces with it, and these those of theirs.
-//! 2. A face with split edges is halved at its longest edge first, and each half at the edge of the face that it keeps,
-//!    where that is split.
+//! 1. When an edge is split, so are the longest edges of its faces, and so on from these.
+//! 2. A face with split edges is halved at its longest edge first; then each half at the edge that it keeps of the
+//!    face, if that is split.
 //!
-//! Every half has half the area. Lengths may be those of any map of the mesh. Cost: linear.
+//! Every half has half the area. Lengths may be measured in any map of the mesh. Cost: linear.
 
 use super::{Face, TriangleMesh};
 
@@ -16,13 +16,13 @@ pub(crate) struct Bisection {
     pub parents: Vec<[u32; 2]>,
     /// (m', 3): the faces, oriented as before.
     pub faces: Vec<[u32; 3]>,
-    /// (m',): the face that each one is a part of, ascending.
+    /// (m',): the original face of each face, ascending.
     pub face_of: Vec<Face>,
-    /// (m',): how many parts of its size make up that face: 1, 2 or 4.
+    /// (m',): the original face's area over that of the face: 1, 2 or 4.
     pub parts: Vec<u8>,
 }
 
-/// Splits the longest edges of `marked` faces (m,), and what has to follow; `length` is that of the edge between two
+/// Splits the longest edges of `marked` faces (m,), and the edges that follow; `length` is that of the edge between two
 /// vertices, and must not depend on their order.
 pub(crate) fn bisect_longest_edges(
     mesh: &TriangleMesh,
@@ -53,15 +53,15 @@ pub(crate) fn bisect_longest_edges(
         };
         match ab {
             None => push([a, b, middle], 2),
-            Some(other) => {
-                [[a, other, middle], [other, b, middle]].into_iter().for_each(|part| push(part, 4))
-            }
+            Some(midpoint) => [[a, midpoint, middle], [midpoint, b, middle]]
+                .into_iter()
+                .for_each(|quarter| push(quarter, 4)),
         }
         match ca {
             None => push([a, middle, c], 2),
-            Some(other) => {
-                [[a, middle, other], [other, middle, c]].into_iter().for_each(|part| push(part, 4))
-            }
+            Some(midpoint) => [[a, middle, midpoint], [midpoint, middle, c]]
+                .into_iter()
+                .for_each(|quarter| push(quarter, 4)),
         }
     }
     split

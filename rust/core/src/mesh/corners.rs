@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Corners and half-edges of faces: which meet across an edge, and which lie around a vertex.
+//! Corners and half-edges of faces: their opposites across edges, and the corners around a vertex.
 //!
 //! Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
 
-/// In a table of opposite corners: there is none, the edge is on the boundary.
+/// The entry of a boundary edge in a table of opposite corners.
 pub(crate) const NO_CORNER: u32 = u32::MAX;
 
 /// The next corner of the same face.
@@ -67,7 +67,7 @@ impl EdgeTable {
         })
     }
 
-    /// The corners opposite to one edge; none where it is no edge.
+    /// The corners opposite to an edge; none if there is no such edge.
     pub(crate) fn corners(&self, edge: [u32; 2]) -> impl Iterator<Item = u32> {
         let [low, high] = sorted(edge);
         let bucket = self.bucket(low);
@@ -81,7 +81,7 @@ impl EdgeTable {
         for (_, entries) in self.edges() {
             if let [a, b] = entries {
                 let [a, b] = [corner_of_entry(a), corner_of_entry(b)];
-                // A face that repeats a vertex meets itself; that is no neighbour.
+                // a face that repeats a vertex meets itself; it is no neighbor of its own
                 if a / 3 != b / 3 {
                     opposite[a as usize] = b;
                     opposite[b as usize] = a;
@@ -132,12 +132,12 @@ impl VertexCorners {
         Self { start, corners }
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub(crate) fn len(&self) -> usize {
         self.start.len() - 1
     }
 
-    /// The corners at one vertex.
+    /// The corners at a vertex.
     pub(crate) fn of(&self, vertex: usize) -> &[u32] {
         &self.corners[self.start[vertex] as usize..self.start[vertex + 1] as usize]
     }
@@ -156,7 +156,7 @@ impl VertexCorners {
     }
 }
 
-/// Turns about the vertex of a corner; returns how many corners it met and whether it came back.
+/// Turns about the vertex of a corner; returns the number of corners met, and whether they close a circle.
 fn fan(first: u32, opposite: &[u32], turn: fn(u32) -> u32) -> (usize, bool) {
     let mut corner = first;
     let mut count = 1;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cutting a mesh along seams into patches (islands), with maps back to the input.
 //!
-//! Corners of neighbouring faces become one vertex wherever the faces meet in an edge that is no seam.
-//! - Edges of three or more faces act as seams, and parts that only touch in a vertex come apart: a patch
+//! Corners of neighboring faces become one vertex if the faces share an edge that is no seam.
+//! - Edges of three or more faces act as seams, and parts that touch only in a vertex come apart: a patch
 //!   is always a manifold.
 //! - Two faces of opposite winding stay together; the winding of the input is kept.
-//! - A seam that does not separate still opens the surface: a sphere along a path of two or more edges
-//!   becomes a disk, a torus along a loop an annulus. A single edge between two vertices that are otherwise
-//!   whole opens nothing, because both sides keep both of its ends.
+//! - A seam that does not separate still opens the surface: a path of two or more edges makes a sphere a
+//!   disk, a loop makes a torus an annulus. A single edge between two vertices without other seams opens
+//!   nothing, because both sides keep both of its ends.
 //! - Faces without area, duplicate faces and loose vertices are accepted; loose vertices are in no patch.
 //!
 //! The cost is linear in the mesh, up to the union-find of its corners.
@@ -21,17 +21,17 @@ use super::{Surface, geometry, validate};
 use crate::arrays::{row_major, rows};
 use crate::error::{Elements, Error, MeshError};
 
-/// One piece of a cut surface.
+/// A connected part of a cut surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
-    /// The piece by itself. Its vertices are copies of vertices of the surface that was cut, in their order; its faces
-    /// have the order, winding and corner order of those.
+    /// The part by itself. Its vertices are copies of vertices of the cut surface, in their order; its faces keep the
+    /// order, winding and corner order of those of the cut surface.
     pub surface: Surface,
-    /// The vertex of the cut surface that each vertex is a copy of, (n,), ascending.
+    /// The vertex of the cut surface of which each vertex is a copy, (n,), ascending.
     pub vertex_of: Vec<u32>,
     /// The corner of the cut surface (3 × face + corner) that each corner was, (m, 3).
     pub corner_of: Vec<[u32; 3]>,
-    /// What kind of surface the patch is, also where it has faces without area or duplicates.
+    /// The topology of the patch, even if it has faces without area or duplicates.
     pub topology: Topology,
 }
 
@@ -52,7 +52,7 @@ impl Surface {
     /// faces. Without seams these are the connected components.
     ///
     /// # Errors
-    /// Seams that are out of range or no edge of the surface.
+    /// Seams that are out of range, or no edges of the surface.
     pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
         let seams = row_major::<2, _>("seams", seams.into())?;
         along(self, rows(&seams))
@@ -64,37 +64,37 @@ fn along(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
     let (vertices, faces) = (surface.vertex_rows(), surface.face_rows());
     // 1. The seams.
     check_range(vertices.len(), seams)?;
-    // 2. Which faces are neighbors.
+    // 2. The neighbors of each face.
     let table = EdgeTable::new(vertices.len(), faces);
     let mut opposite = table.opposites();
     open_seams(&table, seams, &mut opposite)?;
     drop(table);
-    // 3. Which corners are one vertex, and which faces one patch.
+    // 3. The corners of each vertex, and the faces of each patch.
     let joined = join_corners(faces, &opposite);
-    let islands = Orientation::propagate(faces, &opposite);
+    let components = Orientation::propagate(faces, &opposite);
     drop(opposite);
     // 4. The patches.
-    let mut pieces = vec![Piece::default(); islands.first_faces.len()];
-    let numbers = number_vertices(vertices, faces, joined, &islands.component, &mut pieces);
-    collect_faces(numbers, &islands.component, &mut pieces);
-    Ok(pieces.into_iter().map(Piece::into_patch).collect())
+    let mut drafts = vec![Draft::default(); components.first_faces.len()];
+    let numbers = number_vertices(vertices, faces, joined, &components.component, &mut drafts);
+    collect_faces(numbers, &components.component, &mut drafts);
+    Ok(drafts.into_iter().map(Draft::into_patch).collect())
 }
 
 /// A patch while it is being collected.
 #[derive(Default, Clone)]
-struct Piece {
+struct Draft {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     vertex_of: Vec<u32>,
     corner_of: Vec<[u32; 3]>,
 }
 
-impl Piece {
+impl Draft {
     fn into_patch(self) -> Patch {
         let Self { vertices, faces, vertex_of, corner_of } = self;
         let surface = Surface::of_checked_rows(vertices, faces);
         let topology = surface.topology().cloned().unwrap_or_else(|_| {
-            // faces without area or duplicates are for the functions that cannot do with them to refuse
+            // functions that need a manifold refuse faces without area and duplicates themselves
             let (points, _) = geometry::normalized(surface.vertex_rows());
             Topology::of_faces(&points, surface.face_rows())
         });
@@ -107,7 +107,7 @@ fn check_range(n_vertices: usize, seams: &[[u32; 2]]) -> Result<(), MeshError> {
     validate::refuse(Elements::edges(outside), |seams| MeshError::SeamOutOfRange { seams, n_vertices })
 }
 
-/// Makes the faces along the seams strangers to each other.
+/// Disconnects the faces on both sides of the seams.
 fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Result<(), MeshError> {
     let mut unknown = Vec::new();
     for &seam in seams {
@@ -120,16 +120,16 @@ fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Re
     validate::refuse(Elements::edges(unknown), |seams| MeshError::SeamNotEdge { seams })
 }
 
-/// Joins the corners at both ends of every edge between neighbours.
+/// Joins the corners at both ends of every edge between neighbors.
 fn join_corners(faces: &[[u32; 3]], opposite: &[u32]) -> UnionFind {
     let mut joined = UnionFind::new(opposite.len());
     for corner in 0..opposite.len() as u32 {
-        let other = opposite[corner as usize];
-        // Each pair once; the missing partner is the largest number of all.
-        if other == NO_CORNER || other < corner {
+        let across = opposite[corner as usize];
+        // each pair once
+        if across == NO_CORNER || across < corner {
             continue;
         }
-        let [mut first, mut second] = [next_corner(other), previous_corner(other)];
+        let [mut first, mut second] = [next_corner(across), previous_corner(across)];
         if vertex_at(faces, next_corner(corner)) != vertex_at(faces, first) {
             [first, second] = [second, first];
         }
@@ -145,7 +145,7 @@ fn number_vertices(
     faces: &[[u32; 3]],
     mut joined: UnionFind,
     patch_of: &[u32],
-    pieces: &mut [Piece],
+    drafts: &mut [Draft],
 ) -> Vec<u32> {
     const UNNUMBERED: u32 = u32::MAX;
     let corners = VertexCorners::new(vertices.len(), faces);
@@ -154,10 +154,10 @@ fn number_vertices(
         for &corner in corners.of(v) {
             let root = joined.root(corner) as usize;
             if numbers[root] == UNNUMBERED {
-                let piece = &mut pieces[patch_of[corner as usize / 3] as usize];
-                numbers[root] = piece.vertices.len() as u32;
-                piece.vertices.push(position);
-                piece.vertex_of.push(v as u32);
+                let draft = &mut drafts[patch_of[corner as usize / 3] as usize];
+                numbers[root] = draft.vertices.len() as u32;
+                draft.vertices.push(position);
+                draft.vertex_of.push(v as u32);
             }
             numbers[corner as usize] = numbers[root];
         }
@@ -165,11 +165,11 @@ fn number_vertices(
     numbers
 }
 
-fn collect_faces(numbers: Vec<u32>, patch_of: &[u32], pieces: &mut [Piece]) {
+fn collect_faces(numbers: Vec<u32>, patch_of: &[u32], drafts: &mut [Draft]) {
     for (face, (corners, &patch)) in numbers.as_chunks::<3>().0.iter().zip(patch_of).enumerate() {
-        let piece = &mut pieces[patch as usize];
-        piece.faces.push(*corners);
-        piece.corner_of.push([0, 1, 2].map(|k| 3 * face as u32 + k));
+        let draft = &mut drafts[patch as usize];
+        draft.faces.push(*corners);
+        draft.corner_of.push([0, 1, 2].map(|k| 3 * face as u32 + k));
     }
 }
 

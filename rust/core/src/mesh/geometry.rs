@@ -12,13 +12,13 @@ pub fn triangle(points: &[Vector3], [i, j, k]: [u32; 3]) -> [Vector3; 3] {
     [points[i as usize], points[j as usize], points[k as usize]]
 }
 
-/// The vector normal to a triangle, as long as its area; counterclockwise corners see it point at them.
+/// The normal of a triangle, of length equal to its area; the corners run counterclockwise seen from its tip.
 pub fn area_vector([a, b, c]: [Vector3; 3]) -> Vector3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// A bound of the rounding error of det(a, b, c) = a · (p × q) from p = b − a and q = c − a: of the differences, of the
-/// products and of their sum, generously.
+/// A generous bound of the rounding error of det(a, b, c) = a · (p × q) with p = b − a and q = c − a: of the
+/// differences, the products and their sum.
 #[inline]
 pub(crate) fn determinant_rounding(a: Vector3, p: Vector3, q: Vector3) -> f64 {
     let products = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
@@ -35,7 +35,7 @@ pub fn edge_lengths([a, b, c]: [Vector3; 3]) -> [f64; 3] {
     [b.distance(c), c.distance(a), a.distance(b)]
 }
 
-/// The cotangents of the angles at the corners of a triangle of positive area.
+/// The cotangents of the angles of a triangle of positive area.
 pub fn cotangents(corners: [Vector3; 3]) -> [f64; 3] {
     let double_area = 2.0 * area(corners);
     let [a, b, c] = corners;
@@ -64,20 +64,20 @@ pub fn loop_length(points: &[Vector3], vertices: &[u32]) -> f64 {
 
 /// Centres points on their bounding box and scales its diagonal to one; returns them with the diagonal.
 ///
-/// Finite coordinates of any size are accepted. Points that all coincide come back as zeros with scale 1.
+/// Coordinates may be finite numbers of any size. Points that all coincide become zeros with scale 1.
 pub fn normalized(vertices: &[impl Copy + Into<Vector3>]) -> (Vec<Vector3>, f64) {
-    let (centre, half) = bounding_box(vertices);
+    let (center, half) = bounding_box(vertices);
     let widest = half.max_abs();
     if widest == 0.0 {
         return (vec![Vector3::ZERO; vertices.len()], 1.0);
     }
-    // Dividing by the widest side first keeps every square within range.
+    // dividing by the widest side first keeps every square within range
     let diagonal = 2.0 * half.map(|h| h / widest).norm();
-    let points = vertices.iter().map(|&v| (v.into() - centre).map(|x| x / widest / diagonal)).collect();
+    let points = vertices.iter().map(|&v| (v.into() - center).map(|x| x / widest / diagonal)).collect();
     (points, (widest * diagonal).min(f64::MAX))
 }
 
-/// The centre of the bounding box and half its sides.
+/// The center of the bounding box and half its sides.
 fn bounding_box(vertices: &[impl Copy + Into<Vector3>]) -> (Vector3, Vector3) {
     let mut low = Vector3([f64::INFINITY; 3]);
     let mut high = Vector3([f64::NEG_INFINITY; 3]);
@@ -88,7 +88,7 @@ fn bounding_box(vertices: &[impl Copy + Into<Vector3>]) -> (Vector3, Vector3) {
             high[axis] = high[axis].max(vertex[axis]);
         }
     }
-    // Halved before they are added: the full side of a box can overflow.
+    // halved before they are added: the full side of a box can overflow
     let [low, high] = [low * 0.5, high * 0.5];
     (high + low, high - low)
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Indices as types of their own, which index slices.
+//! Types of indices, which index slices.
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
@@ -9,12 +9,12 @@ use std::ops::{Index, IndexMut};
 pub struct Face(pub u32);
 
 impl Face {
-    /// The face with an index, which is below 2³².
+    /// The face of an index below 2³².
     pub const fn new(index: usize) -> Self {
         Self(index as u32)
     }
 
-    /// Its index.
+    /// The index of the face.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -29,12 +29,12 @@ impl Face {
         Self(corner / 3)
     }
 
-    /// The index of its corner at vertex `k`.
+    /// The index of the face's corner at vertex `k`.
     pub const fn corner(self, k: usize) -> usize {
         3 * self.index() + k
     }
 
-    /// The indices of its three corners.
+    /// The indices of the face's three corners.
     pub const fn corners(self) -> [usize; 3] {
         [self.corner(0), self.corner(1), self.corner(2)]
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Triangle meshes: validated once, then trusted.
 //!
-//! [`TriangleMesh`] is an oriented manifold surface with or without boundary, every face of which has an
-//! area. [`Surface`] holds any set of triangles, and cuts it along seams into [`Patch`]es.
+//! [`TriangleMesh`] is an oriented manifold surface with or without boundary, whose faces all have an area.
+//! [`Surface`] holds any set of triangles, and cuts it along seams into [`Patch`]es.
 
 pub(crate) mod bisection;
 pub(super) mod corners;

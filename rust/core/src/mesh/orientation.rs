@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One orientation for all faces of a component, found by walking from face to face.
+//! A consistent orientation of the faces of each component, by a walk from face to face.
 //!
 //! The orientation that most faces of a component already have wins; at a tie that of its lowest face.
 //! Edges of three or more faces do not connect. Linear in the number of faces.
 
 use super::corners::{EdgeTable, NO_CORNER, half_edge};
 
-/// Which faces must be flipped, and what hangs together.
+/// The faces to flip, and the components.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Orientation {
-    /// Per face: whether it has to be flipped to agree with its component, (m,).
+    /// Whether each face has to be flipped to agree with its component, (m,).
     pub flipped: Vec<bool>,
     /// An edge at which some component cannot be oriented. Its faces are left as given.
     pub conflict: Option<[u32; 2]>,
-    /// Per face: the number of its edge-connected component, (m,). Components are ordered by lowest face.
+    /// The edge-connected component of each face, (m,). Components are ordered by lowest face.
     pub component: Vec<u32>,
     /// The lowest face of each component.
     pub first_faces: Vec<u32>,
 }
 
-/// Orients faces that nobody has validated.
+/// Orients faces that have not been validated.
 ///
 /// Every index must be below `n_vertices`. Edges of three or more faces are no connections; components that
 /// cannot be oriented are left as they are.
@@ -50,7 +50,7 @@ impl Orientation {
         walk
     }
 
-    /// Orients one component like its seed; returns the first edge that contradicts.
+    /// Orients a component like its seed; returns the first edge that contradicts.
     fn flood(&mut self, faces: &[[u32; 3]], opposite: &[u32], seed: u32) -> Option<[u32; 2]> {
         let label = self.first_faces.len() as u32;
         self.first_faces.push(seed);
@@ -61,18 +61,18 @@ impl Orientation {
             let [a, b, c] = faces[face as usize];
             let flipped = self.flipped[face as usize];
             for (side, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
-                let other = opposite[3 * face as usize + side];
-                if other == NO_CORNER {
+                let across = opposite[3 * face as usize + side];
+                if across == NO_CORNER {
                     continue;
                 }
-                let agree = half_edge(faces, other)[0] != from;
+                let agree = half_edge(faces, across)[0] != from;
                 let wanted = flipped ^ !agree;
-                let neighbour = other / 3;
-                if self.component[neighbour as usize] == u32::MAX {
-                    self.component[neighbour as usize] = label;
-                    self.flipped[neighbour as usize] = wanted;
-                    pending.push(neighbour);
-                } else if self.flipped[neighbour as usize] != wanted {
+                let neighbor = across / 3;
+                if self.component[neighbor as usize] == u32::MAX {
+                    self.component[neighbor as usize] = label;
+                    self.flipped[neighbor as usize] = wanted;
+                    pending.push(neighbor);
+                } else if self.flipped[neighbor as usize] != wanted {
                     conflict = conflict.or(Some([from.min(to), from.max(to)]));
                 }
             }
@@ -80,13 +80,13 @@ impl Orientation {
         conflict
     }
 
-    /// Lets the majority of each component decide, or leaves it alone where it cannot be oriented.
+    /// Takes the orientation of the majority of each component; leaves components that cannot be oriented as given.
     fn settle(&mut self, conflicts: &[Option<[u32; 2]>]) {
         self.conflict = conflicts.iter().find_map(|conflict| *conflict);
         if !self.flipped.contains(&true) {
             return;
         }
-        // Positive where most faces of a component are turned against its lowest face.
+        // positive if most faces of a component are oriented against its lowest face
         let mut majority = vec![0i64; conflicts.len()];
         for (&flipped, &component) in self.flipped.iter().zip(&self.component) {
             majority[component as usize] += if flipped { 1 } else { -1 };
@@ -111,7 +111,7 @@ impl Orientation {
         }
     }
 
-    /// Where a corner of the faces as given lies after [`Self::apply`].
+    /// The corner after [`Self::apply`] of a corner of the faces as given.
     fn moved(&self, corner: u32) -> u32 {
         match (self.flipped[corner as usize / 3], corner % 3) {
             (true, 1) => corner + 1,

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Whether closed polygons of the plane cross or touch themselves or each other, decided exactly.
+//! An exact test of closed polygons in the plane for crossings and touches, of themselves and of each other.
 //!
-//! Sweep and prune: edges sorted by where they begin from left to right, each compared with those that begin before it
-//! ends. Cost: O(n log n), and one comparison for every two edges that overlap in x.
+//! Sweep and prune: edges are sorted by their left ends, and each is compared with those that begin before it ends.
+//! Cost: O(n log n), and one comparison for every two edges that overlap in x.
 
 use robust::{Coord, orient2d};
 
-/// Whether no two edges of one or several closed polygons meet but at a common corner; the corner after corner k is
-/// `next[k]`.
+/// Whether edges of one or several closed polygons meet only at common corners; the corner after corner k is `next[k]`.
 pub(crate) fn is_simple_outline(corners: &[[f64; 2]], next: &[usize]) -> bool {
     let n = corners.len();
     let edge = |k: usize| [corners[k], corners[next[k]]];
@@ -17,29 +16,28 @@ pub(crate) fn is_simple_outline(corners: &[[f64; 2]], next: &[usize]) -> bool {
     };
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_unstable_by(|&a, &b| span(a, 0)[0].total_cmp(&span(b, 0)[0]).then(a.cmp(&b)));
-    order.iter().enumerate().all(|(place, &one)| {
-        let beside = order[place + 1..].iter().take_while(|&&other| span(other, 0)[0] <= span(one, 0)[1]);
-        let overlap =
-            |other: usize| span(one, 1)[0] <= span(other, 1)[1] && span(other, 1)[0] <= span(one, 1)[1];
-        beside.filter(|&&other| overlap(other)).all(|&other| {
-            if next[one] == other {
-                !turns_back([one, other, next[other]].map(|k| corners[k]))
-            } else if next[other] == one {
-                !turns_back([other, one, next[one]].map(|k| corners[k]))
+    order.iter().enumerate().all(|(place, &i)| {
+        let beside = order[place + 1..].iter().take_while(|&&j| span(j, 0)[0] <= span(i, 0)[1]);
+        let overlap = |j: usize| span(i, 1)[0] <= span(j, 1)[1] && span(j, 1)[0] <= span(i, 1)[1];
+        beside.filter(|&&j| overlap(j)).all(|&j| {
+            if next[i] == j {
+                !turns_back([i, j, next[j]].map(|k| corners[k]))
+            } else if next[j] == i {
+                !turns_back([j, i, next[i]].map(|k| corners[k]))
             } else {
-                !meet(edge(one), edge(other))
+                !meet(edge(i), edge(j))
             }
         })
     })
 }
 
-/// Whether a polygon goes straight back at the middle one of three corners.
+/// Whether a polygon turns straight back at the second of three corners.
 fn turns_back([before, here, next]: [[f64; 2]; 3]) -> bool {
     let along = (here[0] - before[0]) * (next[0] - here[0]) + (here[1] - before[1]) * (next[1] - here[1]);
     side(before, here, next) == 0.0 && along <= 0.0
 }
 
-/// Whether two edges without a common corner meet; edges on one line count as meeting where their boxes overlap.
+/// Whether two edges without a common corner meet, given that their boxes overlap; edges on one line then do.
 fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
@@ -105,7 +103,7 @@ mod tests {
     /// Whether no two edges meet, by integers and by comparing every pair.
     fn is_simple_by_pairs(corners: &[[i64; 2]]) -> bool {
         let n = corners.len();
-        let at = |k: usize| corners[k % n];
+        let corner = |k: usize| corners[k % n];
         let to = |[a, b]: [i64; 2], [c, d]: [i64; 2]| [c - a, d - b];
         let cross = |a, b, c| to(a, b)[0] * to(a, c)[1] - to(a, b)[1] * to(a, c)[0];
         let dot = |a, b, c| to(a, b)[0] * to(a, c)[0] + to(a, b)[1] * to(a, c)[1];
@@ -119,13 +117,13 @@ mod tests {
                 || lies_on(c, d, b)
         };
         let turns_back = |k: usize| {
-            let [before, here, next] = [at(k + n - 1), at(k), at(k + 1)];
+            let [before, here, next] = [corner(k + n - 1), corner(k), corner(k + 1)];
             here == before || here == next || (cross(here, before, next) == 0 && dot(here, before, next) > 0)
         };
-        let pairs = (0..n).flat_map(|one| (one + 2..n).map(move |other| (one, other)));
-        let mut apart = pairs.filter(|&(one, other)| one + n != other + 1);
+        let pairs = (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j)));
+        let mut apart = pairs.filter(|&(i, j)| i + n != j + 1);
         !(0..n).any(turns_back)
-            && apart.all(|(one, other)| !meet(at(one), at(one + 1), at(other), at(other + 1)))
+            && apart.all(|(i, j)| !meet(corner(i), corner(i + 1), corner(j), corner(j + 1)))
     }
 
     proptest! {

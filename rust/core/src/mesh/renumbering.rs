@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The same mesh with its vertices in another order.
+//! A mesh renumbered in elimination order.
 //!
-//! In the order in which a factorisation eliminates them, neighbours in space are neighbours in memory: every pass over
-//! the faces of a large mesh runs several times faster, and no later system has to be ordered again.
+//! In this order neighbors in space are neighbors in memory: every pass over the faces of a large mesh runs several
+//! times faster, and no later system has to be ordered again.
 
 use super::corners::{NO_CORNER, VertexCorners};
 use super::triangle_mesh::mark_boundary;
 use super::{Face, TriangleMesh};
 use crate::parallel;
 
-/// A renumbered mesh with the way back.
+/// A renumbered mesh with its given numbers.
 #[derive(Debug)]
 pub(crate) struct Renumbered {
     pub mesh: TriangleMesh,
@@ -20,8 +20,8 @@ pub(crate) struct Renumbered {
 }
 
 impl Renumbered {
-    /// Renumbers `mesh` so that `vertices[k]` becomes vertex k; faces follow their lowest vertex, corners and boundary
-    /// loops keep their beginnings.
+    /// Renumbers `mesh` so that `vertices[k]` becomes vertex k; faces are sorted by their lowest vertex, corners and
+    /// boundary loops keep their beginnings.
     pub(crate) fn new(mesh: &TriangleMesh, vertices: Vec<u32>) -> Self {
         let place = inverse(&vertices);
         let lowest = |face: usize| mesh.faces[face].map(|vertex| place[vertex as usize]).into_iter().min();
@@ -33,24 +33,24 @@ impl Renumbered {
         Self { mesh, vertices, faces }
     }
 
-    /// Values at the given vertices, from values at the renumbered ones.
+    /// Values in the order of the given vertices.
     pub(crate) fn given<T: Copy + Default>(&self, values: &[T]) -> Vec<T> {
         let mut out = vec![T::default(); values.len()];
         self.vertices.iter().zip(values).for_each(|(&vertex, &value)| out[vertex as usize] = value);
         out
     }
 
-    /// Values at the renumbered vertices, from values at the given ones.
+    /// Values in the order of the renumbered vertices.
     pub(crate) fn of_vertices<T: Copy>(&self, values: &[T]) -> Vec<T> {
         self.vertices.iter().map(|&vertex| values[vertex as usize]).collect()
     }
 
-    /// Renumbered faces by their given indices.
+    /// The given index of a renumbered face.
     pub(crate) fn given_face(&self, face: usize) -> usize {
         self.faces[face].index()
     }
 
-    /// Values of the renumbered faces, from values of the given ones.
+    /// Values in the order of the renumbered faces.
     pub(crate) fn of_faces<T: Copy>(&self, values: &[T]) -> Vec<T> {
         self.faces.iter().map(|&face| values[face]).collect()
     }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Triangles that need not form a surface, for figures that only need areas and orientations.
+//! Triangles that need not form a manifold, for figures that need only areas and orientations.
 
 use super::{geometry, orientation, validate};
 use crate::error::Error;
 use crate::vector::Vector3;
 
-/// Validated triangles: finite, in range, with area, oriented alike where they hang together.
+/// Validated triangles: finite, in range, with area, each component oriented consistently.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleSoup {
-    /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
+    /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
     pub points: Vec<Vector3>,
-    /// The faces, (m, 3), turned like most of their component.
+    /// The faces, (m, 3), oriented like most of their component.
     pub faces: Vec<[u32; 3]>,
     /// Their areas, (m,), all positive.
     pub areas: Vec<f64>,

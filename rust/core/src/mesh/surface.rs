@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A surface as callers hold it: arrays that are checked once, with everything that follows from them.
+//! The surface handle of callers: arrays checked once, with all that is derived from them.
 
 use std::sync::{Arc, OnceLock};
 
@@ -74,21 +74,21 @@ impl Surface {
         self.0.faces.view()
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub fn n_vertices(&self) -> usize {
         self.0.vertices.nrows()
     }
 
-    /// How many faces there are.
+    /// The number of faces.
     pub fn n_faces(&self) -> usize {
         self.0.faces.nrows()
     }
 
-    /// What kind of surface it is.
+    /// The topology of the surface.
     ///
     /// # Errors
-    /// What is no manifold or cannot be oriented: duplicate faces, faces without area, edges of three or more faces,
-    /// vertices in which parts only touch, and vertices without a face.
+    /// Surfaces that are no manifold or cannot be oriented: duplicate faces, faces without area, edges of three or more
+    /// faces, vertices in which parts only touch, and vertices without a face.
     pub fn topology(&self) -> Result<&Topology, Error> {
         self.mesh().map(TriangleMesh::topology)
     }
@@ -132,12 +132,12 @@ impl PartialEq for Surface {
     }
 }
 
-/// Triangles with an area, oriented alike where they hang together.
+/// Triangles with an area, each component oriented consistently.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangles<'a> {
     /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
     pub points: &'a [Vector3],
-    /// The faces, (m, 3), turned like most of their component.
+    /// The faces, (m, 3), oriented like most of their component.
     pub faces: &'a [[u32; 3]],
     /// Their areas, (m,).
     pub areas: &'a [f64],

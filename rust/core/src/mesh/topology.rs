@@ -2,15 +2,15 @@
 //! The combinatorics of triangles: corners, edges, boundary loops, Euler characteristic and genus.
 //!
 //! Corner `3 * face + k` stands for vertex `k` of a face and for the edge opposite to it, which runs from
-//! vertex `k + 1` to vertex `k + 2`. Two corners are opposite where their edges are the same. Edges are
-//! matched by sorting, never by hashing, so every order is the same in every run.
+//! vertex `k + 1` to vertex `k + 2`. Two corners are opposite if their edges are equal. Edges are matched by
+//! sorting, never by hashing, so that the order of results never changes from run to run.
 
 use super::corners::{EdgeTable, NO_CORNER, half_edge};
 use super::geometry;
 use super::orientation::Orientation;
 use crate::vector::Vector3;
 
-/// What kind of surface a mesh is.
+/// The topology of a surface.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Topology {
     /// Vertices − edges + faces.
@@ -27,7 +27,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// How many components the surface has.
+    /// The number of components.
     pub fn n_components(&self) -> usize {
         self.first_faces.len()
     }
@@ -90,12 +90,12 @@ fn trace_loops(n_vertices: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     if edges.is_empty() {
         return Vec::new();
     }
-    // Per vertex where to go and where from; two edges out of a vertex fill both places.
+    // the next and the previous vertex of each; two edges out of a vertex fill both places
     let mut links = vec![[NONE; 2]; n_vertices];
     for &[from, to] in edges {
-        for (vertex, place, neighbour) in [(from, 0, to), (to, 1, from)] {
+        for (vertex, place, neighbor) in [(from, 0, to), (to, 1, from)] {
             let slots = &mut links[vertex as usize];
-            slots[if slots[place] == NONE { place } else { 1 - place }] = neighbour;
+            slots[if slots[place] == NONE { place } else { 1 - place }] = neighbor;
         }
     }
     let mut visited = vec![false; n_vertices];

@@ -33,14 +33,14 @@ pub struct TriangleMesh {
     pub(super) corners: VertexCorners,
     pub(super) on_boundary: Vec<bool>,
     pub(super) topology: Topology,
-    /// Whether a factorisation may eliminate the vertices as they come.
+    /// Whether the order of the vertices is an elimination order.
     pub(super) in_elimination_order: bool,
 }
 
 impl TriangleMesh {
     /// Validates `vertices` (n, 3) and `faces` (m, 3).
     ///
-    /// Faces that are turned against their component are flipped: the first vertex stays, the other two
+    /// Faces oriented against most of their component are flipped: the first vertex stays, the other two
     /// change places.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl TriangleMesh {
         // 3. A manifold in its vertices.
         let corners = VertexCorners::new(points.len(), &faces);
         validate::manifold_vertices(&corners, points.len(), &opposite)?;
-        // 4. What kind of surface it is.
+        // 4. Its topology.
         let flipped = flipped_indices(&orientation);
         let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
         let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
@@ -89,13 +89,13 @@ impl TriangleMesh {
         })
     }
 
-    /// The same faces between other points, which must give every face an area; [`Self::face_areas`] stay
-    /// those of the surface.
+    /// The mesh with other points, between which every face must have an area; [`Self::face_areas`] stay those of
+    /// the surface.
     pub(crate) fn at_points(&self, points: Vec<Vector3>) -> Self {
         Self { points, ..self.clone() }
     }
 
-    /// The same surface seen from its other side: corners 1 and 2 of every face change places.
+    /// The surface with the opposite orientation: corners 1 and 2 of every face change places.
     pub(crate) fn turned_over(&self) -> Self {
         let corner = |corner: u32| match (corner, corner % 3) {
             (NO_CORNER, _) | (_, 0) => corner,
@@ -112,7 +112,7 @@ impl TriangleMesh {
         Self { faces, opposite, corners, topology, ..self.clone() }
     }
 
-    /// The vertices, centred on their bounding box and scaled to a unit diagonal, (n, 3).
+    /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
     ///
     /// All geometry is computed on these, so that huge and tiny coordinates neither over- nor underflow.
     pub fn points(&self) -> &[Vector3] {
@@ -134,12 +134,12 @@ impl TriangleMesh {
         &self.flipped
     }
 
-    /// How many vertices the mesh has.
+    /// The number of vertices.
     pub fn n_vertices(&self) -> usize {
         self.points.len()
     }
 
-    /// How many faces the mesh has.
+    /// The number of faces.
     pub fn n_faces(&self) -> usize {
         self.faces.len()
     }
@@ -155,7 +155,7 @@ impl TriangleMesh {
         (across != NO_CORNER).then_some(across)
     }
 
-    /// What each vertex gets of a measure (m,) of the faces, each of which gives a third to each of its vertices, (n,).
+    /// The measure of each vertex, (n,): a third of the `measure` (m,) of each of its faces.
     pub(crate) fn vertex_shares(&self, measure: &[f64]) -> Vec<f64> {
         parallel::map(self.n_vertices(), |vertex| {
             self.vertex_corners(vertex).iter().map(|&corner| measure[corner as usize / 3] / 3.0).sum()
@@ -183,7 +183,7 @@ impl TriangleMesh {
         self.topology.euler_characteristic
     }
 
-    /// How many connected components the mesh has.
+    /// The number of connected components.
     pub fn n_components(&self) -> usize {
         self.topology.n_components()
     }
@@ -193,12 +193,12 @@ impl TriangleMesh {
         self.topology.genus.unwrap_or(0)
     }
 
-    /// Whether the vertices come in an order that keeps factors sparse.
+    /// Whether the order of the vertices keeps factors sparse.
     pub(crate) fn in_elimination_order(&self) -> bool {
         self.in_elimination_order
     }
 
-    /// What kind of surface the mesh is.
+    /// The topology of the mesh.
     pub fn topology(&self) -> &Topology {
         &self.topology
     }

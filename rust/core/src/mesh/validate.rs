@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The checks a mesh has to pass, each naming the elements at fault.
+//! The checks of a mesh; each error names the elements at fault.
 
 use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
 use super::geometry;
@@ -7,13 +7,13 @@ use super::geometry::triangle;
 use crate::error::{Elements, MeshError};
 use crate::vector::Vector3;
 
-/// Corner indices must fit into 32 bits with one value to spare.
+/// Most faces: corner indices must fit into 32 bits with one value to spare.
 const MOST_FACES: usize = (u32::MAX / 3) as usize;
 
-/// A face is flat if its height is below this many roundings of its coordinates.
+/// Height, in roundings of its coordinates, up to which a face counts as flat.
 const ROUNDINGS: f64 = 4.0;
 
-/// Heights below this part of the bounding box would underflow when squared.
+/// Height, relative to the bounding box, below which the square of an area would underflow.
 const SMALLEST_HEIGHT: f64 = 1e-60;
 
 /// Checks the arrays alone: sizes, finite coordinates, index range, three different vertices per face.
@@ -68,7 +68,7 @@ pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(),
     refuse(Elements::collect(repeated), |faces| MeshError::DuplicateFaces { faces })
 }
 
-/// Computes the areas of the faces of `points`, which are `vertices` centred and divided by `scale`.
+/// Computes the areas of the faces of `points`, which are `vertices` centered and divided by `scale`.
 ///
 /// Refuses faces whose corners lie on a line.
 pub(super) fn positive_areas(
@@ -79,7 +79,7 @@ pub(super) fn positive_areas(
 ) -> Result<Vec<f64>, MeshError> {
     let areas = geometry::face_areas(points, faces);
     let bad = faces.iter().zip(&areas).enumerate().filter(|(_, (face, area))| {
-        // What the coordinates were rounded to, here and where the mesh came from.
+        // the coordinates were rounded both as given and after normalization
         let corners = triangle(points, **face);
         let given = largest(face.map(|vertex| Vector3(vertices[vertex as usize]))) / scale;
         is_flat(corners, **area, given.max(largest(corners)))
@@ -89,12 +89,12 @@ pub(super) fn positive_areas(
     Ok(areas)
 }
 
-/// Whether a triangle's height over its longest edge drowns in the rounding of its coordinates.
+/// Whether a triangle's height over its longest edge is no larger than the rounding of its coordinates.
 fn is_flat(corners: [Vector3; 3], area: f64, largest_coordinate: f64) -> bool {
     let longest = geometry::edge_lengths(corners).into_iter().fold(0.0, f64::max);
     let height = 2.0 * area / longest;
     let rounding = ROUNDINGS * f64::EPSILON * largest_coordinate.max(longest);
-    // Corners that all coincide have no height at all: 0 / 0.
+    // NaN: the corners all coincide, 0 / 0
     height.is_nan() || height <= rounding.max(SMALLEST_HEIGHT)
 }
 
@@ -125,7 +125,7 @@ fn which<T>(items: &[T], bad: impl Fn(&T) -> bool) -> Option<Elements> {
     Elements::collect(items.iter().enumerate().filter(|(_, item)| bad(item)).map(|(index, _)| index))
 }
 
-/// An error where there are elements at fault.
+/// The error of the elements at fault, if there are any.
 pub(super) fn refuse(
     bad: Option<Elements>,
     error: impl FnOnce(Elements) -> MeshError,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What is refused before any work: arrays that do not fit, and outlines and pins that make folds inevitable.
+//! Checks before any work: of arrays that do not fit, and of outlines and pins that make folds inevitable.
 
 use std::f64::consts::TAU;
 
@@ -38,13 +38,14 @@ pub(super) fn arguments(
         let (found, expected) = (format!("{vertex}"), format!("indices of the {n} vertices"));
         return Err(Error::InvalidArray { name: "fixed", found, expected });
     }
-    match (0.0..1.0).contains(&options.tolerance) {
-        true => Ok(()),
-        false => Err(Error::InvalidOption {
+    if (0.0..1.0).contains(&options.tolerance) {
+        Ok(())
+    } else {
+        Err(Error::InvalidOption {
             name: "tolerance",
             found: options.tolerance.to_string(),
             expected: "a number ≥ 0 and < 1".into(),
-        }),
+        })
     }
 }
 
@@ -71,7 +72,7 @@ pub(super) fn held(mesh: &TriangleMesh, fixed: &[usize]) -> Vec<bool> {
     held
 }
 
-/// Refuses what can be seen to have no map without folds.
+/// Refuses outlines and pins that provably admit no map without folds.
 pub(super) fn feasible(
     mesh: &TriangleMesh,
     given: &Positions,
@@ -79,7 +80,7 @@ pub(super) fn feasible(
     held: &[bool],
     folded: &[usize],
 ) -> Result<(), Error> {
-    // 1. Faces of which all corners stay, or two that coincide
+    // 1. Faces whose corners all stay, or two of which stay and coincide
     let is_lost = |face: &&usize| {
         let kept: Vec<u32> = mesh.faces()[**face].into_iter().filter(|&v| held[v as usize]).collect();
         let pairs = [(0, 1), (0, 2), (1, 2)];
@@ -117,7 +118,7 @@ pub(super) fn feasible(
     Ok(())
 }
 
-/// How often a loop turns counter-clockwise; each corner at which it goes straight back counts as a half turn, left.
+/// The counterclockwise turns of a loop; a corner at which it goes straight back counts as a half turn to the left.
 fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
     let edges: Vec<[f64; 2]> = (0..ring.len())
         .map(|k| [ring[k], ring[(k + 1) % ring.len()]].map(|v| map[v as usize]))
@@ -128,7 +129,7 @@ fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
         let (before, after) = (edges[k], edges[(k + 1) % edges.len()]);
         let sine = before[0] * after[1] - before[1] * after[0];
         let cosine = before[0] * after[0] + before[1] * after[1];
-        // + 0 makes of −0 a left turn
+        // + 0 turns −0 into 0, a left turn
         (sine + 0.0).atan2(cosine)
     };
     ((0..edges.len()).map(turn).sum::<f64>() / TAU).round() as i64
@@ -136,7 +137,7 @@ fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
 
 /// Vertices − edges + faces of one component.
 fn euler_characteristic(mesh: &TriangleMesh, components: &[u32], component: u32, loops: &[&Vec<u32>]) -> i64 {
-    let vertices = components.iter().filter(|&&other| other == component).count();
+    let vertices = components.iter().filter(|&&c| c == component).count();
     let faces = mesh.faces().iter().filter(|face| components[face[0] as usize] == component).count();
     let boundary: usize = loops.iter().map(|ring| ring.len()).sum();
     vertices as i64 - (3 * faces + boundary) as i64 / 2 + faces as i64

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The nearest map without folds: vertices return to their old places as far as open faces let them.
+//! The nearest map without folds: vertices return to their old places as far as no face folds.
 //!
-//! With x⁰ the places given, ρ the area of a face in units of its share and τ the least that it may have, an interior-point
-//! method lowers
+//! With x⁰ the places given, ρ the area of a face in units of its share and τ its lower bound, an interior-point method
+//! lowers
 //!
 //! ```text
 //! Σ |x − x⁰|² − μ Σ log(ρ − τ)
 //! ```
 //!
-//! for μ that falls towards 0 (Nocedal & Wright, section 19.6). Vertices that end next to their old place are put back
+//! for μ that falls towards 0 (Nocedal & Wright, section 19.6). Vertices that end next to their old places return
 //! exactly. Lengths are in units of a mean face.
 //!
 //! Cost: up to [`STEPS`] factorizations of the patch for each of about eight μ.
@@ -18,37 +18,39 @@ use super::patch::Patch;
 use super::triangle::{Corners, Hessian, add_less_area_curvature, add_symmetric, doubled_area};
 use crate::control::Watch;
 
-/// Newton steps for each μ at the most, and for the last.
+/// Most Newton steps for each μ but the last.
 const STEPS: usize = 6;
+
+/// Most Newton steps for the last μ.
 const LAST_STEPS: usize = 40;
 
-/// What μ falls by.
+/// Factor from one μ to the next.
 const FALL: f64 = 0.1;
 
 /// The last μ.
 const LAST: f64 = 1e-6;
 
-/// A μ is done when a step promises less than this times μ.
+/// Decrement, relative to μ, below which a μ is done.
 const NEAR: f64 = 0.1;
 
-/// The last μ is done when a step promises less than this times μ.
+/// Decrement, relative to μ, below which the last μ is done.
 const LAST_NEAR: f64 = 1e-6;
 
-/// A vertex this near to its old place returns to it.
+/// Distance to its old place below which a vertex returns to it.
 const SNAP: f64 = 1e-3;
 
-/// The distance from the old places, behind the barrier of one μ.
+/// The squared distance from the old places with the barrier of one μ.
 struct Barrier<'a> {
     patch: &'a Patch,
-    /// What each face must keep, in units of its share.
+    /// The least area of each face, in units of its share.
     floors: &'a [f64],
-    /// One over the faces at each vertex.
+    /// One over the number of faces at each vertex.
     per_face: &'a [f64],
     weight: f64,
 }
 
-/// The places nearest to the old ones from `start`, where all faces are above their floors; and whether the descent was
-/// not cut short.
+/// The places nearest to the old ones, by a descent from `start`, where all faces are above their floors; and whether
+/// the descent ran to its end.
 pub(super) fn closest(
     newton: &mut Newton<'_>,
     patch: &Patch,
@@ -82,11 +84,11 @@ pub(super) fn closest(
         }
         energy.weight = (FALL * energy.weight).max(LAST);
     }
-    // 2. Exactly back where nothing is in the way
+    // 2. Exactly back to the old places where no face is in the way
     (snapped(patch, floors, places), true)
 }
 
-/// Puts vertices next to their old place back into it, but for those that would close a face.
+/// Puts vertices next to their old places back onto them, except those that would close a face.
 fn snapped(patch: &Patch, floors: &[f64], places: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let is_near = |v: usize| square_distance(places[v], patch.origin[v]) < SNAP * SNAP;
     let mut returns: Vec<bool> = (0..places.len()).map(|v| patch.is_free[v] && is_near(v)).collect();

@@ -20,19 +20,19 @@ use crate::control::Watch;
 use crate::energy::clamp_negative_eigenvalues;
 use crate::error::Error;
 
-/// Steps at the most.
+/// Most steps.
 const ITERATIONS: usize = 120;
 
-/// The search ends when in so many steps the faces that miss their goals have not become fewer.
+/// Steps after which the search ends if the faces that miss their goals have not become fewer.
 const PATIENCE: usize = 20;
 
-/// The same for a last attempt.
+/// [`PATIENCE`] of the last attempt.
 const LAST_PATIENCE: usize = 60;
 
-/// The first ε.
+/// Initial ε.
 const FIRST_REGULARIZATION: f64 = 1.0;
 
-/// The least part of itself by which ε falls.
+/// Least relative fall of ε in a step.
 const LEAST_FALL: f64 = 0.1;
 
 /// The regularized energy for one ε.
@@ -43,7 +43,7 @@ struct Regularized<'a> {
     regularization: f64,
 }
 
-/// The springs of Tutte's embedding, and nothing else.
+/// The energy of springs, whose minimum is Tutte's embedding.
 pub(super) struct Springs;
 
 impl FaceEnergy for Springs {
@@ -59,10 +59,10 @@ impl FaceEnergy for Springs {
     }
 }
 
-/// Moves from `start` until every face has its goal of area, in units of its share; the last places come back either way.
+/// Moves the vertices from `start` until every face has its least area, or the search ends; returns the last places.
 ///
 /// # Errors
-/// [`Error::CancelledEarly`] by the watch.
+/// [`Error::CancelledEarly`] if cancelled.
 pub(super) fn unfold(
     newton: &mut Newton<'_>,
     patch: &Patch,

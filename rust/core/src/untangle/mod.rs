@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Removes the folds of a given map: [`untangle`].
 //!
-//! The outline and the pins stay, bit for bit, and so does all that is not near a fold:
+//! The outline, the pins and all vertices away from folds stay, bit for bit:
 //!
-//! 1. The vertices that move form small patches around the folded faces ([`patches`]), as small as they
-//!    can be at first; only what resists grows.
+//! 1. The vertices that move form patches around the folded faces ([`patches`]), as small as possible at first; only
+//!    patches that stay folded grow.
 //! 2. Within a patch a map without folds is found by the regularized foldover-free energy of Garanzha et al. (2021)
 //!    ([`foldover`]).
-//! 3. From there the vertices return to their old places as far as open faces let them ([`closest`]).
+//! 3. From there the vertices return to their old places as far as no face folds ([`closest`]).
 //!
-//! Exact predicates decide what is folded. There is a map without folds or an error, never a map with folds.
+//! Exact predicates decide what is folded. The result is a map without folds or an error, never a map with folds.
 //!
-//! Input: a [`TriangleMesh`] with any number of components and boundary loops, and a map of it into the plane, or onto the
-//! sphere where each tangle lies within a hemisphere. Cost: some 30 sparse factorizations of each patch.
+//! Input: a [`TriangleMesh`] with any number of components and boundary loops, and a map of it into the plane, or onto
+//! the sphere if each tangle lies within a hemisphere. Cost: some 30 sparse factorizations of each patch.
 
 mod checks;
 mod closest;
@@ -48,21 +48,21 @@ pub struct Untangled {
     pub moved: Vec<usize>,
     /// The faces that were folded, ascending.
     pub folded_before: Vec<usize>,
-    /// [`Status::Converged`]; [`Status::Stalled`] where a face stays below the tolerance, though not folded;
-    /// [`Status::Cancelled`] where vertices did not return as far as they could.
+    /// [`Status::Converged`]; [`Status::Stalled`] if a face stays below the tolerance, though not folded;
+    /// [`Status::Cancelled`] if vertices did not return as far as they could.
     pub status: Status,
     /// The figures of the map, mirrored components turned back.
     pub distortion: Distortion,
 }
 
-/// Removes the folds of `image`, a map of `mesh`, and changes as little as can be.
+/// Removes the folds of `image`, a map of `mesh`, and changes as little as possible.
 ///
-/// The orientation that most of a component's area has is kept. A map without folds comes back as it is.
+/// Each component keeps the orientation of most of its area. A map without folds comes back as it is.
 ///
 /// # Errors
-/// Arrays that do not fit. [`MapError::HeldFolded`](crate::MapError::HeldFolded) where the outline or the fixed vertices make folds inevitable,
-/// [`NumericsError::StillFolded`] where no map without folds was found, [`Error::CancelledEarly`] where the observer ended the
-/// run before there was one.
+/// Arrays that do not fit; [`MapError::HeldFolded`](crate::MapError::HeldFolded) if the outline or the fixed vertices
+/// make folds inevitable; [`NumericsError::StillFolded`] if no map without folds was found; [`Error::CancelledEarly`]
+/// if the observer cancelled before there was one.
 ///
 /// ```
 /// use authalic::{Image, Silent, UntangleOptions, UntangledImage, mesh::TriangleMesh, untangle};
@@ -83,7 +83,7 @@ pub fn untangle(
 ) -> Result<Untangled, Error> {
     // 1. Refuse what does not fit
     checks::arguments(mesh, image, options)?;
-    // 2. Components that are mirrored as a whole are turned over for the time being
+    // 2. Components that are mirrored as a whole, turned over for the time being
     let given = Positions::new(image);
     let components = checks::components(mesh);
     let mirrored = given.mirrored(mesh, &components);
@@ -104,7 +104,7 @@ pub fn untangle(
     Ok(Untangled { image, moved, folded_before, status, distortion })
 }
 
-/// One computation.
+/// The state of a call.
 struct Run<'a> {
     mesh: &'a TriangleMesh,
     /// The map given.
@@ -117,7 +117,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Unfolds everything: with the tolerance asked for, else with whatever opens what is left, at last all at once.
+    /// Unfolds all faces: first to the tolerance, then those left to any positive area, at last whole components.
     fn unfold(&mut self, folded_before: &[usize], observer: &mut dyn Observer) -> Result<(), Error> {
         let mut folded = folded_before.to_vec();
         for (is_thin_enough, first_round, tries_hard) in
@@ -135,7 +135,8 @@ impl Run<'_> {
         }
     }
 
-    /// Patches that grow from round to round, a last effort only on whole components; returns the faces that stay folded.
+    /// Unfolds patches that grow from round to round, with a last effort only on whole components; returns the faces
+    /// that stay folded.
     fn rounds(
         &mut self,
         mut folded: Vec<usize>,
@@ -149,13 +150,13 @@ impl Run<'_> {
             if folded.is_empty() {
                 break;
             }
-            // 1. The vertices that may move, in parts that do not touch
+            // 1. The vertices that may move, in patches that do not touch
             let around = patches::around(self.mesh, &self.now, self.held, &folded, round);
-            let parts = patches::parts(self.mesh, &around.free);
+            let separate = patches::separate(self.mesh, &around.free);
             let effort = Effort { is_last: effort.is_last && around.is_all, ..effort };
             let done = 1.0 - folded.len() as f64 / n_before.max(1) as f64;
-            for (k, free) in parts.iter().enumerate() {
-                let here = k as f64 / parts.len() as f64;
+            for (k, free) in separate.iter().enumerate() {
+                let here = k as f64 / separate.len() as f64;
                 let fraction = done.max(0.0) + (1.0 - done.max(0.0)) * 0.9 * here;
                 if failed.contains(free) && !effort.is_last {
                     continue;
@@ -168,7 +169,7 @@ impl Run<'_> {
                     failed.insert(free.clone());
                 }
             }
-            // 2. What is still folded
+            // 2. The faces still folded
             folded = self.now.folded(self.mesh.faces());
             if around.is_all {
                 break;
@@ -177,7 +178,7 @@ impl Run<'_> {
         Ok(folded)
     }
 
-    /// Whether the patch of these free vertices could be unfolded, and is.
+    /// Unfolds the patch of these free vertices; returns whether it succeeded.
     fn unfold_patch(&mut self, free: &[u32], effort: Effort, watch: &Watch<'_>) -> Result<bool, Error> {
         let tolerance = self.options.tolerance;
         let Some(patch) = Patch::new(self.mesh, self.given, &self.now, free, tolerance) else {

@@ -11,21 +11,21 @@ use crate::error::Error;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
-/// The slope's share that a step must gain.
+/// Armijo's constant: the part of the linear decrease that a step must gain.
 const SUFFICIENT: f64 = 1e-4;
 
-/// Steps tried along one direction.
+/// Most steps tried along one direction.
 const MOST_TRIALS: usize = 40;
 
-/// What is added to the diagonal of the Hessian, in units of itself.
+/// Relative increase of the diagonal of the Hessian.
 const SHIFT: f64 = 1e-9;
 
-/// What a face costs.
+/// An energy of faces.
 pub(super) trait FaceEnergy: Sync {
-    /// The energy of a face; infinite where it is not allowed.
+    /// The energy of a face; infinite if the face is not allowed.
     fn value(&self, face: usize, corners: Corners) -> f64;
 
-    /// Its gradient and Hessian, the latter positive semidefinite.
+    /// The gradient and the Hessian of the energy, the latter positive semidefinite.
     fn derivatives(&self, face: usize, corners: Corners) -> ([f64; 6], Hessian);
 }
 
@@ -36,13 +36,13 @@ pub(super) struct Newton<'a> {
     factor: Factor<f64>,
 }
 
-/// One step.
+/// A Newton step.
 pub(super) struct Step {
     /// The places after it.
     pub places: Vec<[f64; 2]>,
     /// The energy after it.
     pub value: f64,
-    /// What the direction promised: minus the directional derivative.
+    /// Minus the directional derivative.
     pub decrement: f64,
 }
 
@@ -60,10 +60,10 @@ impl<'a> Newton<'a> {
         parallel::sum(self.patch.faces.len(), |face| energy.value(face, self.patch.corners(places, face)))
     }
 
-    /// The step from `places`, where the energy is `value`; `None` where none lowers it.
+    /// The step from `places`, where the energy is `value`; `None` if no step lowers it.
     ///
     /// # Errors
-    /// [`Error::CancelledEarly`] by the watch.
+    /// [`Error::CancelledEarly`] if cancelled.
     pub(super) fn step(
         &mut self,
         energy: &dyn FaceEnergy,
@@ -86,7 +86,7 @@ impl<'a> Newton<'a> {
         Ok(None)
     }
 
-    /// The solution of the Newton system with what it promises.
+    /// The Newton direction and its decrement; `None` if it does not descend.
     fn direction(
         &mut self,
         energy: &dyn FaceEnergy,

@@ -4,10 +4,10 @@
 /// Options of [`untangle`].
 #[derive(Debug, Clone, Copy)]
 pub struct UntangleOptions<'a> {
-    /// Vertices that stay where they are, beside those of the boundary, which stay anyway.
+    /// Vertices that stay in place, in addition to those of the boundary.
     pub fixed: &'a [usize],
-    /// Least area of a face that was folded, or lost area to one, in units of its fair share: the area of its patch
-    /// divided in proportion to the areas on the surface. In `[0, 1)`.
+    /// Least area, in `[0, 1)`, of a face that was folded or lost area to a folded one, in units of its fair share: the
+    /// area of its patch divided in proportion to the areas on the surface.
     pub tolerance: f64,
 }
 

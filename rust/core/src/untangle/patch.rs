@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A patch: some vertices that move, the faces at them, and a chart in which these are flat.
+//! A patch: vertices that move, the faces at them, and a chart in which these are flat.
 
 use super::positions::{Chart, Positions};
 use super::triangle::{Corners, doubled_area};
@@ -7,10 +7,10 @@ use crate::energy::rest_cotangents;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 
-/// Rest shapes are fattened to a height of at least this part of their longest edge.
+/// Least height of a rest shape relative to its longest edge; flatter faces are fattened.
 const FLATTEST: f64 = 0.05;
 
-/// A face with less than this part of its share counts as folded while a patch is solved.
+/// Area of a face, in units of its share, below which it counts as folded while a patch is solved.
 pub(super) const CLOSED: f64 = 1e-9;
 
 /// A region of the map whose inner vertices move.
@@ -18,9 +18,9 @@ pub(super) const CLOSED: f64 = 1e-9;
 pub(super) struct Patch {
     /// The vertices of the mesh, ascending.
     vertices: Vec<u32>,
-    /// The faces by the places in `vertices`.
+    /// The faces, by indices in `vertices`.
     pub faces: Vec<[u32; 3]>,
-    /// The same faces in the mesh.
+    /// The indices of the faces in the mesh.
     face_indices: Vec<usize>,
     /// Whether each vertex moves.
     pub is_free: Vec<bool>,
@@ -28,9 +28,9 @@ pub(super) struct Patch {
     pub origin: Vec<[f64; 2]>,
     /// The present places, in the chart.
     pub present: Vec<[f64; 2]>,
-    /// The fair share of area of each face; 1 on the average.
+    /// The fair share of area of each face; 1 on average.
     pub shares: Vec<f64>,
-    /// What each face must reach, in units of its share.
+    /// The least area of each face, in units of its share.
     pub floors: Vec<f64>,
     /// Cotangents of the faces on the surface.
     pub cotangents: Vec<[f64; 3]>,
@@ -103,7 +103,7 @@ impl Patch {
         Some(patch)
     }
 
-    /// How many faces have less than twice the area that they must keep.
+    /// The number of faces with less than twice their least area.
     pub(super) fn misses(&self, places: &[[f64; 2]]) -> usize {
         (0..self.faces.len()).filter(|&face| self.ratio(places, face) < 2.0 * self.floors[face]).count()
     }
@@ -123,7 +123,7 @@ impl Patch {
         self.faces[face].map(|vertex| places[vertex as usize])
     }
 
-    /// How many faces each vertex has.
+    /// The number of faces at each vertex.
     pub(super) fn faces_per_vertex(&self) -> Vec<f64> {
         let mut counts = vec![0.0; self.vertices.len()];
         self.faces.iter().flatten().for_each(|&vertex| counts[vertex as usize] += 1.0);
@@ -135,12 +135,13 @@ impl Patch {
         self.face_indices.iter().map(|&face| mesh.faces()[face]).collect()
     }
 
-    /// Writes the free vertices; those that are at their old place bit for bit as given.
+    /// Writes the free vertices; those at their old places bit for bit as given.
     pub(super) fn write(&self, given: &Positions, places: &[[f64; 2]], positions: &mut Positions) {
         for (k, &vertex) in self.vertices.iter().enumerate().filter(|&(k, _)| self.is_free[k]) {
-            match places[k] == self.origin[k] {
-                true => positions.copy(given, vertex),
-                false => self.chart.up(places[k], positions, vertex),
+            if places[k] == self.origin[k] {
+                positions.copy(given, vertex)
+            } else {
+                self.chart.up(places[k], positions, vertex)
             }
         }
     }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Which vertices may move: few at first, more from round to round.
+//! The vertices that may move: few at first, more from round to round.
 //!
-//! Round 0 frees the fewest vertices that touch all folded faces, by the greedy cover, and among equals those that stick
-//! out the most from between their neighbors; round 1 all corners of these; then come 1, 2, 4, 8, … rings around them.
+//! Round 0 frees few vertices that touch all folded faces, by the greedy cover, and among equals those farthest from
+//! the mean of their neighbors; round 1 frees all corners of the folded faces; later rounds free 1, 2, 4, 8, … rings
+//! around them.
 
 use std::collections::BTreeMap;
 
 use super::positions::Positions;
 use crate::mesh::TriangleMesh;
 
-/// Vertices that stick out by the same but for this part of it are equals.
+/// Relative difference up to which two distances of vertices from their neighbors are equal.
 const MARGIN: f64 = 1e-6;
 
-/// The round that frees whole components.
+/// A round that frees whole components.
 pub(super) const EVERYTHING: u32 = 62;
 
 /// The vertices that may move in a round.
@@ -40,14 +41,14 @@ pub(super) fn around(
     }
 }
 
-/// Free vertices that touch all folded faces: again and again those that touch the most of the remaining ones, and of
-/// these the ones that stick out more than those beside them. Of equals all are taken, so that no numbering decides.
+/// Free vertices that touch all folded faces: again and again those that touch the most remaining faces, and of these
+/// the ones that stick out more than those beside them. All of several equals are taken, so that no numbering decides.
 fn cover(mesh: &TriangleMesh, now: &Positions, held: &[bool], folded: &[usize]) -> Vec<u32> {
-    let mut left = folded.to_vec();
+    let mut remaining = folded.to_vec();
     let mut free = Vec::new();
     loop {
         let mut counts = BTreeMap::new();
-        for vertex in left.iter().flat_map(|&face| mesh.faces()[face]) {
+        for vertex in remaining.iter().flat_map(|&face| mesh.faces()[face]) {
             if !held[vertex as usize] {
                 *counts.entry(vertex).or_insert(0usize) += 1;
             }
@@ -59,29 +60,30 @@ fn cover(mesh: &TriangleMesh, now: &Positions, held: &[bool], folded: &[usize]) 
             .map(|(&vertex, _)| (vertex, now.distance_from_neighbors(mesh, vertex)))
             .collect();
         let chosen = sticking_out(mesh, &equals);
-        left.retain(|&face| !mesh.faces()[face].iter().any(|vertex| chosen.binary_search(vertex).is_ok()));
+        remaining
+            .retain(|&face| !mesh.faces()[face].iter().any(|vertex| chosen.binary_search(vertex).is_ok()));
         free.extend(chosen);
     }
     free.sort_unstable();
     free
 }
 
-/// The vertices that are farther from the middle of their neighbors than those beside them, out of a list (ascending) with
-/// these distances.
+/// The vertices, of a list (ascending) with distances from the mean of their neighbors, that are no nearer to it than
+/// those beside them.
 fn sticking_out(mesh: &TriangleMesh, vertices: &[(u32, f64)]) -> Vec<u32> {
     let distance = |vertex: u32| {
-        let found = vertices.binary_search_by_key(&vertex, |&(other, _)| other);
-        found.map_or(0.0, |k| vertices[k].1)
+        let index = vertices.binary_search_by_key(&vertex, |&(listed, _)| listed);
+        index.map_or(0.0, |k| vertices[k].1)
     };
-    let is_far = |&&(vertex, own): &&(u32, f64)| {
+    let is_far = |&&(vertex, distance_here): &&(u32, f64)| {
         let corners = mesh.vertex_corners(vertex as usize).iter();
         let beside = corners.flat_map(|&corner| mesh.faces()[corner as usize / 3]);
-        beside.map(distance).all(|other| own >= (1.0 - MARGIN) * other)
+        beside.map(distance).all(|beside| distance_here >= (1.0 - MARGIN) * beside)
     };
     vertices.iter().filter(is_far).map(|&(vertex, _)| vertex).collect()
 }
 
-/// Free vertices at most so many edges away from the corners of the folded faces.
+/// The free vertices within so many rings around the corners of the folded faces.
 fn within(mesh: &TriangleMesh, held: &[bool], folded: &[usize], rings: usize) -> Around {
     let mut reached = vec![false; mesh.n_vertices()];
     let mut front: Vec<u32> = folded.iter().flat_map(|&face| mesh.faces()[face]).collect();
@@ -99,29 +101,29 @@ fn within(mesh: &TriangleMesh, held: &[bool], folded: &[usize], rings: usize) ->
     Around { free, is_all: front.is_empty() && rings > 0 }
 }
 
-/// The parts of free vertices (ascending) that share no face, each ascending.
-pub(super) fn parts(mesh: &TriangleMesh, free: &[u32]) -> Vec<Vec<u32>> {
+/// The free vertices (ascending) in sets that share no face, each ascending.
+pub(super) fn separate(mesh: &TriangleMesh, free: &[u32]) -> Vec<Vec<u32>> {
     let mut is_taken = vec![false; free.len()];
-    let mut parts = Vec::new();
+    let mut sets = Vec::new();
     for first in 0..free.len() {
         if std::mem::replace(&mut is_taken[first], true) {
             continue;
         }
-        let (mut part, mut next) = (vec![free[first]], 0);
-        while next < part.len() {
-            for &corner in mesh.vertex_corners(part[next] as usize) {
+        let (mut set, mut next) = (vec![free[first]], 0);
+        while next < set.len() {
+            for &corner in mesh.vertex_corners(set[next] as usize) {
                 for vertex in mesh.faces()[corner as usize / 3] {
                     if let Ok(k) = free.binary_search(&vertex)
                         && !std::mem::replace(&mut is_taken[k], true)
                     {
-                        part.push(vertex);
+                        set.push(vertex);
                     }
                 }
             }
             next += 1;
         }
-        part.sort_unstable();
-        parts.push(part);
+        set.sort_unstable();
+        sets.push(set);
     }
-    parts
+    sets
 }

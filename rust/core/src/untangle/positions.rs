@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The positions of a map in the plane or on the sphere, and the flat charts of its patches.
 //!
-//! The sphere's charts are gnomonic: great circles become straight lines, so a face is folded in the chart exactly where it
-//! is folded on the sphere.
+//! The sphere's charts are gnomonic: great circles become straight lines, so a face is folded in the chart if and only
+//! if it is folded on the sphere.
 
 use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
 use crate::mesh::TriangleMesh;
 use crate::vector::Vector3;
 
-/// The rim of a patch on the sphere lies within this cosine of the center of its chart.
+/// Least cosine of the angle between the rim of a patch on the sphere and the center of its chart.
 const RIM: f64 = 0.1;
 
-/// Points beyond this cosine are drawn to it.
+/// Least cosine of the angle between points and the center of a chart; points beyond are moved to it.
 const HORIZON: f64 = 0.05;
 
 /// The positions of a map, of size 1.
@@ -22,7 +22,7 @@ pub(super) enum Positions {
 }
 
 impl Positions {
-    /// The positions given, those in the plane scaled by a power of two to size 1.
+    /// The given positions; in the plane scaled by a power of two to size 1.
     pub(super) fn new(image: Image<'_>) -> Self {
         match image {
             Image::Sphere(map) => Self::Sphere(map.to_vec()),
@@ -33,7 +33,7 @@ impl Positions {
         }
     }
 
-    /// The folded ones of some faces, by their place in the list.
+    /// The indices of the folded faces among `faces`.
     pub(super) fn folded(&self, faces: &[[u32; 3]]) -> Vec<usize> {
         match self {
             Self::Plane(map) => folded_in_plane(faces, map),
@@ -41,7 +41,7 @@ impl Positions {
         }
     }
 
-    /// The vertices of components most of whose area is turned over.
+    /// Whether each vertex is in a component most of whose area is mirrored.
     pub(super) fn mirrored(&self, mesh: &TriangleMesh, components: &[u32]) -> Vec<bool> {
         let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
         let mut areas = vec![0.0; n_components];
@@ -62,7 +62,7 @@ impl Positions {
         }
     }
 
-    /// The same with some vertices mirrored.
+    /// The positions with some vertices mirrored.
     pub(super) fn turned_over(&self, mirrored: &[bool]) -> Self {
         match self {
             Self::Plane(map) => {
@@ -76,7 +76,7 @@ impl Positions {
         }
     }
 
-    /// Whether a vertex is elsewhere in another map.
+    /// Whether a vertex lies elsewhere in another map.
     pub(super) fn differs(&self, other: &Self, vertex: usize) -> bool {
         match (self, other) {
             (Self::Plane(here), Self::Plane(there)) => here[vertex] != there[vertex],
@@ -116,17 +116,17 @@ impl Positions {
         }
     }
 
-    /// How far a vertex is from the mean of its neighbors, one that two faces share counted twice.
+    /// The distance of a vertex from the mean of its neighbors, where one shared by two faces counts twice.
     pub(super) fn distance_from_neighbors(&self, mesh: &TriangleMesh, vertex: u32) -> f64 {
         let corners = mesh.vertex_corners(vertex as usize);
         let ring = corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]);
-        let ring = ring.filter(|&other| other != vertex);
+        let ring = ring.filter(|&neighbor| neighbor != vertex);
         let share = 0.5 / corners.len() as f64;
         let place = |v: u32| match self {
             Self::Plane(map) => Vector3([map[v as usize][0], map[v as usize][1], 0.0]),
             Self::Sphere(map) => map[v as usize],
         };
-        let mean = ring.fold(Vector3::ZERO, |sum, other| sum + place(other)) * share;
+        let mean = ring.fold(Vector3::ZERO, |sum, neighbor| sum + place(neighbor)) * share;
         mean.distance(place(vertex))
     }
 
@@ -138,7 +138,7 @@ impl Positions {
         }
     }
 
-    /// The image given with the vertices that moved replaced.
+    /// The given image with the positions of the moved vertices replaced.
     pub(super) fn written_over(&self, image: Image<'_>, moved: &[usize]) -> UntangledImage {
         match (self, image) {
             (Self::Plane(map), Image::Plane(given)) => {
@@ -164,7 +164,7 @@ impl Positions {
     }
 }
 
-/// The power of two below the largest coordinate.
+/// The largest power of two up to the largest coordinate; 1 if all are 0.
 fn unit(map: &[[f64; 2]]) -> f64 {
     let largest = map.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
@@ -186,7 +186,7 @@ impl Chart {
         Self::Plane { center: [0.0; 2], scale: 1.0 }
     }
 
-    /// A chart around vertices that are held; `None` where there are none, or where they do not fit into a hemisphere.
+    /// A chart around held vertices; `None` if there are none, or if they do not fit into a hemisphere.
     pub(super) fn around(positions: &Positions, rim: &[u32]) -> Option<Self> {
         if rim.is_empty() {
             return None;
@@ -210,7 +210,7 @@ impl Chart {
         }
     }
 
-    /// The same, enlarged.
+    /// The chart with the scale `factor`.
     pub(super) fn scaled(self, factor: f64) -> Self {
         match self {
             Self::Plane { center, .. } => Self::Plane { center, scale: factor },
@@ -275,7 +275,7 @@ pub enum UntangledImage {
 }
 
 impl UntangledImage {
-    /// The positions as the other functions take them.
+    /// The positions as an [`Image`].
     pub fn view(&self) -> Image<'_> {
         match self {
             Self::Plane(map) => Image::Plane(map),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One patch without folds: first any places without folds, then the nearest such to the old ones.
+//! Unfolds one patch: first to any places without folds, then to those nearest to the old ones.
 
 use super::closest::closest;
 use super::foldover::{Springs, unfold};
@@ -11,16 +11,16 @@ use crate::error::Error;
 /// Cotangent of the angles of an equilateral triangle.
 const EQUILATERAL: f64 = 0.577_350_269_189_625_8;
 
-/// A tangle is heavy where more than one face out of so many is folded.
+/// A patch starts from Tutte's embedding if more than one face out of so many is folded.
 const HEAVY: usize = 3;
 
-/// Patches of so many faces are not solved from two starts while larger ones come after them.
+/// Faces from which on a patch is tried from one start only, unless it is the last.
 const LARGE: usize = 3000;
 
-/// How much is tried.
+/// The effort spent on a patch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Effort {
-    /// Whether faces may stay below their goals as long as they are not folded.
+    /// Whether unfolded faces may stay below their least areas.
     pub is_thin_enough: bool,
     /// Whether no larger patch comes after this one.
     pub is_last: bool,
@@ -29,23 +29,23 @@ pub(super) struct Effort {
 /// Places without folds.
 struct Unfolded {
     places: Vec<[f64; 2]>,
-    /// Whether a face misses its goal.
+    /// Whether a face is below its least area.
     is_thin: bool,
 }
 
-/// What became of a patch.
+/// The outcome of a patch.
 pub(super) enum Outcome {
-    /// Places in the chart without folds, and whether they are all that was asked for.
+    /// Places in the chart without folds, with their status.
     Open(Vec<[f64; 2]>, Status),
     /// Faces stay folded.
     Folded,
 }
 
 impl Patch {
-    /// Unfolds the patch, and brings its vertices back as far as can be.
+    /// Unfolds the patch, and brings its vertices back as far as possible.
     ///
     /// # Errors
-    /// [`Error::CancelledEarly`] by the watch while there are folds.
+    /// [`Error::CancelledEarly`] if cancelled while there are folds.
     pub(super) fn solved(&self, effort: Effort, watch: &Watch<'_>) -> Result<Outcome, Error> {
         let mut newton = Newton::new(self)?;
         // 1. Any places without folds
@@ -64,7 +64,7 @@ impl Patch {
         Ok(Outcome::Open(places, status))
     }
 
-    /// Some places without folds; `None` where none were found.
+    /// Some places without folds; `None` if none were found.
     fn unfolded(
         &self,
         newton: &mut Newton<'_>,
@@ -74,8 +74,8 @@ impl Patch {
         let value = newton.value(&Springs, &self.present);
         let tutte = newton.step(&Springs, &self.present, value, watch)?.map(|step| step.places);
         let equilateral = vec![[EQUILATERAL; 3]; self.faces.len()];
-        // the present places are nearer to the result where few faces are folded, Tutte's embedding where many are;
-        // on large patches it takes fewer steps
+        // the present places are nearer to the result if few faces are folded, Tutte's embedding if many are; on large
+        // patches it takes fewer steps
         let is_folded = |face: &usize| self.ratio(&self.present, *face) <= 0.0;
         let n_folded = (0..self.faces.len()).filter(is_folded).count();
         let mut starts = [Some(&self.present), tutte.as_ref()];

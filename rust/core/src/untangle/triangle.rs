@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Triangles in the plane: areas with their derivatives.
+//! Areas of triangles in the plane, with their derivatives.
 
-/// The Hessian of a face by the coordinates of its corners.
+/// A Hessian by the coordinates of a face's corners.
 pub(super) type Hessian = [[f64; 6]; 6];
 
 /// The corners of a face in the chart of a patch.
@@ -24,13 +24,13 @@ pub(super) fn add_area_curvature(hessian: &mut Hessian, factor: f64) {
     }
 }
 
-/// Adds the positive semidefinite part of minus `factor` ≥ 0 times the same Hessian.
+/// Adds the positive semidefinite part of −`factor` times the Hessian of twice the signed area, for `factor` ≥ 0.
 ///
 /// In complex coordinates the area of a triangle is diagonal in the Fourier modes of its corners: mode 1, the
-/// counter-clockwise equilateral triangle, has the eigenvalue √3, mode 2 has −√3, and translations have 0.
+/// counterclockwise equilateral triangle, has the eigenvalue √3, mode 2 has −√3, and translations have 0.
 pub(super) fn add_less_area_curvature(hessian: &mut Hessian, factor: f64) {
     let eigenvalue = factor * 3f64.sqrt() / 3.0;
-    // cosine and sine of two thirds of a turn times the difference of the corners
+    // cosine and sine of −2π/3 times the difference of the corners' numbers
     let turns = [[1.0, 0.0], [-0.5, -0.5 * 3f64.sqrt()], [-0.5, 0.5 * 3f64.sqrt()]];
     for a in 0..3 {
         for b in 0..3 {

@@ -19,7 +19,7 @@
 //! Fuchsian group (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
 //!
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and pairs of [`Curves`]. Cost: some twenty sparse
-//! factorisations.
+//! factorizations.
 
 mod assembly;
 mod features;

@@ -85,12 +85,13 @@ impl Moebius {
     }
 
     /// The same map with |a|² − |b|² = 1 again after rounding.
-    fn normalised(self) -> Self {
+    fn normalized(self) -> Self {
         let (a, b) = (self.a.norm(), self.b.norm());
         let determinant = (a - b) * (a + b);
-        match determinant > 0.0 {
-            true => Self { a: self.a / determinant.sqrt(), b: self.b / determinant.sqrt() },
-            false => self,
+        if determinant > 0.0 {
+            Self { a: self.a / determinant.sqrt(), b: self.b / determinant.sqrt() }
+        } else {
+            self
         }
     }
 }
@@ -102,7 +103,7 @@ impl Mul for Moebius {
     fn mul(self, other: Self) -> Self {
         let a = self.a * other.a + self.b * other.b.conj();
         let b = self.a * other.b + self.b * other.a.conj();
-        Self { a, b }.normalised()
+        Self { a, b }.normalized()
     }
 }
 
@@ -133,10 +134,7 @@ pub fn from_hyperboloid(Vector3([x, y, t]): Vector3) -> Complex {
     let radius = x.hypot(y);
     let height = ((t - radius) * (t + radius)).max(0.0).sqrt();
     let z = Complex::new(x, y) / (t + height);
-    match z.norm() < 1.0 {
-        true => z,
-        false => unit(z) * INSIDE,
-    }
+    if z.norm() < 1.0 { z } else { unit(z) * INSIDE }
 }
 
 /// The point of Klein's model, where geodesics are straight.
@@ -149,7 +147,7 @@ pub fn from_klein(k: Complex) -> Complex {
     k / (1.0 + beneath_circle(k).max(0.0).sqrt())
 }
 
-/// Positive where the triangle a, b, c is counter-clockwise, negative where it is clockwise.
+/// Positive where the triangle a, b, c is counterclockwise, negative where it is clockwise.
 pub fn orientation(a: Complex, b: Complex, c: Complex) -> f64 {
     let [b, c] = [b, c].map(|corner| to_klein(seen_from(a, corner)));
     (b.conj() * c).im
@@ -205,7 +203,7 @@ mod tests {
             prop_assert!(distance(((g * h) * k).apply(z), (g * (h * k)).apply(z)) < 1e-4);
             prop_assert!(distance((g * g.inverse()).apply(z), z) < CLOSE);
             prop_assert!(distance(g.inverse().apply(g.apply(z)), z) < CLOSE);
-            prop_assert_eq!(g * Moebius::default(), g.normalised());
+            prop_assert_eq!(g * Moebius::default(), g.normalized());
             prop_assert_eq!(Moebius::default().apply(z), z);
         }
 

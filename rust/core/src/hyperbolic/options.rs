@@ -5,7 +5,7 @@ use super::metric::MetricMethod;
 use crate::error::Error;
 use crate::vector::Vector3;
 
-/// How the harmonic energy is minimised.
+/// How the harmonic energy is minimized.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Solver {
     /// Riemannian Newton: to the minimum in a few steps.
@@ -20,7 +20,7 @@ pub enum Solver {
 pub struct HyperbolicOptions<'a> {
     /// How the hyperbolic metrics are computed.
     pub metric: MetricMethod,
-    /// How the harmonic energy is minimised.
+    /// How the harmonic energy is minimized.
     pub solver: Solver,
     /// Steps of the heat diffusion at the most.
     pub heat_steps: usize,

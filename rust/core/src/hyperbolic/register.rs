@@ -38,12 +38,11 @@ pub fn register_hyperbolic(
     options.check()?;
     let pairs = curves.check(source, target)?;
     let same_side;
-    let target = match is_closed(source) && is_closed(target) && inside_out(source, target) {
-        false => target,
-        true => {
-            same_side = target.turned_over();
-            &same_side
-        }
+    let target = if is_closed(source) && is_closed(target) && inside_out(source, target) {
+        same_side = target.turned_over();
+        &same_side
+    } else {
+        target
     };
     let divided = divided(source, target, pairs)?;
     // 2. Roughly onto each other, and cut into pieces

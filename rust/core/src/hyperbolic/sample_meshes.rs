@@ -74,15 +74,15 @@ pub(super) fn path(
     to: Vector3,
 ) -> Vec<usize> {
     let [start, end] = [from, to].map(|direction| nearest_vertex(points, unit(direction)));
-    let mut neighbours = vec![Vec::new(); points.len()];
+    let mut neighbors = vec![Vec::new(); points.len()];
     for [a, b, c] in faces.iter().map(|face| face.map(|v| v as usize)) {
-        [[a, b], [b, c], [c, a]].iter().for_each(|&[p, q]| neighbours[p].push(q));
+        [[a, b], [b, c], [c, a]].iter().for_each(|&[p, q]| neighbors[p].push(q));
     }
     let mut before = vec![usize::MAX; points.len()];
     before[end] = end;
     let mut pending = VecDeque::from([end]);
     while let Some(vertex) = pending.pop_front() {
-        for &next in &neighbours[vertex] {
+        for &next in &neighbors[vertex] {
             if before[next] == usize::MAX {
                 before[next] = vertex;
                 pending.push_back(next);
@@ -100,10 +100,10 @@ pub(super) fn path(
 /// repeated.
 pub(super) fn circle(
     (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
-    centre: Vector3,
+    center: Vector3,
     angle: f64,
 ) -> Vec<usize> {
-    let inside = faces.iter().filter(|face| middle(points, **face).dot(unit(centre)) > angle.cos());
+    let inside = faces.iter().filter(|face| middle(points, **face).dot(unit(center)) > angle.cos());
     let edges: Vec<[u32; 2]> = inside.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     let is_border = |edge: &&[u32; 2]| !edges.contains(&[edge[1], edge[0]]);
     let next: BTreeMap<u32, u32> = edges.iter().filter(is_border).map(|&[a, b]| (a, b)).collect();

@@ -120,7 +120,7 @@ fn walks_end_where_they_should() {
     let sliced = slit_spheres(3).target;
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
-    // from each face to the middles of its neighbours, as seen from it
+    // from each face to the middles of its neighbors, as seen from it
     for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
         let across = Face::of_corner(sliced.surface.opposite[corner]);
         let middle = atlas.at(across, [0.3, 0.4, 0.3]);

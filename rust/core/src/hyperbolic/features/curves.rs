@@ -94,9 +94,10 @@ impl Curves<'_> {
             return Err(CurveError::Counts { source_count, target_count, unpaired }.into());
         }
         let is_closed = |mesh: &TriangleMesh| mesh.boundary_loops().is_empty();
-        match source_count == 0 && is_closed(source) && is_closed(target) {
-            true => Err(CurveError::NoCurves.into()),
-            false => Ok(()),
+        if source_count == 0 && is_closed(source) && is_closed(target) {
+            Err(CurveError::NoCurves.into())
+        } else {
+            Ok(())
         }
     }
 }
@@ -224,7 +225,7 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
 }
 
 /// Runs through a closed curve from the vertex with the least coordinates on, towards the lesser of its
-/// neighbours, so that it does not matter where and which way it was begun.
+/// neighbors, so that it does not matter where and which way it was begun.
 fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
     let point = |vertex: u32| mesh.points()[vertex as usize];
     let is_less = |a: u32, b: u32| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
@@ -238,9 +239,10 @@ fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
 fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]) -> Result<(), Error> {
     let named = pairs.iter().filter(|pair| pair.on_boundary).count();
     let [source_count, target_count] = [source, target].map(|mesh| mesh.boundary_loops().len() - named);
-    match source_count == target_count {
-        true => Ok(()),
-        false => Err(CurveError::LoopCounts { source_count, target_count }.into()),
+    if source_count == target_count {
+        Ok(())
+    } else {
+        Err(CurveError::LoopCounts { source_count, target_count }.into())
     }
 }
 

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn points_at_parameters_lie_between_their_neighbours() {
+    fn points_at_parameters_lie_between_their_neighbors() {
         let places = [0, 1, 2].map(Vector3::unit);
         let parameters = [0.0, 0.5, 1.0];
         assert_eq!(on_sphere(&places, &parameters, 0.0), places[0]);

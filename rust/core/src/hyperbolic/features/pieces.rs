@@ -26,9 +26,10 @@ pub(crate) fn pieces(
     // 1. Curves and other loops with their features on either surface
     let pairs: Vec<&CurvePair> = divided.pairs.iter().chain(&placement.loops).collect();
     let features = pairs.iter().zip(&placement.shifts).enumerate().map(|(number, (pair, &shift))| {
-        let features = match pair.closed {
-            true => loop_features(pair, [source.points(), target.points()], shift),
-            false => [slit(&pair.source, source.points()), slit(&pair.target, target.points())],
+        let features = if pair.closed {
+            loop_features(pair, [source.points(), target.points()], shift)
+        } else {
+            [slit(&pair.source, source.points()), slit(&pair.target, target.points())]
         };
         let curve = (number < divided.pairs.len()).then_some(number);
         features.map(|feature| Feature { curve, ..feature })

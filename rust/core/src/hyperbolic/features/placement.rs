@@ -7,7 +7,7 @@
 //! partner for all that. Where curves leave a rotation open, the one is taken that lays the surfaces over
 //! each other as they lie in space.
 //!
-//! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorisations.
+//! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorizations.
 
 use super::curves::CurvePair;
 use super::parameters::{on_sphere, shares, unit};
@@ -89,7 +89,7 @@ pub(crate) fn placed(
     // 1. Either surface by itself
     let [source, target] = match spheres {
         Some([source, target]) => {
-            [normalised(meshes[0], "source_sphere", source)?, normalised(meshes[1], "target_sphere", target)?]
+            [normalized(meshes[0], "source_sphere", source)?, normalized(meshes[1], "target_sphere", target)?]
         }
         None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
     };
@@ -117,7 +117,7 @@ pub(crate) fn placed(
 }
 
 /// Given positions on the unit sphere.
-fn normalised(mesh: &TriangleMesh, name: &'static str, given: &[Vector3]) -> Result<Vec<Vector3>, Error> {
+fn normalized(mesh: &TriangleMesh, name: &'static str, given: &[Vector3]) -> Result<Vec<Vector3>, Error> {
     if given.len() != mesh.n_vertices() {
         let expected = format!("of shape ({}, 3), one place for each vertex", mesh.n_vertices());
         return Err(Error::InvalidArray { name, found: format!("of shape ({}, 3)", given.len()), expected });
@@ -136,8 +136,8 @@ fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector3>, Error
     let mut map = rough_conformal(&whole, &weights, watch)?;
     map.truncate(mesh.n_vertices());
     let weights = mesh.vertex_shares(mesh.face_areas());
-    let centre = centroid(mesh.points(), &weights);
-    let directions = parallel::map(map.len(), |vertex| mesh.points()[vertex] - centre);
+    let center = centroid(mesh.points(), &weights);
+    let directions = parallel::map(map.len(), |vertex| mesh.points()[vertex] - center);
     let rotation = best_rotation(&map, &directions, &weights);
     Ok(parallel::map(map.len(), |vertex| unit(rotate(rotation, map[vertex]))))
 }
@@ -226,11 +226,10 @@ impl Line {
     /// Points at equal distances, of a closed curve from parameter `shift` on.
     fn samples(&self, closed: bool, shift: f64) -> Vec<Vector3> {
         let at = |s: f64| on_sphere(&self.places, &self.parameters, s);
-        match closed {
-            true => {
-                (0..CLOSED_SAMPLES).map(|k| at((k as f64 / CLOSED_SAMPLES as f64 + shift).fract())).collect()
-            }
-            false => (0..OPEN_SAMPLES).map(|k| at(k as f64 / (OPEN_SAMPLES - 1) as f64)).collect(),
+        if closed {
+            (0..CLOSED_SAMPLES).map(|k| at((k as f64 / CLOSED_SAMPLES as f64 + shift).fract())).collect()
+        } else {
+            (0..OPEN_SAMPLES).map(|k| at(k as f64 / (OPEN_SAMPLES - 1) as f64)).collect()
         }
     }
 }
@@ -266,15 +265,15 @@ fn paired_loops(
     spheres: [&[Vector3]; 2],
     rotation: Rotation,
 ) -> Vec<CurvePair> {
-    let centre = |side: usize, number: usize| {
+    let center = |side: usize, number: usize| {
         let vertices = &meshes[side].boundary_loops()[number];
         unit(middle(&Line::new(vertices, true, meshes[side].points(), spheres[side]).samples(true, 0.0)))
     };
     let ours = divided.source.loops.iter().map(|&(number, region)| {
-        (number, divided.partner[region as usize], rotate(rotation, centre(0, number)))
+        (number, divided.partner[region as usize], rotate(rotation, center(0, number)))
     });
     let ours: Vec<_> = ours.collect();
-    let theirs = divided.target.loops.iter().map(|&(number, region)| (number, region, centre(1, number)));
+    let theirs = divided.target.loops.iter().map(|&(number, region)| (number, region, center(1, number)));
     let theirs: Vec<_> = theirs.collect();
     // 1. All pairs, the nearest first
     let mut near = Vec::new();

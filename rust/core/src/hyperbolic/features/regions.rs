@@ -137,12 +137,11 @@ fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Er
     }
     let [on_left, their_loops] = [ours.loops_in(&left), theirs.loops_in(&their_left)];
     let inside = |on_left| if left_is_inside { on_left } else { ours.loops.len() - on_left };
-    match on_left == their_loops {
-        true => Ok(()),
-        false => {
-            let [source_count, target_count] = [inside(on_left), inside(their_loops)];
-            Err(CurveError::LoopSides { closed, source_count, target_count }.into())
-        }
+    if on_left == their_loops {
+        Ok(())
+    } else {
+        let [source_count, target_count] = [inside(on_left), inside(their_loops)];
+        Err(CurveError::LoopSides { closed, source_count, target_count }.into())
     }
 }
 

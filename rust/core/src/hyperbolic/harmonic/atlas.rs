@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! An atlas of a hyperbolic surface: every face by itself in the Poincaré disk, and the isometries between
-//! neighbours.
+//! neighbors.
 //!
 //! No global coordinates: developed over many faces they leave double precision, charts of single faces never
 //! do. A point is a face and a place in its chart, and walks from chart to chart.
@@ -29,7 +29,7 @@ const MOST_STEPS: usize = 100_000;
 /// Charts of all faces of a surface.
 #[derive(Debug, Clone)]
 pub(crate) struct Atlas<'a> {
-    /// (m, 3): the corners of each face in its chart, counter-clockwise.
+    /// (m, 3): the corners of each face in its chart, counterclockwise.
     pub charts: Vec<[Complex; 3]>,
     /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity
     /// on the boundary.
@@ -111,7 +111,7 @@ impl<'a> Atlas<'a> {
 
     /// The point of a face with given barycentric coordinates on the flat face in space.
     ///
-    /// Neighbouring faces agree on their edge, and for a metric by vertex scaling this is the projective map
+    /// Neighboring faces agree on their edge, and for a metric by vertex scaling this is the projective map
     /// that keeps circumcircles.
     pub(crate) fn at(&self, face: Face, barycentric: [f64; 3]) -> Complex {
         let (corners, mu) = (self.charts[face], self.mu[face]);

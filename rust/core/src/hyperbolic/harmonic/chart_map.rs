@@ -157,12 +157,13 @@ impl<'a> ChartMap<'a> {
             (rhs[at], rhs[at + 1]) = (-slopes[vertex].re, -slopes[vertex].im);
         }
         factor.solve(analysis, &mut rhs);
-        parallel::map(slopes.len(), |vertex| match is_free(vertex) {
-            true => {
+        parallel::map(slopes.len(), |vertex| {
+            if is_free(vertex) {
                 let at = analysis.first_unknown(vertex);
                 Complex::new(rhs[at], rhs[at + 1])
+            } else {
+                Complex::default()
             }
-            false => Complex::default(),
         })
     }
 
@@ -193,9 +194,10 @@ impl<'a> ChartMap<'a> {
             net.transitions = parallel::map(old.len(), |corner| {
                 let face = faces[corner / 3];
                 let [tail, head] = [1, 2].map(|step| walks[face[(corner + step) % 3] as usize].motion);
-                match tail == Moebius::default() && head == Moebius::default() {
-                    true => old[corner],
-                    false => tail * old[corner] * head.inverse(),
+                if tail == Moebius::default() && head == Moebius::default() {
+                    old[corner]
+                } else {
+                    tail * old[corner] * head.inverse()
                 }
             });
         }
@@ -207,10 +209,8 @@ impl<'a> ChartMap<'a> {
 /// The Hessian of ½ w d² as the matrix of its two ends, with two rows for each.
 pub(super) fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     let d = pull.distance;
-    let (along, across) = match d < SERIES {
-        true => (1.0 + d * d / 3.0, 1.0 - d * d / 6.0),
-        false => (d / d.tanh(), d / d.sinh()),
-    };
+    let (along, across) =
+        if d < SERIES { (1.0 + d * d / 3.0, 1.0 - d * d / 6.0) } else { (d / d.tanh(), d / d.sinh()) };
     let [e, f] = pull.towards.map(|z| [z.re, z.im]);
     let [n, o] = pull.towards.map(|z| [-z.im, z.re]);
     let mut matrix = [[0.0; 6]; 6];

@@ -7,7 +7,7 @@
 //!
 //! Without folds and with boundaries in order such layouts are one-to-one; their area says no more than that.
 //!
-//! Cost: one sparse Cholesky factorisation for either surface and a point location for each vertex.
+//! Cost: one sparse Cholesky factorization for either surface and a point location for each vertex.
 
 use crate::mesh::NO_CORNER;
 use std::f64::consts::PI;
@@ -52,14 +52,16 @@ struct Laid<'a> {
 pub(crate) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
     // 1. Both surfaces on the same domain
     let is_cylinder = source.sides.len() > 2;
-    let theirs = match is_cylinder {
-        true => on_cylinder(target, watch),
-        false => planar_layout(target, &on_circle(target), watch),
+    let theirs = if is_cylinder {
+        on_cylinder(target, watch)
+    } else {
+        planar_layout(target, &on_circle(target), watch)
     };
     let theirs = theirs.map_err(|error| error.of_surface(Side::Target))?;
-    let ours = match is_cylinder {
-        true => on_cylinder(source, watch),
-        false => planar_layout(source, &on_polygon(source, target, &theirs), watch),
+    let ours = if is_cylinder {
+        on_cylinder(source, watch)
+    } else {
+        planar_layout(source, &on_polygon(source, target, &theirs), watch)
     };
     let ours = ours.map_err(|error| error.of_surface(Side::Source))?;
     let [ours, theirs] = [(source, ours), (target, theirs)].map(|(sliced, layout)| Laid { sliced, layout });

@@ -9,7 +9,7 @@
 //! each vertex, and for each edge the isometry between the charts of its ends, along a path of faces that
 //! lies below the edge.
 //!
-//! Cost: two sparse Cholesky factorisations, a point location for each vertex and a short walk for each edge.
+//! Cost: two sparse Cholesky factorizations, a point location for each vertex and a short walk for each edge.
 
 use crate::mesh::Face;
 use crate::mesh::NO_CORNER;
@@ -66,7 +66,7 @@ pub(crate) fn initial_map(
     // 3. One of the copies of each vertex stands for it
     let links = Links::new(source, target, atlas, &copies);
     let places = links.places(&copies, atlas);
-    // 4. The isometries between the charts of neighbours
+    // 4. The isometries between the charts of neighbors
     let transitions = links.transitions(source, target, &layouts[1], atlas, &copies);
     Ok((places, Net::new(&source.surface, transitions)))
 }
@@ -122,9 +122,10 @@ pub(crate) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
     let n = parameters.len();
     let ascends = parameters[n - 1] > parameters[0];
     let last = n - 2;
-    let at = match ascends {
-        true => parameters.partition_point(|&p| p < s).clamp(1, last + 1) - 1,
-        false => parameters.partition_point(|&p| p >= s).clamp(1, last + 1) - 1,
+    let at = if ascends {
+        parameters.partition_point(|&p| p < s).clamp(1, last + 1) - 1
+    } else {
+        parameters.partition_point(|&p| p >= s).clamp(1, last + 1) - 1
     };
     let (from, to) = (parameters[at], parameters[at + 1]);
     (at, ((s - from) / (to - from)).clamp(0.0, 1.0))
@@ -196,24 +197,26 @@ impl Links {
             self.to_master[tail] * there.inverse() * self.to_master[head].inverse()
         };
         // from both sides by the same path
-        let by_first = parallel::map(opposite.len(), |corner| match opposite[corner] as usize > corner {
-            true => along(corner),
-            false => Moebius::default(),
+        let by_first = parallel::map(opposite.len(), |corner| {
+            if opposite[corner] as usize > corner { along(corner) } else { Moebius::default() }
         });
-        parallel::map(opposite.len(), |corner| match opposite[corner] as usize > corner {
-            true => by_first[corner],
-            false => by_first[opposite[corner] as usize].inverse(),
+        parallel::map(opposite.len(), |corner| {
+            if opposite[corner] as usize > corner {
+                by_first[corner]
+            } else {
+                by_first[opposite[corner] as usize].inverse()
+            }
         })
     }
 }
 
 /// The isometry from the chart of one face to that of another, along faces of the disk between them.
 fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
-    let centre = |face: Face| {
+    let center = |face: Face| {
         let corners = disk.faces[face].map(|vertex| layout[vertex as usize]);
         [0, 1].map(|axis| (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3.0)
     };
-    let goal = centre(to);
+    let goal = center(to);
     let (mut face, mut motion) = (from, Moebius::default());
     let mut random = Random(0x2545_f491_4f6c_dd1d);
     for _ in 0..MOST_STEPS {

@@ -93,7 +93,7 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
     vertices
 }
 
-/// Whether two counter-clockwise triangles may have a point in common: no edge of either separates them.
+/// Whether two counterclockwise triangles may have a point in common: no edge of either separates them.
 fn overlap(one: &[Complex; 3], other: &[Complex; 3]) -> bool {
     let separates = |triangle: &[Complex; 3], points: &[Complex; 3]| {
         (0..3).any(|k| {

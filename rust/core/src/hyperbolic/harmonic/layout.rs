@@ -4,7 +4,7 @@
 //! With positive weights and a boundary on a convex polygon the solution is an embedding, as no edge joins
 //! two vertices of the boundary that is none of it. The weights are the cotangents in space, clamped.
 //!
-//! Cost: one sparse Cholesky factorisation.
+//! Cost: one sparse Cholesky factorization.
 
 use crate::control::Watch;
 use crate::distortion::folded_in_plane;
@@ -60,7 +60,7 @@ pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
     })
 }
 
-/// The weighted means of their neighbours for all vertices that are not held.
+/// The weighted means of their neighbors for all vertices that are not held.
 fn harmonic(
     disk: &Opened,
     weights: &[f64],

@@ -11,7 +11,7 @@
 //! sinh d) n_i n_jᵀ) for both.
 //!
 //! Input: a start in the right homotopy class, and the intrinsic Delaunay weights of the source's own
-//! hyperbolic metric. Cost: one sparse Cholesky factorisation of 2 n unknowns per step, three to six of them.
+//! hyperbolic metric. Cost: one sparse Cholesky factorization of 2 n unknowns per step, three to six of them.
 
 use super::chart_map::{ChartMap, hessian};
 use crate::control::{Observer, Status, Watch};
@@ -44,7 +44,7 @@ pub struct Descent {
     pub status: Status,
 }
 
-/// Minimises E in place.
+/// Minimizes E in place.
 ///
 /// # Errors
 /// [`NumericsError::FactorizationFailed`] where the weights make the system singular in double precision;

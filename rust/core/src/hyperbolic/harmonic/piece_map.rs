@@ -125,7 +125,7 @@ fn mark(is_near: &mut [bool], face: [u32; 3]) {
     face.iter().for_each(|&vertex| is_near[vertex as usize] = true);
 }
 
-/// Marks the neighbours of marked vertices.
+/// Marks the neighbors of marked vertices.
 fn grow(is_near: &mut [bool], faces: &[[u32; 3]]) {
     let before = is_near.to_vec();
     let touches = |face: &&[u32; 3]| face.iter().any(|&vertex| before[vertex as usize]);

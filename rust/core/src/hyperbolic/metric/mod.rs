@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic metric with geodesic boundary in the conformal class of a surface in space.
 //!
-//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformisation). Here every
+//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformization). Here every
 //! face becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two
 //! ways to it:
 //!
@@ -12,7 +12,7 @@
 //!   2013, algorithm 2) on circle packings, finished by the same Newton's method.
 //!
 //! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse
-//! factorisations with one unknown per vertex, twice that with slivers; the flow takes hundreds of passes
+//! factorizations with one unknown per vertex, twice that with slivers; the flow takes hundreds of passes
 //! over the faces besides.
 
 mod edges;
@@ -97,9 +97,10 @@ fn by_newton(surface: &Surface<'_>, lengths: Vec<f64>, watch: &Watch<'_>) -> Res
     if state.is_solved() {
         return Ok(Metric { iterations, mu: interpolation_weights(&factors), ..metric(surface, &state) });
     }
-    let start = match state.residual() < GOOD_START {
-        true => scaled_circles(&packing, &factors),
-        false => packing.factors.clone(),
+    let start = if state.residual() < GOOD_START {
+        scaled_circles(&packing, &factors)
+    } else {
+        packing.factors.clone()
     };
     let relaxed = relaxed(surface, &packing, start, bad_faces(surface, &state), watch)?;
     of_relaxed(surface, Relaxed { iterations: iterations + relaxed.iterations, ..relaxed })

@@ -14,7 +14,7 @@
 //! 3. the Newton step, held inside the range of the factors, is halved until its end is not beyond the
 //!    minimum, or the slope has fallen to half.
 //!
-//! Cost of one iteration: one sparse factorisation with one unknown per vertex, two or three passes over the
+//! Cost of one iteration: one sparse factorization with one unknown per vertex, two or three passes over the
 //! faces.
 
 use std::f64::consts::{PI, TAU};

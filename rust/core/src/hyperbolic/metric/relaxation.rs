@@ -23,7 +23,7 @@ const SHARE: f64 = 0.34;
 const THIN: f64 = 2e-3;
 
 /// From this round on the edges around the faces are relaxed too.
-const NEIGHBOURS_FROM: usize = 3;
+const NEIGHBORS_FROM: usize = 3;
 
 /// From this round on those of one more ring each round.
 const RINGS_FROM: usize = 10;
@@ -88,8 +88,8 @@ pub(super) fn bad_faces(surface: &Surface<'_>, state: &State) -> Vec<usize> {
 /// How many rings around bad faces are relaxed.
 fn rings(round: usize) -> usize {
     match round {
-        0..NEIGHBOURS_FROM => 0,
-        NEIGHBOURS_FROM..RINGS_FROM => 1,
+        0..NEIGHBORS_FROM => 0,
+        NEIGHBORS_FROM..RINGS_FROM => 1,
         RINGS_FROM..DOUBLED_FROM => 2 + round - RINGS_FROM,
         _ => (DOUBLED_FROM - RINGS_FROM) << (round - DOUBLED_FROM).min(32),
     }

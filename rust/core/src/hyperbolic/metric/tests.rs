@@ -60,7 +60,7 @@ fn sphere_with_holes(times: usize, holes: u32) -> Mesh {
 
 fn without(Mesh { points, faces }: Mesh, holes: u32) -> Mesh {
     let faces: Vec<[u32; 3]> = faces.into_iter().filter(|face| face.iter().all(|&v| v >= holes)).collect();
-    // the centres of the holes come first
+    // the centers of the holes come first
     let points = points[holes as usize..].to_vec();
     Mesh { points, faces: faces.iter().map(|face| face.map(|v| v - holes)).collect() }
 }

@@ -44,10 +44,9 @@ pub(super) fn angle_derivatives(sides: [f64; 3], angles: &[f64; 3]) -> [[f64; 3]
     let volume = sinh[(k + 1) % 3] * sinh[(k + 2) % 3] * angles[k].sin();
     let cosines = angles.map(f64::cos);
     std::array::from_fn(|i| {
-        std::array::from_fn(|j| match i == j {
-            true => sinh[i] / volume,
-            false => -cosines[3 - i - j] * sinh[i] / volume,
-        })
+        std::array::from_fn(
+            |j| if i == j { sinh[i] / volume } else { -cosines[3 - i - j] * sinh[i] / volume },
+        )
     })
 }
 

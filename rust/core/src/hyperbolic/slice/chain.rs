@@ -33,7 +33,7 @@ pub(super) fn order(source: &Piece, target: &Piece) -> Vec<(usize, bool)> {
         .map(|(s, t)| [tips(source, s), tips(target, t)])
         .collect();
     let starts = (0..2 * tips.len()).map(|start| (start / 2, start % 2 == 1));
-    let chains = starts.map(|start| nearest_neighbours(&tips, start));
+    let chains = starts.map(|start| nearest_neighbors(&tips, start));
     chains.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Vec::new(), |(chain, _)| chain)
 }
 
@@ -60,7 +60,7 @@ fn tips(piece: &Piece, feature: &Feature) -> [Vector3; 2] {
 }
 
 /// The chain from one feature, in one direction, on to the nearest ones, and its length.
-fn nearest_neighbours(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>, f64) {
+fn nearest_neighbors(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>, f64) {
     let mut chain = vec![start];
     let mut length = 0.0;
     let mut last = start;

@@ -4,13 +4,13 @@
 //! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An edge between
 //! two such vertices that is not marked itself is a *chord*: a triangle with two sides on the boundary could
 //! not be given the angle it needs there, and a straight-line map with the boundary fixed would flatten it.
-//! So every chord is split. One pass over the neighbours of the vertices that are new on the cuts leaves
+//! So every chord is split. One pass over the neighbors of the vertices that are new on the cuts leaves
 //! none, as the new edges all end in a midpoint, which lies on no cut. It also leaves a way through between
-//! any two places of the boundary: every triangle has a vertex off the cuts, and neighbouring triangles share
+//! any two places of the boundary: every triangle has a vertex off the cuts, and neighboring triangles share
 //! one.
 //!
 //! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a
-//! vertex as many steps as it has neighbours.
+//! vertex as many steps as it has neighbors.
 
 use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
@@ -91,8 +91,8 @@ impl Cutting {
         std::iter::successors((first != NO_CORNER).then_some(first), turn)
     }
 
-    /// The neighbours of a vertex; at a boundary vertex without the one before it on the boundary.
-    pub(super) fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+    /// The neighbors of a vertex; at a boundary vertex without the one before it on the boundary.
+    pub(super) fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         self.corners(vertex).map(|corner| vertex_at(&self.faces, next_corner(corner)))
     }
 
@@ -202,7 +202,7 @@ impl Cutting {
         }
     }
 
-    /// Appends a copy of the face of a corner, turned so that this corner comes first, without neighbours.
+    /// Appends a copy of the face of a corner, turned so that this corner comes first, without neighbors.
     fn append_copy(&mut self, corner: u32) -> u32 {
         let corners = [corner, next_corner(corner), previous_corner(corner)];
         let Place { face, corners: weights } = self.places[Face::of_corner(corner)];
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn splits_keep_neighbours_rings_and_places() {
+    fn splits_keep_neighbors_rings_and_places() {
         let mut cutting = two_triangles();
         for k in 0..60 {
             cutting.split(7919 * k % cutting.opposite.len() as u32);

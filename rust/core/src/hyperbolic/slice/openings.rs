@@ -19,7 +19,7 @@ pub(in crate::hyperbolic) struct Opened {
 }
 
 impl Opened {
-    /// Opens `faces` where `opposite` has no neighbours: the corners of each fan become one vertex.
+    /// Opens `faces` where `opposite` has no neighbors: the corners of each fan become one vertex.
     ///
     /// The vertices are numbered in the order of their lowest corners.
     pub(super) fn new(faces: &[[u32; 3]], opposite: Vec<u32>) -> Self {

@@ -28,11 +28,11 @@ pub(super) fn lower_distances(surface: &Cutting, distances: &mut Vec<f64>, sourc
         if distance > distances[vertex as usize] {
             continue;
         }
-        for neighbour in surface.neighbours(vertex) {
-            let through = distance + surface.length(vertex, neighbour);
-            if through < distances[neighbour as usize] {
-                distances[neighbour as usize] = through;
-                queue.push(Reverse((through.to_bits(), neighbour)));
+        for neighbor in surface.neighbors(vertex) {
+            let through = distance + surface.length(vertex, neighbor);
+            if through < distances[neighbor as usize] {
+                distances[neighbor as usize] = through;
+                queue.push(Reverse((through.to_bits(), neighbor)));
             }
         }
     }
@@ -56,14 +56,14 @@ pub(super) fn cheapest_path(
         if spent > best[vertex as usize].0 {
             continue;
         }
-        for neighbour in surface.neighbours(vertex) {
-            if surface.is_cut(neighbour) && neighbour != to {
+        for neighbor in surface.neighbors(vertex) {
+            if surface.is_cut(neighbor) && neighbor != to {
                 continue;
             }
-            let total = spent + cost(vertex, neighbour);
-            if total < best[neighbour as usize].0 {
-                best[neighbour as usize] = (total, vertex);
-                queue.push(Reverse((total.to_bits(), neighbour)));
+            let total = spent + cost(vertex, neighbor);
+            if total < best[neighbor as usize].0 {
+                best[neighbor as usize] = (total, vertex);
+                queue.push(Reverse((total.to_bits(), neighbor)));
             }
         }
     }

@@ -6,7 +6,7 @@
 
 use crate::vector::Vector3;
 
-/// The same polyline with further points, so that neighbours are about `spacing` apart at the most.
+/// The same polyline with further points, so that neighbors are about `spacing` apart at the most.
 pub(super) fn resampled(points: &[Vector3], spacing: f64) -> Vec<Vector3> {
     let mut dense: Vec<Vector3> = points.first().copied().into_iter().collect();
     for ends in points.windows(2) {
@@ -48,9 +48,9 @@ impl Polyline {
 
     /// Encloses the chords `low..high` in a ball, and their halves.
     fn enclose(&mut self, ball: usize, low: usize, high: usize) {
-        let centre = self.points[usize::midpoint(low, high)];
-        let radius = self.points[low..=high].iter().map(|&point| centre.distance(point)).fold(0.0, f64::max);
-        self.balls[ball] = (centre, radius);
+        let center = self.points[usize::midpoint(low, high)];
+        let radius = self.points[low..=high].iter().map(|&point| center.distance(point)).fold(0.0, f64::max);
+        self.balls[ball] = (center, radius);
         if high - low > 1 {
             let middle = usize::midpoint(low, high);
             self.enclose(2 * ball + 1, low, middle);
@@ -60,8 +60,8 @@ impl Polyline {
 
     /// The distance of the chords `low..high`, or `least` where that is less.
     fn nearest(&self, ball: usize, low: usize, high: usize, x: Vector3, least: f64) -> f64 {
-        let (centre, radius) = self.balls[ball];
-        if centre.distance(x) - radius >= least {
+        let (center, radius) = self.balls[ball];
+        if center.distance(x) - radius >= least {
             return least;
         }
         if high - low == 1 {

@@ -108,24 +108,24 @@ fn bank(points: &[Vector3], vertices: Vec<u32>) -> Bank {
 }
 
 /// Removes the faces around some vertices; the boundary loops become features.
-fn with_holes(whole: &Piece, centres: &[u32]) -> Piece {
-    let kept = |face: &&[u32; 3]| face.iter().all(|vertex| !centres.contains(vertex));
+fn with_holes(whole: &Piece, centers: &[u32]) -> Piece {
+    let kept = |face: &&[u32; 3]| face.iter().all(|vertex| !centers.contains(vertex));
     let faces: Vec<[u32; 3]> = whole.faces.iter().filter(kept).copied().collect();
-    let new_number = |vertex: u32| vertex - centres.iter().filter(|&&centre| centre < vertex).count() as u32;
+    let new_number = |vertex: u32| vertex - centers.iter().filter(|&&center| center < vertex).count() as u32;
     let mut rest = piece(
         whole
             .points
             .iter()
             .zip(0..)
-            .filter(|(_, vertex)| !centres.contains(vertex))
+            .filter(|(_, vertex)| !centers.contains(vertex))
             .map(|(&x, _)| x)
             .collect(),
         faces.into_iter().map(|face| face.map(new_number)).collect(),
     );
     let surface = Cutting::new(whole);
-    for &centre in centres {
+    for &center in centers {
         // seen from outside, the rim of the hole has the surface on its right
-        let mut rim: Vec<u32> = surface.neighbours(centre).map(new_number).collect();
+        let mut rim: Vec<u32> = surface.neighbors(center).map(new_number).collect();
         if rest.faces.iter().all(|face| !is_half_edge(face, rim[0], rim[1])) {
             rim.reverse();
         }
@@ -144,12 +144,12 @@ fn is_half_edge(face: &[u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|k| [face[k], face[(k + 1) % 3]] == [a, b])
 }
 
-/// The path straight on from the edge (a, b), from b, through vertices with six neighbours.
+/// The path straight on from the edge (a, b), from b, through vertices with six neighbors.
 fn straight(surface: &Cutting, a: u32, b: u32, n_edges: usize) -> Vec<u32> {
     let mut path = vec![a, b];
     for _ in 0..n_edges {
         let [before, at] = [path[path.len() - 2], path[path.len() - 1]];
-        let around: Vec<u32> = surface.neighbours(at).collect();
+        let around: Vec<u32> = surface.neighbors(at).collect();
         let from = around.iter().position(|&v| v == before).unwrap();
         path.push(around[(from + around.len() / 2) % around.len()]);
     }
@@ -166,7 +166,7 @@ fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Ve
     let mut paths: Vec<Vec<u32>> = Vec::new();
     while paths.len() < n_slits {
         let a = random(piece.points.len()) as u32;
-        let around: Vec<u32> = surface.neighbours(a).collect();
+        let around: Vec<u32> = surface.neighbors(a).collect();
         let path = straight(&surface, a, around[random(around.len())], n_edges);
         if path.iter().all(|vertex| paths.iter().all(|other| !other.contains(vertex))) {
             paths.push(path);
@@ -175,7 +175,7 @@ fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Ve
     paths
 }
 
-/// A vertex that has six neighbours, as have those near it, at the middle of the first face of the
+/// A vertex that has six neighbors, as have those near it, at the middle of the first face of the
 /// icosahedron.
 fn middle_vertex(piece: &Piece) -> u32 {
     let [a, b, c] = triangle(&piece.points, [0, 11, 5]);
@@ -340,9 +340,9 @@ fn slits_of_two_edges() {
 fn holes_and_slits() {
     for n_slits in [0, 1, 4] {
         let whole = sphere(3);
-        let centres =
+        let centers =
             [nearest(&whole, Vector3([0.0, 0.0, 1.0])), nearest(&whole, Vector3([0.0, 1.0, 0.0])), 0];
-        let open = with_holes(&whole, &centres);
+        let open = with_holes(&whole, &centers);
         let rims: Vec<u32> = open.features.iter().flat_map(outline).collect();
         let is_free = |path: &Vec<u32>| path.iter().all(|vertex| !rims.contains(vertex));
         let is_inner =
@@ -360,7 +360,7 @@ fn scattered_where(piece: &Piece, n_slits: usize, is_allowed: impl Fn(&Vec<u32>)
     let surface = Cutting::new(piece);
     let slit_near = |x: Vector3| {
         let at = nearest(piece, x);
-        surface.neighbours(at).map(|next| straight(&surface, at, next, 3)).find(&is_allowed).unwrap()
+        surface.neighbors(at).map(|next| straight(&surface, at, next, 3)).find(&is_allowed).unwrap()
     };
     let places = [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]];
     places[..n_slits].iter().map(|&x| slit_near(unit(Vector3(x)))).collect()
@@ -371,11 +371,11 @@ fn slits_one_edge_apart() {
     let sphere = sphere(4);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbours(a).collect();
+    let around: Vec<u32> = surface.neighbors(a).collect();
     let [b, c] = [around[0], around[1]];
     let one = straight(&surface, a, b, 4);
     // beside the first, on the line through c that is parallel
-    let next: Vec<u32> = surface.neighbours(c).collect();
+    let next: Vec<u32> = surface.neighbors(c).collect();
     let beside = next.iter().position(|&v| v == b).unwrap();
     let other = straight(&surface, c, next[(beside + next.len() - 1) % next.len()], 4);
     let other = if other.iter().any(|v| one.contains(v)) {
@@ -383,7 +383,7 @@ fn slits_one_edge_apart() {
     } else {
         other
     };
-    let adjacent = one.iter().any(|&v| surface.neighbours(v).any(|w| other.contains(&w)));
+    let adjacent = one.iter().any(|&v| surface.neighbors(v).any(|w| other.contains(&w)));
     assert!(adjacent);
     check(&with_slits(sphere, &[one, other]));
 }
@@ -393,7 +393,7 @@ fn tips_one_edge_apart() {
     let sphere = sphere(4);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let b = surface.neighbours(a).next().unwrap();
+    let b = surface.neighbors(a).next().unwrap();
     let line = straight(&surface, a, b, 9);
     check(&with_slits(sphere, &[line[..3].to_vec(), line[3..6].to_vec(), line[6..].to_vec()]));
 }
@@ -418,11 +418,11 @@ fn a_spiral_around_another_slit() {
     let mut spiral: Vec<u32> = (0..=2000).map(|i| nearest(&sphere, at(f64::from(i) / 2000.0))).collect();
     spiral.dedup();
     let surface = Cutting::new(&sphere);
-    assert!(spiral.windows(2).all(|ends| surface.neighbours(ends[0]).any(|v| v == ends[1])));
+    assert!(spiral.windows(2).all(|ends| surface.neighbors(ends[0]).any(|v| v == ends[1])));
     let pole = nearest(&sphere, Vector3([0.0, 0.0, 1.0]));
-    let inner = straight(&surface, surface.neighbours(pole).next().unwrap(), pole, 2);
+    let inner = straight(&surface, surface.neighbors(pole).next().unwrap(), pole, 2);
     let south = nearest(&sphere, Vector3([0.0, 0.0, -1.0]));
-    let outer = straight(&surface, surface.neighbours(south).next().unwrap(), south, 4);
+    let outer = straight(&surface, surface.neighbors(south).next().unwrap(), south, 4);
     assert!(check(&with_slits(sphere, &[spiral, inner, outer])).followed);
 }
 
@@ -435,7 +435,7 @@ fn source_and_target_of_different_resolution() {
     let target = piece(points, faces);
     let surface = Cutting::new(&target);
     let middle =
-        |a: u32, b: u32| surface.neighbours(a).find(|&v| surface.neighbours(b).any(|w| w == v)).unwrap();
+        |a: u32, b: u32| surface.neighbors(a).find(|&v| surface.neighbors(b).any(|w| w == v)).unwrap();
     let finer = |path: &Vec<u32>| {
         let halves = path.windows(2).flat_map(|ends| [ends[0], middle(ends[0], ends[1])]);
         halves.chain(path.last().copied()).collect::<Vec<u32>>()
@@ -465,7 +465,7 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
         straight(
             &surface,
             nearest(&sphere, unit(x)),
-            surface.neighbours(nearest(&sphere, unit(x))).next().unwrap(),
+            surface.neighbors(nearest(&sphere, unit(x))).next().unwrap(),
             3,
         )
     };
@@ -526,7 +526,7 @@ fn features_that_touch_or_are_no_paths_are_refused() {
     let sphere = sphere(3);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbours(a).collect();
+    let around: Vec<u32> = surface.neighbors(a).collect();
     let one = straight(&surface, around[0], a, 3);
     let touching = straight(&surface, around[2], around[1], 2);
     let crossing = vec![around[0], a, around[3]];
@@ -536,12 +536,11 @@ fn features_that_touch_or_are_no_paths_are_refused() {
         let mut silent = Silent;
         let watch = Watch::new(&mut silent, 0.0, "");
         let result = slice_pair(&piece, &piece, &identity, &watch);
-        match is_fine {
-            true => assert!(result.is_ok()),
-            false => {
-                let error = Error::from(CurveError::Uncuttable { curve: Some(1) });
-                assert_eq!(result.unwrap_err(), error.of_surface(crate::Side::Source))
-            }
+        if is_fine {
+            assert!(result.is_ok())
+        } else {
+            let error = Error::from(CurveError::Uncuttable { curve: Some(1) });
+            assert_eq!(result.unwrap_err(), error.of_surface(crate::Side::Source))
         }
     }
 }
@@ -551,9 +550,9 @@ fn slits_that_touch_themselves_are_refused() {
     let sphere = sphere(3);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbours(a).collect();
+    let around: Vec<u32> = surface.neighbors(a).collect();
     let far = nearest(&sphere, sphere.points[a as usize] * -1.0);
-    let other = straight(&surface, surface.neighbours(far).next().unwrap(), far, 3);
+    let other = straight(&surface, surface.neighbors(far).next().unwrap(), far, 3);
     let noose = vec![around[3], a, around[0], around[1], a];
     let there_and_back = vec![around[0], a, around[3], a, around[0]];
     for touching in [noose, there_and_back] {

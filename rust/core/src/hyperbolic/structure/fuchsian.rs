@@ -23,7 +23,7 @@ use crate::vector::Vector3;
 /// A copy of the fundamental domain in the universal cover.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverCopy {
-    /// The generators that lead to it, without cancelling neighbours: k for the k-th one, counted from 1, and
+    /// The generators that lead to it, without cancelling neighbors: k for the k-th one, counted from 1, and
     /// −k for its inverse. The last one acts first; the domain itself has none.
     pub word: Vec<i32>,
     /// The isometry that takes the fundamental domain there.
@@ -62,7 +62,7 @@ impl<'a> Development<'a> {
     }
 
     /// Lays the disk out around a face in its middle, so that no part is farther out than it must be.
-    pub(super) fn centred(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
+    pub(super) fn centered(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
         let first = Self::around(Face(0), sliced, atlas);
         // the mean on the hyperboloid is where the sum of cosh(distance) is least: the farthest count most
         let middle =
@@ -108,10 +108,7 @@ impl<'a> Development<'a> {
         });
         let nearest = candidates.min_by(|one, other| one.0.total_cmp(&other.0));
         let generator = nearest.map_or(Moebius::default(), |(_, generator)| generator);
-        match generator.a.re < 0.0 {
-            true => Moebius { a: -generator.a, b: -generator.b },
-            false => generator,
-        }
+        if generator.a.re < 0.0 { Moebius { a: -generator.a, b: -generator.b } } else { generator }
     }
 }
 
@@ -124,8 +121,8 @@ fn weighted(z: Complex) -> Vector3 {
 
 /// The fundamental domain and its copies in the universal cover, at most `count` in all.
 ///
-/// They grow outward from the domain: each is a neighbour, across a copy of an arc, of an earlier one, and of
-/// all such neighbours the one whose middle is nearest to the origin comes next.
+/// They grow outward from the domain: each is a neighbor, across a copy of an arc, of an earlier one, and of
+/// all such neighbors the one whose middle is nearest to the origin comes next.
 pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
     let letters: Vec<i32> = (1..=generators.len() as i32).flat_map(|k| [k, -k]).collect();
     let motion = |letter: i32| {
@@ -138,7 +135,7 @@ pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
         if copies.len() >= count || at >= copies.len() {
             break;
         }
-        // 1. The neighbours of the newest copy
+        // 1. The neighbors of the newest copy
         for &letter in &letters {
             if copies[at].word.last() != Some(&-letter) {
                 let next = copies[at].motion * motion(letter);

@@ -127,7 +127,7 @@ pub fn hyperbolic_structure(
     let metric = metric.map_err(|error| error.with_faces(face_of))?;
     // 4. The fundamental domain and the group
     let atlas = Atlas::new(&sliced.surface, &metric);
-    let domain = Development::centred(&sliced, &atlas);
+    let domain = Development::centered(&sliced, &atlas);
     // 5. The pants, and the geodesics between them
     if !observer.progress(0.9, "Pants") {
         return Err(Error::CancelledEarly);

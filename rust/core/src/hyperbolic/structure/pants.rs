@@ -22,7 +22,7 @@ pub struct Pants {
     /// The corners of both hexagons in Klein's model. Their sides 0–1, 2–3 and 4–5 lie on the boundaries in
     /// the order of the lengths and are half as long, the others are the perpendiculars; 5–0 is common to
     /// both and lies on the imaginary axis with its middle in the origin. The first lies on the right, at the
-    /// left bank of the feature, counter-clockwise; the second is its mirror image.
+    /// left bank of the feature, counterclockwise; the second is its mirror image.
     pub hexagons: [[Complex; 6]; 2],
     /// The inner angles, π/2 but for rounding.
     pub angles: [[f64; 6]; 2],
@@ -51,7 +51,7 @@ pub(super) fn pants(g: Moebius, h: Moebius) -> Pants {
 }
 
 /// The corners of the right-angled hexagon whose alternate sides 0–1, 2–3 and 4–5 have these lengths,
-/// counter-clockwise, its side 5–0 in the middle of the imaginary axis.
+/// counterclockwise, its side 5–0 in the middle of the imaginary axis.
 fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
     let half = Complex::new(0.0, (0.25 * between(a, c, b)).tanh());
     let (low, high) = (-half, half);

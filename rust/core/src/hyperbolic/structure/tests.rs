@@ -160,7 +160,7 @@ fn hexagons_are_right_angled_convex_and_congruent_and_fill_the_surface() {
                 let [p, q, r] = [0, 1, 2].map(|step| pants.hexagons[0][(k + step) % 6]);
                 ((q - p).conj() * (r - q)).im
             };
-            assert!((0..6).all(|k| turn(k) > 0.0), "convex and counter-clockwise");
+            assert!((0..6).all(|k| turn(k) > 0.0), "convex and counterclockwise");
             let mirrored = |k: usize| (pants.hexagons[0][k] + pants.hexagons[1][k].conj()).norm();
             assert!((0..6).all(|k| mirrored(k) < 1e-9));
         }

@@ -97,9 +97,9 @@ fn crossings(
     mut line: Line,
     length: f64,
 ) -> Option<Vec<u32>> {
-    let (mut corner, mut corners, mut travelled) = (start, Vec::new(), 0.0);
-    while travelled < LOST * length {
-        if corner == start && travelled > (1.0 - ROUNDING) * length {
+    let (mut corner, mut corners, mut traveled) = (start, Vec::new(), 0.0);
+    while traveled < LOST * length {
+        if corner == start && traveled > (1.0 - ROUNDING) * length {
             return Some(corners);
         }
         let (across, tau) = (surface.opposite[corner as usize], atlas.transitions[corner as usize]);
@@ -110,16 +110,17 @@ fn crossings(
         corners.push(corner);
         line = moved(tau, line);
         corner = ahead(atlas, surface, across, line);
-        travelled += distance(entry, crossing(atlas, corner, line).1);
+        traveled += distance(entry, crossing(atlas, corner, line).1);
     }
     None
 }
 
 /// The edge through which a line leaves a face that it has entered through another edge.
 fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
-    let (one, other) = match corner_height(atlas, entered, line) >= 0.0 {
-        true => (next_corner(entered), previous_corner(entered)),
-        false => (previous_corner(entered), next_corner(entered)),
+    let (one, other) = if corner_height(atlas, entered, line) >= 0.0 {
+        (next_corner(entered), previous_corner(entered))
+    } else {
+        (previous_corner(entered), next_corner(entered))
     };
     // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them
     // do so

@@ -3,13 +3,13 @@ use super::*;
 use crate::control::Silent;
 
 /// A small arc about a direction, `half` to either side along a tangent.
-fn arc(centre: Vector3, along: Vector3, half: f64) -> Vec<Vector3> {
-    let centre = unit(centre);
-    let normal = centre.cross(unit(along));
-    let side = unit(normal.cross(centre));
+fn arc(center: Vector3, along: Vector3, half: f64) -> Vec<Vector3> {
+    let center = unit(center);
+    let normal = center.cross(unit(along));
+    let side = unit(normal.cross(center));
     let at = |k: i32| {
         let (sine, cosine) = (half * f64::from(k) / 10.0).sin_cos();
-        centre * cosine + side * sine
+        center * cosine + side * sine
     };
     (-10..=10).map(at).collect()
 }

@@ -263,7 +263,7 @@ impl Run<'_> {
         let options = GaussNewtonOptions { path, ..self.gauss_newton_options() };
         let begun = map.clone();
         let surface =
-            target_floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Disk };
+            target_floors::MappedSurface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Disk };
         let (problem, map, status) = match self.options.area_tolerance {
             Some(tolerance) => {
                 within_tolerance(&surface, problem, map, tolerance, &options, history, observer)

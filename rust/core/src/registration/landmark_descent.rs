@@ -226,7 +226,7 @@ impl Carrying<'_> {
     ) -> (Problem, SpatialMap, Status) {
         problem.penalty.weight = goals.weight;
         let surface =
-            target_floors::Surface { mesh, targets: mesh.face_areas(), codomain: self.domain.into() };
+            target_floors::MappedSurface { mesh, targets: mesh.face_areas(), codomain: self.domain.into() };
         let (mut no_nearer, mut status) = (0, Status::MaxIterations);
         for stage in 0..STAGES {
             let before = farthest(&problem, &map);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The rotation that lays a sphere map over its surface.
+//! The rotation that aligns a sphere map with its surface.
 //!
-//! An area-preserving map of the sphere is free up to rotations (and more), so that of all rotated copies the
-//! one that lies over the surface best is returned: it maximizes Σ w_i (R f_i)·(v_i − c), c the centroid of
-//! the surface's measure w.
+//! An area-preserving map of the sphere is free up to rotations (and more). The rotation R returned maximizes
+//! Σ w_i (R f_i)·(v_i − c), c the centroid of the surface's measure w.
 
 use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::codomain::SpatialMap;
@@ -11,7 +10,7 @@ use crate::distortion::folded_on_sphere;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
-/// `map` rotated over its surface, with one weight per vertex; as it was where the rounding of a rotation
+/// `map` rotated to align with its surface, with one weight per vertex; unchanged where the rounding of the rotation
 /// folds a sliver.
 pub(super) fn aligned(mesh: &TriangleMesh, map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let (points, center) = (mesh.points(), centroid(mesh.points(), weights));

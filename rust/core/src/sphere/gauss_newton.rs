@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Our own method on the sphere: a start without folds and a guarded descent that never leaves it.
+//! Our own method on the sphere: a start without folds and a guarded descent that never folds a face.
 //!
-//! On most surfaces the spherical conformal map and a few steps of the papers' fixed point are without folds and near
-//! the minimum. Where they fold or leave long thin parts next to nothing of their area, the start is the
-//! [progressive](crate::embedding) embedding. From there the descent goes on behind a barrier
-//! ([`gauss_newton`](crate::optimize::gauss_newton)).
+//! On most surfaces the spherical conformal map and a few steps of the papers' fixed point lead near the minimum without
+//! folds. Where they fold, or nearly collapse long thin parts, the start is the [progressive](crate::embedding) embedding.
+//! From there the descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)).
 //!
 //! Cost: about six factorizations with one unknown per vertex, about twelve with two.
 
@@ -31,33 +30,37 @@ use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, targ
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
 
-/// Fixed-point steps at the most.
+/// Limit of the fixed-point steps.
 const FIXED_POINT_STEPS: usize = 5;
 
-/// They end when the stretch energy falls by no more than this.
+/// The fixed-point steps end when the stretch energy falls by no more than this.
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
-/// Iterations where those leave the area ratio a small deviation, and at the most: no descent takes as many.
+/// Iterations: the number that suffices where it leaves a small area deviation, and a limit that no descent reaches.
 const ITERATIONS: [usize; 2] = [20, 1000];
 
-/// On surfaces with fewer vertices twice as many cost next to nothing, on larger ones fewer have to do.
+/// Surfaces with fewer vertices get twice as many iterations, which are cheap there.
 const SMALL: usize = 10_000;
+
+/// Surfaces with this many vertices or more get [`USUAL_WHERE_LARGE`] iterations.
 const LARGE: usize = 20_000;
+
+/// Iterations that suffice on large surfaces.
 const USUAL_WHERE_LARGE: usize = 17;
 
-/// A cancelled run on more vertices ends at once, also without a map.
+/// A cancelled run on more vertices ends at once, even without a map.
 const QUICK: usize = 50_000;
 
-/// A start is bad when E_A is more than this part of the area; the progressive one is better then.
+/// A start with an E_A above this part of the area is bad; the progressive one is better.
 const BAD_START: f64 = 0.1;
 
-/// From a start with a larger E_A λ falls by stages.
+/// From a start with an E_A above this part of the area, λ falls by stages.
 const FAR: f64 = 0.12;
 
-/// A result is uneven when E_A is more than this part of the area; then another start may do better.
+/// A result with an E_A above this part of the area is uneven; another start may do better.
 const UNEVEN: f64 = 2e-4;
 
-/// Area deviation of the result below which nothing is left to gain.
+/// The descent has converged when the area deviation is below this.
 const TOLERANCE: f64 = 2e-4;
 
 impl Run<'_> {
@@ -87,8 +90,8 @@ impl Run<'_> {
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run before
-    /// there was a map without folds.
+    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run
+    /// before there was a map without folds.
     fn gauss_newton(
         &self,
         history: &mut History,
@@ -110,7 +113,7 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.9 };
         let path = if problem.unevenness(&map) > FAR { AnglePath::Staged } else { AnglePath::Balanced };
         let (problem, map, status) = self.descend(problem, map, path, status, history, &mut phase);
-        // 4. Another one from the progressive embedding where the result is uneven; none where a limit of iterations was
+        // 4. Where the result is uneven, another descent from the progressive embedding, unless an iteration limit is
         //    given, which counts for all descents
         let is_limited = self.options.max_iterations.is_some();
         let is_final = is_limited
@@ -125,7 +128,7 @@ impl Run<'_> {
         Ok(self.second_try(problem, map, status, history, &mut phase))
     }
 
-    /// The start map given, else the conformal one and fixed-point steps; `None` where it is of no use.
+    /// The given start map, or the conformal one and fixed-point steps; `None` where it is of no use.
     fn quick_start(
         &self,
         problem: &Problem,
@@ -133,11 +136,11 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(Option<SpatialMap>, Status), Error> {
         let holds = |map: &SpatialMap| problem.energy.is_embedding(map);
-        // 1. A map that was given only needs to be unfolded
+        // 1. A given map only needs to be unfolded
         if let Some(initial) = self.options.initial {
             let map: SpatialMap = initial.iter().filter_map(|&x| onto_sphere(x)).collect();
             let map = if holds(&map) { Some(map) } else { unfold::unfold(self.mesh, &map).filter(holds) };
-            // a map that covers the sphere twice folds nowhere either
+            // a map that covers the sphere twice has no folded faces either
             return Ok((map.filter(|map| self.is_bijective(map)), Status::MaxIterations));
         }
         // 2. The conformal start and fixed-point steps
@@ -154,7 +157,7 @@ impl Run<'_> {
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (stepped, status) =
             fixed_point(&domain, self.weights, start.clone(), &stopping, history, &mut phase);
-        // 3. Either of them, where it is not far off
+        // 3. Either of them, where it is not bad
         let candidates = [stepped, start].into_iter().filter(holds);
         let best = candidates.min_by(|a, b| problem.unevenness(a).total_cmp(&problem.unevenness(b)));
         let is_good = |map: &SpatialMap| status == Status::Cancelled || problem.unevenness(map) <= BAD_START;
@@ -175,7 +178,7 @@ impl Run<'_> {
         }
     }
 
-    /// The guarded descent from a map without folds; a run already cancelled only keeps the map.
+    /// The guarded descent from a map without folds; a run already cancelled returns the map unchanged.
     fn descend(
         &self,
         problem: Problem,
@@ -194,7 +197,7 @@ impl Run<'_> {
             SMALL..LARGE => usual,
             _ => USUAL_WHERE_LARGE,
         };
-        // who asks for a tolerance gets it
+        // a tolerance that was asked for must be reached
         let is_asked = self.options.max_iterations.is_some() || self.options.tolerance.is_some();
         let options = GaussNewtonOptions {
             profile: Profile::Barrier,
@@ -206,8 +209,11 @@ impl Run<'_> {
             until_open: None,
         };
         let begun = map.clone();
-        let surface =
-            target_floors::Surface { mesh: self.mesh, targets: self.targets, codomain: Codomain::Sphere };
+        let surface = target_floors::MappedSurface {
+            mesh: self.mesh,
+            targets: self.targets,
+            codomain: Codomain::Sphere,
+        };
         let (problem, map, status) = match self.options.area_tolerance {
             Some(tolerance) => {
                 within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
@@ -222,7 +228,7 @@ impl Run<'_> {
         }
     }
 
-    /// The better of an uneven map and what the progressive embedding leads to.
+    /// The more even of an uneven map and the descent from the progressive embedding.
     fn second_try(
         &self,
         problem: Problem,
@@ -233,15 +239,15 @@ impl Run<'_> {
     ) -> (SpatialMap, Status) {
         let first = problem.unevenness(&map);
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let other = match self.progressive_start(&problem, &mut phase) {
-            Ok(other) => other,
+        let progressive = match self.progressive_start(&problem, &mut phase) {
+            Ok(progressive) => progressive,
             Err(Error::CancelledEarly) => return (map, Status::Cancelled),
             Err(_) => return (map, status),
         };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
-        let (problem, other, ended) =
-            self.descend(problem, other, AnglePath::Staged, status, history, &mut phase);
-        more_even((first, map, status), (problem.unevenness(&other), other, ended))
+        let (problem, second, second_status) =
+            self.descend(problem, progressive, AnglePath::Staged, status, history, &mut phase);
+        more_even((first, map, status), (problem.unevenness(&second), second, second_status))
     }
 
     /// True if no face is folded and the faces cover the sphere once.

@@ -35,30 +35,29 @@ use refinement::refine;
 use run::Run;
 pub(crate) use start::rough_conformal;
 
-/// The part of the whole that the map takes before faces are split.
+/// The part of the progress that belongs to the map before faces are split.
 const UNREFINED: f64 = 0.4;
 
 /// A one-to-one map of a closed surface to the unit sphere.
 #[derive(Debug, Clone)]
 pub struct SphereMap {
     /// (n, 3): the image of each vertex, unit rows; positive faces are seen counter-clockwise from outside.
-    /// Without a start map it is the rotated copy that lies over the surface best.
+    /// Without a start map, the map is rotated to align with the surface.
     pub positions: Vec<Vector3>,
     /// Why the run ended.
     pub status: Status,
-    /// The energy after every iteration, by unsigned areas as in the paper; where a mended map took the place
-    /// of a folded one, a record of step 0. With [`SphereMapOptions::refine`] of all descents, those of parts of faces that
-    /// came to nothing included.
+    /// The energy after every iteration, by unsigned areas as in the paper, with a record of step 0 where a mended map
+    /// replaced a folded one. With [`SphereMapOptions::refine`], the records of all descents, even discarded ones.
     pub history: History,
-    /// The figures of the map, signed. Where faces are split, the image of a face is that of its parts.
+    /// The distortion of the map, by signed areas. The image of a split face consists of those of its parts.
     pub distortion: Distortion,
-    /// The parts of the faces, where [`SphereMapOptions::refine`] asks for them.
+    /// The split faces, with [`SphereMapOptions::refine`].
     pub refinement: Option<Box<Refinement>>,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
 
-/// Maps a closed surface of genus 0 onto the unit sphere so that areas are kept.
+/// Maps a closed surface of genus 0 onto the unit sphere so that areas are preserved.
 ///
 /// # Errors
 /// Input that is no sphere, and options out of range, are refused before any work.
@@ -81,7 +80,7 @@ pub fn sphere_map(
     observer: &mut dyn Observer,
 ) -> Result<SphereMap, Error> {
     let mut history = History::start();
-    // 1. Refuse what is no sphere before any work
+    // 1. Check the surface and the options
     options.check(mesh)?;
     // 2. Targets, and each vertex's share of them
     let targets: Cow<'_, [f64]> = match options.density {
@@ -89,7 +88,7 @@ pub fn sphere_map(
         None => mesh.face_areas().into(),
     };
     let weights = mesh.vertex_shares(&targets);
-    // 3. Minimize the energy, unfold what folded
+    // 3. Minimize the energy without folds
     let run = Run { mesh, targets: &targets, weights: &weights, options };
     let to = if options.refine { UNREFINED } else { 1.0 };
     let mut phase = Phase { whole: observer, from: 0.0, to };
@@ -97,7 +96,7 @@ pub fn sphere_map(
         SphereMethod::GaussNewton => run.renumbered(&mut history, &mut phase)?,
         SphereMethod::FixedPoint | SphereMethod::GradientDescent => run.solve(&mut history, &mut phase)?,
     };
-    // 4. Split what keeps areas uneven
+    // 4. Split the faces that keep areas uneven
     let (refined, map, status) = if options.refine {
         let mut phase = Phase { whole: observer, from: UNREFINED, to: 1.0 };
         let (refined, map, status) = refine(mesh, &targets, (map, status), options, &mut history, &mut phase);
@@ -110,7 +109,7 @@ pub fn sphere_map(
     } else {
         status
     };
-    // 5. Of all rotated copies the one that lies over the surface; figures
+    // 5. Align the map with the surface; figures
     let (positions, distortion, refinement) = match refined {
         None => {
             let positions = over_the_surface(mesh, map, &weights, options);
@@ -128,7 +127,7 @@ pub fn sphere_map(
     Ok(SphereMap { positions, status, seconds: history.seconds(), history, distortion, refinement })
 }
 
-/// The map rotated over its surface, or as it is where a start was given.
+/// The map aligned with its surface, or unchanged where a start was given.
 fn over_the_surface(
     mesh: &TriangleMesh,
     map: SpatialMap,

@@ -11,7 +11,7 @@ use crate::options::{check_angle_weight, check_area_tolerance};
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// How a sphere map is computed.
+/// The method of a sphere map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SphereMethod {
@@ -19,7 +19,7 @@ pub enum SphereMethod {
     FixedPoint,
     /// Riemannian gradient descent (Sutti & Yueh 2024, Algorithm 1) after a few fixed-point steps.
     GradientDescent,
-    /// Guarded Gauss–Newton, our own: more exact by orders of magnitude, and never a folded face on the way.
+    /// Guarded Gauss–Newton, our own: orders of magnitude more exact, and never folds a face on the way.
     #[default]
     GaussNewton,
 }
@@ -27,38 +27,34 @@ pub enum SphereMethod {
 /// Options of [`sphere_map`](super::sphere_map).
 #[derive(Debug, Clone)]
 pub struct SphereMapOptions<'a> {
-    /// The method; guarded Gauss–Newton.
+    /// The method; by default guarded Gauss–Newton.
     pub method: SphereMethod,
-    /// The line search of the gradient descent; interpolation, which the paper found faster and no less
-    /// exact.
+    /// The line search of the gradient descent; by default interpolation, which the paper found faster and no less exact.
     pub line_search: LineSearch,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
     pub density: Option<&'a [f64]>,
-    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 keeps areas
-    /// alone.
+    /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 preserves areas alone.
     pub angle_weight: f64,
     /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
     /// where `None`, `angle_weight` decides.
     pub area_tolerance: Option<f64>,
-    /// A start map, (n, 3), no row zero, outward oriented; the conformal map where `None`, and but for the
-    /// fixed point itself fixed-point steps from it.
+    /// A start map, (n, 3), no row zero, outward oriented. `None`: the conformal map, followed by fixed-point steps unless
+    /// these are the method.
     pub initial: Option<&'a [Vector3]>,
-    /// Iterations at the most. Gauss–Newton where neither these nor a tolerance are given: as many as it
-    /// takes, with a weight of 0 17 (20 below 20,000 vertices, 40 below 10,000) where those leave the area ratio
-    /// a deviation of .5 % (.2 % below 10,000 vertices); the papers' methods: 100, as in the paper's tables. The
-    /// fixed-point steps before the descent and the descent that follows where folds were mended come on top. 0 with the fixed point returns the start
-    /// map itself.
+    /// Iteration limit. `None` for Gauss–Newton: none, but with a weight of 0 and no tolerance it stops after 17 iterations
+    /// (20 below 20,000 vertices, 40 below 10,000) once the area deviation is below .5 % (.2 % below 10,000 vertices). `None`
+    /// for the papers' methods: 100, as in the paper's tables. Not counted are the fixed-point steps before the descent, and a
+    /// descent after folds were mended. 0 with the fixed point returns the start map.
     pub max_iterations: Option<usize>,
-    /// Gauss–Newton has converged when the deviation of the area ratio, √(E_A/A), falls below this; 2·10⁻⁴
-    /// where `None`. Gradient descent has converged when ‖grad E‖ falls below this; 10⁻⁸ where `None`. For
-    /// the fixed point it is ε of Algorithm 2: the iteration ends when E_S falls by no more than this; 10⁻⁶
-    /// where `None`, as in the paper. −∞ asks the fixed point for all iterations, through rises, and for the
-    /// last map instead of the best.
+    /// Gauss–Newton has converged when the area deviation √(E_A/A) is below this; `None`: 2·10⁻⁴. Gradient descent has
+    /// converged when ‖grad E‖ is; `None`: 10⁻⁸. For the fixed point it is ε of Algorithm 2: the iteration ends when E_S
+    /// falls by no more than this; `None`: 10⁻⁶, as in the paper. −∞ makes the fixed point take all iterations, even if E_S
+    /// rises, and return the last map instead of the best.
     pub tolerance: Option<f64>,
-    /// Split faces that keep areas from being even, as those of long limbs do, for Gauss–Newton only; off. Iterations are
-    /// counted, and limited, for each of up to four descents.
+    /// Split faces that keep areas uneven, as those of long limbs do, for Gauss–Newton only; by default off. The iteration
+    /// limit applies to each of up to four descents.
     pub refine: bool,
-    /// Unfold what the papers' methods fold; on. The paper's tables count folds before that too.
+    /// Unfold the faces that the papers' methods fold; by default on. The paper's tables also count folds before that.
     pub unfold: bool,
 }
 
@@ -80,7 +76,7 @@ impl Default for SphereMapOptions<'_> {
 }
 
 impl SphereMapOptions<'_> {
-    /// Refuses what is no sphere, and options out of range.
+    /// Refuses a surface that is no sphere, and options out of range.
     pub(super) fn check(&self, mesh: &TriangleMesh) -> Result<(), Error> {
         mesh.require_sphere()?;
         if let Some(initial) = self.initial {
@@ -114,8 +110,7 @@ impl SphereMapOptions<'_> {
     }
 }
 
-/// A start map must be finite, away from the origin and outward oriented on the whole; its folds are mended
-/// like any others.
+/// Refuses a start map that is not finite, meets the origin, or is not outward oriented as a whole. Folds are allowed.
 fn check_initial(mesh: &TriangleMesh, initial: &[Vector3]) -> Result<(), Error> {
     if initial.len() != mesh.n_vertices() {
         let (found, expected) =

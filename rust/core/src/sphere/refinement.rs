@@ -2,15 +2,14 @@
 //! Splits the faces that keep a sphere map from even areas.
 //!
 //! The limbs of a body become long thin faces on the sphere. A flat face with corners on the sphere cannot be smaller
-//! than the sagitta of its longest edge l allows, about l³/16 where it is obtuse: where that is not small beside its
-//! target, no map of this mesh has even areas. So
+//! than the sagitta of its longest edge l allows, about l³/16 where it is obtuse. Where that is not small beside its
+//! target, no map of this mesh has even areas.
 //!
-//! 1. the longest edges of such faces are split at their midpoints on the surface, which does not change it;
-//! 2. the image of a midpoint is that of the great arc, which folds nothing, and areas are evened out from there;
-//! 3. and so on until areas are even, or until a round no longer halves E_A, as where angles count.
+//! 1. The longest edges of such faces are split at their midpoints, which does not change the surface.
+//! 2. A midpoint is mapped to the midpoint of the great arc, which folds nothing, and a descent evens out areas.
+//! 3. These steps repeat until areas are even, or until a round no longer halves E_A, as where angles count.
 //!
-//! Cost: that of a descent with an initial map, three times at the most, on a mesh of one and a half to four times as many
-//! faces.
+//! Cost: up to three descents with an initial map, on a mesh of one and a half to four times as many faces.
 
 use super::Run;
 use std::f64::consts::PI;
@@ -30,13 +29,13 @@ use crate::mesh::{Face, TriangleMesh};
 use crate::parallel;
 use crate::vector::{Vector3, coordinates};
 
-/// Rounds at the most.
+/// Limit of the rounds.
 const ROUNDS: usize = 3;
 
 /// Areas are even where their deviation √(E_A/A) is below this.
 const EVEN: f64 = 0.002;
 
-/// A round is of use where it lowers E_A to this part or less.
+/// A round is worthwhile if it lowers E_A to this part or less.
 const WORTHWHILE: f64 = 0.5;
 
 /// A face is split where the least area that its longest edge allows is more than this part of its target.
@@ -55,9 +54,9 @@ pub struct Refinement {
     pub positions: Vec<Vector3>,
     /// (m', 3): the faces between vertices and split points, oriented as the surface.
     pub faces: Vec<[u32; 3]>,
-    /// (m',): the face that each of them is a part of, ascending.
+    /// (m',): the given face that each of `faces` is a part of, ascending.
     pub face_of: Vec<Face>,
-    /// The figures of these faces.
+    /// The distortion of these faces.
     pub distortion: Distortion,
 }
 
@@ -84,13 +83,13 @@ pub(super) fn refine(
     let mut refined = Refined::new(mesh, targets);
     let mut best = (refined.unevenness(&map), refined.clone(), map.clone(), status);
     for round in 0..ROUNDS {
-        // a descent that was ended says nothing of the mesh
+        // a descent that was ended early says nothing about the mesh
         if matches!(status, Status::Cancelled | Status::MaxIterations) || best.0.sqrt() <= even {
             break;
         }
-        // 1. Blocked faces are split
+        // 1. Split the blocked faces
         let Some((next, start)) = refined.split(&map) else { break };
-        // 2. Areas are evened out from there
+        // 2. Even out areas from there
         let part = |round: usize| round as f64 / ROUNDS as f64;
         let mut phase = Phase { whole: observer, from: part(round), to: part(round + 1) };
         (map, status) = match next.evened_out(&start, options, history, &mut phase) {
@@ -99,7 +98,7 @@ pub(super) fn refine(
             Err(_) => break,
         };
         refined = next;
-        // 3. A round may get stuck where the next one does not; one that gains little is not worth its faces
+        // 3. Stop after a small gain, which is not worth its faces; after a loss the next round may still gain
         let unevenness = refined.unevenness(&map);
         if unevenness < WORTHWHILE * best.0 {
             best = (unevenness, refined.clone(), map.clone(), status);
@@ -114,7 +113,7 @@ pub(super) fn refine(
 }
 
 impl Refined {
-    /// The surface as it is.
+    /// The surface without splits.
     fn new(mesh: &TriangleMesh, targets: &[f64]) -> Self {
         let face_of = Face::all(mesh.n_faces()).collect();
         Self { mesh: mesh.clone(), targets: targets.to_vec(), parents: Vec::new(), face_of }
@@ -125,7 +124,7 @@ impl Refined {
         energy_share(&SphereDomain::new(&self.mesh, &self.targets), map)
     }
 
-    /// Which faces cannot have their targets.
+    /// The faces that cannot have their targets, as flags.
     fn blocked(&self, map: &[Vector3]) -> Vec<bool> {
         let scale = 4.0 * PI / parallel::sum(self.targets.len(), |face| self.targets[face]);
         parallel::map(self.mesh.n_faces(), |face| {
@@ -141,7 +140,7 @@ impl Refined {
         if !blocked.contains(&true) {
             return None;
         }
-        // 1. Longest edges of the image; mirrored ones are as long as each other but for rounding
+        // 1. Longest edges of the image; mirrored edges differ in length by rounding only
         let points = self.mesh.points();
         let preference = tie_breakers(points);
         let length = |a: u32, b: u32| {
@@ -180,7 +179,7 @@ impl Refined {
         run.renumbered(history, observer)
     }
 
-    /// The figures of a map's parts of faces, and of whole faces.
+    /// The distortion of the split faces, and of the given ones.
     pub(super) fn figures(&self, map: &[Vector3]) -> Result<(Distortion, Distortion), Error> {
         let (points, faces, image) = (self.mesh.points(), self.mesh.faces(), Image::Sphere(map));
         let of_parts = distortion(points, faces, image, &self.targets)?;
@@ -188,7 +187,7 @@ impl Refined {
         Ok((of_parts, of_faces))
     }
 
-    /// What is given to the caller, with the images of the split points.
+    /// The result for the caller, with the images of the split points.
     pub(super) fn into_refinement(self, positions: SpatialMap, distortion: Distortion) -> Refinement {
         let faces = self.mesh.faces().to_vec();
         Refinement { parents: self.parents, positions, faces, face_of: self.face_of, distortion }

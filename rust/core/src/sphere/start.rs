@@ -4,11 +4,11 @@
 //! Angenent, Haker, Tannenbaum & Kikinis (1999), as used by Sutti & Yueh (2024), section 6.3: one face is
 //! removed, its corners are held at a triangle in the plane, all others are harmonic, and the inverse
 //! stereographic projection takes the plane to the sphere. Such a map is unique up to a Möbius
-//! transformation, and the raw one puts nearly all of the surface next to one point: the one taken here has
+//! transformation, and the raw one puts nearly all of the surface next to one point. The map chosen here has
 //! the centroid of the surface's measure at the sphere's center.
 //!
 //! It folds a few faces where cotangents are negative, which can be mended, and shrinks long thin parts
-//! beyond double precision, which cannot; then the [progressive](progressive_sphere) map is taken.
+//! beyond double precision, which cannot; there the [progressive](progressive_sphere) map takes its place.
 //!
 //! Cost: one sparse Cholesky factorization of all vertices but three.
 
@@ -29,26 +29,26 @@ use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 use crate::vector::Vector3;
 
-/// Newton steps of the centering; three or four are the rule.
+/// Limit of the Newton steps of the centering; three or four are usual.
 const CENTERING_STEPS: usize = 50;
 
-/// The centroid is at the center when it is nearer than this.
+/// Distance from the center below which the centroid counts as centered.
 const CENTERED: f64 = 1e-9;
 
-/// A conformal face below this part of its target has collapsed for all that a descent can see.
+/// A face of the conformal map below this part of its target has collapsed beyond what a descent can mend.
 const COLLAPSED: f64 = 1e-9;
 
-/// A surface seen from its centroid is a sphere already where that view has less than this part of the
-/// conformal map's E_A; a conformal map turns such a surface about for nothing.
+/// The central projection of the surface is the start where its E_A is below this part of the conformal map's: the surface
+/// is nearly a sphere, whose vertices a conformal map moves for nothing.
 const ROUND: f64 = 0.1;
 
-/// A rough map takes no cotangent above this, and none below its inverse.
+/// Upper bound of the cotangents of a rough map; its inverse is the lower bound.
 const LARGEST_COTANGENT: f64 = 100.0;
 
 const MESSAGE: &str = "Start map";
 
-/// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or
-/// the progressive one where parts of that have collapsed; on a sphere the surface itself.
+/// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or the progressive
+/// one where parts of it have collapsed; on a sphere the surface itself.
 ///
 /// # Errors
 /// [`NumericsError::NoEmbedding`] where both fold in double precision, [`Error::CancelledEarly`] by the observer.
@@ -77,7 +77,7 @@ pub(super) fn start(
     if let Some(radial) = radial(mesh, weights).filter(is_round) {
         return Ok(radial);
     }
-    // 3. If all else fails any map without folds
+    // 3. If all else fails, any map without folds
     map.or(mended).ok_or_else(|| match conformal {
         Ok(map) => NumericsError::NoEmbedding {
             folded: Elements::collect(folded_on_sphere(mesh.faces(), &map)).expect("it could not be mended"),
@@ -101,7 +101,7 @@ fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<SpatialMap> {
     folded_on_sphere(mesh.faces(), &map).is_empty().then_some(map)
 }
 
-/// True if some face has next to nothing of its target area.
+/// True if some face has less than [`COLLAPSED`] of its target area.
 fn has_collapsed(mesh: &TriangleMesh, targets: &[f64], map: &[Vector3]) -> bool {
     let energy = SpatialStretchEnergy::new(mesh, targets);
     let (areas, least) = (energy.areas(map), COLLAPSED * 4.0 * PI / targets.iter().sum::<f64>());
@@ -116,8 +116,7 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
     conformal_within(f64::INFINITY, mesh, weights, watch)
 }
 
-/// The same, nearly conformal only but without folds, but for rounding: cotangents that are negative or
-/// extreme are moved to positive ones.
+/// A nearly conformal map, centered, without folds except by rounding: cotangents are clamped to positive, moderate values.
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].
@@ -129,7 +128,7 @@ pub(crate) fn rough_conformal(
     conformal_within(LARGEST_COTANGENT, mesh, weights, watch)
 }
 
-/// The map for cotangents of at most `largest`; where that is finite, of at least its inverse.
+/// The map for cotangents of at most `largest`, and where that is finite, at least its inverse.
 fn conformal_within(
     largest: f64,
     mesh: &TriangleMesh,
@@ -147,7 +146,7 @@ fn conformal_within(
     Ok(upright(map, mesh.faces()[removed]))
 }
 
-/// The map rotated so that the removed face lies at the south pole, whichever way the plane was turned.
+/// The map rotated so that the removed face lies at the south pole.
 fn upright(map: SpatialMap, removed: [u32; 3]) -> SpatialMap {
     let [a, b, c] = triangle(&map, removed);
     let face = a + (b + c);
@@ -168,13 +167,13 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
         let squares = [b - a, c - b, a - c].map(|edge| edge.dot(edge));
         mesh.face_areas()[face] / squares.iter().sum::<f64>()
     };
-    // symmetric surfaces have several
+    // symmetric surfaces have several roundest faces
     let tie_breakers = tie_breakers(mesh.points());
     let values = parallel::map(mesh.n_faces(), |face| {
         let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex as usize]).sum();
         preference * roundness(face)
     });
-    // max_by takes the last of equals, so from the back
+    // max_by takes the last of equals, so search from the back
     (0..values.len()).rev().max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("a mesh has faces")
 }
 

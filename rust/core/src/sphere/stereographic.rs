@@ -12,9 +12,9 @@ use crate::vector::Vector3;
 /// The projection from one pole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Chart {
-    /// From the north pole: the southern hemisphere comes to the unit disk, mirrored as seen from outside.
+    /// From the north pole: it takes the southern hemisphere to the unit disk, mirrored as seen from outside.
     North,
-    /// From the south pole: the northern hemisphere comes to the unit disk, as seen from outside.
+    /// From the south pole: it takes the northern hemisphere to the unit disk, as seen from outside.
     South,
 }
 
@@ -58,7 +58,7 @@ impl Chart {
     }
 }
 
-/// The value that halves the weight: the smallest `values[i]` such that those up to it carry half of it.
+/// The weighted median: the smallest `values[i]` such that the values up to it carry half of the weight.
 pub(super) fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_unstable_by(|&a, &b| values[a].total_cmp(&values[b]));

@@ -3,8 +3,8 @@
 //!
 //! The bijectivity correction of Sutti & Yueh (2024), section 6.2, see [`mean_value`]: in the chart of either
 //! hemisphere the vertices |h_i| < r are replaced by mean-value combinations of their one-rings. The
-//! correction moves only what is folded, so only the vertices within a few rings of the folded faces are
-//! freed, more where that does not suffice, up to the whole hemisphere as in the paper.
+//! correction moves only folded faces, so only the vertices within a few rings of them are freed, and more where
+//! that does not suffice, up to the whole hemisphere as in the paper.
 //!
 //! Cost: one sparse LU of the freed vertices per attempt and hemisphere.
 
@@ -22,7 +22,7 @@ const RADIUS: f64 = 1.2;
 /// Passes over both hemispheres with the same rings, each with the weights of the map before it.
 const PASSES: usize = 3;
 
-/// Rings at the most: by then everything is free on any surface that is not a thread.
+/// Limit of the rings, at which every vertex is free on any surface that is not a thread.
 const MOST_RINGS: usize = 4096;
 
 /// Returns `map` with its folded faces unfolded, or `None` where even whole hemispheres do not suffice.
@@ -30,14 +30,14 @@ pub(super) fn unfold(mesh: &TriangleMesh, map: &[Vector3]) -> Option<SpatialMap>
     unfold_within(mesh, map, MOST_RINGS)
 }
 
-/// The same with no more than so many rings around the folded faces free.
+/// [`unfold`] with at most `most_rings` rings around the folded faces free.
 pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector3], most_rings: usize) -> Option<SpatialMap> {
     let mut map = map.to_vec();
     let mut folded = folded_on_sphere(mesh.faces(), &map);
     let mut rings = 2;
     while !folded.is_empty() && rings <= most_rings {
-        // 1. Free a few rings around what is folded, in both hemispheres; once more with the new weights
-        // 2. Where that gains nothing, by uniform weights
+        // 1. Free a few rings around the folded faces, in both hemispheres; repeat with the new weights
+        // 2. Where that gains nothing, use uniform weights
         for weights in [Weights::MeanValue, Weights::Uniform] {
             for _ in 0..PASSES {
                 let mended = mend(mesh, &map, rings, weights);
@@ -48,13 +48,13 @@ pub(crate) fn unfold_within(mesh: &TriangleMesh, map: &[Vector3], most_rings: us
                 (map, folded) = (mended, left);
             }
         }
-        // 3. Once more with twice the rings
+        // 3. Repeat with twice the rings
         rings *= 2;
     }
     folded.is_empty().then_some(map)
 }
 
-/// One correction in each hemisphere's chart; leaves out one whose system is singular.
+/// One correction in each hemisphere's chart; omits a chart whose system is singular.
 fn mend(mesh: &TriangleMesh, map: &[Vector3], rings: usize, weights: Weights) -> SpatialMap {
     let mut map = map.to_vec();
     for chart in [Chart::North, Chart::South] {

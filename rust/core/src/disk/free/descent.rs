@@ -96,7 +96,7 @@ pub(super) struct Goal {
 }
 
 /// A map with its energy and its contacts.
-struct Place {
+struct Iterate {
     map: PlanarMap,
     value: f64,
     contacts: Vec<Contact>,
@@ -136,51 +136,51 @@ impl<'a> Descent<'a> {
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status) {
         let weight = goal.weight;
-        let mut place = self.place(map, goal);
-        history.push_start(self.problem.energy.unevenness(&place.map), 0.0);
-        if !place.value.is_finite() {
-            return (place.map, Status::Stalled);
+        let mut iterate = self.iterate(map, goal);
+        history.push_start(self.problem.energy.unevenness(&iterate.map), 0.0);
+        if !iterate.value.is_finite() {
+            return (iterate.map, Status::Stalled);
         }
-        let mut values = vec![place.value];
+        let mut values = vec![iterate.value];
         loop {
             // 1. Stop where asked to
             if self.done >= goal.most_iterations {
-                return (place.map, Status::MaxIterations);
+                return (iterate.map, Status::MaxIterations);
             }
             let fraction = 1.0 - 0.95f64.powi(self.done as i32);
             if !observer.progress(fraction, MESSAGE) {
-                return (place.map, Status::Cancelled);
+                return (iterate.map, Status::Cancelled);
             }
             // 2. The direction
             let watch = Watch::new(observer, fraction, MESSAGE);
-            let direction = match self.direction(&place, weight, &watch) {
+            let direction = match self.direction(&iterate, weight, &watch) {
                 Ok(direction) => direction,
-                Err(Failure::Cancelled) => return (place.map, Status::Cancelled),
-                Err(Failure::NotPositiveDefinite) => return (place.map, Status::Stalled),
+                Err(Failure::Cancelled) => return (iterate.map, Status::Cancelled),
+                Err(Failure::NotPositiveDefinite) => return (iterate.map, Status::Stalled),
             };
-            self.ratio = direction.decrement / place.value;
+            self.ratio = direction.decrement / iterate.value;
             // 3. The step
-            let least = (goal.precision * place.value).max(NOTHING);
+            let least = (goal.precision * iterate.value).max(NOTHING);
             let is_flat = direction.decrement <= least;
-            if direction.decrement <= (ROUNDING * place.value).max(NOTHING) {
-                return (place.map, Status::Converged);
+            if direction.decrement <= (ROUNDING * iterate.value).max(NOTHING) {
+                return (iterate.map, Status::Converged);
             }
-            let Some((next, step)) = self.step(&place, &direction, goal) else {
-                return (place.map, if is_flat { Status::Converged } else { Status::Stalled });
+            let Some((next, step)) = self.step(&iterate, &direction, goal) else {
+                return (iterate.map, if is_flat { Status::Converged } else { Status::Stalled });
             };
             self.done += 1;
-            place = next;
-            values.push(place.value);
+            iterate = next;
+            values.push(iterate.value);
             history.push(
-                self.problem.energy.unevenness(&place.map),
+                self.problem.energy.unevenness(&iterate.map),
                 step,
                 direction.decrement.max(0.0).sqrt(),
             );
             if is_flat && step > 0.5 {
-                return (place.map, Status::Converged);
+                return (iterate.map, Status::Converged);
             }
             if has_stalled(&values, LEAST_GAIN.max(IN_PRECISIONS * goal.precision)) {
-                return (place.map, Status::Stalled);
+                return (iterate.map, Status::Stalled);
             }
         }
     }
@@ -204,7 +204,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The map with its energy, infinite where the map is not allowed, and its contacts.
-    fn place(&self, map: PlanarMap, goal: &Goal) -> Place {
+    fn iterate(&self, map: PlanarMap, goal: &Goal) -> Iterate {
         let mut value = self.problem.energy.value(&map, goal.weight);
         let mut contacts = Vec::new();
         if let Some(outline) = self.problem.outline
@@ -214,29 +214,29 @@ impl<'a> Descent<'a> {
             let stiffness = self.stiffness(outline, goal.weight);
             value += contacts.iter().map(|contact| contact.value(stiffness)).sum::<f64>();
         }
-        Place { map, value: if value.is_finite() { value } else { f64::INFINITY }, contacts }
+        Iterate { map, value: if value.is_finite() { value } else { f64::INFINITY }, contacts }
     }
 
     /// The Newton direction.
-    fn direction(&mut self, place: &Place, weight: f64, watch: &Watch<'_>) -> Result<Direction, Failure> {
+    fn direction(&mut self, iterate: &Iterate, weight: f64, watch: &Watch<'_>) -> Result<Direction, Failure> {
         let energy = self.problem.energy;
         // 1. The gradient of faces and contacts
-        let mut gradient = energy.gradient(&place.map, weight);
-        let springs = self.springs(place, weight);
-        for (contact, [force, _]) in place.contacts.iter().zip(&springs) {
+        let mut gradient = energy.gradient(&iterate.map, weight);
+        let springs = self.springs(iterate, weight);
+        for (contact, [force, _]) in iterate.contacts.iter().zip(&springs) {
             for (k, &v) in contact.vertices.iter().enumerate() {
                 (0..2).for_each(|axis| gradient[v as usize][axis] += force * contact.slopes[2 * k + axis]);
             }
         }
         // 2. The Hessian, exact where that is positive definite
-        let deviation = energy.parts(&place.map).deviation.sqrt();
+        let deviation = energy.parts(&iterate.map).deviation.sqrt();
         let least = deviation.clamp(LEAST_DEVIATIONS[0], LEAST_DEVIATIONS[1]);
         if self.ratio < NEAR {
             let mut tried = self.curvature;
             for _ in 0..MOST_ATTEMPTS {
                 let damping = DAMPING * (1.0 - tried);
                 let part = Hessian { weight, damping, least, curvature: tried };
-                match self.solve(place, &part, &springs, &gradient, SHIFTS[1], watch) {
+                match self.solve(iterate, &part, &springs, &gradient, SHIFTS[1], watch) {
                     Ok(direction) if direction.decrement > 0.0 => {
                         self.curvature =
                             if tried == self.curvature { (GROW * tried).min(1.0) } else { tried };
@@ -250,7 +250,7 @@ impl<'a> Descent<'a> {
         }
         let composite = Hessian { weight, damping: DAMPING, least, curvature: 0.0 };
         for shift in SHIFTS {
-            match self.solve(place, &composite, &springs, &gradient, shift, watch) {
+            match self.solve(iterate, &composite, &springs, &gradient, shift, watch) {
                 Err(Failure::NotPositiveDefinite) => {}
                 verdict => return verdict,
             }
@@ -259,16 +259,16 @@ impl<'a> Descent<'a> {
     }
 
     /// The first and second derivatives of all contact energies by the distances.
-    fn springs(&self, place: &Place, weight: f64) -> Vec<[f64; 2]> {
+    fn springs(&self, iterate: &Iterate, weight: f64) -> Vec<[f64; 2]> {
         let Some(outline) = self.problem.outline else { return Vec::new() };
         let stiffness = self.stiffness(outline, weight);
-        place.contacts.iter().map(|contact| contact.derivatives(stiffness)).collect()
+        iterate.contacts.iter().map(|contact| contact.derivatives(stiffness)).collect()
     }
 
     /// Solves for the direction with one kind of Hessian.
     fn solve(
         &mut self,
-        place: &Place,
+        iterate: &Iterate,
         how: &Hessian,
         springs: &[[f64; 2]],
         gradient: &[[f64; 2]],
@@ -278,7 +278,7 @@ impl<'a> Descent<'a> {
         let (energy, analysis) = (self.problem.energy, self.problem.analysis);
         // 1. The elements, shifted by one value for both unknowns of a corner, so that the step turns with the map
         parallel::fill(&mut self.elements, |face| {
-            let mut element = energy.element(&place.map, face, how);
+            let mut element = energy.element(&iterate.map, face, how);
             for c in 0..3 {
                 let diagonal = 0.5 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]);
                 let shift = shift * diagonal.abs() + 1e-14 * how.weight * energy.targets[face];
@@ -287,7 +287,7 @@ impl<'a> Descent<'a> {
             element
         });
         // 2. The contacts' block at each vertex, in the first of its corners
-        let shares = shares(energy, &place.contacts, springs);
+        let shares = shares(energy, &iterate.contacts, springs);
         let elements = &self.elements;
         let with_contacts = |face: usize| {
             let mut element = elements[face];
@@ -305,10 +305,10 @@ impl<'a> Descent<'a> {
         self.factor.refactor(analysis, &with_contacts, watch)?;
         // 3. One solve, or conjugate gradients
         let rhs = parallel::map(gradient.len(), |v| gradient[v].map(|g| -g));
-        let along = if place.contacts.is_empty() {
+        let along = if iterate.contacts.is_empty() {
             self.preconditioned(&rhs)
         } else {
-            self.conjugate_gradients(&place.contacts, springs, how.curvature, &rhs, watch)?
+            self.conjugate_gradients(&iterate.contacts, springs, how.curvature, &rhs, watch)?
         };
         let decrement = dot(&rhs, &along);
         if !decrement.is_finite() {
@@ -393,17 +393,17 @@ impl<'a> Descent<'a> {
     }
 
     /// The next map and the length of the step; `None` where no step lowers the energy.
-    fn step(&self, place: &Place, direction: &Direction, goal: &Goal) -> Option<(Place, f64)> {
+    fn step(&self, iterate: &Iterate, direction: &Direction, goal: &Goal) -> Option<(Iterate, f64)> {
         let along = &direction.along;
-        let mut step = (MARGIN * self.first_fold(&place.map, along)).min(1.0);
+        let mut step = (MARGIN * self.first_fold(&iterate.map, along)).min(1.0);
         if let Some(outline) = self.problem.outline {
-            let meeting = outline.longest_step(&place.map, along, step);
+            let meeting = outline.longest_step(&iterate.map, along, step);
             step = if meeting < step { MARGIN * meeting } else { step };
         }
         for _ in 0..MOST_TRIALS {
-            let map = parallel::map(along.len(), |v| [0, 1].map(|k| place.map[v][k] + step * along[v][k]));
-            let next = self.place(map, goal);
-            let allowed = place.value - SUFFICIENT * step * direction.decrement + 1e-16;
+            let map = parallel::map(along.len(), |v| [0, 1].map(|k| iterate.map[v][k] + step * along[v][k]));
+            let next = self.iterate(map, goal);
+            let allowed = iterate.value - SUFFICIENT * step * direction.decrement + 1e-16;
             let is_simple = || self.problem.outline.is_none_or(|outline| outline.is_simple(&next.map));
             if next.value <= allowed && is_simple() {
                 return Some((next, step));

@@ -74,8 +74,8 @@ const LIGHTEST: f64 = 1e-7;
 /// A weight of angles is judged where the decrement is below this part of the energy.
 const ROUGHLY: f64 = 1e-4;
 
-/// The energy, system and outline of a surface, computed once.
-struct Surface<'a> {
+/// The energy, system and outline of a prepared, computed once.
+struct Prepared<'a> {
     energy: &'a Energy<'a>,
     analysis: &'a Analysis,
     outline: &'a Outline,
@@ -119,10 +119,10 @@ impl Free<'_> {
         let n = self.mesh.n_vertices();
         let analysis = Analysis::new(n, self.mesh.faces(), &vec![2; n], Order::AsGiven)?;
         let outline = Outline::new(&energy);
-        let surface = Surface { energy: &energy, analysis: &analysis, outline: &outline };
+        let prepared = Prepared { energy: &energy, analysis: &analysis, outline: &outline };
         // 1. A start
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.2 };
-        let (start, is_cancelled) = self.start(&surface, &mut phase)?;
+        let (start, is_cancelled) = self.start(&prepared, &mut phase)?;
         let start = if self.options.initial.is_none() { turned(self.mesh, start) } else { start };
         // 2. The descent
         let mut phase = Phase { whole: observer, from: 0.2, to: 1.0 };
@@ -130,7 +130,7 @@ impl Free<'_> {
             history.push_start(energy.unevenness(&start), 0.0);
             (start, Status::Cancelled)
         } else {
-            self.descend(&surface, start, history, &mut phase)
+            self.descend(&prepared, start, history, &mut phase)
         };
         // 3. Into the disk
         let map = self.within_the_disk(&outline, &map);
@@ -141,13 +141,13 @@ impl Free<'_> {
     /// Descents with contacts of shorter and shorter range.
     fn descend(
         &self,
-        surface: &Surface<'_>,
+        prepared: &Prepared<'_>,
         start: PlanarMap,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status) {
-        let outline = (!self.options.overlap).then_some(surface.outline);
-        let problem = Problem { energy: surface.energy, analysis: surface.analysis, outline };
+        let outline = (!self.options.overlap).then_some(prepared.outline);
+        let problem = Problem { energy: prepared.energy, analysis: prepared.analysis, outline };
         let mut descent = Descent::new(problem);
         let mut goal = Goal {
             weight: self.options.angle_weight,
@@ -183,35 +183,39 @@ impl Free<'_> {
     }
 
     /// A one-to-one map to start from, and a flag that the observer ended the run.
-    fn start(&self, surface: &Surface<'_>, observer: &mut dyn Observer) -> Result<(PlanarMap, bool), Error> {
-        let outline = (!self.options.overlap).then_some(surface.outline);
+    fn start(
+        &self,
+        prepared: &Prepared<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<(PlanarMap, bool), Error> {
+        let outline = (!self.options.overlap).then_some(prepared.outline);
         if let Some(initial) = self.options.initial {
-            let initial = of_area_one(surface.energy, initial.to_vec());
-            if let Some(map) = starts::allowed(surface.energy, outline, initial) {
+            let initial = of_area_one(prepared.energy, initial.to_vec());
+            if let Some(map) = starts::allowed(prepared.energy, outline, initial) {
                 return Ok((map, false));
             }
         }
         let watch = Watch::new(observer, 0.0, "Start map");
         let weight = self.options.angle_weight.max(LEAST_WEIGHT);
-        match starts::best_start(surface.energy, surface.analysis, outline, weight, &watch) {
+        match starts::best_start(prepared.energy, prepared.analysis, outline, weight, &watch) {
             Ok(Some((energy, map))) if energy <= COLLAPSED => Ok((map, false)),
-            Ok(Some((energy, map))) => self.better_start(surface, (energy, map), observer),
-            Ok(None) | Err(Failure::NotPositiveDefinite) => self.disk_start(surface, observer),
-            Err(Failure::Cancelled) => self.disk_start(surface, &mut |_: f64, _: &str| false),
+            Ok(Some((energy, map))) => self.better_start(prepared, (energy, map), observer),
+            Ok(None) | Err(Failure::NotPositiveDefinite) => self.disk_start(prepared, observer),
+            Err(Failure::Cancelled) => self.disk_start(prepared, &mut |_: f64, _: &str| false),
         }
     }
 
     /// The given start or the map to the disk, whichever has the lower energy.
     fn better_start(
         &self,
-        surface: &Surface<'_>,
+        prepared: &Prepared<'_>,
         start: starts::Start,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, bool), Error> {
         let (energy, map) = start;
         let weight = self.options.angle_weight.max(LEAST_WEIGHT);
-        match self.disk_start(surface, observer) {
-            Ok((disk, is_cancelled)) if surface.energy.value(&disk, weight) < energy => {
+        match self.disk_start(prepared, observer) {
+            Ok((disk, is_cancelled)) if prepared.energy.value(&disk, weight) < energy => {
                 Ok((disk, is_cancelled))
             }
             Ok((_, is_cancelled)) => Ok((map, is_cancelled)),
@@ -222,7 +226,7 @@ impl Free<'_> {
     /// An area-preserving map to the disk with a sliding boundary, the holes filled on the way.
     fn disk_start(
         &self,
-        surface: &Surface<'_>,
+        prepared: &Prepared<'_>,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, bool), Error> {
         let filled = match self.mesh.boundary_loops().len() {
@@ -237,10 +241,10 @@ impl Free<'_> {
             let run = Run { mesh, targets, options: &options, n_given_faces: self.mesh.n_faces() };
             let (mut map, status) = run.renumbered(&mut History::start(), observer)?;
             map.truncate(self.mesh.n_vertices());
-            Ok((of_area_one(surface.energy, map), status == Status::Cancelled))
+            Ok((of_area_one(prepared.energy, map), status == Status::Cancelled))
         };
         let (map, is_cancelled) = evened_out(DISK_WEIGHT, Some(DISK_ITERATIONS))?;
-        if is_cancelled || surface.energy.value(&map, LEAST_WEIGHT) <= COLLAPSED {
+        if is_cancelled || prepared.energy.value(&map, LEAST_WEIGHT) <= COLLAPSED {
             return Ok((map, is_cancelled));
         }
         evened_out(0.0, None)

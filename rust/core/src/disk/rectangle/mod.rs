@@ -255,7 +255,7 @@ impl Rectangle<'_> {
         // 2. Guarded descents and corrections of the aspect by turns
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
         let begun = history.iterations();
-        let surface = target_floors::Surface {
+        let surface = target_floors::MappedSurface {
             mesh: self.run.mesh,
             targets: self.run.targets,
             codomain: Codomain::Plane,

@@ -1,32 +1,31 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How λ, the weight of angles, falls during a guarded Gauss–Newton descent.
+//! The schedule of λ, the weight of angles, during a guarded Gauss–Newton descent.
 //!
-//! Areas are cheap to even out and angles are not: once λ is small, shear that a map still has stays in it. So λ follows
-//! one of two paths down to the weight that was asked for, 0 or more:
+//! Areas are cheap to even out and angles are not: once λ is small, the shear of a map stays. So λ follows one of two
+//! paths down to the weight asked for, 0 or more, or is *held* at that weight from the outset:
 //!
 //! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts near
 //!   the minimum.
 //! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is stationary,
 //!   and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they are sheared.
 //!   A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
-//!
-//! Or it is *held* at that weight from the outset.
 
-/// κ, the angle energy times λ over E_A that a balanced λ aims at, while the area ratio deviates by more than
-/// [`NEARLY_EVEN`]. Larger values spare angles and cost iterations.
+/// κ, the angle energy times λ over E_A that a balanced λ aims at. Larger values spare angles and cost iterations.
 const BALANCE: f64 = 2.2;
+
+/// Area deviation below which [`LAST_BALANCE`] replaces [`BALANCE`].
 const NEARLY_EVEN: f64 = 0.004;
 
-/// κ once the area ratio deviates by less than [`NEARLY_EVEN`]: where iterations are cheap, and where they are not.
+/// κ below [`NEARLY_EVEN`], on surfaces of fewer than [`MANY`] vertices and on others.
 const LAST_BALANCE: [f64; 2] = [1.0, 0.3];
 
-/// κ throughout where landmarks pull, which angles must not hold back.
+/// κ with landmarks, which angles must not hold back.
 const WITH_LANDMARKS: f64 = 0.3;
 
-/// A balanced λ stays between these, or goes down to the weight that was asked for.
+/// Bounds of a balanced λ, which may also fall to the weight asked for.
 const BALANCED: [f64; 2] = [1e-6, 1.0];
 
-/// A balanced λ falls to this part of itself at the most in one iteration, and only after a step of [`SHORT`] or more.
+/// Lower bound of the factor by which a balanced λ falls in one iteration; after a step below [`SHORT`] it does not fall.
 const FASTEST_FALL: f64 = 0.1;
 
 /// A step below this is short.
@@ -36,47 +35,50 @@ pub(super) const SHORT: f64 = 0.3;
 #[derive(Debug)]
 struct Stages {
     weights: &'static [f64],
-    /// Iterations of one stage at the most, and of the last one.
+    /// Iteration limit of a stage, and of the last stage.
     longest: [usize; 2],
     /// A stage ends where the slope promises less than this part of the energy.
     least_slope: f64,
 }
 
-/// Down to areas alone: the last stage only begins to even out what a stationary map has left, because maps of areas alone
-/// have hardly any curvature to hold them, and noise would grow.
+/// Stages down to areas alone. The last stage is short, because the energy of areas alone has hardly any curvature to
+/// hold the map, and noise would grow.
 const TO_AREAS: Stages = Stages {
     weights: &[10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5],
     longest: [60, 10],
     least_slope: 1e-5,
 };
 
-/// Down to a weight that was asked for.
+/// Stages down to a weight asked for.
 const TO_WEIGHT: Stages = Stages {
     weights: &[10.0, 1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5],
     longest: [60, 60],
     least_slope: 1e-5,
 };
 
-/// With λ held on a balanced path, the descent ends when the slope promises less than this part of the energy; on surfaces
-/// of fewer than [`SMALL`] vertices, where iterations cost nothing, it is as thorough as the stages, unless the weight is
-/// as heavy as [`HEAVY`] and holds the map by itself.
+/// On a balanced path with λ at the weight asked for, the descent ends when the slope promises less than this part of the
+/// energy.
 const LEAST_SLOPE: f64 = 1e-3;
+
+/// Surfaces of fewer vertices, where iterations are cheap, are mapped as thoroughly as by stages instead.
 const SMALL: usize = 1_000;
+
+/// From this weight on angles hold the map, so that [`LEAST_SLOPE`] suffices on small surfaces too.
 const HEAVY: f64 = 0.1;
 
-/// On surfaces of so many vertices or more iterations cost.
+/// Iterations count as costly on surfaces of this many vertices or more.
 pub(super) const MANY: usize = 10_000;
 
-/// Which way λ falls.
+/// The path on which λ falls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AnglePath {
     Balanced,
     Staged,
-    /// At the weight that was asked for all along, until the map is stationary.
+    /// λ stays at the weight asked for, until the map is stationary.
     Held,
 }
 
-/// What an iteration has shown.
+/// The figures of one iteration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Progress {
     /// E_A over the energy of angles.
@@ -85,21 +87,20 @@ pub(super) struct Progress {
     pub deviation: f64,
     /// The length of the last step.
     pub step: f64,
-    /// True if next to nothing is left to gain at the last λ.
+    /// True if the last λ has almost nothing left to gain.
     pub is_flat: bool,
 }
 
-/// λ now and on its way.
+/// λ and its path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AngleSchedule {
     /// λ never falls below this.
     least: f64,
-    /// κ at first and in the end.
+    /// κ far from even areas and near them.
     balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
-    /// The stages, of which a balanced λ has only the precision, once it has fallen to the weight that was asked for;
-    /// `None` where there is none.
+    /// The stages; a balanced λ that has fallen to the weight asked for uses only their precision. `None` without stages.
     stages: Option<&'static Stages>,
     /// The stage and its iterations so far; `None` where λ is balanced.
     stage: Option<(usize, usize)>,
@@ -144,7 +145,7 @@ impl AngleSchedule {
         self.weight
     }
 
-    /// True if λ has fallen to the weight that was asked for, and that is not 0.
+    /// True if λ has fallen to a weight asked for that is not 0.
     pub(super) fn is_held(&self) -> bool {
         self.least > 0.0 && self.weight <= self.least
     }
@@ -154,7 +155,7 @@ impl AngleSchedule {
         self.stage.is_some()
     }
 
-    /// The part of the energy that the slope promises at least while λ is to stay.
+    /// The part of the energy that the slope must promise for λ to stay.
     pub(super) fn least_slope(&self) -> f64 {
         match self.stages {
             Some(stages) if self.is_thorough() => stages.least_slope,
@@ -174,7 +175,7 @@ impl AngleSchedule {
         let goal = (ratio * progress.balance).min(most).max(least);
         match self.weight {
             weight if weight.is_nan() => goal,
-            // where areas become no evener at this λ, the balance would hold it for ever
+            // where areas become no more even at this λ, the balance would hold it forever
             weight if progress.is_flat => goal.min(FASTEST_FALL * weight).max(least),
             weight if goal < weight && progress.step >= SHORT => goal.max(FASTEST_FALL * weight),
             weight => weight,

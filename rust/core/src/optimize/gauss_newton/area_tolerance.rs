@@ -1,36 +1,40 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The map of least shear whose areas are within a tolerance.
 //!
-//! The minimum of E_A + λ E_angle has the less shear the larger λ is, and the more even areas the smaller. So λ falls step
-//! by step until the minimum is within the tolerance, or rises as long as it is, and is then raised as far as that allows,
-//! by the secant rule for the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ. But where λ
-//! rises, each minimum is sought from that of a larger λ: shear that a map once has stays in it.
+//! The minimum of E_A + λ E_angle has less shear for larger λ, and more even areas for smaller λ. So λ falls step by step
+//! until the minimum is within the tolerance, or rises while it is, and is then raised as far as the tolerance allows. That
+//! last search uses the secant rule for the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ.
+//! It starts each descent from the minimum of a larger λ, because shear stays in a map.
 
 use super::angle_schedule::AnglePath;
-use super::target_floors::{Surface, descend};
+use super::target_floors::{MappedSurface, descend};
 use super::{GaussNewtonOptions, Problem, minimize};
 use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Phase, Status};
 
-/// λ at first, what it is multiplied by until areas are within the tolerance, and divided by while they are.
+/// The first λ.
 const FIRST: f64 = 1.0;
+
+/// Factor of λ until areas are within the tolerance; divisor while they are.
 const FALL: f64 = 0.1;
 
-/// λ above this changes nothing any more: the map is as good as conformal.
+/// Upper bound of λ, at which the map is conformal for all purposes.
 const MOST: f64 = 1e4;
 
-/// λ below this changes nothing any more; then areas alone count.
+/// Lower bound of λ; below it areas alone count.
 const LEAST: f64 = 1e-6;
 
-/// The deviation aimed at, and the least that is good enough, in units of the tolerance.
+/// The deviation that the secant steps aim at, in units of the tolerance.
 const AIM: f64 = 0.98;
+
+/// The least deviation that ends the secant steps, in units of the tolerance.
 const GOOD: f64 = 0.95;
 
-/// Secant steps at the most.
+/// Limit of the secant steps.
 const STEPS: usize = 6;
 
 /// A stationary map for one λ.
-struct Found {
+struct Stationary {
     /// ln λ.
     weight: f64,
     /// ln √(E_A/A).
@@ -39,17 +43,17 @@ struct Found {
     status: Status,
 }
 
-impl Found {
-    /// True if the run has ended before the minimum was reached.
+impl Stationary {
+    /// True if the run ended before the minimum was reached.
     fn is_final(&self) -> bool {
         matches!(self.status, Status::Cancelled | Status::MaxIterations)
     }
 }
 
-/// The map of least shear with √(E_A/A) of `tolerance` or less that is reached from `start`; `problem` has the energy of
-/// the first floor, and comes back with that of the last. [`Status::Stalled`] where areas cannot be made that even.
+/// The map of least shear with √(E_A/A) ≤ `tolerance` that is reached from `start`; [`Status::Stalled`] where areas cannot
+/// be made that even. `problem` has the energy of the first floor, and is returned with that of the last.
 pub(crate) fn within_tolerance(
-    surface: &Surface<'_>,
+    surface: &MappedSurface<'_>,
     problem: Problem,
     start: SpatialMap,
     tolerance: f64,
@@ -63,41 +67,41 @@ pub(crate) fn within_tolerance(
     let first = GaussNewtonOptions { angle_weight: FIRST, ..*options };
     let (problem, map, status) = descend(surface, problem, start, &first, history, &mut phase);
     let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
-    let mut found = search.found(FIRST, map, status);
+    let mut best = search.stationary(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);
-    while found.deviation > search.goal && !found.is_final() {
-        let weight = FALL * found.weight.exp();
+    while best.deviation > search.goal && !best.is_final() {
+        let weight = FALL * best.weight.exp();
         if weight < LEAST {
-            let even = search.even(found.map, history, &mut part(round, observer));
+            let even = search.even(best.map, history, &mut phase_of(round, observer));
             return (problem, even.0, even.1);
         }
-        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
+        let next = search.minimum(weight, best.map.clone(), history, &mut phase_of(round, observer));
         round += 1;
-        coarser = Some(std::mem::replace(&mut found, next));
+        coarser = Some(std::mem::replace(&mut best, next));
     }
-    // 2. Or rises as long as they are
-    while coarser.is_none() && found.deviation <= search.goal && !found.is_final() {
-        let weight = found.weight.exp() / FALL;
+    // 2. Or λ rises while they are
+    while coarser.is_none() && best.deviation <= search.goal && !best.is_final() {
+        let weight = best.weight.exp() / FALL;
         if weight > MOST {
             break;
         }
-        let next = search.minimum(weight, found.map.clone(), history, &mut part(round, observer));
+        let next = search.minimum(weight, best.map.clone(), history, &mut phase_of(round, observer));
         round += 1;
         match (next.is_final(), next.deviation <= search.goal) {
-            (true, _) => return (problem, found.map, next.status),
-            (false, true) => found = next,
+            (true, _) => return (problem, best.map, next.status),
+            (false, true) => best = next,
             (false, false) => coarser = Some(next),
         }
     }
-    // 3. And is raised as far as they stay within it
+    // 3. λ is raised as far as areas stay within the tolerance
     if let Some(coarser) = coarser {
-        found = search.raised(coarser, found, round, history, observer);
+        best = search.raised(coarser, best, round, history, observer);
     }
-    (problem, found.map, found.status)
+    (problem, best.map, best.status)
 }
 
-/// The part of the whole that a round takes after the first descent; nobody knows how many will follow.
-fn part(round: usize, whole: &mut dyn Observer) -> Phase<'_> {
+/// The phase of a round after the first descent; later rounds, whose number is unknown, get less and less.
+fn phase_of(round: usize, whole: &mut dyn Observer) -> Phase<'_> {
     let left = |rounds: usize| 0.7f64.powi(rounds as i32 + 1);
     Phase { whole, from: 1.0 - left(round), to: 1.0 - left(round + 1) }
 }
@@ -108,14 +112,14 @@ struct Search<'a> {
     options: GaussNewtonOptions,
     /// ln of the tolerance.
     goal: f64,
-    /// Iterations of the history before the search, which has one limit for all its descents.
+    /// Iterations before the search, whose descents share one limit.
     begun: usize,
 }
 
 impl Search<'_> {
-    fn found(&self, weight: f64, map: SpatialMap, status: Status) -> Found {
+    fn stationary(&self, weight: f64, map: SpatialMap, status: Status) -> Stationary {
         let deviation = 0.5 * self.problem.unevenness(&map).max(f64::MIN_POSITIVE).ln();
-        Found { weight: weight.ln(), deviation, map, status }
+        Stationary { weight: weight.ln(), deviation, map, status }
     }
 
     /// The options of the next descent.
@@ -132,13 +136,13 @@ impl Search<'_> {
         map: SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Found {
+    ) -> Stationary {
         let options = GaussNewtonOptions { path: AnglePath::Held, ..self.options(weight, history) };
         let (map, status) = minimize(self.problem, map, &options, history, observer);
-        self.found(weight, map, status)
+        self.stationary(weight, map, status)
     }
 
-    /// The most even map, where no λ leads to areas within the tolerance.
+    /// The map of the most even areas, where no λ leads to areas within the tolerance.
     fn even(
         &self,
         map: SpatialMap,
@@ -155,12 +159,12 @@ impl Search<'_> {
     /// The largest λ within the tolerance, between `coarser` beyond it and `finer` within.
     fn raised(
         &self,
-        mut coarser: Found,
-        mut finer: Found,
+        mut coarser: Stationary,
+        mut finer: Stationary,
         round: usize,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Found {
+    ) -> Stationary {
         let (aim, good) = (self.goal + AIM.ln(), self.goal + GOOD.ln());
         for step in 0..STEPS {
             if finer.deviation >= good || finer.is_final() {
@@ -168,10 +172,10 @@ impl Search<'_> {
             }
             let share = (aim - finer.deviation) / (coarser.deviation - finer.deviation);
             let weight = finer.weight + share.clamp(0.1, 0.9) * (coarser.weight - finer.weight);
-            let phase = &mut part(round + step, observer);
+            let phase = &mut phase_of(round + step, observer);
             let next = self.minimum(weight.exp(), coarser.map.clone(), history, phase);
             if next.is_final() {
-                return Found { status: next.status, ..finer };
+                return Stationary { status: next.status, ..finer };
             }
             if next.deviation <= self.goal { finer = next } else { coarser = next }
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The iterations: weights, direction, step, and when they end.
+//! The iterations: weights, direction, step, and end.
 
 use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
 use super::problem::{GaussNewtonOptions, Problem, State};
@@ -15,18 +15,19 @@ use crate::sparse::Failure;
 /// μ, the damping of a face that is wholly off its target.
 const DAMPING: f64 = 0.05;
 
-/// What it is multiplied by after a short step, and divided by after a long one: it had better not forget too soon.
+/// Factor of μ after a short step.
 const STRAIN: f64 = 3.0;
 
+/// Divisor of μ after a long step; small, so that μ falls slowly.
 const RELIEF: f64 = 1.3;
 
-/// What every face is damped by at the most, in units of the deviation of its area ratio.
+/// Upper bound of the deviation that the damping adds to every face.
 const LEAST_DEVIATION: f64 = 1e-3;
 
-/// And at the least; on more than [`LARGE`] vertices, where the factor is one in single precision, at least
-/// [`SINGLE_PRECISION`], or there is no factor.
+/// Lower bound of the deviation that the damping adds to every face.
 const LEAST_DAMPING: f64 = 3e-4;
 
+/// That lower bound on more than [`LARGE`] vertices; smaller values break the single-precision factorization.
 const SINGLE_PRECISION: f64 = 2e-3;
 
 /// No vertex moves farther than this in one step.
@@ -35,42 +36,44 @@ const LONGEST_MOVE: f64 = 0.5;
 /// Steps tried along one direction.
 const MOST_TRIALS: usize = 30;
 
-/// The slope's share that a step must gain.
+/// A step must gain this part of what the slope promises.
 const SUFFICIENT: f64 = 1e-4;
 
-/// A map is even enough to end with after the usual iterations when the deviation of its area ratio is below this: on
-/// surfaces of fewer than [`MANY`] vertices, on others, and after stages, which few surfaces need.
+/// Area deviation below which a descent ends after the usual iterations: on surfaces of fewer than [`MANY`] vertices, on
+/// others, and after stages, which few surfaces need.
 const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
 
-/// And it is good enough for a descent that has become slow when it is below this.
+/// Area deviation below which a slow descent ends.
 const GOOD_ENOUGH: f64 = 0.005;
 
-/// And on surfaces of [`MANY`] vertices or more, where iterations cost, as soon as it is below this.
+/// Area deviation below which a descent ends at once on surfaces of [`MANY`] vertices or more.
 const EVEN: f64 = 7e-4;
 
-/// The descent ends when this many iterations have lowered E_A by less than [`LEAST_GAIN`] of it.
+/// Iterations over which a descent must lower E_A by [`LEAST_GAIN`], or it is slow.
 const PATIENCE: usize = 5;
 
+/// The part of E_A that [`PATIENCE`] iterations must gain.
 const LEAST_GAIN: f64 = 0.05;
 
-/// An energy below this part of the area is as good as none.
+/// An energy below this part of the area counts as zero.
 const NOTHING: f64 = 1e-12;
 
-/// The more even of two results, each with how uneven it is; a second run that was cancelled says so.
+/// The more even of two results, each with its unevenness; cancelled where the second run was.
 pub(crate) fn more_even(
     first: (f64, SpatialMap, Status),
     second: (f64, SpatialMap, Status),
 ) -> (SpatialMap, Status) {
-    let ((unevenness, map, status), (other_unevenness, other, ended)) = (first, second);
-    match other_unevenness < unevenness {
-        true => (other, ended),
-        false if ended == Status::Cancelled => (map, ended),
-        false => (map, status),
+    if second.0 < first.0 {
+        (second.1, second.2)
+    } else if second.2 == Status::Cancelled {
+        (first.1, second.2)
+    } else {
+        (first.1, first.2)
     }
 }
 
-/// Lowers the energy from `start` and returns the last map with the status, or where the weight of angles is 0 behind
-/// the barrier the one with the lowest E_A.
+/// Lowers the energy from `start` and returns the status with the last map, or with the map of the lowest E_A where the
+/// weight of angles is 0 behind the barrier.
 pub(crate) fn minimize(
     problem: &Problem,
     start: SpatialMap,
@@ -84,7 +87,7 @@ pub(crate) fn minimize(
     let mut trend = Trend::default();
     let mut best = (f64::INFINITY, SpatialMap::new());
     for done in 0.. {
-        // 1. Targets on the scale of the image, λ on its way
+        // 1. Targets on the scale of the image, the next λ
         trend.energies.push(sums.total());
         let was_staged = descent.schedule.is_staged();
         let weights = descent.balance(&sums, &trend);
@@ -138,7 +141,7 @@ struct Trend {
 }
 
 impl Trend {
-    /// True if the last iterations gained next to nothing, and were not about to leave a saddle.
+    /// True if the last iterations gained almost nothing, and were not about to leave a saddle.
     fn is_slow(&self) -> bool {
         let Some(before) = self.norms.len().checked_sub(PATIENCE) else { return false };
         let [then, now] = [before, self.norms.len()].map(|k| self.energies[k]);
@@ -147,19 +150,19 @@ impl Trend {
     }
 }
 
-/// What the iterations hand on.
+/// The state of the iterations.
 struct Descent<'a> {
     problem: &'a Problem,
     options: GaussNewtonOptions,
     linearized: Linearized,
     schedule: AngleSchedule,
-    /// The deviation to end with after the usual iterations.
+    /// The area deviation below which to end after the usual iterations.
     even_enough: f64,
-    /// True if iterations cost.
+    /// True if iterations are costly.
     is_large: bool,
-    /// True if the last second-order correction was of no use.
+    /// True if the last second-order correction was useless.
     is_straight: bool,
-    /// What targets are multiplied by; NaN before the first iteration.
+    /// The scale of the targets; NaN before the first iteration.
     scale: f64,
     /// μ.
     damping: f64,
@@ -168,7 +171,7 @@ struct Descent<'a> {
     total_target: f64,
     /// The part of the energy that the last slope promised.
     promise: f64,
-    /// True if it was next to nothing.
+    /// True if that part was almost nothing.
     flat: bool,
 }
 
@@ -191,7 +194,7 @@ impl<'a> Descent<'a> {
                 AnglePath::Staged => EVEN_ENOUGH[2],
                 AnglePath::Balanced | AnglePath::Held => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
             },
-            // landmarks have to meet, however even areas are
+            // landmarks must meet, however even areas are
             is_large: is_large && !has_landmarks && options.profile == Profile::Barrier,
             is_straight: false,
             scale: f64::NAN,
@@ -203,12 +206,12 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// True if E_A alone decides which map is the best: it may rise where a barrier or angles count on the way.
+    /// True if E_A alone decides which map is the best; it may rise on the way, where a barrier or angles count.
     fn keeps_the_best(&self) -> bool {
         self.options.angle_weight == 0.0 && self.options.profile == Profile::Barrier
     }
 
-    /// The map with the lowest E_A met, where that decides, else the last.
+    /// The map of the lowest E_A where that decides, otherwise the last map.
     fn best_of(
         &self,
         best: (f64, SpatialMap),
@@ -228,13 +231,13 @@ impl<'a> Descent<'a> {
     fn balance(&mut self, sums: &Sums, trend: &Trend) -> Weights {
         let balance = sums.total() / sums.angle_energy.max(1e-3);
         let deviation = (sums.total() / sums.area).sqrt();
-        // on the way to a weight that was asked for, a descent that is slow has to go on
+        // a slow descent must go on to the weight asked for
         let is_on_its_way = self.options.angle_weight > 0.0 && !self.schedule.is_staged();
         let is_flat = self.flat || (is_on_its_way && trend.is_slow());
         let progress = Progress { balance, deviation, step: self.last_step, is_flat };
         let before = self.schedule.weight();
         let angle = self.schedule.advance(&progress);
-        // what was flat need not be with another λ
+        // with another λ the energy need not be flat
         self.flat &= angle == before;
         self.scale = sums.area / self.total_target;
         Weights { scale: self.scale, angle, profile: self.options.profile }
@@ -272,14 +275,14 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The part done after `done` iterations.
+    /// The fraction done after `done` iterations.
     fn fraction(&self, done: usize) -> f64 {
-        // nearly all runs end after the usual iterations, and none may seem to go back
+        // nearly all runs end after the usual iterations; progress must never go back
         let usual = self.options.usual_iterations.min(self.options.most_iterations).max(1);
         1.0 - 0.1f64.powf(done as f64 / usual as f64)
     }
 
-    /// The next map, with the step's length; `None` where no step lowers the energy.
+    /// The next map and the length of the step; `None` where no step lowers the energy.
     fn step(&mut self, state: &State, newton: &Newton, weights: &Weights) -> Option<(State, f64)> {
         let problem = self.problem;
         let value = problem.value(state, weights);
@@ -292,7 +295,7 @@ impl<'a> Descent<'a> {
         let mut step = (LONGEST_MOVE / longest).min(1.0);
         let mut bend = None;
         let mut trial = Trial::new(problem, self.path(&state.map, newton, None, step), weights);
-        // a correction that was of no use seldom is in the next iteration
+        // a useless correction is seldom useful in the next iteration
         if step == 1.0 && !std::mem::take(&mut self.is_straight) {
             let correction =
                 self.linearized.correction(problem, &state.map, &trial.state.map, newton, weights);
@@ -324,7 +327,7 @@ impl<'a> Descent<'a> {
         self.problem.moved(map, &newton.frames, &direction)
     }
 
-    /// True if λ stays until the map is stationary, which is not far.
+    /// True if λ stays until the map is stationary, and it nearly is.
     fn is_near(&self) -> bool {
         self.schedule.is_thorough() && self.promise < NEAR
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the descent works on: a surface, how its vertices may move, the energy of its maps, and when to end.
+//! The problem of a descent: a surface, the motions of its vertices, the energy of its maps, and the options.
 
 use super::angle_schedule::AnglePath;
 use crate::codomain::SpatialMap;
@@ -12,59 +12,59 @@ use crate::parallel;
 use crate::sparse::{Analysis, Order};
 use crate::vector::Vector3;
 
-/// A surface, how its vertices may move, and the energy of its maps.
+/// A surface, the motions of its vertices, and the energy of its maps.
 pub(crate) struct Problem {
     pub energy: AuthalicEnergy,
     pub motions: Vec<Motion>,
-    /// Landmarks that are wanted at places; none elsewhere.
+    /// The penalty on landmarks; empty without landmarks.
     pub penalty: LandmarkPenalty,
     pub analysis: Analysis,
 }
 
-/// When and how to descend.
+/// The options of a descent.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GaussNewtonOptions {
-    /// The barrier, or none.
+    /// The cost of area ratios, with or without a barrier.
     pub profile: Profile,
     /// λ never falls below this.
     pub angle_weight: f64,
-    /// Which way it falls.
+    /// The path on which λ falls.
     pub path: AnglePath,
-    /// Iterations after which a deviation below [`EVEN_ENOUGH`](super::descent) is good enough; `usize::MAX` where a limit or a tolerance
-    /// was asked for.
+    /// Iterations after which a deviation below [`EVEN_ENOUGH`](super::descent) suffices; `usize::MAX` where a limit or a
+    /// tolerance was asked for.
     pub usual_iterations: usize,
-    /// Iterations at the most.
+    /// Iteration limit.
     pub most_iterations: usize,
-    /// Converged when the deviation of the area ratio, √(E_A/A), is below this.
+    /// The descent has converged when the area deviation √(E_A/A) is below this.
     pub tolerance: f64,
-    /// Whether to end as soon as no face is folded, after so many iterations.
+    /// Iterations after which to end as soon as no face is folded; `None` to go on.
     pub until_open: Option<usize>,
 }
 
 impl Problem {
-    /// The same with another energy of the same surface.
+    /// The problem with another energy of the same surface.
     pub(crate) fn with_energy(self, energy: AuthalicEnergy) -> Self {
         Self { energy, ..self }
     }
 
-    /// Analyses the system of the energy, its vertices in an order to be found or as they come.
+    /// Analyzes the system of the energy, with its vertices in `order`.
     pub(crate) fn new(energy: AuthalicEnergy, motions: Vec<Motion>, order: Order) -> Result<Self, Error> {
         let unknowns: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
         let analysis = Analysis::new(motions.len(), energy.faces(), &unknowns, order)?;
         Ok(Self { energy, motions, penalty: LandmarkPenalty::default(), analysis })
     }
 
-    /// The same with landmarks that are wanted at places.
+    /// The problem with a penalty on landmarks.
     pub(crate) fn with_landmarks(self, penalty: LandmarkPenalty) -> Self {
         Self { penalty, ..self }
     }
 
-    /// The energy of a map, that of landmarks included.
+    /// The energy of a map, including the penalty on landmarks.
     pub(super) fn value(&self, state: &State, weights: &Weights) -> f64 {
         self.energy.value(&state.costs, weights) + state.penalty
     }
 
-    /// The sums of a map, that of landmarks included.
+    /// The sums of a map, including the penalty on landmarks.
     pub(super) fn sums(&self, state: &State) -> Sums {
         Sums { penalty: state.penalty, ..self.energy.sums(&state.costs) }
     }
@@ -87,7 +87,7 @@ impl Problem {
         parallel::map(map.len(), |v| self.motions[v].moved(map[v], &frames[v], direction[v]))
     }
 
-    /// The unknowns of values at the vertices.
+    /// The values at the vertices as unknowns.
     pub(super) fn packed(&self, values: &[[f64; 2]]) -> Vec<f64> {
         let mut unknowns = vec![0.0; self.analysis.n_unknowns()];
         for (vertex, value) in values.iter().enumerate() {
@@ -97,7 +97,7 @@ impl Problem {
         unknowns
     }
 
-    /// The values at the vertices of unknowns.
+    /// The unknowns as values at the vertices.
     pub(super) fn unpacked(&self, unknowns: &[f64]) -> Vec<[f64; 2]> {
         parallel::map(self.motions.len(), |vertex| {
             let first = self.analysis.first_unknown(vertex);
@@ -107,7 +107,7 @@ impl Problem {
     }
 }
 
-/// A map with what its energy is made of for any weights.
+/// A map with the terms of its energy, for any weights.
 pub(super) struct State {
     pub map: SpatialMap,
     costs: Vec<[f64; 2]>,

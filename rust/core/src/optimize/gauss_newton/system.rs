@@ -24,14 +24,13 @@ const LESS: f64 = 0.6;
 /// Shares of the exact Hessian tried in one iteration.
 const ATTEMPTS: usize = 2;
 
-/// A direction whose slope has grown by more than this comes of a Hessian that is all but singular, and would amplify
-/// noise.
+/// A direction whose slope has grown by more than this comes from a nearly singular Hessian, and would amplify noise.
 const MOST_GROWTH: f64 = 3.0;
 
 /// A direction with its slope.
 type Direction = (Vec<[f64; 2]>, f64);
 
-/// The direction at a map, with what was needed to find it.
+/// The direction at a map, with the frames and the slope.
 pub(super) struct Newton {
     pub frames: Vec<Frame>,
     pub direction: Vec<[f64; 2]>,
@@ -39,8 +38,8 @@ pub(super) struct Newton {
     pub slope: f64,
 }
 
-/// Where a direction starts.
-struct Place<'a> {
+/// A map from which a direction starts.
+struct Iterate<'a> {
     map: &'a [Vector3],
     frames: Vec<Frame>,
     gradient: Vec<[f64; 2]>,
@@ -50,19 +49,19 @@ struct Place<'a> {
 /// The factor of the Hessian at a map.
 ///
 /// In single precision its rounding errors, some 1e-3 of a direction along the family of area-preserving maps, would
-/// decide where in it the descent ends.
+/// decide which of them the descent reaches.
 pub(super) struct Linearized {
     single: Option<Factor<f32>>,
     double: Option<Factor<f64>>,
     single_failed: usize,
-    /// How much of the way from the composite Hessian to the exact one is tried next.
+    /// The part of the way from the composite Hessian to the exact one to try next.
     curvature: f64,
     /// The last slope.
     slope: f64,
 }
 
 impl Linearized {
-    /// None yet; in single precision while that holds where asked for.
+    /// Without a factor yet; `in_single` asks for single precision while that suffices.
     pub(super) fn new(in_single: bool) -> Self {
         let single_failed = if in_single { 0 } else { usize::MAX };
         Self { single: None, double: None, single_failed, curvature: 1.0, slope: f64::NEG_INFINITY }
@@ -80,32 +79,33 @@ impl Linearized {
     ) -> Result<Newton, Failure> {
         let frames = frames(&problem.motions, map);
         let gradient = problem.gradient(map, &frames, weights);
-        let place = Place { map, frames, gradient, weights };
-        let exact = if is_near { self.exact_direction(problem, &place, damping, watch)? } else { None };
+        let iterate = Iterate { map, frames, gradient, weights };
+        let exact = if is_near { self.exact_direction(problem, &iterate, damping, watch)? } else { None };
         let (direction, slope) = match exact {
             Some(direction) => direction,
-            None => self.composite_direction(problem, &place, damping, watch)?,
+            None => self.composite_direction(problem, &iterate, damping, watch)?,
         };
         self.slope = slope;
-        Ok(Newton { frames: place.frames, direction, slope })
+        Ok(Newton { frames: iterate.frames, direction, slope })
     }
 
-    /// The direction of as much of the exact Hessian as is positive definite, with its slope; `None` where that is none.
+    /// The direction by the largest part of the exact Hessian that is positive definite, with its slope; `None` where no
+    /// part is.
     fn exact_direction(
         &mut self,
         problem: &Problem,
-        place: &Place<'_>,
+        iterate: &Iterate<'_>,
         damping: Hessian,
         watch: &Watch<'_>,
     ) -> Result<Option<Direction>, Failure> {
         let mut curvature = self.curvature;
         for _ in 0..ATTEMPTS {
-            let element = |face: usize| element(problem, place, &Hessian { curvature, ..damping }, face);
+            let element = |face: usize| element(problem, iterate, &Hessian { curvature, ..damping }, face);
             match self.refactor(problem, &element, watch) {
                 Err(Failure::Cancelled) => return Err(Failure::Cancelled),
                 Err(Failure::NotPositiveDefinite) => {}
                 Ok(()) => {
-                    let (direction, slope) = self.solved(problem, place);
+                    let (direction, slope) = self.solved(problem, iterate);
                     if slope <= 0.0 && slope >= MOST_GROWTH * self.slope {
                         let is_first = curvature == self.curvature;
                         self.curvature = if is_first { (MORE * curvature).min(1.0) } else { curvature };
@@ -123,13 +123,13 @@ impl Linearized {
     fn composite_direction(
         &mut self,
         problem: &Problem,
-        place: &Place<'_>,
+        iterate: &Iterate<'_>,
         damping: Hessian,
         watch: &Watch<'_>,
     ) -> Result<Direction, Failure> {
         for _ in 0..3 {
-            self.refactor(problem, &|face: usize| element(problem, place, &damping, face), watch)?;
-            let (direction, slope) = self.solved(problem, place);
+            self.refactor(problem, &|face: usize| element(problem, iterate, &damping, face), watch)?;
+            let (direction, slope) = self.solved(problem, iterate);
             if slope <= 0.0 && slope.is_finite() {
                 return Ok((direction, slope));
             }
@@ -143,8 +143,8 @@ impl Linearized {
     }
 
     /// The direction of the factor with its slope.
-    fn solved(&self, problem: &Problem, place: &Place<'_>) -> Direction {
-        let gradient = &place.gradient;
+    fn solved(&self, problem: &Problem, iterate: &Iterate<'_>) -> Direction {
+        let gradient = &iterate.gradient;
         let mut unknowns = problem.packed(gradient);
         self.solve(problem, &mut unknowns);
         let ascent = problem.unpacked(&unknowns);
@@ -168,7 +168,7 @@ impl Linearized {
         problem.unpacked(&unknowns)
     }
 
-    /// Factors in single precision, in double where that fails; always in double once it failed twice.
+    /// Factors in single precision, in double where that fails, and always in double after two failures.
     fn refactor(
         &mut self,
         problem: &Problem,
@@ -197,18 +197,18 @@ impl Linearized {
     }
 }
 
-/// The Hessian of a face with landmarks, and with a shift that keeps rotations of the whole from being free.
-fn element(problem: &Problem, place: &Place<'_>, how: &Hessian, face: usize) -> Element {
-    let (energy, map) = (&problem.energy, place.map);
-    let mut element = energy.element(map, &place.frames, place.weights, how, face);
-    problem.penalty.add_element(map, &place.frames, face, &mut element);
+/// The Hessian of a face with landmarks, and with a shift that resists rotations of the whole.
+fn element(problem: &Problem, iterate: &Iterate<'_>, how: &Hessian, face: usize) -> Element {
+    let (energy, map) = (&problem.energy, iterate.map);
+    let mut element = energy.element(map, &iterate.frames, iterate.weights, how, face);
+    problem.penalty.add_element(map, &iterate.frames, face, &mut element);
     for c in 0..3 {
-        // the same for both unknowns of a corner, so that turning the map turns the result
+        // one shift for both unknowns of a corner, so that the result turns with the map
         let mut shift = 0.5e-10 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]).abs() + 1e-14;
         if how.curvature > 0.0 {
             // away from a stationary point, a turn of the whole has a negative curvature of the size of the gradient
             let vertex = energy.faces()[face][c] as usize;
-            let [a, b] = place.gradient[vertex];
+            let [a, b] = iterate.gradient[vertex];
             shift += how.curvature * a.hypot(b) / energy.vertex_corners(vertex).len() as f64;
         }
         (2 * c..2 * c + 2).for_each(|k| element[k][k] += shift);

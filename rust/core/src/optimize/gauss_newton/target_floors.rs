@@ -2,9 +2,8 @@
 //! Gauss–Newton for surfaces with slivers: targets are raised to a floor that is lowered step by step.
 //!
 //! The energy of a face grows like 1/T, so a face with a millionth of the mean target rules the whole descent long before
-//! the others are in place. Solved first with every target at least a hundredth of the mean, then with lower floors, the
-//! same slivers cost a few iterations each. Rest triangles are fattened along with them, so that cotangents stay
-//! moderate.
+//! the others are in place. When the descent first raises every target to at least a hundredth of the mean, and then lowers
+//! that floor, slivers cost a few iterations each. Rest triangles are fattened too, so that cotangents stay moderate.
 //!
 //! While a floor holds, the energies in the history are those for the raised targets.
 
@@ -17,22 +16,22 @@ use crate::energy::stretch::Profile;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
-/// Floors one after the other, in units of the mean target.
+/// The floors, from the first to the last, in units of the mean target.
 const FLOORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
-/// Iterations of each floor but the first: so many where they suffice, and at the most but on the last.
+/// Iterations of each floor but the first: the usual number, and the limit except on the last floor.
 const ITERATIONS: [usize; 2] = [2, 8];
 
-/// Rest triangles are fattened to a height of at most this part of their longest edge,
+/// Upper bound of the height to which rest triangles are fattened, in units of their longest edge.
 const FLATTEST: f64 = 0.02;
 
-/// and at least this.
+/// Lower bound of the height to which rest triangles are fattened.
 const FLATTEST_LAST: f64 = 1e-7;
 
-/// The part of the whole that the first floor takes.
+/// The part of the progress that belongs to the first floor.
 const FIRST_PART: f64 = 0.6;
 
-/// The floors that targets (m,) need, one after the other: those above the smallest target, and none at last.
+/// The floors that targets (m,) need, in order: those above the smallest target, then 0.
 pub(crate) fn floors(targets: &[f64]) -> Vec<f64> {
     let least = targets.iter().fold(f64::INFINITY, |least, &target| least.min(target)) / mean(targets);
     FLOORS.into_iter().filter(|&floor| floor > least).chain([0.0]).collect()
@@ -50,16 +49,16 @@ pub(crate) fn energy(mesh: &TriangleMesh, targets: &[f64], codomain: Codomain, f
     AuthalicEnergy::new(mesh, raised(targets, floor), codomain, flattest)
 }
 
-/// What is mapped, to what areas, and where.
-pub(crate) struct Surface<'a> {
+/// A surface with the target areas and the codomain of its map.
+pub(crate) struct MappedSurface<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub codomain: Codomain,
 }
 
-/// A guarded descent through all floors; `problem` has the energy of the first, and comes back with that of the last.
+/// A guarded descent through all floors; `problem` has the energy of the first, and is returned with that of the last.
 pub(crate) fn descend(
-    surface: &Surface<'_>,
+    surface: &MappedSurface<'_>,
     mut problem: Problem,
     start: SpatialMap,
     options: &GaussNewtonOptions,
@@ -67,7 +66,7 @@ pub(crate) fn descend(
     observer: &mut dyn Observer,
 ) -> (Problem, SpatialMap, Status) {
     debug_assert!(options.profile == Profile::Barrier);
-    let Surface { mesh, targets, codomain } = *surface;
+    let MappedSurface { mesh, targets, codomain } = *surface;
     let floors = floors(targets);
     let part = |k: usize| match k {
         0 => 0.0,
@@ -82,12 +81,12 @@ pub(crate) fn descend(
             let [usual, most] = ITERATIONS;
             let is_last = k + 1 == floors.len();
             options.usual_iterations = match options.usual_iterations {
-                // who asks for a tolerance gets it
+                // a tolerance that was asked for must be reached
                 usize::MAX if is_last => usize::MAX,
                 of_first if is_last => (of_first / 2).min(most),
                 _ => usual,
             };
-            // the last floor has a verdict of its own, and what is left of the limit for that
+            // the last floor has its own verdict and gets the rest of the limit
             let left = options.most_iterations.saturating_sub(history.iterations() - before);
             let few = options.most_iterations.min(most);
             options.most_iterations = if is_last { left.max(few) } else { few };

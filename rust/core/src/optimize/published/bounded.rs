@@ -8,7 +8,7 @@
 //! The function may be +∞ or NaN; such a point never becomes the best. Cost: about a dozen evaluations for
 //! three digits.
 
-/// Evaluations at the most.
+/// Limit of the evaluations.
 const MAX_EVALUATIONS: usize = 60;
 
 /// Width of the part that a golden section keeps off, (3 − √5)/2.
@@ -28,7 +28,7 @@ pub(super) fn minimize(end: f64, tolerance: f64, mut function: impl FnMut(f64) -
         Point { at, value: if value.is_nan() { f64::INFINITY } else { value } }
     };
     let (mut low, mut high) = (0.0, end);
-    // 1. The best point, the second best and the one before; what is not allowed lies at the far end
+    // 1. The best point and two earlier ones; the interval ends before values that are not finite
     let mut best = sample(GOLDEN * end);
     for _ in 1..MAX_EVALUATIONS {
         if best.value.is_finite() {
@@ -72,7 +72,7 @@ pub(super) fn minimize(end: f64, tolerance: f64, mut function: impl FnMut(f64) -
     best.at
 }
 
-/// The step from the best point to the minimizer of the parabola through all three, where they make one.
+/// The step from the best point to the minimizer of the parabola through all three; `None` where there is none.
 fn parabolic_step(best: Point, second: Point, third: Point) -> Option<f64> {
     let [to_second, to_third] = [second, third].map(|point| best.at - point.at);
     let r = to_second * (best.value - third.value);

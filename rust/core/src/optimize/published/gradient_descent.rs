@@ -13,7 +13,7 @@ use super::{Domain, Energies, Stopping, bounded, interpolation};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
 
-/// How the length of a step is found.
+/// The search for the length of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum LineSearch {
@@ -27,9 +27,9 @@ pub enum LineSearch {
 /// Options of [`minimize`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DescentOptions {
-    /// When to end.
+    /// The end of the descent.
     pub stopping: Stopping,
-    /// How the length of a step is found.
+    /// The search for the length of a step.
     pub line_search: LineSearch,
 }
 

@@ -31,7 +31,7 @@ pub(super) fn decreases<S, T>(start: &Trial<S>, trial: &Trial<T>) -> bool {
 /// Finds a step that decreases enough, or `None`.
 ///
 /// `start` is the trial at α = 0 with negative slope, `first` the first step to try, and `evaluate` computes
-/// trials, whose slopes are not looked at.
+/// trials, whose slopes are not used.
 pub(super) fn backtrack<S, T>(
     start: &Trial<S>,
     first: f64,

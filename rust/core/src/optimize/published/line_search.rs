@@ -28,14 +28,14 @@ impl Default for WolfeOptions {
     }
 }
 
-/// An objective along a curve at one step: φ(α), φ'(α), and what the caller wants back with it.
+/// An objective along a curve at one step: φ(α), φ'(α), and data of the caller.
 #[derive(Debug, Clone)]
 pub struct Trial<T> {
     /// The step α.
     pub step: f64,
     /// φ(α), +∞ where the step is not allowed.
     pub value: f64,
-    /// φ'(α); not looked at where the value is infinite.
+    /// φ'(α); not used where the value is infinite.
     pub slope: f64,
     /// The caller's data at this step.
     pub data: T,
@@ -57,15 +57,14 @@ impl WolfeOptions {
 /// Finds a step that satisfies the strong Wolfe conditions.
 ///
 /// `start` is the trial at α = 0 with negative slope, `first` the first trial at α > 0, and `evaluate`
-/// computes others. Returns the accepted trial; where none is found, the best one that at least decreases
-/// enough, or `None`.
+/// computes others. Returns the accepted trial, or the best one that at least decreases enough, or `None`.
 pub fn strong_wolfe<T: Clone>(
     start: &Trial<T>,
     first: Trial<T>,
     options: &WolfeOptions,
     mut evaluate: impl FnMut(f64) -> Trial<T>,
 ) -> Option<Trial<T>> {
-    // 1. Bracket: `low` is the best step so far, `high` an end beyond which need not be looked
+    // 1. Bracket: `low` is the best step so far, `high` an upper bound of the search
     let (mut low, mut high) = (start.clone(), None);
     let mut trial = first;
     for _ in 0..options.max_evaluations {

@@ -9,13 +9,13 @@ pub mod nonlinear_cg;
 
 use crate::control::{Observer, Status};
 
-/// When an optimizer ends.
+/// The end of an optimizer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stopping {
-    /// Iterations at the most; the paper's 50.
+    /// Iteration limit; by default the paper's 50.
     pub max_iterations: usize,
-    /// Converged when √(gᵀM⁻¹g) falls below this. 10⁻⁸ is beyond what 50 iterations reach, so that it stops
-    /// only runs that have nothing left to do.
+    /// The optimizer has converged when √(gᵀM⁻¹g) is below this. 10⁻⁸ is beyond the reach of 50 iterations, so that it stops
+    /// only runs that have nothing left to gain.
     pub tolerance: f64,
 }
 
@@ -49,13 +49,13 @@ impl Stopping {
 /// The energies of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
-    /// What is minimized; +∞ where the map is not allowed.
+    /// The objective to minimize; +∞ where the map is not allowed.
     pub objective: f64,
     /// E_A, as reported in histories.
     pub authalic_energy: f64,
 }
 
-/// A space of maps with an energy: what an optimizer needs to know of it.
+/// A space of maps with an energy, as an optimizer sees it.
 ///
 /// Directions, gradients and preconditioned gradients are vectors in coordinates of the domain, in which its
 /// retraction starts as a straight line: one number per degree of freedom on the disk, three per vertex,

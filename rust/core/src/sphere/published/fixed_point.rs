@@ -10,11 +10,11 @@
 //!
 //! and the whole chart is divided by the median modulus. The iteration ends when E_S falls by no more than ε.
 //!
-//! Three things differ from the paper. Its inversions mirror the map each time; here the chart changes, which
-//! is the same and keeps the orientation. Its E_S is taken with image and targets scaled to the sphere's area, so that
-//! a smaller image does not count as progress. And its median counts vertices, which on a mesh with more vertices
-//! on one hemisphere pushes area across the equator after every step; here it counts target area, which an
-//! area-preserving map does halve. On meshes of even density the two agree.
+//! Three things differ from the paper. Its inversions mirror the map each time; here the chart changes instead, which
+//! keeps the orientation. Here E_S is taken with image and targets scaled to the sphere's area, so that a smaller image
+//! does not count as progress. The paper's median counts vertices, which on a mesh with more vertices on one hemisphere
+//! pushes area across the equator after every step; here it counts target area, which an area-preserving map does halve.
+//! On meshes of even density the two agree.
 //!
 //! Cost of one iteration: one Cholesky analysis and factorization of about 0.6 n vertices.
 
@@ -32,13 +32,13 @@ const RADIUS: f64 = 1.2;
 
 const MESSAGE: &str = "Fixed-point iteration";
 
-/// When the iteration ends.
+/// The end of the iteration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FixedPointStopping {
-    /// Iterations at the most.
+    /// Iteration limit.
     pub max_iterations: usize,
-    /// ε: ends when E_S falls by no more than this; −∞ goes on whatever happens, and the last map is returned
-    /// instead of the best.
+    /// ε: the iteration ends when E_S falls by no more than this; −∞ takes all iterations and returns the last map instead
+    /// of the best.
     pub tolerance: f64,
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn fixed_point(
     let mut energy = stretch(&map);
     record(domain, &map, history, true);
     for done in 0.. {
-        // 1. Enough?
+        // 1. Stop where converged or at a limit
         if done >= stopping.max_iterations {
             return (map, Status::MaxIterations);
         }

@@ -4,8 +4,8 @@
 //! Sutti & Yueh (2024), sections 4 and 5: directions are tangent, (x, y, z) of vertex 0, then of vertex 1,
 //! and so on; the Riemannian gradient is the Euclidean one projected to the tangent planes (5.1), and the
 //! retraction normalizes f + ξ row by row (4.3). The objective is the paper's normalized energy (2.4) times
-//! 4π/A: the paper's own falls when the inscribed polyhedron shrinks, and on coarse meshes a descent ends
-//! there. The paper's descent has no preconditioner; the guarded one has I₃ ⊗ L_S(f⁰), projected to the
+//! 4π/A, because the paper's energy falls when the inscribed polyhedron shrinks, where descents on coarse meshes
+//! end. The paper's descent has no preconditioner; the guarded one has I₃ ⊗ L_S(f⁰), projected to the
 //! tangent planes.
 
 use crate::codomain::SpatialMap;

@@ -19,23 +19,23 @@ use crate::sphere::options::SphereMethod;
 use crate::sphere::run::Run;
 use crate::sphere::{start, unfold};
 
-/// Iterations of either method, those of the paper's tables.
+/// Iteration limit of either method, as in the paper's tables.
 const ITERATIONS: usize = 100;
 
-/// Fixed-point steps before the gradient descent at the most; few meshes gain more by others.
+/// Limit of the fixed-point steps before the gradient descent; few meshes gain by more.
 const FIXED_POINT_STEPS: usize = 10;
 
 /// ε of Algorithm 2.
 const FIXED_POINT_TOLERANCE: f64 = 1e-6;
 
-/// A correction may multiply E_A by this; one that costs more has unfolded by shrinking what was folded.
+/// A correction may multiply E_A by at most this; beyond, it has unfolded faces by shrinking them.
 const DEAREST_CORRECTION: f64 = 2.0;
 
 /// Iterations of a guarded descent with one preconditioner.
 const ROUND: usize = 10;
 
 impl Run<'_> {
-    /// The papers' method, then whatever it takes to have no folded face.
+    /// The papers' method, then the steps that leave no folded face.
     pub(crate) fn solve(
         &self,
         history: &mut History,
@@ -46,7 +46,7 @@ impl Run<'_> {
         let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.05 })?;
         let mut phase = Phase { whole: observer, from: 0.05, to: 0.4 };
         let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
-        // 2. The correction that the paper makes here
+        // 2. The paper's correction
         let stepped = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
         // 3. Gradient descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
@@ -54,8 +54,7 @@ impl Run<'_> {
         if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
-        // 4. The correction again, or else the best map without folds that there is, and a descent from there that
-        //    keeps every face open
+        // 4. The correction again, or else the best map without folds, and a descent from there that keeps every face open
         let (map, status) = self.mended(&mut domain, map, &start, status, history, observer)?;
         // 5. Never worse than an earlier map without folds
         let energy = energy_share(&domain, &map);
@@ -68,7 +67,7 @@ impl Run<'_> {
         }
     }
 
-    /// A map without folds from one with folds; of a run already cancelled the nearest at hand.
+    /// A map without folds from one with folds; for a run already cancelled the cheapest.
     fn mended(
         &self,
         domain: &mut SphereDomain<'_>,
@@ -94,7 +93,7 @@ impl Run<'_> {
         Ok(self.guarded_descent(domain, unfolded, status, history, &mut phase))
     }
 
-    /// The map unfolded, where that does not cost more area than a descent can be expected to win back.
+    /// The unfolded map; `None` where it raises E_A beyond what a descent can be expected to win back.
     fn corrected(
         &self,
         domain: &SphereDomain<'_>,
@@ -142,7 +141,7 @@ impl Run<'_> {
         Ok((recorded(domain, map, history), status))
     }
 
-    /// Fixed-point steps from the start map; none before a gradient descent from a map that was given.
+    /// Fixed-point steps from the start map; none before a gradient descent from a given map.
     fn fixed_point(
         &self,
         domain: &SphereDomain<'_>,
@@ -159,7 +158,7 @@ impl Run<'_> {
         }
     }
 
-    /// Gradient descent where that is the method and nobody has asked to stop.
+    /// Gradient descent, if that is the method and the run is not cancelled.
     fn gradient_descent(
         &self,
         domain: &SphereDomain<'_>,
@@ -176,8 +175,8 @@ impl Run<'_> {
         minimize(domain, map, &options, history, observer)
     }
 
-    /// A descent from a map without folds that keeps every face open, preconditioned anew every few
-    /// iterations; a run already cancelled only keeps the map.
+    /// A descent from a map without folds that keeps every face open, with a new preconditioner every [`ROUND`]
+    /// iterations; a run already cancelled returns the map unchanged.
     fn guarded_descent(
         &self,
         domain: &mut SphereDomain<'_>,
@@ -213,7 +212,7 @@ impl Run<'_> {
         (map, status)
     }
 
-    /// The start map given, or the conformal one.
+    /// The given start map, or the conformal one.
     fn start(&self, observer: &mut dyn Observer) -> Result<SpatialMap, Error> {
         match self.options.initial {
             Some(initial) => Ok(initial.iter().filter_map(|&x| onto_sphere(x)).collect()),
@@ -256,7 +255,7 @@ impl Run<'_> {
     }
 }
 
-/// E_A/A: what is left when the size of the image does not count.
+/// E_A/A, which does not depend on the size of the image.
 pub(crate) fn energy_share(domain: &SphereDomain<'_>, map: &SpatialMap) -> f64 {
     let value = domain.energy().value(map);
     value.authalic_energy / value.area

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How a long run speaks with its caller: progress, cancel, status and history.
+//! The dialog of a long run with its caller: progress, cancel, status and history.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// Listens to a run and may end it.
 ///
-/// Any `FnMut(f64, &str) -> bool` is one.
+/// Any `FnMut(f64, &str) -> bool` is an observer.
 ///
 /// ```
 /// use authalic::Observer;
@@ -19,9 +19,8 @@ use std::time::{Duration, Instant};
 /// assert!(observer.progress(0.5, "half"));
 /// ```
 pub trait Observer: Send {
-    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message, in a long step
-    /// also from within, on any thread, with the fraction of before; `false` cancels, and the run returns its best
-    /// map so far.
+    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message. A long step also calls it
+    /// from within, on any thread, with the last fraction. `false` cancels, and the run returns its best map so far.
     fn progress(&mut self, fraction: f64, message: &str) -> bool;
 }
 
@@ -31,9 +30,9 @@ impl<F: FnMut(f64, &str) -> bool + Send> Observer for F {
     }
 }
 
-/// Passes a phase's progress on as the part `from..to` of the whole.
+/// A phase of a run: passes its progress on as the part `from..to` of the whole.
 pub(crate) struct Phase<'a> {
-    /// Who listens to the whole run.
+    /// The observer of the whole run.
     pub whole: &'a mut dyn Observer,
     /// The fraction at which the phase begins.
     pub from: f64,
@@ -47,10 +46,10 @@ impl Observer for Phase<'_> {
     }
 }
 
-/// How often a long step asks whether to go on.
+/// Time between two questions of a long step to the observer.
 const HEARTBEAT: Duration = Duration::from_millis(80);
 
-/// Lets all threads of one long step ask whether to go on, without asking the observer too often.
+/// Asks the observer for all threads of one long step whether to go on, once per [`HEARTBEAT`].
 pub(crate) struct Watch<'a> {
     line: Mutex<(&'a mut dyn Observer, Instant)>,
     fraction: f64,
@@ -65,12 +64,12 @@ impl<'a> Watch<'a> {
         Self { line, fraction, message, cancelled: AtomicBool::new(false) }
     }
 
-    /// Whether to go on; costs next to nothing, so inner loops may ask.
+    /// False once the run is cancelled; cheap enough for inner loops.
     pub(crate) fn goes_on(&self) -> bool {
         if self.cancelled.load(Ordering::Relaxed) {
             return false;
         }
-        // another thread is asking at the moment
+        // another thread is asking
         let Ok(mut line) = self.line.try_lock() else { return true };
         if line.1.elapsed() < HEARTBEAT {
             return true;
@@ -97,7 +96,7 @@ impl Observer for Silent {
 pub enum Status {
     /// The tolerance was reached, or nothing is left to gain.
     Converged,
-    /// The iterations asked for were done.
+    /// The run did the iterations asked for.
     MaxIterations,
     /// The energy hardly falls any more, or no step lowers it.
     Stalled,
@@ -123,7 +122,7 @@ impl Status {
 /// One line of the [`History`] of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record {
-    /// Counts from 0, the start map.
+    /// The number of the iteration; 0 for the start map.
     pub iteration: usize,
     /// E_A of the map, target areas rescaled to the image's area.
     pub authalic_energy: f64,
@@ -135,7 +134,7 @@ pub struct Record {
     pub seconds: f64,
 }
 
-/// What happened in each iteration of a run, the start first.
+/// The records of a run, one per iteration, the start first.
 #[derive(Debug, Clone)]
 pub struct History {
     began: Instant,
@@ -166,7 +165,7 @@ impl History {
         });
     }
 
-    /// Multiplies all energies, those of an image that is scaled in the end.
+    /// Multiplies all energies, for an image that is scaled at the end.
     pub(crate) fn rescale(&mut self, factor: f64) {
         self.records.iter_mut().for_each(|record| record.authalic_energy *= factor);
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Quality figures of a map: area ratios, authalic energy, folds, angle distortion.
 //!
-//! All are signed: the image area of a folded face is negative, its log₂ area ratio −∞ and its angle
+//! Areas are signed: the image area of a folded face is negative, its log₂ area ratio −∞ and its angle
 //! distortion +∞, so it never scores like a good one. Target areas are rescaled so that their sum is the
 //! image's area A = Σ|a_τ|; then E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)).
-//! Which faces are folded is decided by exact predicates.
+//! Exact predicates decide which faces are folded.
 
 use crate::mesh::Face;
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -14,7 +14,7 @@ use crate::mesh::geometry::{area, triangle};
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// The least density allowed, beside the largest.
+/// Lower bound of a density, in units of the largest.
 const SMALLEST_DENSITY: f64 = 1e-12;
 
 /// The figures of one map. Per-face arrays have one entry per face, in order.
@@ -24,19 +24,19 @@ pub struct Distortion {
     pub authalic_energy: f64,
     /// Mean over the faces of the signed image area over the rescaled target; 1 for an area-preserving map.
     pub area_ratio_mean: f64,
-    /// Population standard deviation of the same ratio.
+    /// Population standard deviation of the area ratio.
     pub area_ratio_std: f64,
-    /// log₂ of the same ratio, (m,); −∞ for a folded face.
+    /// log₂ of the area ratio of each face, (m,); −∞ for a folded face.
     pub log2_area_ratio: Vec<f64>,
     /// Faces whose exact orientation in the image is not positive, ascending.
     pub folded: Vec<usize>,
-    /// σ₁/σ₂ ≥ 1 of the linear map of each face, (m,); 1 where angles are kept, +∞ for a folded face.
+    /// σ₁/σ₂ ≥ 1 of the linear map of each face, (m,); 1 where angles are preserved, +∞ for a folded face.
     pub angle_distortion: Vec<f64>,
     /// Mean of [`Self::angle_distortion`] over the faces.
     pub angle_distortion_mean: f64,
-    /// Its 99th percentile, linearly interpolated.
+    /// 99th percentile of [`Self::angle_distortion`], linearly interpolated.
     pub angle_distortion_p99: f64,
-    /// Its maximum.
+    /// Maximum of [`Self::angle_distortion`].
     pub angle_distortion_max: f64,
 }
 
@@ -51,7 +51,7 @@ pub enum Image<'a> {
 }
 
 impl Image<'_> {
-    /// How many vertices there are.
+    /// The number of vertices.
     fn len(self) -> usize {
         match self {
             Self::Plane(map) => map.len(),
@@ -114,16 +114,16 @@ pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
-/// Faces whose exact orientation around the origin is not positive, ascending: those that an outward oriented
-/// map onto the sphere folds. Coordinates must be finite and moderate.
+/// Faces whose exact orientation around the origin is not positive, ascending: the folds of an outward oriented map onto
+/// the sphere. Coordinates must be finite and moderate.
 pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector3]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
 
 /// Measures a map of the surface `points`, `faces` with one positive target area per face.
 ///
-/// The lengths must agree, the indices be in range, the faces have area and one orientation: call it on a
-/// [`TriangleMesh`](crate::mesh::TriangleMesh), or validate first.
+/// The lengths must agree, indices must be in range, and the faces must have area and one orientation, as those of a
+/// [`TriangleMesh`](crate::mesh::TriangleMesh) do.
 ///
 /// # Errors
 /// [`MapError::NonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
@@ -138,7 +138,7 @@ pub fn distortion(
     figures(points, faces, image, folded(faces, image), targets)
 }
 
-/// Measures a map of a surface onto another in space, where it is known otherwise which faces are `folded`.
+/// Measures a map of a surface onto another in space, whose `folded` faces are known otherwise.
 ///
 /// # Errors
 /// As [`distortion`].
@@ -185,7 +185,7 @@ fn assembled(
             expected: "a map whose faces have area".into(),
         });
     }
-    // 2. Area ratios and what is made of them
+    // 2. Area ratios and their figures
     let ratio = parallel::map(areas.len(), |face| areas[face] / (scale * targets[face]));
     let count = ratio.len() as f64;
     let mean = parallel::sum(ratio.len(), |face| ratio[face]) / count;
@@ -206,11 +206,11 @@ fn assembled(
     })
 }
 
-/// Measures a map of faces that are made up of parts: their areas are those of their parts together, σ₁/σ₂ is the mean
-/// over these by their targets, and a face is folded where a part is.
+/// Measures a map of faces that consist of parts: the area of a face is the sum over its parts, its σ₁/σ₂ their mean by
+/// target, and it is folded where a part is.
 ///
-/// `of_parts` has the figures of the parts by [`distortion`], and the arguments are those that it took; `face_of` has the
-/// face of each part, ascending from 0 without gaps.
+/// `of_parts` has the figures of the parts by [`distortion`], the other arguments are as there; `face_of` has the face of
+/// each part, ascending from 0 without gaps.
 ///
 /// # Errors
 /// As [`distortion`].
@@ -249,7 +249,7 @@ pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, E
     }
     let finite = density.iter().copied().filter(|value| value.is_finite());
     let largest = finite.fold(0.0, f64::max);
-    // a target far below the others leaves no digits for the energy
+    // a target far below the others leaves the energy no digits
     let good = |value: f64| value.is_finite() && value > 0.0 && value >= SMALLEST_DENSITY * largest;
     if let Some(faces) = Elements::collect((0..n_faces).filter(|&face| !good(density[face]))) {
         return Err(MapError::Density { value: density[faces.first[0]], faces }.into());
@@ -262,7 +262,7 @@ fn folded(faces: &[[u32; 3]], image: Scaled<'_>) -> Vec<usize> {
     (0..faces.len()).filter(|&face| is_folded[face]).collect()
 }
 
-/// Flat image areas with the exact sign; an area whose rounded sign differs is one of rounding size anyway.
+/// Flat image areas with the exact sign; the rounded sign differs only for areas of rounding size.
 fn signed_areas(faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
     let mut areas = parallel::map(faces.len(), |face| area(image.corners(faces[face])));
     for &face in folded {

@@ -18,11 +18,11 @@ static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 /// The threads of this process; `None` where they cannot be had right now. The results are the same without
 /// them.
 fn threads() -> Option<Arc<ThreadPool>> {
-    // a fork may have copied the lock while it was held, so nobody may wait for it
+    // a fork may have copied the lock while it was held, so never wait for it
     let mut pool = POOL.try_lock().ok()?;
     let process = std::process::id();
     if pool.as_ref().is_none_or(|(owner, _)| *owner != process) {
-        // the parent's threads do not exist here, so nobody must be told to stop them
+        // the parent's threads do not exist here, so do not stop them
         std::mem::forget(pool.take());
         let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
         *pool = Some((process, Arc::new(threads)));
@@ -41,7 +41,7 @@ pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     }
 }
 
-/// Runs both parts, at the same time where a thread is free and [`install`] has been called around it.
+/// Runs both closures, at the same time where a thread is free and [`install`] has been called around it.
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The rotation that lays points over others best.
+//! The best rotation of points onto points.
 //!
-//! Horn (1987), *Closed-form solution of absolute orientation using unit quaternions*: it is the rotation of the
-//! quaternion that belongs to the largest eigenvalue of a symmetric 4 × 4 matrix. It never reflects.
+//! Horn (1987), *Closed-form solution of absolute orientation using unit quaternions*: its quaternion is the eigenvector
+//! of the largest eigenvalue of a symmetric 4 × 4 matrix. It never reflects.
 
 use crate::parallel;
 use crate::sparse::top_eigenvector;
@@ -10,8 +10,8 @@ use crate::vector::Vector3;
 
 /// The rotation R, by rows, that maximizes Σ w_i (R x_i)·y_i, `from` x and `to` y.
 ///
-/// With y less its [`centroid`], it is the one that minimizes Σ w_i |R x_i + b − y_i|² over all R and b; with both
-/// on the sphere, the one that minimizes Σ w_i |R x_i − y_i|².
+/// With y less its [`centroid`], R minimizes Σ w_i |R x_i + b − y_i|² over all R and b; with both on the sphere, it
+/// minimizes Σ w_i |R x_i − y_i|².
 pub(crate) fn best_rotation(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> [Vector3; 3] {
     let total = parallel::sum(weights.len(), |v| weights[v]);
     // S_ab = Σ w x_a y_b

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The similarity that lays points best over others (Umeyama 1991).
+//! The best similarity of points onto points (Umeyama 1991).
 
 use super::rotation::{best_rotation, centroid, rotate};
 use crate::parallel;
@@ -26,27 +26,27 @@ impl Similarity {
 /// The similarity that brings `from` (n, 3) nearest to `to` (n, 3): it minimizes Σ w_i |s R x_i + b − y_i|² (Horn 1987,
 /// Umeyama 1991), `weights` w (n,) not negative and not all 0.
 ///
-/// Where all of `from` is one point, the scale is 1.
+/// The scale is 1 where all of `from` is one point.
 ///
 /// # Panics
 /// Where the lengths differ.
 pub fn similarity(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> Similarity {
     assert!(from.len() == to.len() && from.len() == weights.len(), "as many points as weights");
-    // 1. Both about their centroids, and of size 1: no square over- or underflows.
+    // 1. Center both and scale them to size 1, so that no square over- or underflows
     let (x, center, size) = centered(from, weights);
     let (y, to_center, to_size) = centered(to, weights);
-    // 2. The best rotation does not depend on the scale; the best scale for it is a quotient.
+    // 2. The best rotation, which does not depend on the scale, then the best scale for it
     let rotation = best_rotation(&x, &y, weights);
     let [along, square] = parallel::sums(x.len(), |v| {
         [weights[v] * rotate(rotation, x[v]).dot(y[v]), weights[v] * x[v].dot(x[v])]
     });
     let scale = if square > 0.0 { along.max(0.0) / square * (to_size / size) } else { 1.0 };
-    // 3. Centroid to centroid.
+    // 3. Centroid to centroid
     let translation = to_center - rotate(rotation, center) * scale;
     Similarity { scale, rotation, translation }
 }
 
-/// Points about their centroid divided by their largest coordinate there, with both.
+/// The points relative to their centroid, divided by their largest coordinate; the centroid; that coordinate.
 fn centered(points: &[Vector3], weights: &[f64]) -> (Vec<Vector3>, Vector3, f64) {
     let center = centroid(points, weights);
     let about = parallel::map(points.len(), |v| points[v] - center);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Where a map goes, the disk, the sphere or the plane, and how a vertex may move there.
+//! The codomain of a map: disk, sphere or plane, and the motions of vertices there.
 
 pub(crate) mod motion;
 pub(crate) mod planar;
@@ -11,7 +11,7 @@ use motion::Motion;
 /// A map of the vertices in space, (n, 3): onto the unit sphere, or into the plane z = 1.
 pub(crate) type SpatialMap = Vec<Vector3>;
 
-/// Where a map goes.
+/// The codomain of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Codomain {
     /// The unit sphere.
@@ -22,7 +22,7 @@ pub(crate) enum Codomain {
     Plane,
 }
 
-/// Where both surfaces of a registration are mapped to.
+/// The codomain to which both surfaces of a registration are mapped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CanonicalDomain {
     /// The unit disk.
@@ -32,7 +32,7 @@ pub(crate) enum CanonicalDomain {
 }
 
 impl CanonicalDomain {
-    /// How a vertex may move.
+    /// The motion that a vertex is allowed.
     pub(crate) fn motion(self, on_boundary: bool) -> Motion {
         match (self, on_boundary) {
             (Self::Sphere, _) => Motion::Sphere,

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How the vertices of a map may move, on the disk and on the sphere alike.
+//! The motions of the vertices of a map, on the disk and on the sphere alike.
 //!
-//! Both images live in space: the sphere around the origin, the disk in the plane z = 1. Then det(x_i, x_j, x_k) is
-//! positive exactly where a face is not folded, in either domain. A vertex has two unknowns, one or none, its
-//! coordinates along the [`Frame`] at its place; [`Motion::moved`] takes them back to the domain.
+//! All codomains lie in space: the sphere around the origin, the disk in the plane z = 1. Then det(x_i, x_j, x_k) is
+//! positive exactly where a face is not folded. A vertex has two unknowns, one or none: its coordinates along the
+//! [`Frame`] at its place. [`Motion::moved`] retracts them onto the codomain.
 
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// What one vertex may do.
+/// The motion of one vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motion {
-    /// Stays where it is.
+    /// Stays fixed.
     Held,
     /// Slides along the unit circle of the plane z = 1, by an angle.
     Circle,
@@ -31,12 +31,12 @@ const UNITS: [Vector3; 2] = [Vector3([1.0, 0.0, 0.0]), Vector3([0.0, 1.0, 0.0])]
 pub(crate) struct Frame {
     /// Unit vectors; zero where the vertex cannot move.
     pub axes: [Vector3; 2],
-    /// Where its path bends away from: moving by ξ, its acceleration is −|ξ|² times this.
+    /// The outward normal of the vertex's path: along ξ its acceleration is −|ξ|² times this.
     pub outward: Vector3,
 }
 
 impl Motion {
-    /// How many unknowns a vertex has.
+    /// The number of unknowns of a vertex.
     pub(crate) fn n_unknowns(self) -> u8 {
         match self {
             Self::Held => 0,
@@ -59,8 +59,8 @@ impl Motion {
         }
     }
 
-    /// The place reached from `x` by `unknowns` along its frame: straight in the plane, by a true rotation on the
-    /// circle, by the normalizing retraction on the sphere.
+    /// The retraction: the place reached from `x` by `unknowns` along its frame, straight in the plane, by a rotation on
+    /// the circle, by normalization on the sphere.
     pub(crate) fn moved(self, x: Vector3, frame: &Frame, unknowns: [f64; 2]) -> Vector3 {
         let [a, b] = unknowns;
         match self {

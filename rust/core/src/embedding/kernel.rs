@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Room for a vertex inside the polygon of its neighbors.
+//! The kernel of a star-shaped polygon: the room for a vertex among its neighbors.
 
 use crate::vector::Vector3;
 
-/// The centroid of the kernel of a polygon, in coordinates along `basis` from `center`: of the points from
-/// which all its edges, given by their ends, are seen to run counter-clockwise.
+/// The centroid of the kernel of a polygon, in coordinates along `basis` from `center`. The kernel holds the points from
+/// which all edges, given by their ends, run counter-clockwise.
 ///
-/// `center` is a corner of the polygon from which all its edges are seen so, but for the two at it. `room` is
-/// a buffer.
+/// `center` is a corner of the polygon from which all edges but its own two run so. `room` is a buffer.
 pub(super) fn kernel_centroid(
     center: Vector3,
     basis: [Vector3; 2],
@@ -47,7 +46,7 @@ fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64, kept: &mut Vec<[
     }
 }
 
-/// The centroid of a convex polygon, of its corners where it has no area; the origin where it is empty.
+/// The centroid of a convex polygon, or of its corners where it has no area; the origin where it is empty.
 fn centroid(polygon: &[[f64; 2]]) -> [f64; 2] {
     let Some(&first) = polygon.first() else { return [0.0; 2] };
     let (mut total, mut sum) = (0.0, [0.0; 2]);

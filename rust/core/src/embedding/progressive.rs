@@ -2,12 +2,11 @@
 //! A start map without folds for every topological sphere and disk: coarse to fine.
 //!
 //! The surface is decimated to a tetrahedron, which is laid onto the sphere, or to a triangle, which is laid
-//! into the disk, and gets its vertices back one by one. The vertices around the one that comes back form a
-//! polygon that is star-shaped from the vertex it went onto, so there is room for it near that one; it is
-//! placed there and then moved, with its neighbors, to lower an energy of area and shape that is infinite at
-//! a fold. No face is ever folded, by a filtered determinant, whatever the shape: a conformal or Tutte map
-//! shrinks a tentacle of length L and girth c by exp(−2π L/c), beyond double precision, and this one does
-//! not.
+//! into the disk, and gets its vertices back one by one. The polygon around a vertex that comes back is
+//! star-shaped from the vertex onto which it had collapsed, so there is room for it nearby. It is placed there and
+//! then moved, with its neighbors, to lower an energy of area and shape that is infinite at a fold. A filtered
+//! determinant keeps every face from folding, whatever the shape: a conformal or Tutte map shrinks a tentacle of
+//! length L and girth c by exp(−2π L/c), beyond double precision; this map does not.
 //!
 //! Cost: O(n log n), some twenty one-vertex Newton steps for each vertex, on one thread.
 
@@ -24,28 +23,28 @@ use crate::vector::Vector3;
 /// λ, the weight of the shape in the energy.
 const SHAPE: f64 = 0.3;
 
-/// λ of the sweeps over a whole map, one after the other.
+/// λ of the sweeps over a whole map, from the first to the last.
 const RELAXED_SHAPES: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 
-/// Newton steps of a vertex that has come back.
+/// Newton steps of a vertex that comes back.
 const NEWTON_STEPS: usize = 5;
 
 /// Sweeps over all vertices whenever their number has doubled.
 const SWEEPS: usize = 2;
 
-/// A neighbor with more neighbors of its own is not moved for one vertex that has come back.
+/// Neighbors of a vertex that comes back are not moved where their own degree is higher.
 const MANY_NEIGHBORS: usize = 40;
 
-/// The observer is asked once for so many vertices.
+/// Vertices between two questions to the observer.
 const BEAT: usize = 1024;
 
-/// The part of the run that the decimation takes.
+/// The part of the progress that belongs to the decimation.
 const COARSENING: f64 = 0.35;
 
-/// Where along its arc a vertex of the boundary may come back, from either end.
+/// Places on its arc, as parts from either end, where a boundary vertex may come back.
 const ARC_PARTS: [f64; 10] = [0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
-/// Why there is no map.
+/// The reason why there is no map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
     /// The observer ended the run.
@@ -88,8 +87,8 @@ pub fn progressive_disk(
     Ok(embedding.places.into_iter().map(|Vector3([u, v, _])| [u, v]).collect())
 }
 
-/// A map without folds onto the sphere relaxed by sweeps of one-vertex Newton steps, none of which folds a
-/// face, the shape weighing less and less.
+/// A map without folds onto the sphere, relaxed by sweeps of one-vertex Newton steps that fold no face, with a falling
+/// weight of the shape.
 ///
 /// Returns the map with [`Status::Cancelled`] where the observer ended it early.
 pub fn relaxed(
@@ -113,19 +112,19 @@ pub fn relaxed(
     (embedding.places, Status::MaxIterations)
 }
 
-/// A map of the vertices that are back, with what they are connected by.
+/// A map of the vertices that are back, with their connectivity.
 struct Embedding<'a> {
     mesh: &'a TriangleMesh,
     decimation: Decimation<'a>,
-    /// Where the vertices are: on the unit sphere, or in the disk at z = 1.
+    /// The places of the vertices: on the unit sphere, or in the disk at z = 1.
     places: Vec<Vector3>,
-    /// How far along the boundary each of its vertices is, 2π in all; empty on the sphere.
+    /// The length along the boundary up to each of its vertices, 2π in total; empty on the sphere.
     travelled: Vec<f64>,
     /// λ, the weight of the shape in the energy.
     shape: f64,
     star: Star,
     room: [Vec<[f64; 2]>; 2],
-    /// The vertices in the order in which they came back, which no numbering decides.
+    /// The vertices in the order in which they came back, which does not depend on their numbering.
     placed: Vec<u32>,
 }
 
@@ -147,12 +146,12 @@ impl<'a> Embedding<'a> {
     }
 
     fn build(&mut self, observer: &mut dyn Observer) -> Result<(), Stop> {
-        // 1. Down to a tetrahedron or a triangle
+        // 1. Decimate to a tetrahedron or a triangle
         let mut coarsening = Phase { whole: observer, from: 0.0, to: COARSENING };
         self.decimation.coarsen(&mut coarsening).ok_or(Stop::Cancelled)?;
-        // 2. That onto the sphere or into the disk
+        // 2. Lay it onto the sphere or into the disk
         let mut n_placed = self.lay_base().ok_or(Stop::NoRoom)?;
-        // 3. One vertex after the other comes back
+        // 3. Bring the vertices back one by one
         let mut next_sweep = 2 * n_placed;
         let n = self.mesh.n_vertices();
         let part = |n_placed: usize| COARSENING + (1.0 - COARSENING) * n_placed as f64 / n as f64;
@@ -162,7 +161,7 @@ impl<'a> Embedding<'a> {
             if n_placed.is_multiple_of(BEAT) && !observer.progress(part(n_placed), "Refining") {
                 return Err(Stop::Cancelled);
             }
-            // 4. All vertices once more whenever their number has doubled
+            // 4. Relax all vertices whenever their number has doubled
             if n_placed == next_sweep || n_placed == n {
                 next_sweep *= 2;
                 for _ in 0..SWEEPS {
@@ -173,7 +172,7 @@ impl<'a> Embedding<'a> {
         Ok(())
     }
 
-    /// Lays the vertices that are left onto a regular tetrahedron or triangle; returns how many they are.
+    /// Lays the remaining vertices onto a regular tetrahedron or triangle; returns their number.
     fn lay_base(&mut self) -> Option<usize> {
         let n = self.mesh.n_vertices() as u32;
         let mut base: Vec<u32> = (0..n).filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
@@ -201,7 +200,7 @@ impl<'a> Embedding<'a> {
         None
     }
 
-    /// Places a vertex that has come back, and moves it and its neighbors.
+    /// Places a vertex that comes back, and moves it and its neighbors.
     fn insert(&mut self, collapse: Collapse) -> Option<()> {
         let Collapse { vertex, onto } = collapse;
         let motion = self.motion(vertex);
@@ -211,14 +210,14 @@ impl<'a> Embedding<'a> {
             Motion::Circle => self.place_on_arc()?,
             motion => self.place_in_kernel(self.places[onto as usize], motion)?,
         };
-        // 2. To lower energy
+        // 2. Newton steps of the vertex
         for _ in 0..NEWTON_STEPS {
             let Some(better) = self.star.improved(place, motion, self.shape) else { break };
             place = better;
         }
         self.places[vertex as usize] = place;
         self.placed.push(vertex);
-        // 3. With its neighbors, from the one it went onto
+        // 3. One of each neighbor, from the vertex onto which it had collapsed
         let mut ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
         let first = ring.iter().position(|&neighbor| neighbor == onto).unwrap_or(0);
         ring.rotate_left(first);
@@ -231,7 +230,7 @@ impl<'a> Embedding<'a> {
         Some(())
     }
 
-    /// A place inside the polygon around a vertex that went onto the one at `center`.
+    /// A place inside the polygon around a vertex that had collapsed onto the one at `center`.
     fn place_in_kernel(&mut self, center: Vector3, motion: Motion) -> Option<Vector3> {
         let frame = motion.frame(center);
         let centroid = kernel_centroid(center, frame.axes, self.star.edges(), &mut self.room);
@@ -308,7 +307,7 @@ fn polygon_area(n: usize) -> f64 {
     0.5 * n as f64 * (TAU / n as f64).sin()
 }
 
-/// The way along the boundary to each of its vertices, 2π in all; 0 elsewhere.
+/// The length along the boundary up to each of its vertices, 2π in total; 0 elsewhere.
 fn travelled(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
     let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
     let lengths: Vec<f64> = (0..boundary.len()).map(|k| point(k).distance(point(k + 1))).collect();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One vertex inside the polygon of its neighbors: its energy, and a Newton step on it that folds no face.
+//! The star of a vertex: the energy of its faces, and a Newton step of the vertex that folds no face.
 //!
 //! On the sphere |x| = 1; the disk lies in the plane z = 1, its boundary on the unit circle, so that one
 //! formula serves both. Per face with target T, D = det(x, p, q) and Q = Σ edge²/2√3:
@@ -8,25 +8,24 @@
 //! E = T (ρ + 1/ρ − 2) + λ T (Q/D − 1) = D/2 + (2T² + λ T Q)/D + const,     ρ = D/2T.
 //! ```
 //!
-//! D is linear in x and is evaluated as (p × (q − p))·(x − p). A vertex on the circle has besides, for the
-//! arcs α to its two neighbors there with shares s, Σ s²/α times [`ARC`], which keeps arcs from closing.
+//! D is linear in x and is evaluated as (p × (q − p))·(x − p). A vertex on the circle has the further energy
+//! Σ s²/α times [`ARC`], α the arcs to its two neighbors there and s their shares, which keeps arcs from closing.
 //!
 //! Cost: about a hundred operations for each face and step.
 
 use crate::codomain::motion::{Frame, Motion};
 use crate::vector::Vector3;
 
-/// D counts as positive where it is larger than this times the size of the products it is made of; their
-/// rounding is a tenth of that.
+/// D counts as positive where it is larger than this times the size of its products; their rounding is a tenth of that.
 const CLEARLY: f64 = 1e-14;
 
 /// The weight of the arcs in the energy of a vertex on the circle.
 const ARC: f64 = 0.1;
 
-/// The longest step that is tried.
+/// Upper bound of the length of a step.
 const LONGEST: f64 = 0.5;
 
-/// A step that would lower the energy by less than this part of the star's measure is not worth it.
+/// A step is worthwhile if it lowers the energy by this part of the star's measure or more.
 const WORTH: f64 = 1e-6;
 
 /// The polygon around a vertex.
@@ -49,7 +48,7 @@ struct Face {
     length: f64,
     /// ∇D.
     normal: Vector3,
-    /// Times the 1-norm of x − p: as much as rounding may do to D, and more.
+    /// This times the 1-norm of x − p bounds the rounding error of D.
     rounding: f64,
     target: f64,
 }
@@ -121,8 +120,8 @@ impl Star {
         sum.is_finite().then_some(sum)
     }
 
-    /// The place of the vertex after one Newton step from x that lowers its energy and folds no face; `None`
-    /// where there is no such step or it is not worth it.
+    /// The place of the vertex after one Newton step from x that lowers the energy and folds no face; `None`
+    /// where there is no such step or it is not worthwhile.
     pub(super) fn improved(&self, x: Vector3, motion: Motion, shape: f64) -> Option<Vector3> {
         let frame = motion.frame(x);
         let (energy, derivatives) = self.derivatives(x, motion, &frame, shape)?;
@@ -172,7 +171,7 @@ impl Star {
         Some(sum)
     }
 
-    /// Adds what a step along the sphere or the circle bends towards its center, and the arcs.
+    /// Adds the curvature of a step along the sphere or the circle, and the energy of the arcs.
     fn bend(&self, x: Vector3, motion: Motion, bend: f64, (energy, sum): &mut (f64, Derivatives)) {
         match motion {
             Motion::Held | Motion::Side(_) | Motion::Plane => {}

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The penalty on landmarks that are away from their places, λ Σ |x_i − q_i|².
+//! The penalty on landmarks away from their places, λ Σ |x_i − q_i|².
 //!
-//! Liu & Yueh (2023), section 6; Sutti & Yueh (2024), section 6.6. Its Hessian is taken without what would make it
-//! indefinite: on the sphere that is a landmark more than a quarter turn away from its place.
+//! Liu & Yueh (2023), section 6; Sutti & Yueh (2024), section 6.6. The Hessian omits indefinite terms, which arise on the
+//! sphere for a landmark more than a quarter turn away from its place.
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;
 use crate::vector::Vector3;
 
-/// Vertices that are wanted at places.
+/// Landmark vertices with the places where they should lie.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LandmarkPenalty {
     /// λ.
     pub weight: f64,
     vertices: Vec<u32>,
     places: Vec<Vector3>,
-    /// One corner of each landmark with its number, in ascending order: where its Hessian goes.
+    /// One corner of each landmark, to which its Hessian is added, with the landmark's number; ascending.
     corners: Vec<(u32, u32)>,
 }
 
 impl LandmarkPenalty {
-    /// The penalty on `vertices` away from `places`, in maps of the energy's surface.
+    /// The penalty on `vertices` away from `places`, for maps of the energy's surface.
     pub(crate) fn new(
         energy: &AuthalicEnergy,
         vertices: Vec<u32>,
@@ -34,12 +34,12 @@ impl LandmarkPenalty {
         Self { weight, vertices, places, corners }
     }
 
-    /// The vertices that are wanted somewhere.
+    /// The landmark vertices.
     pub(crate) fn vertices(&self) -> &[u32] {
         &self.vertices
     }
 
-    /// How far each landmark is from its place.
+    /// The distance of each landmark from its place.
     pub(crate) fn gaps(&self, map: &[Vector3]) -> Vec<f64> {
         let gap = |(&vertex, &place): (&u32, &Vector3)| map[vertex as usize].distance(place);
         self.vertices.iter().zip(&self.places).map(gap).collect()

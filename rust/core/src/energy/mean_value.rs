@@ -9,10 +9,10 @@
 //! ```
 //!
 //! are positive and reproduce h_i exactly where its one-ring is unfolded (Floater 2003). Solving Σ_j ω_ij
-//! (h̃_i − h̃_j) = 0 with the rest held therefore moves only what is folded.
+//! (h̃_i − h̃_j) = 0 with the rest held therefore moves only folded one-rings.
 //!
-//! Where a part has collapsed, its image says nothing any more and these weights are arbitrary. Weights of 1
-//! (Tutte 1963) unfold it inside a boundary that is near to convex.
+//! Where a part has collapsed, these weights are arbitrary. Weights of 1 (Tutte 1963) unfold it inside a boundary that
+//! is nearly convex.
 //!
 //! Cost: one sparse LU of the freed vertices per correction.
 
@@ -43,9 +43,9 @@ pub(crate) fn free_within(
 /// The weights of a correction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Weights {
-    /// (6.3b), of the image as it is.
+    /// (6.3b), computed from the image.
     MeanValue,
-    /// 1, whatever the image is.
+    /// 1, independent of the image.
     Uniform,
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The positive semidefinite part of a small symmetric matrix.
 
-/// Off-diagonal entries are gone when their squares are below this part of the diagonal's.
+/// Off-diagonal entries count as zero when their squares are below this part of the diagonal's.
 const CLEAN: f64 = 1e-24;
 
-/// Sweeps of Jacobi rotations at the most; six or seven are the rule.
+/// Limit of the sweeps of Jacobi rotations; six or seven are usual.
 const SWEEPS: usize = 30;
 
 /// Sets the negative eigenvalues of a symmetric matrix to zero, by Jacobi rotations (Golub & Van Loan, section 8.5).

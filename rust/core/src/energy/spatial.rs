@@ -12,8 +12,8 @@
 //! the whole gradient. With targets rescaled so that |M| = A, E = E_A + A with the authalic energy E_A = Σ
 //! (a_τ − |τ|)²/|τ|. That form is used here because E_S − A cancels near the minimum.
 //!
-//! A smaller image lowers E even where no area ratio improves. A descent that is not to drift there minimizes 4π/A · E
-//! instead ([`SpatialStretchEnergy::scale_free`]), which is 4π (1 + E_A/A).
+//! A smaller image lowers E even where no area ratio improves. To avoid that drift, a descent minimizes 4π/A · E
+//! ([`SpatialStretchEnergy::scale_free`]), which is 4π (1 + E_A/A).
 //!
 //! A descent that must not fold puts [`Profile::Barrier`] in place of (ρ − 1)² for the area ratio ρ =
 //! a_τ/|τ|.
@@ -48,12 +48,12 @@ impl<'a> SpatialStretchEnergy<'a> {
         Self { mesh, targets, total_target, profile: Profile::Stretch, scale_free: false }
     }
 
-    /// The same energy with another cost of area ratios.
+    /// The energy with another cost of area ratios.
     pub fn with_profile(self, profile: Profile) -> Self {
         Self { profile, ..self }
     }
 
-    /// The same energy times 4π/A, which does not fall when the image only shrinks.
+    /// The energy times 4π/A, which does not fall when the image only shrinks.
     pub fn scale_free(self) -> Self {
         Self { scale_free: true, ..self }
     }
@@ -97,7 +97,7 @@ impl<'a> SpatialStretchEnergy<'a> {
 
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
     ///
-    /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, as for planar maps.
+    /// The barrier profile weighs each face by its stiffness ψ''(ρ)/2, as for planar maps.
     pub fn laplacian_weights(&self, map: &[Vector3]) -> Vec<f64> {
         let scale = self.value(map).area / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {

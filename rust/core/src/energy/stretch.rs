@@ -15,13 +15,13 @@
 //! E_A(f) = E_S(f) − A = Σ (a_τ − |τ|)² / |τ| ≥ 0.
 //! ```
 //!
-//! What is minimized is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to
+//! The objective is Σ |τ| (a_τ/|τ| − 1)²·π/A = E_A·π/A, the authalic energy of the image rescaled to
 //! the unit disk's area. For a fixed boundary A is constant and this is the papers' stretch energy up to
 //! constants; for a sliding one the factor removes the false minimum A → 0. The residual form is used
 //! because E_S − A cancels: near the minimum E_S ≈ π and E_A ≈ 10⁻⁶.
 //!
 //! A descent that must not fold uses [`Profile::Barrier`] instead of (ρ − 1)² for the area ratio ρ =
-//! a_τ/|τ|: the same minimum and the same curvature there, but infinite as ρ → 0.
+//! a_τ/|τ|: it has the same minimum and the same curvature there, but becomes infinite as ρ → 0.
 //!
 //! Cost: one pass over the faces, one gather over the corners of each vertex.
 
@@ -30,7 +30,7 @@ use std::f64::consts::PI;
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
-/// What a face of area ratio ρ costs per target area.
+/// The cost ψ of an area ratio ρ, per target area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Profile {
     /// (ρ − 1)², the papers' energy.
@@ -50,7 +50,7 @@ impl Profile {
         }
     }
 
-    /// Its second derivative over that of the papers' energy, ψ''(ρ)/2.
+    /// The second derivative of the cost over that of the papers' energy, ψ''(ρ)/2.
     pub fn stiffness(self, ratio: f64) -> f64 {
         match self {
             Self::Stretch => 1.0,
@@ -58,7 +58,7 @@ impl Profile {
         }
     }
 
-    /// Its derivative ψ'(ρ).
+    /// The derivative ψ'(ρ).
     pub fn slope(self, ratio: f64) -> f64 {
         match self {
             Self::Stretch => 2.0 * (ratio - 1.0),
@@ -76,15 +76,15 @@ pub struct StretchEnergy<'a> {
     profile: Profile,
 }
 
-/// The value of the energy with what it is made of.
+/// The value of the energy with the image's area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Value {
     /// E_A of the map, targets rescaled to its area.
     pub authalic_energy: f64,
     /// Area A of the image, signed in the plane.
     pub area: f64,
-    /// What the optimizers minimize: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
-    /// Σ |τ| ψ(ρ) + A, which is their normalized energy E_A + A, or 4π/A times that.
+    /// The objective of the optimizers: in the plane Σ |τ| ψ(ρ)·π/A, which is E_A·π/A for the papers' profile; in space
+    /// Σ |τ| ψ(ρ) + A, which is the papers' normalized energy E_A + A, or 4π/A times that.
     pub objective: f64,
 }
 
@@ -96,7 +96,7 @@ impl<'a> StretchEnergy<'a> {
         Self { mesh, targets, total_target, profile: Profile::Stretch }
     }
 
-    /// The same energy with another cost of area ratios.
+    /// The energy with another cost of area ratios.
     pub fn with_profile(self, profile: Profile) -> Self {
         Self { profile, ..self }
     }
@@ -127,8 +127,8 @@ impl<'a> StretchEnergy<'a> {
 
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
     ///
-    /// With the barrier profile each face counts by its stiffness ψ''(ρ)/2, so that steps stay in
-    /// proportion to the faces that are nearly folded.
+    /// The barrier profile weighs each face by its stiffness ψ''(ρ)/2, so that steps stay in proportion to the faces that
+    /// are nearly folded.
     pub fn laplacian_weights(&self, map: &[[f64; 2]]) -> Vec<f64> {
         let scale = self.area(map) / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {

@@ -30,7 +30,7 @@ impl Cholesky {
         Self::analyze_in(Order::Sparse, upper)
     }
 
-    /// The same for the system of some vertices of a mesh, in ascending order; what is known of their order is used.
+    /// [`Self::analyze`] for a system over vertices of a mesh, ascending; uses the mesh's elimination order if it has one.
     ///
     /// # Errors
     /// As [`Self::analyze`].
@@ -59,15 +59,15 @@ impl Cholesky {
         self.refactor_while(upper, &Watch::new(&mut silent, 0.0, ""))
     }
 
-    /// The same, ended early by the watch.
+    /// [`Self::refactor`], which the watch may cancel.
     ///
     /// # Errors
     /// As [`Self::refactor`], and [`Error::CancelledEarly`].
     pub(crate) fn refactor_while(&mut self, upper: &CsMat<f64>, watch: &Watch<'_>) -> Result<(), Error> {
         let values = upper.data();
         let assemble = |at: &Element, place: &mut Place<'_, f64>| {
-            let other = if at.rows[1] == NONE { at.rows[0] } else { at.rows[1] };
-            place.add(at.rows[0] as usize, other as usize, values[at.index as usize]);
+            let column = if at.rows[1] == NONE { at.rows[0] } else { at.rows[1] };
+            place.add(at.rows[0] as usize, column as usize, values[at.index as usize]);
         };
         self.factor.refactor_by(&self.symbolic, &assemble, watch).map_err(|failure| match failure {
             Failure::Cancelled => Error::CancelledEarly,

@@ -46,9 +46,9 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     }
 }
 
-/// Solves `A x = b` in place for a dense symmetric positive definite matrix, of which only the lower triangle
-/// is read; it is overwritten by its Cholesky factor. `rhs` holds one or more columns, one after another.
-/// False, and `rhs` undefined, where a pivot is not positive and finite.
+/// Solves `A x = b` in place for a dense symmetric positive definite matrix, whose lower triangle is read and overwritten
+/// by its Cholesky factor. `rhs` holds one or more columns, one after another. Returns false, and leaves `rhs` undefined,
+/// where a pivot is not positive and finite.
 pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bool {
     let n = matrix.len().isqrt();
     let columns = rhs.len().checked_div(n).unwrap_or(0);
@@ -66,7 +66,7 @@ pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bo
 pub(crate) fn top_eigenvector<const N: usize>(symmetric: &[[f64; N]; N]) -> [f64; N] {
     let matrix = Mat::from_fn(N, N, |i, j| symmetric[i][j]);
     let (mut values, mut vectors) = (Diag::zeros(N), Mat::zeros(N, N));
-    // on this thread: the library's own pool does not survive a fork
+    // on one thread, because the library's own pool does not survive a fork
     let (want, params) = (ComputeEigenvectors::Yes, Spec::default());
     let mut memory = MemBuffer::new(self_adjoint_evd_scratch::<f64>(N, want, Par::Seq, params));
     let stack = MemStack::new(&mut memory);
@@ -122,9 +122,9 @@ macro_rules! impl_scalar {
 impl_scalar!(f32);
 impl_scalar!(f64);
 
-/// A column-major part of a dense matrix that may be written.
+/// A mutable column-major block of a dense matrix.
 pub(super) type Block<'a, T> = MatMut<'a, T>;
-/// A column-major part of a dense matrix.
+/// A column-major block of a dense matrix.
 pub(super) type BlockRef<'a, T> = MatRef<'a, T>;
 
 /// The numbers as a matrix of `rows` rows, stored column by column.

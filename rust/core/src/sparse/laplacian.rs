@@ -32,7 +32,7 @@ pub struct Laplacian {
 }
 
 impl Laplacian {
-    /// Analyses the pattern of the vertices for which `is_free` holds.
+    /// Analyzes the pattern of the vertices for which `is_free` holds.
     pub fn new(mesh: &TriangleMesh, is_free: impl Fn(usize) -> bool) -> Self {
         let (free, unknown) = number_unknowns(mesh.n_vertices(), is_free);
         let columns = upper_columns(mesh, &free, &unknown);
@@ -106,10 +106,10 @@ fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: usize) 
     for &corner in mesh.vertex_corners(vertex) {
         let (face, k) = (corner as usize / 3, corner as usize % 3);
         for (neighbor, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
-            let other = map[mesh.faces()[face][neighbor] as usize];
+            let image = map[mesh.faces()[face][neighbor] as usize];
             let weight = weights[3 * face + facing];
-            sum[0] += weight * (map[vertex][0] - other[0]);
-            sum[1] += weight * (map[vertex][1] - other[1]);
+            sum[0] += weight * (map[vertex][0] - image[0]);
+            sum[1] += weight * (map[vertex][1] - image[1]);
         }
     }
     sum

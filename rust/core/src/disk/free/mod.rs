@@ -74,7 +74,7 @@ const LIGHTEST: f64 = 1e-7;
 /// A weight of angles is judged where the decrement is below this part of the energy.
 const ROUGHLY: f64 = 1e-4;
 
-/// The energy, system and outline of a prepared, computed once.
+/// The energy, system and outline of a surface, computed once.
 struct Prepared<'a> {
     energy: &'a Energy<'a>,
     analysis: &'a Analysis,

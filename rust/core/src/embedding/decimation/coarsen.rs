@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Which vertex collapses next, and onto which neighbor: the cheapest, by the measure of its star, its
-//! degree and the shapes and degrees it leaves.
+//! The order of the collapses: the cheapest vertex next, by the measure of its star, its degree and the
+//! shapes and degrees that it leaves.
 //!
-//! A queue of all vertices by the costs they had when they were last looked at. Most costs only rise, so a
-//! vertex is looked at again when it comes to the front, and goes back where its cost has risen.
+//! A queue holds all vertices by their last known costs. Most costs only rise, so the cost of a vertex is
+//! computed again when it comes to the front; the vertex goes back if the cost has risen.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,21 +14,20 @@ use crate::mesh::corners::next_corner;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// The observer is asked once for so many vertices.
+/// Vertices between two questions to the observer.
 pub(super) const BEAT: usize = 1024;
 
-/// And once for so many at the beginning, on all threads.
+/// Vertices between two questions to the observer at the beginning, on all threads.
 const ROUND: usize = 16_384;
 
-/// A vertex of the boundary costs so many times as much as another: a coarse boundary has room for too few
-/// vertices behind it.
+/// Factor of the cost of a boundary vertex: behind a coarse boundary there is room for too few vertices.
 const BOUNDARY: f64 = 12.0;
 
-/// The shapes around a vertex with more neighbors are not looked at before it comes to the front of the
-/// queue; by then it has fewer.
+/// The shapes around a vertex of higher degree are not computed before it comes to the front of the queue, when its
+/// degree is lower.
 const MANY_NEIGHBORS: usize = 32;
 
-/// A vertex in the queue: cheap ones first, of equal ones the lowest.
+/// A vertex in the queue, ordered by cost, then by index.
 #[derive(PartialEq)]
 struct Candidate {
     cost: f64,
@@ -57,25 +56,25 @@ struct Ring {
     vertices: Vec<u32>,
     points: Vec<Vector3>,
     measure: f64,
-    /// Where in the ring the apex is.
+    /// The position of the apex in the ring.
     apex: Option<usize>,
 }
 
 impl Ring {
-    /// The cost of the vertex but for the shapes that it leaves.
+    /// The cost of the vertex without the shapes that it leaves.
     fn weight(&self) -> f64 {
         let degree = 1.0 + 0.15 * (self.vertices.len() as f64 - 6.0).max(0.0).powi(2);
         let boundary = if self.apex.is_some() { BOUNDARY } else { 1.0 };
         self.measure * degree * boundary
     }
 
-    /// True if a collapse onto the neighbor keeps the boundary what it is.
+    /// True if a collapse onto the neighbor keeps the boundary loop.
     fn keeps_the_boundary(&self, neighbor: usize) -> bool {
         let n = self.vertices.len();
         self.apex.is_none_or(|apex| (apex + 1) % n == neighbor || (neighbor + 1) % n == apex)
     }
 
-    /// How bad the shapes and the degree are that a collapse onto a neighbor of some degree leaves; 1/1.05 or more.
+    /// The cost factor of the shapes and the degree after a collapse onto a neighbor of `degree`; 1/1.05 or more.
     fn shape(&self, neighbor: usize, degree: usize) -> f64 {
         let degree = (degree + self.vertices.len()) as f64 - 4.0;
         (1.0 + 0.05 * (degree - 7.0).max(0.0).powi(2)) / (self.worst_shape(neighbor) + 0.05)
@@ -92,8 +91,8 @@ impl Ring {
                 continue;
             }
             let (edge, spoke) = (self.points[two] - self.points[one], self.points[one] - onto);
-            let other = self.points[two] - onto;
-            let squares = edge.dot(edge) + spoke.dot(spoke) + other.dot(other);
+            let next_spoke = self.points[two] - onto;
+            let squares = edge.dot(edge) + spoke.dot(spoke) + next_spoke.dot(next_spoke);
             let normal = spoke.cross(edge);
             let shape = if squares > 0.0 { normal.dot(normal) / (squares * squares) } else { 0.0 };
             worst = f64::min(worst, 12.0 * shape);
@@ -103,8 +102,8 @@ impl Ring {
 }
 
 impl Decimation<'_> {
-    /// Collapses vertices until four are left, the apex among them, or until none can be collapsed; `None`
-    /// where the observer ended it early.
+    /// Collapses vertices until four are left, including the apex, or until none can collapse; `None` where the observer
+    /// ended the run.
     pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
         let surplus = self.degrees.len().saturating_sub(4);
         let mut queue = self.candidates(observer)?;
@@ -112,7 +111,7 @@ impl Decimation<'_> {
         let mut ring = Ring::default();
         while self.collapses.len() < surplus {
             let Some(Reverse(Candidate { cost, vertex })) = queue.pop() else { break };
-            // 1. Out of date? A cost that fell since then is good enough as it is
+            // 1. Compute the cost again; the vertex goes back if it has risen, while a fallen cost is good enough
             let (now, corner) = self.best_collapse(vertex, &mut ring);
             let Some(corner) = corner else {
                 waiting[vertex as usize] = true;
@@ -122,7 +121,7 @@ impl Decimation<'_> {
                 queue.push(Reverse(Candidate { cost: now, vertex }));
                 continue;
             }
-            // 2. Collapse; neighbors that could not collapse may be able to now
+            // 2. Collapse the vertex; neighbors that could not collapse go back into the queue
             self.collapse(corner);
             for &vertex in &ring.vertices {
                 if std::mem::take(&mut waiting[vertex as usize]) {
@@ -137,7 +136,7 @@ impl Decimation<'_> {
         Some(())
     }
 
-    /// All vertices with what it costs to collapse them; `None` where the observer ended it early.
+    /// All vertices with their costs; `None` where the observer ended the run.
     fn candidates(&self, observer: &mut dyn Observer) -> Option<BinaryHeap<Reverse<Candidate>>> {
         let n = self.mesh.n_vertices();
         let mut candidates = Vec::with_capacity(n);
@@ -152,7 +151,7 @@ impl Decimation<'_> {
         Some(BinaryHeap::from(candidates))
     }
 
-    /// What it costs to collapse a vertex, or less.
+    /// A lower bound of the cost of a vertex.
     fn first_cost(&self, vertex: u32) -> f64 {
         let mut ring = Ring::default();
         if self.degree(vertex) > MANY_NEIGHBORS {
@@ -160,12 +159,12 @@ impl Decimation<'_> {
             return self.tie_breakers[vertex as usize] * ring.weight() / 1.05f64.sqrt();
         }
         let cost = self.best_collapse(vertex, &mut ring).0;
-        // those that cannot collapse learn it first
+        // vertices that cannot collapse come to the front first
         if cost.is_finite() { cost } else { 0.0 }
     }
 
-    /// What it costs to collapse a vertex and the corner at it that is followed by the neighbor it goes
-    /// onto; infinite where it cannot be.
+    /// The cost of a vertex, infinite where it cannot collapse, and the corner at it that is followed by the neighbor onto
+    /// which it collapses.
     fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
         self.fill_ring(vertex, ring);
         let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);
@@ -177,7 +176,7 @@ impl Decimation<'_> {
                 (shape, neighbor, ring.corners[k])
             })
             .collect();
-        // the link condition costs most, so only of the best is it asked, then of the second best
+        // the link condition is the most expensive, so test the best neighbor first, then the second best
         while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
             if self.keeps_the_sphere(ring, best.1) {
                 let cost = self.tie_breakers[vertex as usize] * ring.weight() * best.0.sqrt();

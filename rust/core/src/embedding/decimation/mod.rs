@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Decimation of a closed surface of genus 0 to a tetrahedron, and its undoing one vertex at a time.
+//! Decimation of a closed surface of genus 0 to a tetrahedron, undone one vertex at a time.
 //!
 //! Half-edge collapses: a vertex v moves onto a neighbor w, and the two faces between them vanish. A
 //! collapse keeps the surface a sphere where v and w have exactly two common neighbors (link condition);
 //! with more than four vertices there always is one. The next vertex is the one whose star has least target
 //! measure, weighed by its degree and the shapes it would leave, so that the vertices of every coarse mesh
-//! are spread evenly over the measure. The measure of a star is handed on to the faces that fill it, so the
-//! sum over all faces stays the same.
+//! are spread evenly over the measure. The faces that fill a star inherit its measure, so the sum over all
+//! faces is constant.
 //!
 //! A surface with one boundary loop is closed by an apex, a vertex without place or measure that is joined
 //! to the whole loop. The apex never collapses, and a vertex of the loop only onto a neighbor in the loop.
 //!
-//! Cost: O(n log n), the stars of about four vertices looked at for each one.
+//! Cost: O(n log n), with the costs of about four vertices computed per collapse.
 
 mod coarsen;
 
@@ -26,19 +26,19 @@ pub(crate) struct Decimation<'a> {
     mesh: &'a TriangleMesh,
     /// The faces of the mesh, then those at the apex.
     faces: Vec<Face>,
-    /// A corner at each vertex; of a vertex that is gone, the one whose next corner it went onto.
+    /// A corner at each vertex; for a collapsed vertex the corner whose next corner it collapsed onto.
     corners: Vec<u32>,
-    /// How many neighbors each vertex has; of a vertex that is gone, those it had.
+    /// The degree of each vertex; for a collapsed vertex its last degree.
     degrees: Vec<u32>,
     gone: Vec<bool>,
     collapses: Vec<Collapse>,
-    /// The targets that each collapse changed, one after the other.
+    /// The targets that the collapses changed, in their order.
     old_targets: Vec<f64>,
-    /// What the costs at each vertex are multiplied by; symmetric parts differ.
+    /// The factor of the costs at each vertex, which differs between symmetric parts.
     tie_breakers: Vec<f64>,
 }
 
-/// A face with all that turning about a vertex asks for, half a line of the cache.
+/// A face with all data for a turn around a vertex, half a cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Face {
     vertices: [u32; 3],
@@ -47,12 +47,12 @@ struct Face {
     target: f64,
 }
 
-/// A vertex that moved onto a neighbor.
+/// The collapse of a vertex onto a neighbor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Collapse {
-    /// The vertex that went.
+    /// The vertex that collapsed.
     pub vertex: u32,
-    /// The neighbor it went onto.
+    /// The neighbor onto which it collapsed.
     pub onto: u32,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Decimation<'a> {
         self.gone.push(false);
     }
 
-    /// What tells a vertex from those in symmetric places; larger for the preferred one.
+    /// The tie breaker between vertices in symmetric places; larger for the preferred vertex.
     pub(crate) fn preference(&self, vertex: u32) -> f64 {
         self.tie_breakers[vertex as usize]
     }
@@ -116,8 +116,7 @@ impl<'a> Decimation<'a> {
         self.mesh.n_vertices() as u32
     }
 
-    /// The faces at a vertex, counter-clockwise, each by the two others of its corners in order, with their
-    /// targets.
+    /// The faces at a vertex, counter-clockwise, each as its two other vertices in order and its target.
     pub(crate) fn star(&self, vertex: u32) -> impl Iterator<Item = (u32, u32, f64)> {
         self.around(self.corners[vertex as usize]).map(|corner| {
             let ends = [next_corner(corner), previous_corner(corner)].map(|corner| self.vertex(corner));
@@ -125,7 +124,7 @@ impl<'a> Decimation<'a> {
         })
     }
 
-    /// How many neighbors a vertex has.
+    /// The number of neighbors of a vertex.
     pub(crate) fn degree(&self, vertex: u32) -> usize {
         self.degrees[vertex as usize] as usize
     }
@@ -140,12 +139,12 @@ impl<'a> Decimation<'a> {
         let collapse = self.collapses.pop()?;
         let Collapse { vertex, onto } = collapse;
         let corner = self.corners[vertex as usize];
-        // 1. The dead faces come back between their neighbors
+        // 1. Put the dead faces back between their neighbors
         for corner in self.dead_faces(corner).into_iter().flat_map(|face| 3 * face..3 * face + 3) {
             let across = self.twin(corner);
             *self.twin_mut(across) = corner;
         }
-        // 2. The star has its vertex again
+        // 2. Give the star its vertex back
         let mut at = corner;
         loop {
             self.faces[at as usize / 3].vertices[at as usize % 3] = vertex;
@@ -157,7 +156,7 @@ impl<'a> Decimation<'a> {
         self.corners[onto as usize] = next_corner(corner);
         self.gone[vertex as usize] = false;
         self.count_neighbors(collapse, corner, 1);
-        // 3. And its measure
+        // 3. Give the star its measure back
         let faces: Vec<u32> = self.measured_faces(corner).collect();
         let begin = self.old_targets.len() - faces.len();
         for (face, target) in faces.into_iter().zip(self.old_targets.drain(begin..)) {
@@ -172,7 +171,7 @@ impl<'a> Decimation<'a> {
         let dead = self.dead_faces(corner);
         let heirs: Vec<u32> = self.measured_faces(corner).collect();
         self.count_neighbors(collapse, corner, -1);
-        // 1. The star gets its new vertex
+        // 1. Give the star its new vertex
         let mut last = corner;
         loop {
             self.faces[last as usize / 3].vertices[last as usize % 3] = collapse.onto;
@@ -182,7 +181,7 @@ impl<'a> Decimation<'a> {
             }
             last = next;
         }
-        // 2. The faces beside each dead one become neighbors
+        // 2. Join the faces beside each dead face
         for [one, two] in [[corner, next_corner(corner)], [last, previous_corner(last)]] {
             let [one, two] = [one, two].map(|corner| self.twin(corner));
             *self.twin_mut(one) = two;
@@ -192,18 +191,18 @@ impl<'a> Decimation<'a> {
                 self.corners[vertex as usize] = corner;
             }
         }
-        // 3. Its measure goes to the faces that stay
+        // 3. Share the measure among the remaining faces
         let measure: f64 = heirs.iter().map(|&face| self.faces[face as usize].target).sum();
         self.old_targets.extend(heirs.iter().map(|&face| self.faces[face as usize].target));
         dead.into_iter().for_each(|face| self.faces[face as usize].target = 0.0);
         self.share_out(heirs.into_iter().filter(|face| !dead.contains(face)), measure);
-        // 4. How to undo it
+        // 4. Record the collapse
         self.corners[collapse.vertex as usize] = corner;
         self.gone[collapse.vertex as usize] = true;
         self.collapses.push(collapse);
     }
 
-    /// Half of a measure in equal parts, half by area.
+    /// Shares out half of a measure in equal parts, half by area.
     fn share_out(&mut self, faces: impl Iterator<Item = u32> + Clone, measure: f64) {
         let face_area = |face: u32| area(triangle(self.mesh.points(), self.faces[face as usize].vertices));
         let areas: Vec<f64> = faces.clone().map(face_area).collect();
@@ -215,8 +214,7 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// Adds to the degrees of a vertex's neighbors what it means to them that it comes back (`sign` 1) or
-    /// goes (−1).
+    /// Updates the degrees of a vertex's neighbors when it comes back (`sign` 1) or collapses (−1).
     fn count_neighbors(&mut self, collapse: Collapse, corner: u32, sign: i32) {
         let beyond = self.degrees[collapse.vertex as usize] as i32 - 4;
         let across = self.twin(previous_corner(corner));
@@ -227,8 +225,8 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// The faces between which the measure of the star around a corner is shared: its own, without those at
-    /// the apex; where that is only one, also the one across from the vertex, which inherits it.
+    /// The faces that share the measure of the star around a corner: those of the star that are not at the apex; where there
+    /// is only one, also the face across from the vertex, which inherits it.
     fn measured_faces(&self, corner: u32) -> impl Iterator<Item = u32> {
         let own = self.around(corner).filter(|&corner| (corner as usize) < 3 * self.mesh.n_faces());
         let is_ear = own.clone().nth(1).is_none();

@@ -5,7 +5,7 @@ use crate::codomain::motion::Frame;
 use crate::mesh::geometry::determinant_rounding;
 use crate::vector::Vector3;
 
-/// β, what a large m costs beyond its own size.
+/// β, the weight of the quadratic term in m − 1.
 pub(super) const STEEPNESS: f64 = 0.1;
 
 /// A symmetric matrix by the unknowns of a face's corners, two for each.
@@ -19,7 +19,7 @@ pub(super) struct Triangle {
     pub determinant: f64,
     /// Twice the area, signed in the plane.
     pub doubled_area: f64,
-    /// N divided by that.
+    /// N over `doubled_area`: the unit normal, in the plane always upwards.
     normal: Vector3,
     /// Q.
     quadratic: f64,
@@ -105,7 +105,7 @@ impl Triangle {
         Slopes { area, determinant, quadratic }
     }
 
-    /// A vector per corner, from the corners after it and itself, by the unknowns.
+    /// A vector per corner, computed from the triangle turned to it, by the unknowns.
     fn reduced(&self, frames: [&Frame; 3], of_corner: impl Fn([Vector3; 3]) -> Vector3) -> [f64; 6] {
         let mut out = [0.0; 6];
         for c in 0..3 {
@@ -115,8 +115,8 @@ impl Triangle {
         out
     }
 
-    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² but for those of Q, D and a, with `curvature` from the
-    /// composite to the exact one; returns what that of Q is to be multiplied by.
+    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² without the Hessians of Q, D and a, `curvature` from the
+    /// composite, 0, to the exact one, 1; returns the factor of the Hessian of Q.
     pub(super) fn add_angle(
         &self,
         element: &mut Element,
@@ -147,7 +147,7 @@ impl Triangle {
         by_quadratic
     }
 
-    /// Adds the Hessians of the area and of D, and the pull of the gradient along the bends of the vertices' paths.
+    /// Adds the Hessians of the area and of D, and the product of the gradient with the curvature of the vertices' paths.
     pub(super) fn add_curvature(
         &self,
         element: &mut Element,
@@ -181,7 +181,7 @@ impl Triangle {
         }
     }
 
-    /// The gradient of the face's energy by the place of a corner in space.
+    /// The gradient of the face's energy by the position of a corner in space.
     pub(super) fn slope_in_space(&self, outer: &Outer, cotangents: [f64; 3], c: usize) -> Vector3 {
         let (n, a) = ((c + 1) % 3, (c + 2) % 3);
         let (next, after) = (self.x[n], self.x[a]);
@@ -220,8 +220,8 @@ pub(super) fn add_quadratic(element: &mut Element, frames: [&Frame; 3], weights:
         let (next, after) = ((c + 1) % 3, (c + 2) % 3);
         for i in 0..2 {
             for j in 0..2 {
-                let own = frames[c].axes[i].dot(frames[c].axes[j]);
-                element[2 * c + i][2 * c + j] += (weights[next] + weights[after]) * own;
+                let product = frames[c].axes[i].dot(frames[c].axes[j]);
+                element[2 * c + i][2 * c + j] += (weights[next] + weights[after]) * product;
                 let mixed = weights[after] * frames[c].axes[i].dot(frames[next].axes[j]);
                 element[2 * c + i][2 * next + j] -= mixed;
                 element[2 * next + j][2 * c + i] -= mixed;

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The energy of the guarded Gauss–Newton method: area ratios behind a barrier, with a share of angle distortion.
 //!
-//! One formula for both domains (see [`motion`](crate::codomain::motion)). For a face with corners x_i, N = (x_j − x_i) × (x_k −
-//! x_i), image area a = |N|/2, D = det(x_i, x_j, x_k), target T, ρ = a/T, and Q = ½ Σ cot_c |opposite edge|² with the
-//! cotangents of the rest triangle:
+//! One formula serves all codomains (see [`motion`](crate::codomain::motion)). For a face with corners x_i,
+//! N = (x_j − x_i) × (x_k − x_i), image area a = |N|/2, D = det(x_i, x_j, x_k), target T, ρ = a/T, and
+//! Q = ½ Σ cot_c |opposite edge|² with the cotangents of the rest triangle:
 //!
 //! ```text
 //! E = Σ T [ψ(ρ) + λ ((m − 1) + ½ β (m − 1)²)],     m = Q/D,     ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ),     β = 0.1.
 //! ```
 //!
-//! Σ T ψ is E_A to second order. On fine meshes m = ½ (σ₁/σ₂ + σ₂/σ₁); its D makes it infinite exactly at a fold on
-//! both domains, while areas are the flat ones that E_A is made of. A face is feasible where D is positive by more than
-//! its rounding error, so a finite energy certifies a map without folds.
+//! Σ T ψ is E_A to second order. On fine meshes m = ½ (σ₁/σ₂ + σ₂/σ₁); D makes m infinite exactly at a fold, while areas
+//! are the flat ones of E_A. A face is feasible where D is positive by more than its rounding error, so a finite energy
+//! certifies a map without folds.
 //!
-//! The Hessian of a face is composite and positive semidefinite as it stands: Gauss–Newton in the area; for m − 1 =
-//! (Q − D)/D the Hessian of a quadratic over a linear function, with C = Q − 2a, which is D short of Q on fine meshes and
-//! in the plane: half the squared distance of the face from the similarity transformations, convex. So it leaves out only
-//! what vanishes with ψ′ and with m − 1, and turning a face costs nothing. Where those do not vanish, the exact Hessian,
-//! or a part of the way to it, leads to a stationary point in far fewer iterations; it may be indefinite.
+//! The composite Hessian of a face is positive semidefinite: Gauss–Newton in the area, and for m − 1 = (Q − D)/D the
+//! Hessian of a quadratic over a linear function. Its numerator C = Q − 2a, which is Q − D in the plane and nearly so on
+//! fine meshes, is convex: half the squared distance of the face from the similarity transformations. The composite Hessian
+//! omits only terms that vanish with ψ′ and with m − 1, and turning a face costs nothing. Where those do not vanish, the
+//! exact Hessian, or a part of the way to it, leads to a stationary point in far fewer iterations; it may be indefinite.
 
 mod face;
 mod rest;
@@ -44,34 +44,34 @@ pub(crate) struct AuthalicEnergy {
     cotangents: Vec<[f64; 3]>,
     /// Target areas on any common scale, (m,).
     targets: Vec<f64>,
-    /// The edges of each face on the boundary, bit c for the one opposite corner c.
+    /// The boundary edges of each face, bit c for the edge opposite corner c.
     boundary_edges: Vec<u8>,
     codomain: Codomain,
 }
 
-/// What the terms of the energy weigh at the moment.
+/// The weights of the terms of the energy.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Weights {
-    /// What targets are multiplied by to sum up to the image's area.
+    /// The factor that makes the targets sum to the image's area.
     pub scale: f64,
     /// λ, the weight of the angle distortion.
     pub angle: f64,
-    /// The papers' profile lets faces fold and counts signed areas, the barrier does neither.
+    /// The cost of area ratios; the papers' profile allows folds and uses signed areas, the barrier does neither.
     pub profile: Profile,
 }
 
-/// How the Hessian of a face is made.
+/// The choices for the Hessian of a face.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hessian {
-    /// What a face that is wholly off its target is damped by.
+    /// The damping of a face that is wholly off its target.
     pub damping: f64,
-    /// What every face is damped by in units of the deviation of its area ratio.
+    /// The deviation of the area ratio that is added to every face for the damping.
     pub least: f64,
-    /// From the composite Hessian, 0, to the exact one without damping, 1.
+    /// The part of the way from the composite Hessian, 0, to the exact one without damping, 1.
     pub curvature: f64,
 }
 
-/// Deviations count up to this.
+/// Upper bound of the deviation of a face in its damping.
 const MOST_DEVIATION: f64 = 1e3;
 
 /// Sums over the faces of a map.
@@ -88,7 +88,7 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    /// What is to become nothing: E_A and the penalty.
+    /// The sum that falls to zero: E_A and the penalty.
     pub(crate) fn total(&self) -> f64 {
         self.authalic_energy + self.penalty
     }
@@ -197,8 +197,8 @@ impl AuthalicEnergy {
         })
     }
 
-    /// What the image areas miss of their linear prediction after `direction`, carried back to the unknowns as −JᵀWc:
-    /// the right-hand side of the second-order correction.
+    /// The right-hand side −JᵀWc of the second-order correction, c the deviation of the image areas from their linear
+    /// prediction after `direction`.
     pub(crate) fn curvature(
         &self,
         map: &[Vector3],
@@ -220,8 +220,8 @@ impl AuthalicEnergy {
         })
     }
 
-    /// The Hessian of one face by the unknowns of its corners, positive semidefinite where no curvature counts, with the
-    /// damping of its deviation, |ρ − 1|, as the weight of the triangle's graph Laplacian.
+    /// The Hessian of one face by the unknowns of its corners, positive semidefinite where `curvature` is 0. The damping,
+    /// in proportion to |ρ − 1|, is the weight of the triangle's graph Laplacian.
     pub(crate) fn element(
         &self,
         map: &[Vector3],
@@ -289,7 +289,7 @@ impl AuthalicEnergy {
         self.faces[face].map(|vertex| &frames[vertex as usize])
     }
 
-    /// Sums up what each face gives to the unknowns of its corners.
+    /// Sums the contributions of the faces to the unknowns of their corners.
     fn gather(&self, of_face: impl Fn(usize) -> [f64; 6] + Sync + Send) -> Vec<[f64; 2]> {
         let by_face = parallel::map(self.targets.len(), of_face);
         parallel::map(self.corners.len(), |vertex| {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The elimination of one front: its panel becomes columns of the factor, its update what the parent must add.
+//! The elimination of one front: its panel becomes columns of the factor; its update is added to the parent.
 //!
-//! Small fronts take loops of our own, larger ones general dense kernels, and the largest are cut into tiles of a
-//! fixed size that several threads share and between which a run can be cancelled. What a tile computes does not
-//! depend on who computes it.
+//! Small fronts use loops of our own, larger ones general dense kernels. The largest are cut into tiles of a fixed size,
+//! which several threads share and between which a run can be cancelled. The result of a tile does not depend on its
+//! thread.
 
 use super::kernels;
 use crate::control::Watch;
@@ -12,7 +12,7 @@ use crate::sparse::faer::{
     Block, BlockRef, Scalar, block, block_ref, cholesky_in_place, lower_solve_rows, subtract_product,
 };
 
-/// Panels with fewer entries or columns take our own loops.
+/// Panels with fewer entries or columns use our own loops.
 const SMALL: (usize, usize) = (400, 8);
 /// Columns of the largest block that is factored at once, and of the tiles of products.
 const TILE: usize = 128;
@@ -107,25 +107,25 @@ fn subtract_lower<T: Scalar>(
     )
 }
 
-/// Runs both parts, at the same time where the work is worth it.
+/// Runs both closures, at the same time where the work is worth it.
 fn both(
     work: f64,
-    one: impl FnOnce() -> Result<(), Failure> + Send,
-    other: impl FnOnce() -> Result<(), Failure> + Send,
+    left: impl FnOnce() -> Result<(), Failure> + Send,
+    right: impl FnOnce() -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
     if work < GRAIN {
-        one()?;
-        return other();
+        left()?;
+        return right();
     }
-    let (one, other) = parallel::join(one, other);
-    one.and(other)
+    let (left, right) = parallel::join(left, right);
+    left.and(right)
 }
 
 fn go_on(watch: &Watch<'_>) -> Result<(), Failure> {
     if watch.goes_on() { Ok(()) } else { Err(Failure::Cancelled) }
 }
 
-/// Why there is no factor.
+/// The reason why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Failure {
     /// A pivot is not positive, or not finite, to working precision.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Nested dissection: an order in which the two halves of the graph come before what separates them, and so on for
-//! the halves of the halves.
+//! Nested dissection: an order in which the two halves of the graph come before their separator, recursively.
 //!
 //! A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973). METIS (G. Karypis
 //! and V. Kumar, 1998) cuts the graph along few edges into 2^k parts by halving it k times; the smallest set of
 //! vertices that touches all cut edges of a level (Kőnig's theorem) separates its halves. The parts themselves are
-//! ordered by minimum degree. Cost: nearly linear; on large meshes the factor takes a fraction of the work that it
-//! takes after minimum degree alone.
+//! ordered by minimum degree. Cost: nearly linear; on large meshes the factorization takes a fraction of the work after
+//! minimum degree alone.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -14,7 +13,7 @@ use super::graph::{Graph, NONE};
 use crate::Error;
 use crate::sparse::faer::minimum_degree;
 
-/// Vertices in a part that is not cut any more.
+/// Parts of at most this many vertices are not cut.
 const PART: usize = 120;
 
 /// An order of the nodes; `None` where METIS cannot partition the graph.
@@ -22,23 +21,23 @@ const PART: usize = 120;
 /// # Errors
 /// As of [`minimum_degree`].
 pub(super) fn nested_dissection(graph: &Graph) -> Result<Option<Vec<u32>>, Error> {
-    // 1. parts whose numbers tell the cuts: the highest bit the first
+    // 1. Parts; the highest bit of a part's number tells the first cut
     let levels = (graph.n_nodes() / PART).max(2).ilog2();
     let Some(parts) = partition(graph, 1 << levels) else { return Ok(None) };
-    // 2. separators, those of the first cut first
+    // 2. Separators, from the first cut to the last
     let mut is_separator = vec![false; graph.n_nodes()];
     let separators: Vec<Vec<u32>> =
         (0..levels).rev().map(|bit| separate(graph, &parts, bit, &mut is_separator)).collect();
-    // 3. what is left, then the separators of the last cut, and those of the first at last
+    // 3. The other nodes, then the separators from the last cut to the first
     let mut order = order_inside(graph, &is_separator)?;
     separators.iter().rev().for_each(|separator| order.extend_from_slice(separator));
     Ok(Some(order))
 }
 
-/// METIS draws its random numbers, from a fixed seed, out of one generator for the whole process.
+/// Serializes calls of METIS, whose random numbers, of a fixed seed, come from one generator for the whole process.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// The part of each node, such that its bits are the halves it belongs to.
+/// The part of each node, whose bits name the halves it belongs to.
 fn partition(graph: &Graph, n_parts: i32) -> Option<Vec<i32>> {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let signed = |all: &[u32]| all.iter().map(|&index| i32::try_from(index)).collect::<Result<Vec<_>, _>>();
@@ -83,7 +82,7 @@ fn smallest_cover(
             matching.augment(node, &cut);
         }
     }
-    // what alternating paths reach from the left nodes without a mate: there the right nodes cover
+    // the right nodes cover where alternating paths reach them from left nodes without a mate, elsewhere the left nodes
     matching.reached.iter_mut().for_each(|stamp| *stamp = NONE);
     let mut cover = Vec::new();
     for &node in &left {
@@ -102,9 +101,9 @@ fn smallest_cover(
 /// A matching between left and right nodes along cut edges.
 struct Matching {
     mate: Vec<u32>,
-    /// The left node from which the last search came to a right node.
+    /// The left node from which the last search reached each right node.
     from: Vec<u32>,
-    /// The last search that has reached a right node.
+    /// The last search that reached each right node.
     reached: Vec<u32>,
 }
 
@@ -118,7 +117,7 @@ impl Matching {
         self.mate[right as usize] = left;
     }
 
-    /// Lengthens the matching by an alternating path from `start` to a free right node, where there is one.
+    /// Augments the matching by an alternating path from `start` to a free right node, where there is one.
     fn augment<I: Iterator<Item = u32>>(&mut self, start: u32, cut: &impl Fn(u32) -> I) {
         let mut open = vec![start];
         while let Some(left) = open.pop() {
@@ -148,13 +147,13 @@ impl Matching {
         }
     }
 
-    /// Adds all right nodes that alternating paths from `start` reach for the first time.
-    fn reach<I: Iterator<Item = u32>>(&mut self, start: u32, cut: &impl Fn(u32) -> I, found: &mut Vec<u32>) {
+    /// Adds to `cover` all right nodes that alternating paths from `start` reach for the first time.
+    fn reach<I: Iterator<Item = u32>>(&mut self, start: u32, cut: &impl Fn(u32) -> I, cover: &mut Vec<u32>) {
         let mut open = vec![start];
         while let Some(left) = open.pop() {
             for right in cut(left) {
                 if std::mem::replace(&mut self.reached[right as usize], start) == NONE {
-                    found.push(right);
+                    cover.push(right);
                     open.push(self.mate[right as usize]);
                 }
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The elimination tree: what the columns of the factor depend on.
+//! The elimination tree: the dependencies between the columns of the factor.
 //!
 //! Liu's algorithm for the tree and the algorithm of Gilbert, Ng and Peyton for the heights of the columns, both as
 //! in Davis, Direct Methods for Sparse Linear Systems (2006), chapter 4. Cost: nearly linear in the edges.
@@ -54,7 +54,7 @@ fn elimination_tree(graph: &Graph, order: &[u32], position: &[u32]) -> Vec<u32> 
         let row = row as u32;
         for &neighbor in graph.neighbors(node) {
             let mut column = position[neighbor as usize];
-            // climbs to the root of what is known so far, and makes all on the way point to this row
+            // climb to the root of the tree so far, and make all nodes on the way point to this row
             while column < row {
                 let next = std::mem::replace(&mut ancestor[column as usize], row);
                 if next == NONE {
@@ -121,7 +121,7 @@ fn heavy_children(parent: &[u32]) -> Vec<u32> {
     heavy
 }
 
-/// Unknowns in each column of the factor, the node's own included, for a postordered tree.
+/// Unknowns in each column of the factor, including the node's own, for a postordered tree.
 ///
 /// The columns that have an entry in one row form a subtree; each row adds its unknowns at the leaves of that
 /// subtree and takes them off again where two branches meet and above its root.
@@ -184,9 +184,9 @@ impl RowLeaves {
         first >= self.seen[row]
     }
 
-    /// Adds a leaf; returns where its branch meets that of the leaf before.
+    /// Adds a leaf; returns where its branch meets that of the previous leaf.
     fn add(&mut self, row: usize, column: usize) -> Option<usize> {
-        // the columns come in postorder: what begins at or before this column lies in a subtree seen
+        // in postorder, every subtree that begins at or before this column has been seen
         self.seen[row] = column as u32 + 1;
         let last = std::mem::replace(&mut self.last[row], column as u32);
         (last != NONE).then(|| self.root(last) as usize)

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::elimination::{Elimination, first_descendants};
 use super::graph::{Graph, NONE};
 
-/// Largest part of zeros that a front of up to so many columns may store.
+/// (columns, share): a front of up to so many columns may store at most this share of zeros.
 const ALLOWED_ZEROS: [(usize, f64); 4] = [(8, 0.5), (16, 0.4), (48, 0.15), (usize::MAX, 0.05)];
 
 /// Unknowns of consecutive rows of a front that are consecutive in its parent too.
@@ -22,7 +22,7 @@ pub(super) struct Run {
     pub(super) length: u32,
 }
 
-/// What an element adds to, and where.
+/// An element of the matrix and its rows in the front.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::sparse) struct Element {
     /// Index of the clique among those of the analysis.
@@ -43,7 +43,7 @@ pub(super) struct Front {
     pub(super) n_columns: u32,
     /// Rows below the columns.
     pub(super) n_rows: u32,
-    /// How many of these rows are columns of the parent.
+    /// The number of these rows that are columns of the parent.
     pub(super) n_shared: u32,
     /// True if its depth in the tree is odd.
     pub(super) is_odd: bool,
@@ -72,9 +72,9 @@ pub(super) struct Fronts {
     fronts: Vec<Front>,
     runs: Vec<Run>,
     elements: Vec<Element>,
-    /// Where the panel of each front begins in the factor, and where the last ends.
+    /// The offset of each front's panel in the factor, then the length of the factor.
     panels: Vec<usize>,
-    /// Multiplications before each front, and of all.
+    /// Multiplications before each front, then the total.
     work: Vec<f64>,
 }
 
@@ -120,7 +120,7 @@ impl Fronts {
         &self.elements[range.start as usize..range.end as usize]
     }
 
-    /// Where the panels of a range of fronts lie in the factor.
+    /// The range of the factor that the panels of a range of fronts occupy.
     pub(super) fn panels(&self, range: &Range<usize>) -> Range<usize> {
         self.panels[range.start]..self.panels[range.end]
     }
@@ -182,7 +182,7 @@ fn merge_columns(tree: &Elimination, columns: &Columns) -> Vec<usize> {
         if continues {
             continue;
         }
-        // the fronts before that this one takes in: always its last child
+        // merge with fronts before this one: always its last child
         while let Some(&before) = starts.last() {
             let is_child = (tree.parent[start - 1] as usize) <= position;
             if !is_child || !may_merge(tree, columns, before..position + 1) {
@@ -198,7 +198,7 @@ fn merge_columns(tree: &Elimination, columns: &Columns) -> Vec<usize> {
     starts
 }
 
-/// True if the column after `position` has the same rows, its own excepted.
+/// True if the column after `position` has the rows of this one, except its own.
 fn has_same_pattern(tree: &Elimination, columns: &Columns, position: usize) -> bool {
     let below = tree.height[position] as usize - columns.width(&(position..position + 1));
     tree.parent[position] as usize == position + 1 && tree.height[position + 1] as usize == below
@@ -214,7 +214,7 @@ fn may_merge(tree: &Elimination, columns: &Columns, range: Range<usize>) -> bool
     ALLOWED_ZEROS.iter().any(|&(columns, allowed)| width <= columns && zeros < allowed)
 }
 
-/// The fronts so far and what finding the next takes.
+/// The fronts so far, with the data for the next one.
 struct Builder<'a> {
     graph: &'a Graph,
     tree: &'a Elimination,
@@ -223,9 +223,9 @@ struct Builder<'a> {
     /// The cliques of each front, those of front f from `clique_starts[f]`.
     cliques: Vec<u32>,
     clique_starts: Vec<u32>,
-    /// Positions of the rows below each front, ascending; emptied once the parent knows them.
+    /// Positions of the rows below each front, ascending; emptied once the parent has them.
     rows: Vec<Vec<u32>>,
-    /// The last front that has met each position, and the row it has there.
+    /// The last front that contains each position, and its row there.
     met: Vec<u32>,
     row_of: Vec<u32>,
     out: Fronts,
@@ -329,7 +329,7 @@ impl<'a> Builder<'a> {
         self.rows[front] = rows;
     }
 
-    /// Notes the row of the front at which each of its positions begins.
+    /// Records the row of the front at which each of its positions begins.
     fn number_rows(&mut self, front: usize, rows: &[u32]) {
         let range = self.range(front);
         for position in range.clone() {
@@ -343,7 +343,7 @@ impl<'a> Builder<'a> {
         self.out.fronts[front].n_rows = (row - self.columns.width(&range)) as u32;
     }
 
-    /// Tells the children where their rows are in this front.
+    /// Gives the children the runs of their rows in this front.
     fn join_children(&mut self, front: usize) {
         let end = self.range(front).end;
         let children: Vec<usize> = self.out.children(front).collect();

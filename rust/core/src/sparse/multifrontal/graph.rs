@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The graph of the unknowns: which nodes share an element.
+//! The graph of the unknowns, whose edges join nodes that share an element.
 
-/// No node: a corner that is held, or a place that an element does not use.
+/// No node: a held corner, or an unused place of an element.
 pub(in crate::sparse) const NONE: u32 = u32::MAX;
 
 /// The neighbors of every node, ascending, without the node itself.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Loops over the columns of small fronts, where a call of a general dense kernel costs more than it does.
+//! Loops over the columns of small fronts, where the call of a general dense kernel costs more than its work.
 //!
 //! All are inlined into code compiled for the processor's widest vectors (see [`on_wide_vectors`]).
 

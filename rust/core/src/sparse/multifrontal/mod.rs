@@ -34,19 +34,20 @@ pub(super) use graph::NONE;
 pub(crate) use kernels::processor;
 pub(super) use numeric::Place;
 
-/// In which order to eliminate nodes.
+/// The elimination order of the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// In one that is looked for, to keep the factor sparse.
+    /// An order computed to keep the factor sparse.
     Sparse,
-    /// As they come: those of a mesh in [`elimination_order`], or some of them.
+    /// The given order: that of a mesh in [`elimination_order`], or of some of its vertices.
     AsGiven,
 }
 
 /// The vertices of a mesh in an order that keeps factors sparse, every subtree of the elimination tree contiguous.
 ///
 /// # Errors
-/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for 32-bit indices.
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for
+/// 32-bit indices.
 pub(crate) fn elimination_order(n_vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<u32>, Error> {
     let graph = Graph::of_cliques(n_vertices, faces);
     let order = fill_reducing_order(&graph)?;
@@ -56,7 +57,7 @@ pub(crate) fn elimination_order(n_vertices: usize, faces: &[[u32; 3]]) -> Result
 /// The pattern of the factor for one mesh and the unknowns of its vertices.
 #[derive(Debug, Clone)]
 pub(crate) struct Analysis {
-    /// The first unknown of each vertex; the number of unknowns last.
+    /// The first unknown of each vertex, then the number of unknowns.
     first_unknown: Vec<u32>,
     symbolic: Symbolic,
 }
@@ -67,7 +68,8 @@ impl Analysis {
     /// The unknowns are numbered by ascending vertex.
     ///
     /// # Errors
-    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for 32-bit indices.
+    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for
+    /// 32-bit indices.
     pub(crate) fn new(
         n_vertices: usize,
         faces: &[[u32; 3]],
@@ -90,12 +92,12 @@ impl Analysis {
         Ok(Self { first_unknown, symbolic: Symbolic::new(&cliques, &node_dofs, order)? })
     }
 
-    /// How many unknowns there are.
+    /// The number of unknowns.
     pub(crate) fn n_unknowns(&self) -> usize {
         self.first_unknown(self.first_unknown.len() - 1)
     }
 
-    /// The first unknown of a vertex; the next vertex's where it has none.
+    /// The first unknown of a vertex; that of the next vertex where it has none.
     pub(crate) fn first_unknown(&self, vertex: usize) -> usize {
         self.first_unknown[vertex] as usize
     }
@@ -123,7 +125,7 @@ impl Symbolic {
     }
 }
 
-/// Nodes from which an order that takes longer to find pays for itself within a few factorizations.
+/// From this number of nodes on, nested dissection pays for itself within a few factorizations.
 #[cfg(feature = "metis")]
 const LARGE: usize = 200_000;
 
@@ -173,8 +175,8 @@ impl<T: Scalar> Factor<T> {
     /// face that has unknowns, from any thread.
     ///
     /// # Errors
-    /// [`Failure::NotPositiveDefinite`] to the precision T, [`Failure::Cancelled`] by the watch; the factor is no
-    /// use then.
+    /// [`Failure::NotPositiveDefinite`] to the precision T, [`Failure::Cancelled`] by the watch; the factor is unusable
+    /// then.
     pub(crate) fn refactor(
         &mut self,
         analysis: &Analysis,
@@ -203,10 +205,10 @@ impl<T: Scalar> Factor<T> {
 
     pub(super) fn solve_by(&self, symbolic: &Symbolic, rhs: &mut [f64]) {
         let mut columns = rhs.chunks_mut(symbolic.unknowns.len().max(1));
-        while let Some(one) = columns.next() {
+        while let Some(first) = columns.next() {
             match columns.next() {
-                Some(two) => self.solve_columns(symbolic, [one, two]),
-                None => self.solve_columns(symbolic, [one]),
+                Some(second) => self.solve_columns(symbolic, [first, second]),
+                None => self.solve_columns(symbolic, [first]),
             }
         }
     }

@@ -12,11 +12,11 @@ use crate::control::Watch;
 use crate::parallel;
 use crate::sparse::faer::Scalar;
 
-/// Multiplications between two looks at the watch.
+/// Multiplications between two questions to the watch.
 const LOOK: f64 = 1e6;
 
 /// Writes the factor of the sum of all elements; `assemble` adds one element to its front. `scratch` keeps the memory of
-/// the updates for the next time.
+/// the updates for the next factorization.
 pub(super) fn factorize<T: Scalar>(
     fronts: &Fronts,
     factor: &mut [T],
@@ -32,20 +32,20 @@ pub(super) fn factorize<T: Scalar>(
     verdict
 }
 
-/// Where the elements of one front are added.
+/// The front to which elements are added.
 pub(in crate::sparse) struct Place<'a, T> {
     panel: &'a mut [T],
     height: usize,
     width: usize,
-    /// What belongs below the columns: (place in the update, value).
+    /// The entries below the columns: (place in the update, value).
     late: &'a mut Vec<(usize, T)>,
 }
 
 impl<T: Scalar> Place<'_, T> {
     /// Adds an entry of the symmetric front, given on either side of the diagonal.
     #[inline]
-    pub(in crate::sparse) fn add(&mut self, one: usize, other: usize, value: f64) {
-        let (row, column) = (one.max(other), one.min(other));
+    pub(in crate::sparse) fn add(&mut self, i: usize, j: usize, value: f64) {
+        let (row, column) = (i.max(j), i.min(j));
         let value = T::from_f64(value);
         if column < self.width {
             self.panel[column * self.height + row] += value;
@@ -56,15 +56,15 @@ impl<T: Scalar> Place<'_, T> {
     }
 }
 
-/// The updates that wait for their parents, on two stacks: a front takes those of its children off one and leaves its own
-/// on the other, by the parity of its depth in the tree.
+/// The updates that wait for their parents, on two stacks: a front takes the updates of its children off one stack and puts
+/// its own on the other, by the parity of its depth in the tree.
 #[derive(Debug, Clone)]
 pub(super) struct Updates<T> {
     stacks: [Stack<T>; 2],
     late: Vec<(usize, T)>,
 }
 
-/// Updates one after the other, square and column-major, of which only the lower triangles mean something.
+/// A stack of updates, square and column-major, of which only the lower triangles are used.
 #[derive(Debug, Clone)]
 struct Stack<T> {
     values: Vec<T>,
@@ -100,7 +100,7 @@ impl<T: Scalar> Stack<T> {
 struct Numeric<'a, 'w, A, T> {
     fronts: &'a Fronts,
     assemble: &'a A,
-    /// Memory that no thread uses at the moment.
+    /// Memory that no thread is using.
     scratch: Mutex<Vec<Updates<T>>>,
     watch: &'a Watch<'w>,
 }
@@ -109,7 +109,7 @@ impl<A, T: Scalar> Numeric<'_, '_, A, T>
 where
     A: Fn(&Element, &mut Place<'_, T>) + Sync,
 {
-    /// No updates, with memory used before where there is some.
+    /// Empty updates, in reused memory where there is some.
     fn no_updates(&self) -> Updates<T> {
         let mut updates = self.scratch.lock().ok().and_then(|mut unused| unused.pop()).unwrap_or_default();
         updates.stacks.iter_mut().for_each(|stack| stack.top = 0);
@@ -133,14 +133,14 @@ where
         let (of_left, rest) = rest.split_at_mut(length(&left));
         let (of_right, of_after) = rest.split_at_mut(length(&right));
         self.in_order(before, of_before, updates)?;
-        let mut others = self.no_updates();
-        let (one, other) = parallel::join(
+        let mut right_updates = self.no_updates();
+        let (left, right) = parallel::join(
             || self.range(left, of_left, updates),
-            || self.range(right, of_right, &mut others),
+            || self.range(right, of_right, &mut right_updates),
         );
-        one.and(other)?;
-        updates.append(&others);
-        self.keep(others);
+        left.and(right)?;
+        updates.append(&right_updates);
+        self.keep(right_updates);
         self.in_order(after, of_after, updates)
     }
 
@@ -173,14 +173,14 @@ where
         let is_odd = self.fronts.front(front).is_odd;
         let (own, of_children) = if is_odd { (odd, even) } else { (even, odd) };
         let (update, stack) = (own.push(rows * rows), &of_children.values[..of_children.top]);
-        // 1. the panel: elements, then what the children leave
+        // 1. Assemble the panel from elements and the children's updates
         panel.fill(T::ZERO);
         let mut place = Place { panel, height, width, late };
         self.fronts.elements(front).iter().for_each(|element| (self.assemble)(element, &mut place));
         self.for_each_child(front, stack, |child| child.add_to_panel(panel, height));
-        // 2. the columns of the factor
+        // 2. Eliminate the columns
         dense::eliminate(panel, (height, width), update, self.watch)?;
-        // 3. what the parent must add
+        // 3. Complete the update for the parent
         late.drain(..).for_each(|(place, value)| update[place] += value);
         of_children.top -=
             self.for_each_child(front, stack, |child| child.add_to_update(update, rows, width));
@@ -205,11 +205,11 @@ where
     }
 }
 
-/// The update of a child and where its rows are in the parent.
+/// The update of a child, with the runs of its rows in the parent.
 struct Child<'a, T> {
     update: &'a [T],
     rows: usize,
-    /// How many of the rows are columns of the parent.
+    /// The number of rows that are columns of the parent.
     shared: usize,
     runs: &'a [Run],
 }
@@ -223,7 +223,7 @@ impl<T: Scalar> Child<'_, T> {
         self.add(self.shared..self.rows, update, rows, width);
     }
 
-    /// Adds some columns to those of the parent, whose first row and column here is its row `offset`.
+    /// Adds some columns to those of the parent; `out` begins at the parent's row and column `offset`.
     fn add(&self, columns: Range<usize>, out: &mut [T], height: usize, offset: usize) {
         for (k, run) in self.runs.iter().enumerate() {
             let (from, length) = (run.from as usize, run.length as usize);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Which subtrees are worth a thread of their own.
+//! The schedule of the elimination: which subtrees run on a thread of their own.
 
 use std::ops::Range;
 
 use super::fronts::Fronts;
 
-/// Multiplications below which a thread is not worth its while.
+/// Multiplications below which a thread does not pay.
 const GRAIN: f64 = 4e5;
 
-/// How to go through a range of whole subtrees.
+/// The order of the work on a range of whole subtrees.
 pub(super) enum Schedule {
     /// One front after the other.
     InOrder,
@@ -20,8 +20,8 @@ pub(super) enum Schedule {
 impl Schedule {
     /// Plans a range of fronts that are whole subtrees.
     ///
-    /// Each split leaves a good part of all the work to either side, so that splits of splits nest a few dozen deep
-    /// however long the branches of the tree are.
+    /// Each split leaves a good part of the work to either side, so that splits nest a few dozen deep however long the
+    /// branches of the tree are.
     pub(super) fn of(fronts: &Fronts, range: &Range<usize>) -> Self {
         let grain = GRAIN.max(fronts.work(&(0..fronts.len())) / 64.0);
         let (mut start, mut end) = (range.start, range.end);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Substitution with a factor, over the tree: up it with L, down it with Lᵀ.
+//! Substitution with a factor over the tree: up the tree with L, down with Lᵀ.
 //!
-//! A front hands what it subtracts from the rows below it to its parent and takes their solution from it, so that
+//! A front passes what it subtracts from the rows below to its parent, and receives the solution there from it, so that
 //! subtrees share nothing and run on threads of their own.
 
 use std::ops::Range;
@@ -27,7 +27,7 @@ struct Substitution<'a, T, const K: usize> {
 }
 
 impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
-    /// L x = b; what the roots subtract from the rows below them goes onto the stack.
+    /// Solves L x = b; what the roots subtract from the rows below them goes onto the stack.
     fn up(&self, range: Range<usize>, x: &mut [T], stack: &mut Vec<T>) {
         let Schedule::Split { before, left, right, after } = Schedule::of(self.fronts, &range) else {
             return self.up_in_order(range, x, stack);
@@ -57,7 +57,7 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
         });
     }
 
-    /// Lᵀ x = b; the stack has the solution in the rows below the roots, and loses it.
+    /// Solves Lᵀ x = b; pops the solution in the rows below the roots off the stack.
     fn down(&self, range: Range<usize>, x: &mut [T], stack: &mut Vec<T>) {
         let Schedule::Split { before, left, right, after } = Schedule::of(self.fronts, &range) else {
             return self.down_in_order(range, x, stack);
@@ -177,7 +177,7 @@ fn gather_parent<T: Scalar, const K: usize>(
     stack.truncate(below);
 }
 
-/// L x = b for the columns of a front; subtracts their part from the rows below.
+/// Solves L x = b for the columns of a front; subtracts their part from the rows below.
 #[inline(always)]
 fn forward<T: Scalar, const K: usize>(panel: &[T], front: &Front, vector: &mut [T]) {
     let (height, width) = (front.height(), front.columns());
@@ -198,7 +198,7 @@ fn forward<T: Scalar, const K: usize>(panel: &[T], front: &Front, vector: &mut [
     }
 }
 
-/// Lᵀ x = b for the columns of a front, the rows below known.
+/// Solves Lᵀ x = b for the columns of a front, the rows below known.
 #[inline(always)]
 fn backward<T: Scalar, const K: usize>(panel: &[T], front: &Front, vector: &mut [T]) {
     let (height, width) = (front.height(), front.columns());

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Landmark curves, given as paths of vertices, and their check.
 //!
-//! A curve is open, or closed: then its first vertex stands again at its end, or an edge joins its last
-//! vertex to its first and it has at least sixteen. Open curves run the same way on both surfaces; of closed
-//! ones neither start nor direction means anything.
+//! A curve is open or closed. A closed curve repeats its first vertex at its end, or has at least sixteen
+//! vertices, the last and the first joined by an edge. Open curves run the same way on both surfaces; the
+//! start and the direction of closed curves mean nothing.
 //!
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
 use crate::error::{CurveError, Elements, Error, Side};
 use crate::mesh::TriangleMesh;
 
-/// A path whose ends are joined by an edge is meant to be closed from so many vertices on; shorter ones may
+/// Least number of vertices of a path that counts as closed because an edge joins its ends; a shorter one may
 /// just bend around a face or two.
 const LEAST_RING: usize = 16;
 
-/// Pairs of curves, one on the source and one on the target, that belong together.
+/// Pairs of corresponding curves, one on the source and one on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Curves<'a> {
     /// (k,): vertex paths along edges of the source, each of at least two edges.
@@ -32,13 +32,13 @@ pub(crate) struct CurvePair {
     pub target: Vec<u32>,
     /// Whether an edge leads from the last vertex back to the first.
     pub closed: bool,
-    /// Whether both are loops of the boundary.
+    /// Whether both curves are boundary loops.
     pub on_boundary: bool,
-    /// The edge of the target that closes it without being part of the path as given.
+    /// The edge that closes the target's curve without being part of the path as given.
     pub gap: Option<Gap>,
 }
 
-/// Where on a closed curve an edge lies that is not part of the curve as given.
+/// The place on a closed curve of an edge that is not part of the curve as given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Gap {
     /// From the last vertex to the first.
@@ -47,16 +47,16 @@ pub(crate) enum Gap {
     AtStart,
 }
 
-/// One curve as given.
+/// A curve as given.
 struct Path {
     vertices: Vec<u32>,
     /// Whether the first vertex was repeated at the end.
     repeats_first: bool,
-    /// Whether the curve is closed, or can be by one more edge.
+    /// Whether the curve is closed, or can be closed by one more edge.
     can_close: bool,
 }
 
-/// The curves of a surface, which is one of two or alone.
+/// The curves of a surface; `side` is `None` for a surface alone.
 struct SurfaceCurves<'a> {
     side: Option<Side>,
     mesh: &'a TriangleMesh,
@@ -64,14 +64,13 @@ struct SurfaceCurves<'a> {
 }
 
 impl Curves<'_> {
-    /// Refuses surfaces and curves that cannot be registered, before any work, and says which curves are
-    /// closed.
+    /// Refuses surfaces and curves that cannot be registered, before any work; returns the pairs.
     ///
     /// # Errors
     /// Each names the argument, the curve and its vertices at fault: surfaces that are not one component of
-    /// genus 0; other numbers of curves or boundary loops on the target; no curves on closed surfaces; curves
-    /// that are too short, leave the mesh or its edges, meet themselves, each other or the boundary, unless
-    /// they run along a whole loop of it; pairs of which one is closed only or on the boundary only.
+    /// genus 0; different numbers of curves or boundary loops; no curves on closed surfaces; curves that are
+    /// too short, leave the mesh or its edges, or meet themselves, each other or the boundary, unless they run
+    /// along a whole boundary loop; pairs of which only one curve is closed, or on the boundary.
     pub(crate) fn check(
         &self,
         source: &TriangleMesh,
@@ -102,11 +101,11 @@ impl Curves<'_> {
     }
 }
 
-/// Checks curves by themselves, then pairs of them with what they meet.
+/// Checks curves by themselves, then pairs of them, their meetings and the boundary.
 fn checked(ours: &SurfaceCurves<'_>, theirs: &SurfaceCurves<'_>) -> Result<Vec<CurvePair>, Error> {
     // 1. Each curve by itself
     let (source_paths, target_paths) = (ours.paths()?, theirs.paths()?);
-    // 2. Pairs, and what they meet
+    // 2. Pairs, and their meetings
     let pairs = source_paths.into_iter().zip(target_paths).enumerate();
     let mut pairs: Vec<_> = pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
     let source_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.source[..]).collect();
@@ -123,7 +122,7 @@ fn checked(ours: &SurfaceCurves<'_>, theirs: &SurfaceCurves<'_>) -> Result<Vec<C
         }
     }
     check_loops(ours.mesh, theirs.mesh, &pairs)?;
-    // 4. Closed curves from a start and in a direction of their own
+    // 4. A canonical start and direction of closed curves
     for pair in pairs.iter_mut().filter(|pair| pair.closed) {
         start_canonically(&mut pair.source, ours.mesh);
         if pair.gap.is_none() {
@@ -133,7 +132,7 @@ fn checked(ours: &SurfaceCurves<'_>, theirs: &SurfaceCurves<'_>) -> Result<Vec<C
     Ok(pairs)
 }
 
-/// The same for curves of one surface, each its own partner.
+/// Checks the curves of one surface, each its own partner.
 pub(crate) fn check_alone(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
     mesh.require_genus_zero()?;
     let alone = SurfaceCurves { side: None, mesh, curves };
@@ -145,7 +144,7 @@ impl SurfaceCurves<'_> {
         (0..self.curves.len()).map(|curve| self.path(curve)).collect()
     }
 
-    /// One curve, checked by itself.
+    /// A curve, checked by itself.
     fn path(&self, curve: usize) -> Result<Path, Error> {
         let (side, given) = (self.side, &self.curves[curve]);
         let repeats_first = given.len() > 1 && given.first() == given.last();
@@ -191,18 +190,18 @@ impl SurfaceCurves<'_> {
         const NOBODY: usize = usize::MAX;
         let mut owner = vec![NOBODY; self.mesh.n_vertices()];
         for (curve, vertices) in curves.iter().enumerate() {
-            let other = vertices.iter().map(|&v| owner[v as usize]).find(|&other| other != NOBODY);
-            if let Some(other) = other {
-                let shared = vertices.iter().map(|&v| v as usize).filter(|&v| owner[v] == other);
+            let met = vertices.iter().map(|&v| owner[v as usize]).find(|&owner| owner != NOBODY);
+            if let Some(met) = met {
+                let shared = vertices.iter().map(|&v| v as usize).filter(|&v| owner[v] == met);
                 let vertices = Elements::collect(shared).expect("one was found");
-                return Err(CurveError::Meet { side: self.side, curves: [other, curve], vertices }.into());
+                return Err(CurveError::Meet { side: self.side, curves: [met, curve], vertices }.into());
             }
             vertices.iter().for_each(|&v| owner[v as usize] = curve);
         }
         Ok(())
     }
 
-    /// Whether a curve runs along a whole boundary loop; an error where it only meets the boundary.
+    /// Whether a curve runs along a whole boundary loop; an error if it only meets the boundary.
     fn bounds(&self, curve: usize, vertices: &[u32], closed: bool) -> Result<bool, Error> {
         let met = vertices.iter().map(|&v| v as usize).filter(|&v| self.mesh.is_boundary(v));
         match Elements::collect(met) {
@@ -213,7 +212,7 @@ impl SurfaceCurves<'_> {
     }
 }
 
-/// Makes a pair of two paths; it is closed where both can be.
+/// Makes a pair of two paths; it is closed if both can be.
 fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Error> {
     let closed = source.can_close && target.can_close;
     if !closed && (source.repeats_first || target.repeats_first) {
@@ -224,8 +223,8 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
 }
 
-/// Runs through a closed curve from the vertex with the least coordinates on, towards the lesser of its
-/// neighbors, so that it does not matter where and which way it was begun.
+/// Starts a closed curve at the vertex with the least coordinates, towards the lesser of its neighbors, so that
+/// the start and the direction given do not matter.
 fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
     let point = |vertex: u32| mesh.points()[vertex as usize];
     let is_less = |a: u32, b: u32| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
@@ -246,8 +245,7 @@ fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]
     }
 }
 
-/// The boundary loop that a closed curve runs along as a whole, from whichever vertex and in whichever
-/// direction.
+/// The boundary loop along which a closed curve runs as a whole, from any vertex and in any direction.
 pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[u32]) -> Option<usize> {
     mesh.boundary_loops().iter().position(|vertices| {
         let n = vertices.len();
@@ -259,7 +257,7 @@ pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[u32]) -> Option<usize> {
     })
 }
 
-/// The face on the left of the edge from one vertex to another, `None` where there is none.
+/// The face on the left of the edge from one vertex to another, if there is one.
 pub(super) fn face_on_left(mesh: &TriangleMesh, from: u32, to: u32) -> Option<u32> {
     let corners = mesh.vertex_corners(from as usize).iter();
     let next = |corner: u32| mesh.faces()[corner as usize / 3][(corner as usize % 3 + 1) % 3];

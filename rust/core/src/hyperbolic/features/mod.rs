@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the surfaces are cut along: curves, the pieces that closed curves leave, and the features of each piece.
+//! Landmark curves, the pieces into which closed curves divide the surfaces, and the features of each piece.
 
 pub(super) mod curves;
 pub(super) mod parameters;

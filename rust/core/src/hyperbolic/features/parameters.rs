@@ -3,11 +3,10 @@
 
 use crate::vector::Vector3;
 
-/// How much of a curve is divided evenly where some of its edges are too short for the others.
+/// Part of the parameters that is divided evenly if some edges are too short for parameters to increase.
 const EVEN_SHARE: f64 = 1e-9;
 
-/// The length of a polyline up to each of its points as a share of the whole, strictly increasing from 0 to
-/// 1.
+/// The length of a polyline up to each of its points as a share of the whole, strictly increasing from 0 to 1.
 ///
 /// Takes at least two points.
 pub(super) fn shares(points: impl Iterator<Item = Vector3>) -> Vec<f64> {
@@ -25,26 +24,26 @@ pub(super) fn shares(points: impl Iterator<Item = Vector3>) -> Vec<f64> {
     shares
 }
 
-/// The point of the unit sphere at parameter `s` of a polyline on it, of which every point has its parameter.
+/// The point at parameter `s` of a polyline on the unit sphere, whose points have `parameters`.
 pub(crate) fn on_sphere(places: &[Vector3], parameters: &[f64], s: f64) -> Vector3 {
-    let after = parameters.partition_point(|&at| at < s).clamp(1, parameters.len() - 1);
+    let after = parameters.partition_point(|&parameter| parameter < s).clamp(1, parameters.len() - 1);
     let [low, high] = [parameters[after - 1], parameters[after]];
     let t = ((s - low) / (high - low)).clamp(0.0, 1.0);
     unit(places[after - 1] * (1.0 - t) + places[after] * t)
 }
 
-/// The index of the parameter nearest to `s` among those from `first` to `last`; parameters ascend.
+/// The index from `first` to `last` of the parameter nearest to `s`.
 pub(super) fn nearest(parameters: &[f64], [first, last]: [usize; 2], s: f64) -> usize {
     let gap = |k: usize| (parameters[k] - s).abs();
     (first..=last).min_by(|&a, &b| gap(a).total_cmp(&gap(b))).unwrap_or(first)
 }
 
-/// The length of a polyline on the unit sphere, by chords.
+/// The sum of the chords of a polyline on the unit sphere.
 pub(crate) fn length(places: &[Vector3]) -> f64 {
     places.windows(2).map(|ends| ends[0].distance(ends[1])).sum()
 }
 
-/// A vector made a unit one; zero stays zero.
+/// The unit vector along `x`; zero for zero.
 pub(crate) fn unit(x: Vector3) -> Vector3 {
     match x.norm() {
         0.0 => x,

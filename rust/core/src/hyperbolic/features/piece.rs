@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What a surface is cut along: slits along landmark curves and boundary loops, each with two banks.
+//! Pieces of surfaces with their features: slits along landmark curves and boundary loops, each with two banks.
 
 use crate::mesh::Face;
 use crate::vector::Vector3;
 
-/// One bank of a feature: vertices from its start to its end, with their parameters.
+/// A bank of a feature: vertices from its start to its end, with their parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bank {
     /// At least two vertices of the piece.
@@ -18,17 +18,17 @@ pub(crate) struct Bank {
 pub(crate) struct Feature {
     /// From start to end with the surface on the left of travel.
     pub left: Bank,
-    /// From start to end with the surface on the right of travel: of a slit the same vertices, of a loop the
-    /// rest of it (start and end belong to both).
+    /// From start to end with the surface on the right of travel: the vertices of the left bank for a slit, the rest
+    /// of the loop for a loop (start and end belong to both).
     pub right: Bank,
     /// Whether it is a boundary loop of the piece.
     pub is_loop: bool,
-    /// The landmark curve that it lies along, `None` for a boundary loop that is none.
+    /// The landmark curve along which it lies; `None` for a boundary loop that is no landmark curve.
     pub curve: Option<usize>,
 }
 
 impl Feature {
-    /// The same feature from its end to its start.
+    /// The feature from its end to its start.
     pub(crate) fn reversed(&self) -> Self {
         Self { left: self.right.reversed(), right: self.left.reversed(), ..*self }
     }
@@ -45,26 +45,26 @@ impl Feature {
 }
 
 impl Bank {
-    /// The same bank from its end to its start.
+    /// The bank from its end to its start.
     pub(super) fn reversed(&self) -> Self {
         let vertices = self.vertices.iter().rev().copied().collect();
         Self { vertices, parameters: self.parameters.iter().rev().map(|s| 1.0 - s).collect() }
     }
 }
 
-/// A connected part of a surface of genus 0 with its features, those of source and target in the same order.
+/// A connected part of a surface of genus 0 with its features; source and target have theirs in the same order.
 #[derive(Debug, Clone)]
 pub(crate) struct Piece {
-    /// (n, 3).
+    /// (n, 3): the vertices in space.
     pub points: Vec<Vector3>,
-    /// (m, 3), oriented.
+    /// (m, 3): the faces, oriented.
     pub faces: Vec<[u32; 3]>,
-    /// (n, 3): the vertices on the unit sphere, those of source and target roughly aligned.
+    /// (n, 3): the vertices on the unit sphere, source and target roughly aligned.
     pub on_sphere: Vec<Vector3>,
-    /// (n,): the vertices of the surface.
+    /// (n,): the vertex of the surface that each vertex is.
     pub vertex_of: Vec<u32>,
-    /// (m,): the faces of the surface.
+    /// (m,): the face of the surface that each face is.
     pub face_of: Vec<Face>,
-    /// Slits and all boundary loops.
+    /// The slits and all boundary loops.
     pub features: Vec<Feature>,
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Both surfaces cut along closed curves into pieces with their features: slits along open curves, and loops.
+//! Cuts both surfaces along closed curves into pieces with their features: slits along open curves, and loops.
 //!
 //! A closed curve is a loop of the pieces on both of its sides, with the same parameters on both, so that
-//! maps of the pieces agree along it. A loop gets a start and an end: its places on source and target lie as
+//! maps of the pieces agree along it. A loop gets a start and an end, whose places on source and target lie as
 //! near to each other as vertices can. Parameters are shares of the length in space between them.
 //!
 //! Input: divided and placed surfaces. Cost: linear.
@@ -15,8 +15,8 @@ use super::regions::{Divided, Regions};
 use crate::mesh::{Face, TriangleMesh};
 use crate::vector::Vector3;
 
-/// Cuts both surfaces into pieces, those of the source with their partners on the target and features in the
-/// same order: curves as given, then other boundary loops.
+/// Cuts both surfaces into pieces; returns each piece of the source with its partner on the target. Features are in
+/// the same order on both: curves as given, then other boundary loops.
 pub(crate) fn pieces(
     source: &TriangleMesh,
     target: &TriangleMesh,
@@ -47,7 +47,7 @@ pub(crate) fn pieces(
         .collect()
 }
 
-/// A surface and what its pieces are made of; features are seen from the left of closed curves.
+/// A surface with its regions and features; the features are seen from the left of closed curves.
 struct Surface<'a> {
     mesh: &'a TriangleMesh,
     regions: &'a Regions,
@@ -60,7 +60,7 @@ impl Surface<'_> {
         let all = Face::all(self.mesh.n_faces());
         let face_of: Vec<Face> = all.filter(|&face| self.regions.of_face[face] == region).collect();
         let (faces, vertex_of) = renumbered(self.mesh, &face_of);
-        let number = |vertex: u32| vertex_of.partition_point(|&of| of < vertex) as u32;
+        let number = |vertex: u32| vertex_of.partition_point(|&given| given < vertex) as u32;
         let features = (0..self.features.len()).filter_map(|curve| self.seen_from(region, curve));
         let features = features.map(|feature| feature.with_vertices(number)).collect();
         let of_vertices = |values: &[Vector3]| vertex_of.iter().map(|&v| values[v as usize]).collect();
@@ -74,7 +74,7 @@ impl Surface<'_> {
         }
     }
 
-    /// A feature as the region sees it, `None` where it lies elsewhere.
+    /// A feature as seen from a region; `None` if it does not border the region.
     fn seen_from(&self, region: u32, curve: usize) -> Option<Feature> {
         let feature = &self.features[curve];
         let first_loop = self.regions.sides.len();
@@ -98,7 +98,7 @@ impl Surface<'_> {
     }
 }
 
-/// Faces between the vertices that they use, numbered in ascending order; and those vertices.
+/// The faces with their vertices renumbered in ascending order, and these vertices.
 fn renumbered(mesh: &TriangleMesh, face_of: &[Face]) -> (Vec<[u32; 3]>, Vec<u32>) {
     const UNUSED: u32 = u32::MAX;
     let mut number = vec![UNUSED; mesh.n_vertices()];
@@ -119,7 +119,7 @@ fn slit(vertices: &[u32], points: &[Vector3]) -> Feature {
     Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
 
-/// A pair of closed curves as loops around what lies on their left.
+/// A pair of closed curves as loops around the regions on their left.
 fn loop_features(pair: &CurvePair, points: [&[Vector3]; 2], shift: f64) -> [Feature; 2] {
     // 1. Both from their starts
     let [ours, theirs] = [Around::new(&pair.source, points[0]), Around::new(&pair.target, points[1])];
@@ -128,7 +128,7 @@ fn loop_features(pair: &CurvePair, points: [&[Vector3]; 2], shift: f64) -> [Feat
             let start = theirs.vertex_at(shift);
             (ours, theirs.rotated(start, points[1]))
         }
-        // nothing of the source may come to lie inside the target's gap, so both start at its end
+        // no vertex of the source may come to lie inside the target's gap, so both curves start at its end
         Some(_) => {
             let start = ours.vertex_at((1.0 - shift).fract());
             (ours.rotated(start, points[0]), theirs)
@@ -145,7 +145,7 @@ fn loop_features(pair: &CurvePair, points: [&[Vector3]; 2], shift: f64) -> [Feat
     features
 }
 
-/// A closed curve from some vertex on and back to it.
+/// A closed curve from a start vertex around and back to it.
 struct Around {
     /// The first vertex again at the end.
     vertices: Vec<u32>,
@@ -169,13 +169,13 @@ impl Around {
         nearest(&self.parameters, [0, self.n_edges()], s) % self.n_edges()
     }
 
-    /// The same curve from another vertex on.
+    /// The curve from another vertex around.
     fn rotated(&self, start: usize, points: &[Vector3]) -> Self {
         let n = self.n_edges();
         Self::new(&[&self.vertices[start..n], &self.vertices[..start]].concat(), points)
     }
 
-    /// The vertex nearest to a parameter that leaves an edge on either side, two on that of a gap.
+    /// The vertex nearest to a parameter that leaves an edge on either side, two on the side of a gap.
     fn middle(&self, gap: Option<Gap>, s: f64) -> usize {
         let n = self.n_edges();
         let within = match gap {
@@ -202,7 +202,7 @@ impl Around {
     }
 }
 
-/// Gives the edges next to the start on the bank with the gap the same share of it on both surfaces.
+/// Gives the edge next to the start on the bank with the gap the same share of the bank on both surfaces.
 fn share_gap(features: &mut [Feature; 2], gap: Gap) {
     let [ours, theirs] = features.each_mut().map(|feature| match gap {
         Gap::AtStart => &mut feature.left.parameters,
@@ -210,15 +210,15 @@ fn share_gap(features: &mut [Feature; 2], gap: Gap) {
     });
     let share = 0.5 * (ours[1] + theirs[1]);
     for parameters in [ours, theirs] {
-        let own = parameters[1];
-        let rest = |s: f64| share + (s - own) / (1.0 - own) * (1.0 - share);
+        let given = parameters[1];
+        let rest = |s: f64| share + (s - given) / (1.0 - given) * (1.0 - share);
         let last = parameters.len() - 1;
         parameters[1..last].iter_mut().for_each(|s| *s = rest(*s));
     }
 }
 
 impl Feature {
-    /// The same feature with other numbers for its vertices.
+    /// The feature with its vertices renumbered.
     fn with_vertices(mut self, number: impl Fn(u32) -> u32) -> Self {
         let banks = [&mut self.left, &mut self.right];
         banks.into_iter().flat_map(|bank| &mut bank.vertices).for_each(|vertex| *vertex = number(*vertex));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rough places of both surfaces on the unit sphere, the source laid over the target by the curves.
 //!
-//! Nearly conformal maps to the sphere, boundary loops filled, then the rotation that brings points of equal
-//! parameter on paired curves together. Closed curves have no common start: the best one and the rotation are
-//! found in turns. An open curve that clearly runs the other way on the target is told, and laid over its
-//! partner for all that. Where curves leave a rotation open, the one is taken that lays the surfaces over
-//! each other as they lie in space.
+//! Nearly conformal maps take both to the sphere, boundary loops filled; then a rotation brings points of equal
+//! parameter on paired curves together. Closed curves have no common start: the best start and the rotation are
+//! found in turns. An open curve that clearly runs the other way on the target is reported, and laid over its
+//! partner reversed. Among rotations that the curves leave open, the surfaces take the one nearest to their
+//! positions in space.
 //!
 //! Input: two surfaces divided along their closed curves. Cost: two sparse Cholesky factorizations.
 
@@ -21,23 +21,23 @@ use crate::parallel;
 use crate::sphere::rough_conformal;
 use crate::vector::Vector3;
 
-/// The middle of a closed curve says where it is if it is farther than this from that of the sphere.
+/// Least distance of a closed curve's middle from the center of the sphere at which it gives a direction.
 const LEAST_MIDDLE: f64 = 0.1;
 /// Points compared on an open curve.
 const OPEN_SAMPLES: usize = 64;
-/// Points compared on a closed curve; so many starts are tried.
+/// Points compared on a closed curve, and starts tried between vertices.
 const CLOSED_SAMPLES: usize = 256;
-/// Vertices tried as starts at the most.
+/// Most vertices tried as starts.
 const MOST_STARTS: usize = 1024;
-/// How often rotation and starts are found in turns.
+/// Rounds of finding starts and rotation in turns.
 const ROUNDS: usize = 4;
-/// What lying over each other in space weighs against curves.
+/// Weight, against that of a curve, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
-/// Something fits clearly better where what is left over is smaller by this factor and not next to nothing
-/// anyway.
+/// Factor between two residuals at which the smaller fits clearly better.
 const CLEARLY: f64 = 0.5;
+/// Residual up to which nothing else fits clearly better.
 const NEXT_TO_NOTHING: f64 = 0.1;
-/// Fewer open curves fit a mirrored surface as well; fewer curves fit backwards as well.
+/// Least number of curves that tell a direction, and of open curves that tell a mirrored surface.
 const FEWEST: usize = 3;
 
 /// A rotation, by rows.
@@ -52,8 +52,8 @@ pub(crate) struct Placement {
     pub target: Vec<Vector3>,
     /// Paired boundary loops that are no curves.
     pub loops: Vec<CurvePair>,
-    /// Per curve, then per pair of `loops`: which share of the target's length lies between its first vertex
-    /// and the place of the source's first vertex; 0 of an open curve.
+    /// For each curve, then each pair of `loops`: the share of the target's length from its first vertex to the
+    /// place of the source's first vertex; 0 for an open curve.
     pub shifts: Vec<f64>,
     /// Whether the source fits clearly better mirrored.
     pub mirrored: bool,
@@ -66,34 +66,34 @@ struct Samples {
     source: Vec<Vector3>,
     target: Vec<Vector3>,
     closed: bool,
-    /// The target by its vertices.
+    /// The target's curve by its vertices.
     line: Line,
-    /// How far the target's start lies ahead, as a share of its length.
+    /// The share of the target's length by which its start lies ahead.
     shift: f64,
-    /// Whether an open curve fits clearly better the other way round.
+    /// Whether an open curve fits clearly better reversed.
     backwards: bool,
 }
 
-/// Places two surfaces on the sphere, by `spheres` (source, target) where given.
+/// Places two surfaces on the sphere, by `spheres` (source, target) if given.
 ///
 /// # Errors
-/// [`Error::InvalidArray`] and [`MapError::NoDirection`] where `spheres` are no positions,
-/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where slivers spoil a conformal map, [`Error::CancelledEarly`] by the
-/// watch.
+/// [`Error::InvalidArray`] and [`MapError::NoDirection`] if `spheres` are no positions,
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) if slivers spoil a conformal
+/// map, [`Error::CancelledEarly`] if cancelled.
 pub(crate) fn placed(
     meshes: [&TriangleMesh; 2],
     divided: &Divided,
     spheres: Option<[&[Vector3]; 2]>,
     watch: &Watch<'_>,
 ) -> Result<Placement, Error> {
-    // 1. Either surface by itself
+    // 1. Each surface by itself
     let [source, target] = match spheres {
         Some([source, target]) => {
             [normalized(meshes[0], "source_sphere", source)?, normalized(meshes[1], "target_sphere", target)?]
         }
         None => [upright(meshes[0], watch)?, upright(meshes[1], watch)?],
     };
-    // 2. A rotation by what needs no start, then starts and rotation in turns
+    // 2. A rotation without starts, then starts and rotation in turns
     let of_pair = |pair: &CurvePair| Samples::new(pair, meshes, [&source, &target]);
     let curves: Vec<Samples> = divided.pairs.iter().map(of_pair).collect();
     let mut rotation = first_rotation(&curves);
@@ -108,7 +108,7 @@ pub(crate) fn placed(
         }
         rotation = rotation_over(samples.iter().flat_map(Samples::pairs));
     }
-    // 3. What would fit better
+    // 3. Reversed curves and mirrored surfaces
     let backwards = (0..samples.len()).filter(|&curve| samples[curve].backwards).collect();
     let source = parallel::map(source.len(), |vertex| unit(rotate(rotation, source[vertex])));
     let shifts = samples.iter().map(|samples| samples.shift).collect();
@@ -129,7 +129,7 @@ fn normalized(mesh: &TriangleMesh, name: &'static str, given: &[Vector3]) -> Res
     }
 }
 
-/// The nearly conformal map of a surface, holes filled, rotated over the surface.
+/// The nearly conformal map of a surface, holes filled, rotated to its directions in space.
 fn upright(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Vec<Vector3>, Error> {
     let whole = closed(mesh)?;
     let weights = whole.vertex_shares(whole.face_areas());
@@ -159,32 +159,32 @@ impl Samples {
         }
     }
 
-    /// Points that belong together, with what they weigh: every curve the same.
+    /// Corresponding points with their weights; all curves weigh the same.
     fn pairs(&self) -> impl Iterator<Item = (Vector3, Vector3, f64)> {
         let n = self.source.len();
         let partner = move |k: usize| if self.backwards { n - 1 - k } else { k };
         (0..n).map(move |k| (self.source[k], self.target[partner(k)], 1.0 / n as f64))
     }
 
-    /// How far the points are apart after a rotation, √ of the mean square.
-    fn left_over(&self, rotation: Rotation) -> f64 {
-        left_over(&self.pairs().collect::<Vec<_>>(), rotation)
+    /// The root mean square distance of the points after a rotation.
+    fn residual(&self, rotation: Rotation) -> f64 {
+        residual(&self.pairs().collect::<Vec<_>>(), rotation)
     }
 
-    /// Finds out whether an open curve fits clearly better the other way round.
+    /// Decides whether an open curve fits clearly better reversed.
     fn find_direction(&mut self, rotation: Rotation) {
         let [given, turned] = [false, true].map(|backwards| {
             self.backwards = backwards;
-            self.left_over(rotation)
+            self.residual(rotation)
         });
         self.backwards = is_clearly_better(turned, given);
     }
 
-    /// Finds the start of the target's curve that brings the rotated source's nearest.
+    /// Finds the start of the target's curve that brings it nearest to the source's, rotated.
     fn find_shift(&mut self, rotation: Rotation) {
         let n = self.source.len();
         let turned: Vec<Vector3> = self.source.iter().map(|&x| rotate(rotation, x)).collect();
-        // the vertices, so that curves that are the same fit exactly, and places between
+        // vertices, so that equal curves fit exactly, and places between them
         let vertices = &self.line.parameters[..self.line.parameters.len() - 1];
         let few = vertices.iter().step_by(vertices.len().div_ceil(MOST_STARTS)).copied();
         let shifts: Vec<f64> = few.chain((0..n).map(|k| k as f64 / n as f64)).collect();
@@ -193,7 +193,7 @@ impl Samples {
             turned.iter().zip(target).map(|(&x, y)| x.dot(y)).sum()
         };
         let fits = parallel::map(shifts.len(), fit);
-        // max_by takes the last of equals, so from the back
+        // from the back, as max_by takes the last of equals
         let best = (0..shifts.len()).rev().max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap_or(0);
         self.shift = shifts[best];
         self.target = self.line.samples(true, self.shift);
@@ -211,7 +211,7 @@ fn middle(points: &[Vector3]) -> Vector3 {
 
 /// A curve on the sphere by shares of its length in space.
 struct Line {
-    /// The vertices, of a closed curve the first again at the end.
+    /// The vertices; a closed curve repeats the first at the end.
     places: Vec<Vector3>,
     parameters: Vec<f64>,
 }
@@ -223,18 +223,18 @@ impl Line {
         Self { places: all().map(|&v| sphere[v as usize]).collect(), parameters }
     }
 
-    /// Points at equal distances, of a closed curve from parameter `shift` on.
+    /// Points at equal distances, from parameter `shift` on for a closed curve.
     fn samples(&self, closed: bool, shift: f64) -> Vec<Vector3> {
-        let at = |s: f64| on_sphere(&self.places, &self.parameters, s);
+        let point = |s: f64| on_sphere(&self.places, &self.parameters, s);
         if closed {
-            (0..CLOSED_SAMPLES).map(|k| at((k as f64 / CLOSED_SAMPLES as f64 + shift).fract())).collect()
+            (0..CLOSED_SAMPLES).map(|k| point((k as f64 / CLOSED_SAMPLES as f64 + shift).fract())).collect()
         } else {
-            (0..OPEN_SAMPLES).map(|k| at(k as f64 / (OPEN_SAMPLES - 1) as f64)).collect()
+            (0..OPEN_SAMPLES).map(|k| point(k as f64 / (OPEN_SAMPLES - 1) as f64)).collect()
         }
     }
 }
 
-/// The rotation that brings the first point of each pair nearest to the second; among equals the least.
+/// The rotation that brings the first point of each pair nearest to the second; the least of equals.
 fn rotation_over(pairs: impl Iterator<Item = (Vector3, Vector3, f64)>) -> Rotation {
     let axes = [0, 1, 2].map(Vector3::unit);
     let (mut from, mut to, mut weights) = (axes.to_vec(), axes.to_vec(), vec![LEAST_TURN; 3]);
@@ -246,11 +246,11 @@ fn rotation_over(pairs: impl Iterator<Item = (Vector3, Vector3, f64)>) -> Rotati
     best_rotation(&from, &to, &weights)
 }
 
-/// The rotation by open curves and the middles of closed ones.
+/// The rotation by open curves and the middles of closed curves.
 fn first_rotation(curves: &[Samples]) -> Rotation {
     let middles = curves.iter().filter(|samples| samples.closed).map(|samples| {
         let [ours, theirs] = samples.middles();
-        // that of a great circle is no direction
+        // the middle of a great circle gives no direction
         let weight = if ours.norm().min(theirs.norm()) > LEAST_MIDDLE { 1.0 } else { 0.0 };
         (ours, theirs, weight)
     });
@@ -299,8 +299,8 @@ fn paired_loops(
     partner.iter().enumerate().filter_map(|(i, j)| j.map(|j| loops(i, j))).collect()
 }
 
-/// √ of the mean squared distance after a rotation.
-fn left_over(pairs: &[(Vector3, Vector3, f64)], rotation: Rotation) -> f64 {
+/// The root mean square distance after a rotation.
+fn residual(pairs: &[(Vector3, Vector3, f64)], rotation: Rotation) -> f64 {
     let total: f64 = pairs.iter().map(|(_, _, weight)| weight).sum();
     let square = |&(x, y, weight): &(Vector3, Vector3, f64)| weight * rotate(rotation, x).distance(y).powi(2);
     (pairs.iter().map(square).sum::<f64>() / total).sqrt()
@@ -320,7 +320,7 @@ fn fits_mirrored(samples: &mut [Samples]) -> bool {
     let given: Vec<_> = open().flat_map(Samples::pairs).collect();
     let mirrored: Vec<_> =
         given.iter().map(|&(Vector3([x, y, z]), to, weight)| (Vector3([x, y, -z]), to, weight)).collect();
-    let best = |pairs: &[(Vector3, Vector3, f64)]| left_over(pairs, rotation_over(pairs.iter().copied()));
+    let best = |pairs: &[(Vector3, Vector3, f64)]| residual(pairs, rotation_over(pairs.iter().copied()));
     is_clearly_better(best(&mirrored), best(&given))
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The parts into which closed curves divide the surfaces, and which parts belong together.
+//! The regions into which closed curves divide the surfaces, and the pairs of corresponding regions.
 //!
 //! On a surface of genus 0 every closed curve has two sides. A map that keeps orientation takes left to left,
-//! so closed curves of the target are turned until what lies on their left is what lies on the left of their
+//! so closed curves of the target are reversed where their left side corresponds to the right side of their
 //! partners.
 //!
 //! Input: checked pairs of curves. Cost: linear in the faces, k² for k curves.
@@ -14,13 +14,13 @@ use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
 use crate::mesh::geometry::triangle;
 use crate::vector::Vector3;
 
-/// No region: beyond the boundary.
+/// The region beyond the boundary, which is none.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// The areas left and right of a curve say which is which where they differ by more than this share of all.
+/// Least difference, as a share of the whole area, by which areas left and right of a curve tell its sides.
 const CLEAR_SHARE: f64 = 0.02;
 
-/// They outvote a single other curve where they differ by more than this.
+/// Least difference by which areas overrule a single curve.
 const OUTVOTES: f64 = 0.2;
 
 /// The regions of one surface.
@@ -28,36 +28,36 @@ const OUTVOTES: f64 = 0.2;
 pub(crate) struct Regions {
     /// (m,): the region of each face, numbered by their lowest faces.
     pub of_face: Vec<u32>,
-    /// How many there are.
+    /// The number of regions.
     pub count: usize,
-    /// Per curve the regions on its left and right, twice the same of an open one, [`OUTSIDE`] beyond the
+    /// The regions on the left and right of each curve; they are equal for an open curve, [`OUTSIDE`] beyond the
     /// boundary.
     pub sides: Vec<[u32; 2]>,
     /// The region of each boundary loop that is no curve, with the number of the loop.
     pub loops: Vec<(usize, u32)>,
     /// The share of each region in the area of the surface.
     shares: Vec<f64>,
-    /// Per region its centroid times its share.
+    /// The centroid of each region times its share.
     moments: Vec<Vector3>,
 }
 
-/// Both surfaces divided, with closed curves of the target turned like their partners.
+/// Both surfaces divided, with closed curves of the target in the direction of their partners.
 #[derive(Debug, Clone)]
 pub(crate) struct Divided {
-    /// The pairs; sides of both agree.
+    /// The pairs, with corresponding sides.
     pub pairs: Vec<CurvePair>,
     /// The regions of the source.
     pub source: Regions,
     /// The regions of the target.
     pub target: Regions,
-    /// The region of the target that belongs to each of the source.
+    /// The region of the target that corresponds to each region of the source.
     pub partner: Vec<u32>,
 }
 
 /// Divides both surfaces along closed curves and pairs their regions.
 ///
 /// # Errors
-/// [`CurveError::Sides`] and [`CurveError::LoopSides`] where sides of a closed curve cannot belong together.
+/// [`CurveError::Sides`] and [`CurveError::LoopSides`] if the sides of a closed curve cannot correspond.
 pub(crate) fn divided(
     source: &TriangleMesh,
     target: &TriangleMesh,
@@ -74,11 +74,11 @@ pub(crate) fn divided(
             theirs.sides[curve].reverse();
         }
     }
-    // 2. What lies on the left must be the same
+    // 2. The same curves and loops must lie on the left
     (0..pairs.len())
         .filter(|&curve| closed[curve])
         .try_for_each(|curve| check_sides(curve, &ours, &theirs))?;
-    // 3. So regions on the same sides belong together
+    // 3. Regions on the same sides correspond
     let mut partner = vec![0; ours.count];
     for curve in (0..pairs.len()).filter(|&curve| closed[curve]) {
         for side in (0..2).filter(|&side| ours.sides[curve][side] != OUTSIDE) {
@@ -88,30 +88,30 @@ pub(crate) fn divided(
     Ok(Divided { pairs, source: ours, target: theirs, partner })
 }
 
-/// Runs through the target's curve the other way, from the same vertex.
+/// Reverses the target's curve, keeping its first vertex.
 fn turn(pair: &mut CurvePair) {
     pair.target[1..].reverse();
     pair.gap = pair.gap.map(|_| Gap::AtStart);
 }
 
-/// Whether the left of the target's curve belongs to the right of the source's.
+/// Whether the left of the target's curve corresponds to the right of the source's.
 fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
     let (left, their_left) = (ours.on_left(curve), theirs.on_left(curve));
-    // 1. The boundary says it, or other curves do
+    // 1. By the boundary, or by most of the other curves
     if ours.sides[curve].contains(&OUTSIDE) {
         return (ours.sides[curve][0] == OUTSIDE) != (theirs.sides[curve][0] == OUTSIDE);
     }
-    let others = (0..ours.sides.len()).filter(|&other| other != curve);
-    let agree = |other: &usize| left[ours.region(*other)] == their_left[theirs.region(*other)];
-    let (agreeing, turned): (Vec<usize>, Vec<usize>) = others.partition(agree);
+    let witnesses = (0..ours.sides.len()).filter(|&witness| witness != curve);
+    let agree = |witness: &usize| left[ours.region(*witness)] == their_left[theirs.region(*witness)];
+    let (agreeing, turned): (Vec<usize>, Vec<usize>) = witnesses.partition(agree);
     let (share, theirs_on_left) = (ours.share_of(&left), theirs.share_of(&their_left));
     let by_area = (share - theirs_on_left).abs() - (1.0 - share - theirs_on_left).abs();
-    // against clear areas one curve alone is more likely on the wrong side itself
+    // a single curve against clear areas is more likely on the wrong side itself
     let is_outvoted = agreeing.len().max(turned.len()) == 1 && by_area.abs() > OUTVOTES;
     if agreeing.len() != turned.len() && !is_outvoted {
         return agreeing.len() < turned.len();
     }
-    // 2. Or boundary loops, or areas
+    // 2. By boundary loops, or by areas
     let [on_left, their_loops] = [ours.loops_in(&left), theirs.loops_in(&their_left)];
     let on_right = ours.loops.len() - on_left;
     if on_left != on_right {
@@ -120,11 +120,11 @@ fn is_turned(curve: usize, ours: &Regions, theirs: &Regions) -> bool {
     if by_area.abs() > CLEAR_SHARE {
         return by_area > 0.0;
     }
-    // 3. Or how the surfaces lie in space
+    // 3. By the directions of the sides in space
     ours.direction_to(&left).dot(theirs.direction_to(&their_left)) < 0.0
 }
 
-/// Refuses other curves and loops on different sides of a closed curve.
+/// Refuses curves and loops that lie on different sides of a closed curve on source and target.
 fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Error> {
     let (left, their_left) = (ours.on_left(closed), theirs.on_left(closed));
     let left_is_inside = ours.share_of(&left) <= 0.5;
@@ -164,30 +164,30 @@ impl Regions {
         let loops = loops.collect();
         let (mut shares, mut moments) = (vec![0.0; count], vec![Vector3::ZERO; count]);
         let total: f64 = mesh.face_areas().iter().sum();
-        for (face, &at) in of_face.iter().enumerate() {
+        for (face, &region) in of_face.iter().enumerate() {
             let (share, [a, b, c]) =
                 (mesh.face_areas()[face] / total, triangle(mesh.points(), mesh.faces()[face]));
-            shares[at as usize] += share;
-            moments[at as usize] += (a + (b + c)) * (share / 3.0);
+            shares[region as usize] += share;
+            moments[region as usize] += (a + (b + c)) * (share / 3.0);
         }
         Self { of_face, count, sides, loops, shares, moments }
     }
 
-    /// A region at a curve.
+    /// A region next to a curve.
     fn region(&self, curve: usize) -> usize {
         let [left, right] = self.sides[curve];
         left.min(right) as usize
     }
 
-    /// Per region whether it lies on the left of a closed curve.
+    /// Whether each region lies on the left of a closed curve.
     fn on_left(&self, closed: usize) -> Vec<bool> {
         let mut on_left = vec![false; self.count];
         if let Some(first) = on_left.get_mut(self.sides[closed][0] as usize) {
             *first = true;
         }
-        let others = (0..self.sides.len()).filter(|&other| other != closed);
-        let joined: Vec<[usize; 2]> = others
-            .map(|other| self.sides[other])
+        let joined: Vec<[usize; 2]> = (0..self.sides.len())
+            .filter(|&curve| curve != closed)
+            .map(|curve| self.sides[curve])
             .filter(|sides| !sides.contains(&OUTSIDE))
             .map(|sides| sides.map(|side| side as usize))
             .collect();
@@ -201,7 +201,7 @@ impl Regions {
         self.loops.iter().filter(|(_, region)| inside[*region as usize]).count()
     }
 
-    /// From the centroid of the rest to that of some regions.
+    /// The vector to the centroid of some regions from that of the rest.
     fn direction_to(&self, inside: &[bool]) -> Vector3 {
         let share = self.share_of(inside);
         let sum = |wanted: bool| {
@@ -216,7 +216,7 @@ impl Regions {
     }
 }
 
-/// Per corner whether the edge opposite to it lies on a closed curve.
+/// Whether the edge opposite to each corner lies on a closed curve.
 fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [u32]>) -> Vec<bool> {
     let mut next = vec![[u32::MAX; 2]; mesh.n_vertices()];
     for curve in curves {
@@ -232,7 +232,7 @@ fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [u
     (0..3 * mesh.n_faces() as u32).map(is_wall).collect()
 }
 
-/// The region of each face, and how many there are.
+/// The region of each face, and the number of regions.
 fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<u32>, usize) {
     let (mut of_face, mut count) = (vec![OUTSIDE; mesh.n_faces()], 0);
     for seed in 0..mesh.n_faces() {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The arcs that join the features of a chain, on the source and, in the same homotopy class, on the target.
 //!
-//! Harmonic maps of surfaces with several boundaries are unique in a homotopy class only, and it is the arcs
-//! that say which one is meant: those of the source go onto those of the target. On the source an arc is a
-//! short path of edges that keeps clear of the cuts. Its image under a deformation of the sphere that carries
-//! the features of the source to those of the target is a polyline; the arc on the target is the path of
-//! edges that stays nearest to it.
+//! Harmonic maps of surfaces with several boundaries are unique only within a homotopy class. The arcs
+//! determine the class: those of the source go onto those of the target. On the source an arc is a short path
+//! of edges that keeps clear of the cuts. Its image under a deformation of the sphere that carries the features
+//! of the source to those of the target is a polyline; the arc on the target is the path of edges that stays
+//! nearest to this.
 //!
 //! Input: surfaces on which the features are marked and no chords are left. After each arc its chords are
 //! split, so that there is always a way for the next. Cost: a search by Dijkstra's algorithm for each arc.
@@ -21,20 +21,20 @@ use crate::vector::Vector3;
 /// The angle between the points of a carried polyline.
 const SPACING: f64 = 0.01;
 
-/// How much more a step costs per squared distance from the polyline, in edge lengths.
+/// Additional cost of a step per squared distance from the polyline, in edge lengths.
 const STRAYING: f64 = 10.0;
 
-/// An arc further from its polyline than so many edge lengths may be in another class.
+/// Distance from its polyline, in edge lengths, beyond which an arc may be in another class.
 const FAR: f64 = 10.0;
 
 /// Carries a polyline from the sphere of the source to that of the target, if it can.
 pub(super) type Carry<'a> = &'a dyn Fn(&[Vector3]) -> Option<Vec<Vector3>>;
 
-/// Where an arc on the target should run.
+/// The polyline that an arc on the target should follow.
 pub(super) struct Guide {
     /// At least two points on its sphere.
     polyline: Vec<Vector3>,
-    /// Whether it has been carried there from the source.
+    /// Whether the polyline was carried over from the source.
     is_carried: bool,
 }
 
@@ -61,9 +61,7 @@ pub(super) fn source_arcs(
     Ok(arcs)
 }
 
-/// The polylines that the arcs on the target should follow.
-///
-/// Where the source's cannot be carried over, the arc there runs where it runs on the source.
+/// The polylines that the arcs on the target should follow: the source's, carried over if possible.
 pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> Vec<Guide> {
     let guide = |arc: &Vec<u32>| {
         let along: Vec<Vector3> = arc.iter().map(|&vertex| source.on_sphere[vertex as usize]).collect();
@@ -128,7 +126,7 @@ fn follow(surface: &Cutting, link: &Link, guide: Guide, step: f64) -> Option<(Ve
     Some((arc, is_carried && is_near))
 }
 
-/// What makes an edge near the cuts dearer than one far off: 1 far off, 11 at a cut.
+/// Factor on the cost of an edge: 1 far from the cuts, 11 at a cut.
 fn narrowness(room: &[f64], a: u32, b: u32, step: f64) -> f64 {
     let clear = 0.5 * (room[a as usize] + room[b as usize]);
     1.0 + 3.0 * step / (0.3 * step + clear)

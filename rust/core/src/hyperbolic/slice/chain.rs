@@ -2,9 +2,9 @@
 //! The order and direction in which features are joined by arcs.
 //!
 //! Every feature but the last is joined from its end to the start of the next, so that all features and arcs
-//! together are one simple path and cutting along it leaves a disk. Which order is taken decides nothing but
-//! how long the arcs are: from each of the 2 B first features with a direction on to the nearest tip left, on
-//! both spheres together, and of these chains the one with the shortest sum.
+//! together are one simple path and cutting along it leaves a disk. The order affects only the lengths of the
+//! arcs: each of the 2 B first features with a direction starts a chain that goes on to the nearest remaining
+//! tip, on both spheres together; the shortest of these chains is taken.
 //!
 //! Cost: O(B³) for B features.
 
@@ -16,15 +16,15 @@ use crate::vector::Vector3;
 /// A link from the end of a feature to the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Link {
-    /// The landmark curve from which it comes, `None` for a boundary loop that is none.
+    /// The landmark curve from which it comes; `None` for a boundary loop that is no landmark curve.
     pub curve: Option<usize>,
-    /// The end of that one.
+    /// The end of that feature.
     pub from: u32,
-    /// The start of the next.
+    /// The start of the next feature.
     pub to: u32,
 }
 
-/// The features in order, each with whether it is reversed, the same for both pieces.
+/// The features in order, each with whether it is reversed; one order for both pieces.
 pub(super) fn order(source: &Piece, target: &Piece) -> Vec<(usize, bool)> {
     let tips: Vec<Tips> = source
         .features
@@ -46,27 +46,27 @@ pub(super) fn features(piece: &Piece, chain: &[(usize, bool)]) -> Vec<Feature> {
     chain.iter().map(directed).collect()
 }
 
-/// What the arcs of a chain have to join, for its features in order.
+/// The links between the features of a chain, in order.
 pub(super) fn links(features: &[Feature]) -> Vec<Link> {
     let link = |pair: &[Feature]| Link { curve: pair[0].curve, from: pair[0].end(), to: pair[1].start() };
     features.windows(2).map(link).collect()
 }
 
-/// On either sphere, start and end of a feature.
+/// The start and the end of a feature on each sphere.
 type Tips = [[Vector3; 2]; 2];
 
 fn tips(piece: &Piece, feature: &Feature) -> [Vector3; 2] {
     [feature.start(), feature.end()].map(|vertex| piece.on_sphere[vertex as usize])
 }
 
-/// The chain from one feature, in one direction, on to the nearest ones, and its length.
+/// The chain from a feature with a direction on to the nearest ones, and its length.
 fn nearest_neighbors(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>, f64) {
     let mut chain = vec![start];
     let mut length = 0.0;
     let mut last = start;
     while chain.len() < tips.len() {
-        let left = (0..tips.len()).filter(|&k| chain.iter().all(|&(used, _)| used != k));
-        let directed = left.flat_map(|k| [(k, false), (k, true)]);
+        let remaining = (0..tips.len()).filter(|&k| chain.iter().all(|&(used, _)| used != k));
+        let directed = remaining.flat_map(|k| [(k, false), (k, true)]);
         let reached = directed.map(|next| (gap(tips, last, next), next));
         let Some((nearest, next)) = reached.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         length += nearest;
@@ -76,11 +76,11 @@ fn nearest_neighbors(tips: &[Tips], start: (usize, bool)) -> (Vec<(usize, bool)>
     (chain, length)
 }
 
-/// The angle between the end of one feature and the start of another, summed over both spheres.
-fn gap(tips: &[Tips], (one, one_reversed): (usize, bool), (other, other_reversed): (usize, bool)) -> f64 {
+/// The angle between the end of a feature and the start of the next, summed over both spheres.
+fn gap(tips: &[Tips], (last, last_reversed): (usize, bool), (next, next_reversed): (usize, bool)) -> f64 {
     let angle = |sphere: usize| {
-        let end = tips[one][sphere][usize::from(!one_reversed)];
-        let start = tips[other][sphere][usize::from(other_reversed)];
+        let end = tips[last][sphere][usize::from(!last_reversed)];
+        let start = tips[next][sphere][usize::from(next_reversed)];
         let half_chord = 0.5 * end.distance(start);
         if half_chord < 1.0 { half_chord.asin() } else { FRAC_PI_2 }
     };

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A surface while it is being cut: its edges can be marked for cutting and split at their midpoints.
 //!
-//! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An edge between
-//! two such vertices that is not marked itself is a *chord*: a triangle with two sides on the boundary could
-//! not be given the angle it needs there, and a straight-line map with the boundary fixed would flatten it.
-//! So every chord is split. One pass over the neighbors of the vertices that are new on the cuts leaves
-//! none, as the new edges all end in a midpoint, which lies on no cut. It also leaves a way through between
-//! any two places of the boundary: every triangle has a vertex off the cuts, and neighboring triangles share
-//! one.
+//! Cutting a surface open along marked edges makes boundary vertices of all vertices on them. An unmarked edge
+//! between two such vertices is a *chord*: a triangle with two sides on the boundary could not have the angle
+//! it needs there, and a straight-line map with the boundary fixed would flatten it. So every chord is split.
+//! One pass over the neighbors of the vertices that are new on the cuts leaves no chord, as the new edges all
+//! end in a midpoint, which lies on no cut. It also leaves a way between any two places of the boundary: every
+//! triangle has a vertex off the cuts, and neighboring triangles share one.
 //!
 //! Input: the oriented faces of a manifold. Cost: O(n) to begin with; a split takes O(1), the chords of a
 //! vertex as many steps as it has neighbors.
@@ -17,14 +16,14 @@ use crate::hyperbolic::features::piece::Piece;
 use crate::mesh::{EdgeTable, Face, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
 use crate::vector::Vector3;
 
-/// What an edge is cut for.
+/// The reason for which an edge is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seam {
-    /// It is not cut.
+    /// The edge is not cut.
     None,
-    /// It belongs to a slit or to a boundary loop.
+    /// The edge belongs to a slit or to a boundary loop.
     Feature,
-    /// It belongs to an arc between two features.
+    /// The edge belongs to an arc between two features.
     Arc,
 }
 
@@ -33,24 +32,24 @@ pub(super) enum Seam {
 pub(super) struct Cutting {
     /// (n, 3): the vertices, then the midpoints of split edges.
     pub points: Vec<Vector3>,
-    /// (n, 3): the same on the unit sphere.
+    /// (n, 3): the vertices and midpoints on the unit sphere.
     pub on_sphere: Vec<Vector3>,
-    /// (m, 3), oriented.
+    /// (m, 3): the faces, oriented.
     pub faces: Vec<[u32; 3]>,
     /// (3 m,): the opposite corners, [`NO_CORNER`] on the boundary of the piece.
     pub opposite: Vec<u32>,
-    /// (3 m,): whether the edge opposite to each corner is cut.
+    /// (3 m,): the seam of the edge opposite to each corner.
     pub seams: Vec<Seam>,
     /// (m,): where each face lies in the piece.
     pub places: Vec<Place>,
-    /// (n,): a corner at each vertex, on the boundary the one from which [`Cutting::corners`] reaches all.
+    /// (n,): a corner at each vertex from which [`Cutting::corners`] reaches all.
     first_corner: Vec<u32>,
     /// (n,): whether each vertex lies on a cut.
     is_cut: Vec<bool>,
 }
 
 impl Cutting {
-    /// A whole piece.
+    /// A piece before any cut.
     pub(super) fn new(piece: &Piece) -> Self {
         let opposite = EdgeTable::new(piece.points.len(), &piece.faces).opposites();
         let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -98,8 +97,8 @@ impl Cutting {
 
     /// The corner opposite to the half-edge from `a` to `b`, if there is a face on its left.
     pub(super) fn half_edge(&self, a: u32, b: u32) -> Option<u32> {
-        let found = self.corners(a).find(|&corner| vertex_at(&self.faces, next_corner(corner)) == b);
-        found.map(previous_corner)
+        let at_start = self.corners(a).find(|&corner| vertex_at(&self.faces, next_corner(corner)) == b);
+        at_start.map(previous_corner)
     }
 
     /// Marks the edges of a path for cutting; returns whether it is a path of edges.
@@ -122,8 +121,7 @@ impl Cutting {
     /// Splits the chords at `vertices`, which all lie on cuts.
     pub(super) fn split_chords(&mut self, vertices: &[u32]) {
         for &vertex in vertices {
-            // Splits leave the corners around the vertex where they are and bring the far ends of its edges
-            // nearer.
+            // splits keep the corners around the vertex and bring the far ends of its edges nearer
             let corners: Vec<u32> = self.corners(vertex).collect();
             for edge in corners.into_iter().map(previous_corner) {
                 if self.is_chord(edge) {
@@ -140,7 +138,7 @@ impl Cutting {
         is_inner && half_edge(&self.faces, corner).iter().all(|&end| self.is_cut(end))
     }
 
-    /// Splits the edge opposite to a corner at its midpoint and returns that.
+    /// Splits the edge opposite to a corner at its midpoint; returns the midpoint.
     ///
     /// The parts at the start of the half-edge keep the numbers of the faces; those at its end are appended.
     pub(super) fn split(&mut self, corner: u32) -> u32 {
@@ -168,9 +166,8 @@ impl Cutting {
         self.points.len() as u32 - 1
     }
 
-    /// Divides a face between a corner and the midpoint of the edge opposite to it, keeps the part at the
-    /// start of that edge (or else at its end), appends the other and returns its corner where the face is
-    /// divided.
+    /// Divides a face between a corner and the midpoint of the opposite edge. Keeps the half at the start of that
+    /// edge, or at its end, and appends the other half; returns the corner of the latter at the dividing corner.
     fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: u32) -> u32 {
         let [next, previous] = [next_corner(corner), previous_corner(corner)];
         let [kept, given] = if keeps_start { [next, previous] } else { [previous, next] };
@@ -179,7 +176,7 @@ impl Cutting {
         let new_kept = if keeps_start { new + 1 } else { new + 2 };
         self.move_corner(given, [kept, given], midpoint);
         self.move_corner(new_kept, [new_kept, new_given], midpoint);
-        // The side from the corner to the vertex that was given away, then the dividing edge.
+        // the side from the corner to the vertex that went to the new face, then the dividing edge
         let outer = self.opposite[kept as usize];
         self.seams[new_kept as usize] = self.seams[kept as usize];
         self.link(new_kept, outer);
@@ -194,7 +191,7 @@ impl Cutting {
         new
     }
 
-    /// Starts the corners around the vertex of `new` there, where they started at `old`.
+    /// Makes `new` the first corner of its vertex if `old` was.
     fn renumber_first(&mut self, old: u32, new: u32) {
         let first = &mut self.first_corner[vertex_at(&self.faces, new) as usize];
         if *first == old {
@@ -202,7 +199,7 @@ impl Cutting {
         }
     }
 
-    /// Appends a copy of the face of a corner, turned so that this corner comes first, without neighbors.
+    /// Appends a copy of the face of a corner, without neighbors, with this corner first; returns its first corner.
     fn append_copy(&mut self, corner: u32) -> u32 {
         let corners = [corner, next_corner(corner), previous_corner(corner)];
         let Place { face, corners: weights } = self.places[Face::of_corner(corner)];
@@ -221,7 +218,7 @@ impl Cutting {
         self.faces[corner as usize / 3][corner as usize % 3] = midpoint;
     }
 
-    /// Makes two corners opposite to each other; the second may be none.
+    /// Makes two corners opposite to each other; the second may be [`NO_CORNER`].
     fn link(&mut self, corner: u32, across: u32) {
         self.opposite[corner as usize] = across;
         if across != NO_CORNER {
@@ -230,7 +227,7 @@ impl Cutting {
     }
 }
 
-/// A corner at each vertex, on the boundary the one with a boundary edge behind it.
+/// A corner at each vertex; on the boundary the one with a boundary edge behind it.
 fn first_corners(n_vertices: usize, faces: &[[u32; 3]], opposite: &[u32]) -> Vec<u32> {
     let mut first = vec![NO_CORNER; n_vertices];
     for corner in 0..opposite.len() as u32 {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A motion of the whole sphere that carries the features of a piece to those of its partner.
+//! An isotopy of the sphere that carries the features of a piece to those of its partner.
 //!
-//! Points of equal parameter move on paths: each curve turns as a whole about the axis of its own best
-//! rotation, and what is left over goes along great arcs, so that a curve that has to turn round spins
-//! instead of collapsing. In every small step the smooth displacement through those of the points, by a
-//! Matérn kernel of order 3/2, moves all else. Paths between the features keep their class: how they wind
-//! around the features.
+//! Points of equal parameter move on paths: each curve turns as a whole about the axis of its best rotation,
+//! and the rest of the way goes along great arcs, so that a curve that has to turn around spins instead of
+//! collapsing. In every small step a smooth displacement interpolates those of the points, by a Matérn kernel
+//! of order 3/2, and moves the whole sphere. Paths between the features keep their homotopy class.
 //!
-//! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k ≤ 400 or so points per
-//! step, and k for every point carried and step.
+//! Input: curves on the unit sphere at equal parameters. Cost: a dense system of k, about 400 at most, points
+//! per step, and k for every point carried and step.
 
 use crate::alignment::rotation::{best_rotation, rotate, rotation_of};
 use crate::control::Watch;
@@ -18,30 +17,30 @@ use crate::parallel;
 use crate::sparse::solve_positive_definite;
 use crate::vector::Vector3;
 
-/// How far a displacement is felt.
+/// Length scale of the kernel.
 const REACH: f64 = 0.25;
-/// What is added to the diagonal of the system, relative to it.
+/// Ridge on the diagonal of the system, relative to the diagonal.
 const RIDGE: f64 = 1e-9;
-/// In how many steps the motion is tried.
+/// Numbers of steps to try in turn.
 const STEPS: [usize; 3] = [60, 120, 240];
-/// No two points approach or leave each other by more than this share of their distance in one step, so that
-/// no step folds.
+/// Largest relative move of two points in one step, relative to their distance, so that no step folds.
 const LARGEST_STRAIN: f64 = 0.5;
-/// Points that move less than this stay where they are.
+/// Distance of all points to their places up to which there is nothing to move.
 const AT_REST: f64 = 1e-9;
-/// A point that ends farther than this from its place was lost.
+/// Largest final distance of a point to its place; beyond it the point is lost.
 const LOST: f64 = 3e-2;
-/// Points on a curve lie this close, or farther where there would be more than `MOST_POINTS`.
+/// Distance of points on a curve, unless there would be more than [`MOST_POINTS`].
 const SPACING: f64 = 0.03;
+/// About the most points on all curves.
 const MOST_POINTS: f64 = 400.0;
 
-/// A motion of the sphere in small steps.
+/// An isotopy of the sphere in small steps.
 #[derive(Debug, Clone)]
 pub(crate) struct Isotopy {
     steps: Vec<Step>,
 }
 
-/// One displacement of the whole sphere.
+/// A displacement of the whole sphere.
 #[derive(Debug, Clone)]
 struct Step {
     places: Vec<Vector3>,
@@ -49,16 +48,16 @@ struct Step {
 }
 
 impl Isotopy {
-    /// The motion that takes the features of `source` to those of `target`; `None` as [`Self::new`].
+    /// The isotopy that takes the features of `source` to those of `target`; `None` as in [`Self::new`].
     pub(crate) fn between(source: &Piece, target: &Piece, watch: &Watch<'_>) -> Option<Self> {
         let [ours, theirs] = samples(source, target);
         Self::new(&ours, &theirs, watch)
     }
 
-    /// The motion that takes every point of each curve of `source` to that of the same number on `target`,
-    /// all of them unit vectors and no two of one surface equal.
+    /// The isotopy that takes every point of each curve of `source` to that of the same number on `target`.
+    /// Points are unit vectors, and no two on one surface are equal.
     ///
-    /// `None` where curves run into each other on the way, and where cancelled.
+    /// `None` if curves run into each other on the way, or if cancelled.
     pub(super) fn new(source: &[Vec<Vector3>], target: &[Vec<Vector3>], watch: &Watch<'_>) -> Option<Self> {
         let (from, to) = (source.concat(), target.concat());
         let are_within = |points: &[Vector3], most: f64| {
@@ -79,7 +78,7 @@ impl Isotopy {
 }
 
 impl Step {
-    /// The displacement through those of points at `places` on the way to `next`; `None` where the system is
+    /// The displacement that interpolates those of the points from `places` to `next`; `None` if the system is
     /// singular.
     fn through(places: Vec<Vector3>, next: &[Vector3]) -> Option<Self> {
         let k = places.len();
@@ -107,14 +106,14 @@ fn kernel(distance: f64) -> f64 {
     (1.0 + r) * (-r).exp()
 }
 
-/// The steps along all paths; `None` where some step would fold or the points are too close for the kernel.
+/// The steps along all paths; `None` if a step would fold or the points are too close for the kernel.
 fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
-    let at =
+    let after =
         |i: usize| -> Vec<Vector3> { paths.iter().map(|path| path.at(i as f64 / count as f64)).collect() };
-    let mut places = at(0);
+    let mut places = after(0);
     let mut steps = Vec::with_capacity(count);
     for i in 1..=count {
-        let next = at(i);
+        let next = after(i);
         if !watch.goes_on() || strain(&places, &next) > LARGEST_STRAIN {
             return None;
         }
@@ -128,25 +127,24 @@ fn steps(paths: &[Path], count: usize, watch: &Watch<'_>) -> Option<Vec<Step>> {
 fn strain(places: &[Vector3], next: &[Vector3]) -> f64 {
     let of = |i: usize| {
         let pair = |j: usize| {
-            let [x, y] = [0, 1].map(|at| if at == 0 { i } else { j });
-            let change = next[x] - places[x] - (next[y] - places[y]);
-            change.norm() / places[x].distance(places[y])
+            let change = next[i] - places[i] - (next[j] - places[j]);
+            change.norm() / places[i].distance(places[j])
         };
         (0..i).map(pair).fold(0.0, f64::max)
     };
     parallel::map(places.len(), of).into_iter().fold(0.0, f64::max)
 }
 
-/// The way of one point: a rotation shared with its curve, and a great arc before it.
+/// The path of a point: along a great arc, all of it turned by the rotation of its curve.
 struct Path {
     from: Vector3,
-    /// The point's place turned back by the whole rotation.
+    /// The point's final place turned back by the whole rotation.
     to: Vector3,
     axis: Vector3,
     angle: f64,
 }
 
-/// The ways of the points of one curve.
+/// The paths of the points of a curve.
 fn paths(from: &[Vector3], to: &[Vector3]) -> impl Iterator<Item = Path> {
     let rotation = best_rotation(from, to, &vec![1.0; from.len()]);
     let (axis, angle) = axis_angle(rotation);
@@ -160,7 +158,7 @@ impl Path {
     }
 }
 
-/// The point at share `t` of the great arc.
+/// The point at the parameter `t` of the great arc.
 fn slerp(from: Vector3, to: Vector3, t: f64) -> Vector3 {
     let angle = from.cross(to).norm().atan2(from.dot(to));
     match angle.sin() {
@@ -189,13 +187,13 @@ fn axis_angle(rotation: [Vector3; 3]) -> (Vector3, f64) {
     if angle < 1.0 {
         return (Vector3::unit(2), 0.0);
     }
-    // by half a turn: R + I = 2 axis axisᵀ, of which the longest column is taken
+    // half a turn: R + I = 2 axis axisᵀ, whose longest column gives the axis
     let columns = [[a + 1.0, ba, ca], [ab, b + 1.0, cb], [ac, bc, c + 1.0]].map(Vector3);
     let longest = columns.into_iter().max_by(|x, y| x.norm().total_cmp(&y.norm()));
     (unit(longest.unwrap_or(Vector3::unit(2))), angle)
 }
 
-/// Points of equal parameter on all features of both pieces, of closed ones each once.
+/// Points of equal parameter on all features of both pieces; no point of a loop is repeated.
 fn samples(source: &Piece, target: &Piece) -> [Vec<Vec<Vector3>>; 2] {
     let features = || source.features.iter().zip(&target.features);
     let banks = features().flat_map(|(ours, theirs)| {

@@ -2,19 +2,17 @@
 //! Cutting a pair of pieces open: along their features, and along arcs between these into disks.
 //!
 //! The features of a surface of genus 0 become its boundary loops; a chain of arcs joins these into one. The
-//! disks of source and target have the same sides in the same order, each with parameters that say which
-//! points correspond.
+//! disks of source and target have the same sides in the same order; points of equal parameter correspond.
 //!
 //! 1. The chain: an order and directions of the features, the same on both ([`chain`]).
 //! 2. The features are marked for cutting and the chords between them split ([`cutting`]).
 //! 3. Arcs on the source, and along their images on the target ([`arcs`]).
-//! 4. Corners that meet across edges that are not cut become one vertex; the boundary of the disk falls into
-//!    sides.
+//! 4. Corners that meet across uncut edges become one vertex; the boundary of the disk is divided into sides.
 //!
 //! Input: the features are disjoint, slits simple paths of two or more edges off the boundary, loops whole
 //! boundary loops. Paper: Shi, Zeng, Su et al., "Hyperbolic Harmonic Mapping for Constrained Brain Surface
 //! Registration", CVPR 2013, which slices along the landmarks, too; the chain of arcs takes the place of its
-//! pants and hexagons. Cost: O(B n log n) at the most for B features.
+//! pants and hexagons. Cost: at most O(B n log n) for B features.
 
 mod arcs;
 mod chain;
@@ -41,12 +39,12 @@ use sliced::{Side, Sliced, SlicedPair};
 /// Cuts both pieces open along their features and along arcs of the same homotopy class.
 ///
 /// `carry` deforms a polyline on the sphere of the source (unit vectors, about 0.01 rad apart) into one on
-/// the sphere of the target, so that the features of the source go onto those of the target; `None` where it
-/// cannot.
+/// the sphere of the target, so that the features of the source go onto those of the target; `None` if it
+/// fails.
 ///
 /// # Errors
-/// [`CurveError::Uncuttable`] for features that are no paths of edges or touch each other and [`CurveError::NoArc`]
-/// where two cannot be joined, both of either surface; [`Error::CancelledEarly`].
+/// [`CurveError::Uncuttable`] for features that are no paths of edges or touch each other, [`CurveError::NoArc`]
+/// for features that cannot be joined, on either surface; [`Error::CancelledEarly`].
 pub(super) fn slice_pair(
     source: &Piece,
     target: &Piece,
@@ -75,7 +73,7 @@ pub(super) fn slice_pair(
     Ok(SlicedPair { source, target, followed })
 }
 
-/// Cuts one piece open along its features and along arcs; returns the chain too.
+/// Cuts a piece open along its features and along arcs; returns the chain too.
 ///
 /// # Errors
 /// As [`slice_pair`], without naming a surface.
@@ -103,7 +101,7 @@ fn cut_features(piece: &Piece) -> Result<Cutting, Error> {
     Ok(cutting)
 }
 
-/// The vertices of a feature once around: along its left bank and back along the right one.
+/// The vertices once around a feature: along its left bank and back along its right bank.
 fn outline(feature: &Feature) -> Vec<u32> {
     let back = feature.right.vertices.iter().rev().skip(1);
     let mut vertices: Vec<u32> = feature.left.vertices.iter().chain(back).copied().collect();
@@ -111,7 +109,7 @@ fn outline(feature: &Feature) -> Vec<u32> {
     vertices
 }
 
-/// Opens a surface along its features, and along its arcs besides.
+/// Opens a surface along its features, and a copy along its arcs too.
 fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sliced, Error> {
     let opposite_unless = |is_open: fn(Seam) -> bool| {
         let pairs = cutting.opposite.iter().zip(&cutting.seams);
@@ -132,7 +130,7 @@ fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sli
     Ok(Sliced { points, faces, places, surface, disk, sides })
 }
 
-/// The sides in order, with vertices before cutting.
+/// The sides in order, with their vertices before cutting.
 fn expected_sides(cutting: &Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Vec<Side> {
     let side = |is_arc, index, vertices: &[u32], parameters: &[f64]| Side {
         is_arc,
@@ -161,7 +159,7 @@ fn reversed(mut side: Side) -> Side {
     side
 }
 
-/// How far along its length each vertex of a path lies: from 0 to 1.
+/// The length of a path up to each of its vertices as a share of the whole.
 fn shares_of_length(cutting: &Cutting, path: &[u32]) -> Vec<f64> {
     let mut so_far = vec![0.0];
     for ends in path.windows(2) {
@@ -171,18 +169,18 @@ fn shares_of_length(cutting: &Cutting, path: &[u32]) -> Vec<f64> {
     so_far.into_iter().map(|length| length / whole).collect()
 }
 
-/// Gives the sides the vertices of the disk, as `boundary` runs through them.
+/// Replaces the vertices of the sides by those of the disk along `boundary`.
 ///
-/// Fails with the feature at or after which the boundary does not run along the sides.
+/// The error is the feature at or after which the boundary does not run along the sides.
 fn match_sides(mut sides: Vec<Side>, boundary: &[u32], vertex_of: &[u32]) -> Result<Vec<Side>, usize> {
     let mut begin = 0;
     for side in &mut sides {
         for (place, vertex) in side.vertices.iter_mut().enumerate() {
-            let found = boundary[(begin + place) % boundary.len()];
-            if vertex_of[found as usize] != *vertex {
+            let disk_vertex = boundary[(begin + place) % boundary.len()];
+            if vertex_of[disk_vertex as usize] != *vertex {
                 return Err(side.index);
             }
-            *vertex = found;
+            *vertex = disk_vertex;
         }
         begin += side.vertices.len() - 1;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Opening a surface along its cut edges, and walking along the boundary that this makes.
+//! Opening a surface along its cut edges, and walking along the resulting boundary.
 
 use crate::mesh::{NO_CORNER, next_corner, previous_corner, vertex_at};
 
-/// A corner that has no vertex yet.
+/// The vertex of a corner without one yet.
 const UNNUMBERED: u32 = u32::MAX;
 
-/// The faces with other vertices, after cutting.
+/// A surface after cutting: its faces with new vertices.
 #[derive(Debug, Clone)]
 pub(in crate::hyperbolic) struct Opened {
     /// (m, 3), in the order of [`Sliced::faces`](super::sliced::Sliced::faces).
@@ -14,12 +14,12 @@ pub(in crate::hyperbolic) struct Opened {
     /// (3 m,): the corner (3 × face + k) opposite across the edge opposite to each corner, [`NO_CORNER`] on the
     /// boundary.
     pub opposite: Vec<u32>,
-    /// The vertex before cutting.
+    /// The vertex before cutting of each vertex.
     pub vertex_of: Vec<u32>,
 }
 
 impl Opened {
-    /// Opens `faces` where `opposite` has no neighbors: the corners of each fan become one vertex.
+    /// Opens `faces` along edges without an opposite corner: the corners of each fan become one vertex.
     ///
     /// The vertices are numbered in the order of their lowest corners.
     pub(super) fn new(faces: &[[u32; 3]], opposite: Vec<u32>) -> Self {
@@ -60,7 +60,7 @@ impl Opened {
         edges.map(|edge| vertex_at(&self.faces, next_corner(edge))).collect()
     }
 
-    /// The boundary edge after another; an edge is named by the corner opposite to it.
+    /// The boundary edge after a boundary edge, both given by the corners opposite to them.
     pub(super) fn next_boundary_edge(&self, edge: u32) -> u32 {
         let mut corner = previous_corner(edge);
         loop {
@@ -72,7 +72,7 @@ impl Opened {
         }
     }
 
-    /// For each vertex of the boundary the corner opposite to the edge that leaves it with the surface on the left.
+    /// For each boundary vertex the corner opposite to the edge that leaves it with the surface on the left.
     pub(crate) fn boundary_corners(&self) -> Vec<u32> {
         let mut corners = vec![NO_CORNER; self.vertex_of.len()];
         for corner in (0..self.opposite.len()).filter(|&corner| self.opposite[corner] == NO_CORNER) {

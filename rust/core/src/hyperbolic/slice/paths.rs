@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Shortest paths along the edges of a surface, by Dijkstra's algorithm.
 //!
-//! Input: lengths or costs of edges that are not negative. Cost: O(n log n) at the most; a search for one
-//! path ends when it has found it. Of equally good vertices the one of the lower index comes first.
+//! Input: nonnegative lengths or costs of edges. Cost: at most O(n log n); a search for one path ends at its
+//! target. Of equally near vertices the one of the lower index comes first.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::cutting::Cutting;
 
-/// Vertices in the order of their distances; the bits of floats that are not negative are ordered like these.
+/// Vertices in the order of their distances; the bits of nonnegative floats are ordered like the floats.
 type Queue = BinaryHeap<Reverse<(u64, u32)>>;
 
 /// Lowers `distances` to the lengths in space of the shortest paths from `sources`, whose distances become 0.
 ///
-/// Vertices that `distances` does not have yet are added. Where it is the distances from some vertices, it
-/// becomes those from these and the sources; the cost is that of the part that changes.
+/// Vertices that `distances` lacks are added. Distances from earlier sources become distances from these and the
+/// new sources; the cost is that of the part that changes.
 pub(super) fn lower_distances(surface: &Cutting, distances: &mut Vec<f64>, sources: &[u32]) {
     distances.resize(surface.points.len(), f64::INFINITY);
     let mut queue = Queue::new();
@@ -38,7 +38,7 @@ pub(super) fn lower_distances(surface: &Cutting, distances: &mut Vec<f64>, sourc
     }
 }
 
-/// The cheapest path between two vertices that touches no cut between them; `None` where there is none.
+/// The cheapest path between two vertices that touches no cut between them, if there is one.
 pub(super) fn cheapest_path(
     surface: &Cutting,
     from: u32,
@@ -70,7 +70,7 @@ pub(super) fn cheapest_path(
     None
 }
 
-/// The path along which a vertex was reached.
+/// The path along which the search reached `to`.
 fn backtrace(best: &[(f64, u32)], from: u32, to: u32) -> Vec<u32> {
     let before = |&vertex: &u32| (vertex != from).then(|| best[vertex as usize].1);
     let mut path: Vec<u32> = std::iter::successors(Some(to), before).collect();

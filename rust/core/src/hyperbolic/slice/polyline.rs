@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Polylines on the unit sphere: resampling, and the distance of a point.
 //!
-//! The distance goes through a tree of balls: the root encloses the whole line, the two children of a ball
-//! enclose the halves of its part. Cost: O(n log n) to build; a distance O(log n) for points near the line.
+//! Distances use a tree of balls: the root encloses the whole line, the two children of a ball enclose the
+//! halves of its part. Cost: O(n log n) to build; O(log n) for the distance of a point near the line.
 
 use crate::vector::Vector3;
 
-/// The same polyline with further points, so that neighbors are about `spacing` apart at the most.
+/// The polyline with additional points, so that neighbors are at most about `spacing` apart.
 pub(super) fn resampled(points: &[Vector3], spacing: f64) -> Vec<Vector3> {
     let mut dense: Vec<Vector3> = points.first().copied().into_iter().collect();
     for ends in points.windows(2) {
         let parts = (ends[0].distance(ends[1]) / spacing).ceil().max(1.0);
-        for part in 1..parts as usize {
-            let between = along(ends[0], ends[1], part as f64 / parts);
+        for k in 1..parts as usize {
+            let between = along(ends[0], ends[1], k as f64 / parts);
             let length = between.norm();
             // nothing lies between antipodes
             if length > f64::EPSILON {
@@ -27,7 +27,7 @@ pub(super) fn resampled(points: &[Vector3], spacing: f64) -> Vec<Vector3> {
 /// A polyline of two or more points, prepared for distances.
 pub(super) struct Polyline {
     points: Vec<Vector3>,
-    /// Centre and radius; the children of ball i are balls 2 i + 1 and 2 i + 2.
+    /// Center and radius; the children of ball i are balls 2 i + 1 and 2 i + 2.
     balls: Vec<(Vector3, f64)>,
 }
 
@@ -46,7 +46,7 @@ impl Polyline {
         self.nearest(0, 0, self.points.len() - 1, x, f64::INFINITY)
     }
 
-    /// Encloses the chords `low..high` in a ball, and their halves.
+    /// Encloses the chords `low..high` in a ball, and their halves in its children.
     fn enclose(&mut self, ball: usize, low: usize, high: usize) {
         let center = self.points[usize::midpoint(low, high)];
         let radius = self.points[low..=high].iter().map(|&point| center.distance(point)).fold(0.0, f64::max);
@@ -58,7 +58,7 @@ impl Polyline {
         }
     }
 
-    /// The distance of the chords `low..high`, or `least` where that is less.
+    /// The distance to the chords `low..high`, or `least` if that is less.
     fn nearest(&self, ball: usize, low: usize, high: usize, x: Vector3, least: f64) -> f64 {
         let (center, radius) = self.balls[ball];
         if center.distance(x) - radius >= least {
@@ -69,13 +69,13 @@ impl Polyline {
         }
         let middle = usize::midpoint(low, high);
         let children = [(2 * ball + 1, low, middle), (2 * ball + 2, middle, high)];
-        let [one, other] = children.map(|(child, ..)| self.balls[child].0.distance(x));
-        let nearer_first = if one <= other { children } else { [children[1], children[0]] };
+        let [first, second] = children.map(|(child, ..)| self.balls[child].0.distance(x));
+        let nearer_first = if first <= second { children } else { [children[1], children[0]] };
         nearer_first.iter().fold(least, |least, &(ball, low, high)| self.nearest(ball, low, high, x, least))
     }
 }
 
-/// The distance of a point from a straight line between two others.
+/// The distance of a point from the segment between two points.
 fn chord_distance(a: Vector3, b: Vector3, x: Vector3) -> f64 {
     let chord = b - a;
     let squared = chord.dot(chord);

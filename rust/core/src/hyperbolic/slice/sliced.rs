@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Sliced pieces: surfaces cut along features and arcs, with the way back to the surface as given.
+//! Sliced pieces: surfaces cut along features and arcs, with their places on the surface as given.
 
 use super::openings::Opened;
 use crate::hyperbolic::features::piece::Piece;
@@ -7,13 +7,12 @@ use crate::location::Location;
 use crate::mesh::Face;
 use crate::vector::Vector3;
 
-/// A piece cut along its features, and along a chain of arcs besides; edges between two vertices of the cuts
-/// are split.
+/// A piece cut along its features, and along a chain of arcs too; edges between two vertices of the cuts are split.
 #[derive(Debug, Clone)]
 pub(crate) struct Sliced {
-    /// (n, 3): the points of the piece and of the midpoints of split edges, before cutting.
+    /// (n, 3): the vertices of the piece and the midpoints of split edges, before cutting.
     pub points: Vec<Vector3>,
-    /// (m, 3): faces before cutting.
+    /// (m, 3): the faces before cutting.
     pub faces: Vec<[u32; 3]>,
     /// (m,): where each face lies in the piece.
     pub places: Vec<Place>,
@@ -21,15 +20,15 @@ pub(crate) struct Sliced {
     pub surface: Opened,
     /// Cut along features and arcs: a disk.
     pub disk: Opened,
-    /// The boundary of the disk run through with the disk on the left: left bank of feature 1 of the chain,
-    /// arc 1, left bank of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B −
-    /// 1 (backwards), …, right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last
-    /// vertex (of the disk) of the one before.
+    /// The boundary of the disk, with the disk on the left: left bank of feature 1 of the chain, arc 1, left bank
+    /// of feature 2, …, left bank of feature B, right bank of feature B (backwards), arc B − 1 (backwards), …,
+    /// right bank of feature 1 (backwards): 2 (2B − 1) sides. Each begins with the last vertex (of the disk) of
+    /// the side before.
     pub sides: Vec<Side>,
 }
 
 impl Sliced {
-    /// For each vertex of the disk the vertex of the surface.
+    /// The vertex of the surface of each vertex of the disk.
     pub(crate) fn surface_vertices(&self) -> Vec<u32> {
         let mut vertices = vec![0; self.disk.vertex_of.len()];
         for (disk, surface) in self.disk.faces.iter().zip(&self.surface.faces) {
@@ -43,12 +42,12 @@ impl Sliced {
         self.surface.vertex_of.iter().map(|&vertex| self.points[vertex as usize]).collect()
     }
 
-    /// The vertex of the whole surface that a vertex of the sliced one is; midpoints of split edges are none.
+    /// The vertex of the whole surface that a vertex of the sliced surface copies; `None` for midpoints.
     pub(crate) fn given_vertex(&self, piece: &Piece, copy: usize) -> Option<usize> {
         piece.vertex_of.get(self.surface.vertex_of[copy] as usize).map(|&vertex| vertex as usize)
     }
 
-    /// A place on the sliced surface as one on the whole surface.
+    /// A location on the sliced surface as a location on the whole surface.
     pub(crate) fn given_place(&self, piece: &Piece, location: &Location) -> Location {
         let place = &self.places[location.triangle];
         let barycentric = [0, 1, 2]
@@ -62,27 +61,26 @@ impl Sliced {
 pub(crate) struct Place {
     /// The face of the piece.
     pub face: Face,
-    /// The barycentric coordinates in it of each corner of the part; exact, as all splits are at midpoints.
+    /// The barycentric coordinates in that face of each corner of the part; exact, as all splits are at midpoints.
     pub corners: [[f64; 3]; 3],
 }
 
-/// One side of the boundary of the disk.
+/// A side of the boundary of the disk.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Side {
     /// Whether it is a side of an arc rather than a bank.
     pub is_arc: bool,
-    /// Which feature of the chain, or which arc: both from 0.
+    /// The number of the feature in the chain, or of the arc, from 0.
     pub index: usize,
     /// Vertices of the disk in the order of travel, at least two.
     pub vertices: Vec<u32>,
-    /// Their parameters: increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0 on the
-    /// others. On a bank those of the feature, on an arc shares of its length in space.
+    /// The parameters of the vertices, increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0
+    /// on the others: those of the feature on a bank, shares of the length in space on an arc.
     pub parameters: Vec<f64>,
 }
 
 impl Side {
-    /// The corners opposite to its edges; `corners` has for each boundary vertex of the disk the one opposite to the edge
-    /// that begins there.
+    /// The corners opposite to the edges of the side; `corners` are [`Opened::boundary_corners`] of the disk.
     pub(crate) fn opposite_corners<'a>(&'a self, corners: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
         self.vertices[..self.vertices.len() - 1].iter().map(|&vertex| corners[vertex as usize])
     }
@@ -95,6 +93,6 @@ pub(crate) struct SlicedPair {
     pub source: Sliced,
     /// The target.
     pub target: Sliced,
-    /// Whether all arcs on the target follow the carried ones; otherwise the homotopy class may be another.
+    /// Whether all arcs on the target follow the carried ones; otherwise the homotopy class may differ.
     pub followed: bool,
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The edges of a surface, numbered, and how factors at the vertices change their hyperbolic lengths.
+//! The numbered edges of a surface, and their hyperbolic lengths as functions of factors at the vertices.
 //!
-//! Two kinds of discrete conformal change, both with one number u per vertex and lengths that grow with it:
+//! Two kinds of discrete conformal change, both with one factor u per vertex and lengths that grow with it:
 //!
 //! - vertex scaling (A. Bobenko, U. Pinkall, B. Springborn, Discrete conformal maps and ideal polyhedra,
 //!   Geometry & Topology 19, 2015): 2 sinh(l/2) = L e^((u_i + u_j)/2) for lengths L in space;
@@ -9,9 +9,9 @@
 //!   circle packing, Memoirs AMS 805, 2004): circles of radius r, u = ln tanh(r/2) < 0, around the vertices,
 //!   and cosh l = cosh r_i cosh r_j + I sinh r_i sinh r_j for the inversive distance I of two circles.
 //!
-//! With I = cos φ the latter is Thurston's packing of circles that meet under the angle φ. The circles of a
-//! mesh in space that are small enough for every triangle hardly ever meet: I ≥ 1. Angles would then all be
-//! 0, the tangential packing, which knows nothing of the surface's shape; so I is kept as it is.
+//! With I = cos φ the latter is Thurston's packing of circles that meet at the angle φ. Circles that are small
+//! enough for every triangle of a mesh in space hardly ever meet: I ≥ 1. Thurston's angles would then all be 0,
+//! the tangential packing, which does not depend on the surface's shape; so I is kept as it is.
 
 use crate::mesh::{EdgeTable, corner_of_entry};
 use crate::parallel;
@@ -23,7 +23,7 @@ pub(super) struct Edges {
     pub ends: Vec<[u32; 2]>,
     /// (m, 3): the edge opposite to each corner.
     pub of_face: Vec<[u32; 3]>,
-    /// (n,): whether a vertex is on the boundary, at an edge of one face only.
+    /// (n,): whether a vertex is on the boundary, an end of an edge of only one face.
     pub on_boundary: Vec<bool>,
 }
 
@@ -47,7 +47,7 @@ impl Edges {
         edges
     }
 
-    /// How many there are.
+    /// The number of edges.
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }
@@ -57,7 +57,7 @@ impl Edges {
         self.ends[edge].map(|end| values[end as usize])
     }
 
-    /// The values of the edges of a face, each opposite to a corner.
+    /// The values of the edges opposite to the corners of a face.
     pub(super) fn around(&self, face: usize, values: &[f64]) -> [f64; 3] {
         self.of_face[face].map(|edge| values[edge as usize])
     }
@@ -71,7 +71,7 @@ impl Edges {
     }
 }
 
-/// What stays the same of every edge while the factors change.
+/// A kind of conformal change, with the quantity of each edge that it preserves.
 pub(super) enum Conformal {
     /// The length L in space, scaled: the chord 2 sinh(l/2) at u = 0.
     VertexScaling(Vec<f64>),
@@ -91,7 +91,7 @@ impl Conformal {
             Self::VertexScaling(lengths) => 0.5 * lengths[edge] * (0.5 * (u + v)).exp(),
             Self::InversiveDistance(distances) => {
                 let [p, q] = [u, v].map(f64::exp);
-                // (p − q)² + 2 (1 + I) p q is a sum of what is positive
+                // (p − q)² + 2 (1 + I) p q is a sum of nonnegative terms
                 let sum = (p - q) * (p - q) + 2.0 * (1.0 + distances[edge]) * p * q;
                 (sum / (one_less_square(u) * one_less_square(v))).sqrt()
             }
@@ -107,8 +107,8 @@ impl Conformal {
             Self::InversiveDistance(distances) => {
                 let [[sinh_i, cosh_i], [sinh_j, cosh_j]] = factors.map(circle);
                 let sinh = 2.0 * half_chord * cosine;
-                let by = |own: [f64; 2], other: [f64; 2]| {
-                    own[0] * (own[0] * other[1] + distances[edge] * own[1] * other[0]) / sinh
+                let by = |[sinh_r, cosh_r]: [f64; 2], [sinh_s, cosh_s]: [f64; 2]| {
+                    sinh_r * (sinh_r * cosh_s + distances[edge] * cosh_r * sinh_s) / sinh
                 };
                 [by([sinh_i, cosh_i], [sinh_j, cosh_j]), by([sinh_j, cosh_j], [sinh_i, cosh_i])]
             }
@@ -131,10 +131,10 @@ impl Conformal {
     }
 }
 
-/// No factor of a vertex scaling changes by more than this in one step.
+/// Largest change of a factor of vertex scaling in one step.
 const LONGEST_MOVE: f64 = 6.0;
 
-/// That of a circle uses up at most this part of what is left to 0, where the radius is infinite.
+/// Largest change of a circle's factor in one step, as a part of its distance to 0, where the radius is infinite.
 const SHARE_OF_ROOM: f64 = 0.9;
 
 /// asinh x for x ≥ 0, in half the time of the standard library's, which guards against squares that overflow.
@@ -153,16 +153,16 @@ fn circle(u: f64) -> [f64; 2] {
     [2.0 * tanh, 1.0 + tanh * tanh].map(|x| x / one_less_square(u))
 }
 
-/// Circles around the vertices: half as wide as the shortest edge there.
+/// Circles around the vertices, with half the length of the shortest edge at the vertex as radius.
 pub(super) struct Packing {
-    /// u, (n,).
+    /// (n,): u of each vertex.
     pub factors: Vec<f64>,
-    /// I of every edge.
+    /// I of each edge.
     pub distances: Vec<f64>,
 }
 
 impl Packing {
-    /// The circles for these lengths of edges.
+    /// The circles for given lengths of the edges.
     pub(super) fn new(n_vertices: usize, edges: &Edges, lengths: &[f64]) -> Self {
         let mut radii = vec![f64::INFINITY; n_vertices];
         for (edge, ends) in edges.ends.iter().enumerate() {
@@ -172,7 +172,7 @@ impl Packing {
         }
         let distances = parallel::map(edges.len(), |edge| {
             let [r, s] = edges.at_ends(edge, &radii);
-            // 1 + what is between the circles: (L² − (r + s)²) / (2 r s)
+            // I = 1 + (L² − (r + s)²) / (2 r s)
             (1.0 + (lengths[edge] - (r + s)) * (lengths[edge] + (r + s)) / (2.0 * r * s)).max(1.0)
         });
         Self { factors: parallel::map(n_vertices, |v| factor_of_radius(radii[v])), distances }

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic metric with geodesic boundary in the conformal class of a surface in space.
 //!
-//! Such a metric exists, once, on every surface of negative Euler characteristic (uniformization). Here every
-//! face becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two
-//! ways to it:
+//! Every surface of negative Euler characteristic has exactly one such metric (uniformization). Here every face
+//! becomes a hyperbolic triangle; the angles around a vertex add up to 2π, on the boundary to π. Two methods:
 //!
 //! - [`MetricMethod::Newton`], the default: discrete conformal changes by vertex scaling (Bobenko, Pinkall,
-//!   Springborn 2015), solved by Newton's method; where slivers keep it from a solution, by circle packings
-//!   relaxed there;
-//! - [`MetricMethod::RicciFlow`], the discrete hyperbolic Ricci flow of the paper (Shi, Zeng, Su et al., CVPR
-//!   2013, algorithm 2) on circle packings, finished by the same Newton's method.
+//!   Springborn 2015), solved by Newton's method; if slivers prevent a solution, circle packings relaxed at
+//!   the slivers;
+//! - [`MetricMethod::RicciFlow`]: the discrete hyperbolic Ricci flow of the paper (Shi, Zeng, Su et al., CVPR
+//!   2013, algorithm 2) on circle packings, completed by Newton's method.
 //!
 //! Input: points and oriented faces of a connected surface with boundary. Cost: about ten sparse
-//! factorizations with one unknown per vertex, twice that with slivers; the flow takes hundreds of passes
-//! over the faces besides.
+//! factorizations with one unknown per vertex, twice that with slivers; the flow adds hundreds of passes over
+//! the faces.
 
 mod edges;
 mod newton;
@@ -33,13 +32,13 @@ use relaxation::{Relaxed, bad_faces, relaxed};
 
 pub use ricci_flow::{FlowOptions, FlowRecord};
 
-/// How to find the metric.
+/// The method that computes the metric.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum MetricMethod {
-    /// Newton's method on vertex scaling, precise and fast.
+    /// Newton's method on vertex scaling: precise and fast.
     #[default]
     Newton,
-    /// The paper's Ricci flow on circle packings, and Newton's method from where it ends.
+    /// The paper's Ricci flow on circle packings, then Newton's method from its result.
     RicciFlow(FlowOptions),
 }
 
@@ -50,16 +49,16 @@ pub struct Metric {
     pub lengths: Vec<[f64; 3]>,
     /// (m, 3): the angle at each corner, in radians.
     pub angles: Vec<[f64; 3]>,
-    /// (n,): weights of the corners of a face for projective interpolation on it, the largest 1: with them
-    /// points between vertices fit together across edges as they do in space. All 1 after circle packing.
+    /// (n,): weights of the vertices for projective interpolation on faces, the largest 1; with them the points of
+    /// an edge agree on both of its faces, as in space. All 1 after circle packing.
     pub mu: Vec<f64>,
     /// The largest difference between the angle sum at a vertex and 2π, π on the boundary.
     pub residual: f64,
-    /// Newton iterations in all.
+    /// The total of Newton iterations.
     pub iterations: usize,
-    /// How many edges gave up conformality because of slivers.
+    /// The number of edges that gave up conformality because of slivers.
     pub relaxed_edges: usize,
-    /// What the Ricci flow achieved by itself, where it was asked for.
+    /// The result of the Ricci flow by itself, if it was chosen.
     pub flow: Option<FlowRecord>,
 }
 
@@ -67,8 +66,8 @@ pub struct Metric {
 /// of edges with one face are on its boundary, and no interior edge may join two of those.
 ///
 /// # Errors
-/// [`NumericsError::NoHyperbolicMetric`] where numerics allow none, [`NumericsError::FactorizationFailed`] where the mesh is
-/// too large, [`Error::CancelledEarly`] by the watch.
+/// [`NumericsError::NoHyperbolicMetric`] if double precision does not suffice,
+/// [`NumericsError::FactorizationFailed`] if the mesh is too large, [`Error::CancelledEarly`] if cancelled.
 pub(super) fn hyperbolic_metric(
     points: &[Vector3],
     faces: &[[u32; 3]],
@@ -82,14 +81,14 @@ pub(super) fn hyperbolic_metric(
     let area: f64 = face_areas(points, faces).iter().sum();
     let scale = (TAU * euler_characteristic.unsigned_abs() as f64 / area).sqrt();
     let lengths: Vec<f64> = surface.edges.lengths(points).iter().map(|length| scale * length).collect();
-    // 2. Factors with the wanted angle sums
+    // 2. Factors that yield the angle sums
     match method {
         MetricMethod::Newton => by_newton(&surface, lengths, watch),
         MetricMethod::RicciFlow(options) => by_flow(&surface, &lengths, &options, watch),
     }
 }
 
-/// Vertex scaling, and relaxed circle packing where that has no solution.
+/// The metric by vertex scaling, or by relaxed circle packing if that has no solution.
 fn by_newton(surface: &Surface<'_>, lengths: Vec<f64>, watch: &Watch<'_>) -> Result<Metric, Error> {
     let packing = Packing::new(surface.n_vertices(), &surface.edges, &lengths);
     let mut factors = vec![0.0; surface.n_vertices()];
@@ -106,16 +105,16 @@ fn by_newton(surface: &Surface<'_>, lengths: Vec<f64>, watch: &Watch<'_>) -> Res
     of_relaxed(surface, Relaxed { iterations: iterations + relaxed.iterations, ..relaxed })
 }
 
-/// Where vertex scaling left no larger curvature than this, its factors are a start for circles.
+/// Largest curvature left by vertex scaling at which its factors are a good start for circles.
 const GOOD_START: f64 = 1e-2;
 
-/// The packing with its circles grown and shrunk as vertex scaling does with edges.
+/// The factors of the packing's circles with radii scaled by e^u, u the factors of vertex scaling.
 fn scaled_circles(packing: &Packing, factors: &[f64]) -> Vec<f64> {
     let scaled = |(&circle, u): (&f64, &f64)| factor_of_radius(radius_of_factor(circle) * u.exp());
     packing.factors.iter().zip(factors).map(scaled).collect()
 }
 
-/// The paper's flow, and Newton's method to close what it leaves open.
+/// The metric by the paper's flow, then by Newton's method from its result.
 fn by_flow(
     surface: &Surface<'_>,
     lengths: &[f64],
@@ -128,7 +127,7 @@ fn by_flow(
     Ok(Metric { flow: Some(flow), ..of_relaxed(surface, relaxed)? })
 }
 
-/// The metric of a packing, if it is one.
+/// The metric of a packing, if it has one.
 fn of_relaxed(surface: &Surface<'_>, relaxed: Relaxed) -> Result<Metric, Error> {
     let Relaxed { state, iterations, edges } = relaxed;
     match Elements::collect(bad_faces(surface, &state)) {
@@ -137,7 +136,7 @@ fn of_relaxed(surface: &Surface<'_>, relaxed: Relaxed) -> Result<Metric, Error> 
     }
 }
 
-/// Lengths and angles for all faces.
+/// The lengths and angles of all faces.
 fn metric(surface: &Surface<'_>, state: &State) -> Metric {
     let lengths = (0..surface.faces.len()).map(|face| surface.edges.around(face, &state.lengths)).collect();
     Metric {

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Newton's method for the factors that give every vertex its angle sum.
 //!
-//! The curvatures K (the angle sum wanted less that of the corners) are the gradient of a convex function of
+//! The curvatures K (the required angle sum less that of the corners) are the gradient of a convex function of
 //! the factors, for vertex scaling (Bobenko, Pinkall, Springborn 2015) and for inversive distances (F. Luo
-//! 2011) alike. So the slope K · d along a Newton direction says all that a line search needs; the function
-//! is never evaluated.
+//! 2011) alike. So the slope K · d along a Newton direction d suffices for a line search; the function is never
+//! evaluated.
 //!
 //! In each iteration:
 //!
 //! 1. lengths of the edges, angles of the faces, curvatures of the vertices;
-//! 2. the Hessian, a matrix like that of a Laplacian, is factored; where faces are degenerate, with a small
-//!    shift;
-//! 3. the Newton step, held inside the range of the factors, is halved until its end is not beyond the
-//!    minimum, or the slope has fallen to half.
+//! 2. the factorization of the Hessian, a matrix like a Laplacian; with a small shift if faces are degenerate;
+//! 3. the Newton step, held inside the range of the factors and halved until its end is not beyond the minimum,
+//!    or the slope there has at most half its size.
 //!
 //! Cost of one iteration: one sparse factorization with one unknown per vertex, two or three passes over the
 //! faces.
@@ -26,30 +25,32 @@ use crate::error::Error;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
-/// Solved when no curvature is larger than this.
+/// Largest curvature of a solution.
 const TOLERANCE: f64 = 1e-12;
 
-/// As good as solved where rounding allows no better.
+/// Largest curvature that counts as solved if rounding allows no better.
 const ALMOST: f64 = 1e-8;
 
-/// Faces that are degenerate while no curvature is larger than this are taken to remain so.
+/// Largest curvature at which degenerate faces are taken to remain degenerate.
 const SETTLED: f64 = 1e-3;
 
-/// Iterations at the most, and without a gain of half after which rounding is taken for the reason.
+/// Most iterations.
 const MOST_ITERATIONS: usize = 60;
+
+/// Iterations that together have to halve the curvature; if they do not, rounding allows no better.
 const PATIENCE: usize = 3;
 
-/// Steps tried along one direction.
+/// Most steps tried along one direction.
 const MOST_TRIALS: usize = 40;
 
-/// Shifts of the Hessian that are tried one after the other where it is not positive definite.
+/// Shifts of the Hessian, tried in turn until it is positive definite.
 const SHIFTS: [f64; 5] = [0.0, 1e-8, 1e-6, 1e-4, 1e-2];
 
-/// A surface that is to be hyperbolic.
+/// A surface that is to get a hyperbolic metric.
 pub(super) struct Surface<'a> {
     pub faces: &'a [[u32; 3]],
     pub edges: Edges,
-    /// The angle sum wanted at each vertex: 2π, and π on the boundary.
+    /// The required angle sum at each vertex: 2π, and π on the boundary.
     pub angle_sums: Vec<f64>,
     analysis: Analysis,
 }
@@ -63,19 +64,19 @@ impl<'a> Surface<'a> {
         Ok(Self { faces, edges, angle_sums, analysis })
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub(super) fn n_vertices(&self) -> usize {
         self.angle_sums.len()
     }
 }
 
-/// The metric that factors give.
+/// The metric of given factors.
 pub(super) struct State {
-    /// Of the edges.
+    /// The lengths of the edges.
     pub lengths: Vec<f64>,
-    /// Of the faces, at their corners.
+    /// The angles of the faces at their corners.
     pub angles: Vec<[f64; 3]>,
-    /// K of the vertices.
+    /// The curvatures K of the vertices.
     pub curvatures: Vec<f64>,
 }
 
@@ -94,7 +95,7 @@ impl State {
 
     /// max |K|.
     pub(super) fn residual(&self) -> f64 {
-        // a NaN would get lost in a maximum
+        // f64::max would lose a NaN
         self.curvatures.iter().fold(0.0, |most: f64, k| if k.abs() <= most { most } else { k.abs() })
     }
 
@@ -109,12 +110,11 @@ impl State {
     }
 }
 
-/// Lowers the curvatures from `factors`, which are moved along, until they vanish, or rounding allows no
-/// better, or nothing but degenerate faces is left to be seen to. Returns the last metric and the number of
-/// iterations.
+/// Updates `factors` until the curvatures vanish, or rounding allows no better, or only degenerate faces prevent a
+/// solution. Returns the last metric and the number of iterations.
 ///
 /// # Errors
-/// [`Error::CancelledEarly`] by the watch.
+/// [`Error::CancelledEarly`] if cancelled.
 pub(super) fn flatten(
     surface: &Surface<'_>,
     conformal: &Conformal,
@@ -149,7 +149,7 @@ pub(super) fn flatten(
     Ok((state, MOST_ITERATIONS))
 }
 
-/// Solves H d = −K; `None` where the Hessian is not positive definite with any shift.
+/// The solution d of H d = −K; `None` if the Hessian is not positive definite with any shift.
 fn direction(
     surface: &Surface<'_>,
     conformal: &Conformal,
@@ -186,7 +186,7 @@ pub(super) fn length_derivatives(
     parallel::map(edges.len(), |edge| conformal.length_derivatives(edge, edges.at_ends(edge, factors)))
 }
 
-/// What a face adds to the Hessian: the derivatives of minus its angles by the factors of its vertices.
+/// The Hessian of a face: the derivatives of minus its angles by the factors of its vertices.
 pub(super) fn hessian(
     surface: &Surface<'_>,
     by_factors: &[[f64; 2]],
@@ -206,8 +206,7 @@ pub(super) fn hessian(
     hessian
 }
 
-/// The matrix with a shifted diagonal, as [`Factor::refactor`] wants it: one unknown in the first of two
-/// rows.
+/// The matrix with a shifted diagonal in the form of [`Factor::refactor`]: each unknown in the first of two rows.
 fn padded(matrix: [[f64; 3]; 3], shift: f64) -> [[f64; 6]; 6] {
     let mut padded = [[0.0; 6]; 6];
     for row in 0..3 {
@@ -217,8 +216,8 @@ fn padded(matrix: [[f64; 3]; 3], shift: f64) -> [[f64; 6]; 6] {
     padded
 }
 
-/// Factors and metric at the end of the first of ever shorter steps that is not past the minimum along the
-/// direction, or has at most half of the slope there; `None` where rounding leaves no such step.
+/// Factors and metric after the longest of the halved steps that is not past the minimum along the direction, or past
+/// it with at most half the slope; `None` if rounding leaves no such step.
 fn step(
     surface: &Surface<'_>,
     conformal: &Conformal,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A hyperbolic metric where slivers keep the given edge lengths from having one.
+//! A hyperbolic metric in spite of slivers, which prevent an exactly conformal one.
 //!
 //! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close
-//! to π may end up breaking the triangle inequality. Packings of tangential circles always have one (W.
-//! Thurston), and never break it. So the inversive distances of edges at such faces are moved towards 1, the
-//! tangential value, until all is well: a third of the way at a time, at the faces themselves first, then
-//! around them, in the end everywhere. Conformality is given up only there.
+//! to π may end up violating the triangle inequality. Packings of tangential circles always have a solution (W.
+//! Thurston), and never violate it. So the inversive distances of edges at such faces are moved towards 1, the
+//! tangential value, until there is a solution: a third of the way at a time, at the faces themselves first,
+//! then around them, in the end everywhere. Conformality is given up only at these edges.
 //!
 //! Cost: a Newton solve from the last factors for each round, usually one or two.
 
@@ -15,36 +15,35 @@ use super::triangle::smallest;
 use crate::control::Watch;
 use crate::error::Error;
 
-/// How far edges are moved towards the tangential packing in one round.
+/// Part of the way to the tangential packing by which edges move in one round.
 const SHARE: f64 = 0.34;
 
-/// While there are degenerate faces, those with a smaller angle than this (in radians) are relaxed along with
-/// them.
+/// Angle, in radians, below which faces are relaxed along with degenerate ones.
 const THIN: f64 = 2e-3;
 
-/// From this round on the edges around the faces are relaxed too.
+/// Round from which on the edges of one ring around the faces are relaxed too.
 const NEIGHBORS_FROM: usize = 3;
 
-/// From this round on those of one more ring each round.
+/// Round from which on the rings grow by one each round.
 const RINGS_FROM: usize = 10;
 
-/// From this round on those of twice as many rings each round, until nothing is left to relax.
+/// Round from which on the rings double each round, until no edge is left to relax.
 const DOUBLED_FROM: usize = 20;
 
 /// A metric by inversive distances, some of them relaxed.
 pub(super) struct Relaxed {
     pub state: State,
-    /// Newton iterations in all.
+    /// The total of Newton iterations.
     pub iterations: usize,
-    /// How many edges were relaxed.
+    /// The number of relaxed edges.
     pub edges: usize,
 }
 
-/// Solves from `factors`, relaxing the edges of faces that come out degenerate, and before that those of
-/// `bad` faces.
+/// Solves from `factors`; relaxes the edges of `bad` faces first, then round by round those of faces that become
+/// degenerate. Returns the metric of the last round if none is a solution.
 ///
 /// # Errors
-/// [`Error::CancelledEarly`] by the watch. The metric of the last round is returned where none was found.
+/// [`Error::CancelledEarly`] if cancelled.
 pub(super) fn relaxed(
     surface: &Surface<'_>,
     packing: &Packing,
@@ -72,7 +71,7 @@ pub(super) fn relaxed(
     }
 }
 
-/// Faces that are degenerate or almost so; where there are none, those at the largest curvatures.
+/// The faces that are degenerate or almost so; if there are none, those at the largest curvatures.
 pub(super) fn bad_faces(surface: &Surface<'_>, state: &State) -> Vec<usize> {
     let all = 0..state.angles.len();
     let thin: Vec<usize> = all.clone().filter(|&face| smallest(&state.angles[face]) < THIN).collect();
@@ -85,7 +84,7 @@ pub(super) fn bad_faces(surface: &Surface<'_>, state: &State) -> Vec<usize> {
     all.filter(is_curved).collect()
 }
 
-/// How many rings around bad faces are relaxed.
+/// The rings around bad faces that are relaxed in a round.
 fn rings(round: usize) -> usize {
     match round {
         0..NEIGHBORS_FROM => 0,
@@ -95,7 +94,7 @@ fn rings(round: usize) -> usize {
     }
 }
 
-/// Raises the levels of the edges of all faces that are at most `rings` vertices away from the bad ones.
+/// Raises the levels of the edges of all faces within `rings` rings around the bad ones.
 fn raise(surface: &Surface<'_>, bad: &[usize], rings: usize, levels: &mut [f64]) {
     let mut is_chosen = vec![false; surface.faces.len()];
     bad.iter().for_each(|&face| is_chosen[face] = true);

@@ -4,21 +4,20 @@
 //!
 //! In each step:
 //!
-//! 1. edge lengths from the radii by the hyperbolic cosine law, angles from the lengths, curvatures K from
-//!    the angles;
+//! 1. edge lengths follow from the radii by the hyperbolic cosine law, angles from the lengths, curvatures K
+//!    from the angles;
 //! 2. every circle shrinks or grows: r ← r − ε K sinh r.
 //!
-//! That is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper
-//! fixes ε; here it grows slowly from step to step, and is halved where a step goes past the minimum along
-//! its direction, for a fixed one either wastes steps or diverges, depending on the worst vertex of the mesh.
+//! This is the descent u ← u − ε K of u = ln tanh(r/2) along the gradient K of a convex function. The paper
+//! fixes ε; a fixed ε either wastes steps or diverges, depending on the worst vertex of the mesh. So here it
+//! grows slowly from step to step, and is halved when a step goes past the minimum along its direction.
 //!
-//! The edge weights of the paper are angles φ at which circles meet. They are replaced by inversive
-//! distances, for which see [`edges`](super::edges): with angles, the metric would not depend on the
-//! surface's shape.
+//! The edge weights of the paper are the angles φ at which circles meet. Here they are inversive distances, see
+//! [`edges`](super::edges): with angles the metric would not depend on the surface's shape.
 //!
-//! The flow converges linearly and ends far from the precision that maps through the metric need for charts
-//! of the hyperbolic plane to close up around vertices. So its result is only where Newton's method starts;
-//! [`FlowRecord`] says how far it came by itself. Cost of a step: a pass over the faces.
+//! The flow converges linearly and ends far from the precision that charts of the hyperbolic plane need to close
+//! up around vertices. So Newton's method starts from its result; [`FlowRecord`] holds the result of the flow by
+//! itself. Cost of a step: a pass over the faces.
 
 use super::edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
 use super::newton::{State, Surface};
@@ -31,9 +30,9 @@ use crate::parallel;
 pub struct FlowOptions {
     /// ε > 0 of the first step.
     pub step: f64,
-    /// Steps at the most.
+    /// Most steps.
     pub most_steps: usize,
-    /// The flow ends when no curvature is larger than this.
+    /// Largest curvature at which the flow ends.
     pub tolerance: f64,
 }
 
@@ -43,25 +42,25 @@ impl Default for FlowOptions {
     }
 }
 
-/// How far the Ricci flow came.
+/// The result of the Ricci flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowRecord {
-    /// The largest curvature it left.
+    /// The largest curvature left.
     pub residual: f64,
     /// Steps done.
     pub steps: usize,
 }
 
-/// By how much ε grows after every step that was not too long.
+/// Factor by which ε grows after every step that was not too long.
 const GROWTH: f64 = 1.05;
 
-/// How often in a row ε is halved before rounding is taken for the reason.
+/// Most halvings of ε in a step; more would be needed only because of rounding.
 const MOST_TRIALS: usize = 50;
 
-/// Flows from the circles of a packing; returns u for the circles it ends with.
+/// Flows from the circles of a packing; returns the factors of the final circles.
 ///
 /// # Errors
-/// [`Error::CancelledEarly`] by the watch.
+/// [`Error::CancelledEarly`] if cancelled.
 pub(super) fn flow(
     surface: &Surface<'_>,
     packing: &Packing,
@@ -86,8 +85,7 @@ pub(super) fn flow(
     Ok((factors(&radii), record))
 }
 
-/// Radii and metric after a step, with ε halved until it does not go past the minimum; `None` where it always
-/// does.
+/// Radii and metric after a step, with ε halved until it does not go past the minimum; `None` if it always does.
 fn shorten(
     surface: &Surface<'_>,
     conformal: &Conformal,

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The angles of a hyperbolic triangle with given sides, and their derivatives.
 //!
-//! Half-angle formulas throughout: the cosine laws lose half of the digits where a triangle is small or thin.
-//! Sides that break the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended,
-//! angles are continuous functions of all sides, and the curvatures they add up to remain the gradient of a
-//! convex function (F. Luo, Rigidity of polyhedral surfaces III, Geometry & Topology 15, 2011).
+//! Half-angle formulas throughout: the cosine laws lose half of the digits of a small or thin triangle. Sides
+//! that violate the triangle inequality have the angles π, 0, 0 of a triangle without area; so extended, angles
+//! are continuous functions of all sides, and the curvatures that they add up to remain the gradient of a convex
+//! function (F. Luo, Rigidity of polyhedral surfaces III, Geometry & Topology 15, 2011).
 
 use std::f64::consts::PI;
 
 /// The angle opposite to each side.
 pub(super) fn angles([a, b, c]: [f64; 3]) -> [f64; 3] {
-    // how far each side is from being too long, halved
+    // half the excess of the two other sides over each side
     let slack = [0.5 * (b - a + c), 0.5 * (c - b + a), 0.5 * (a - c + b)];
     if let Some(longest) = (0..3).find(|&k| slack[k].is_nan() || slack[k] <= 0.0) {
         return std::array::from_fn(|k| if k == longest { PI } else { 0.0 });
@@ -18,11 +18,11 @@ pub(super) fn angles([a, b, c]: [f64; 3]) -> [f64; 3] {
     let half_perimeter = (0.5 * (a + b + c)).sinh();
     let [x, y, z] = slack.map(f64::sinh);
     let angle =
-        |own: f64, one: f64, other: f64| 2.0 * (one * other).sqrt().atan2((half_perimeter * own).sqrt());
+        |opposite: f64, b: f64, c: f64| 2.0 * (b * c).sqrt().atan2((half_perimeter * opposite).sqrt());
     [angle(x, y, z), angle(y, z, x), angle(z, x, y)]
 }
 
-/// Whether these are the angles of sides that form no triangle.
+/// Whether the angles are those of sides that form no triangle.
 pub(super) fn is_degenerate(angles: &[f64; 3]) -> bool {
     smallest(angles) == 0.0
 }
@@ -39,7 +39,7 @@ pub(super) fn angle_derivatives(sides: [f64; 3], angles: &[f64; 3]) -> [[f64; 3]
     }
     let sinh = sides.map(f64::sinh);
     let largest = (0..3).fold(0, |best, k| if angles[k] > angles[best] { k } else { best });
-    // the same for every angle, but the sine of one next to π has lost digits
+    // equal for every angle, but the sine of an angle next to π has lost digits
     let k = (largest + 1) % 3;
     let volume = sinh[(k + 1) % 3] * sinh[(k + 2) % 3] * angles[k].sin();
     let cosines = angles.map(f64::cos);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! An atlas of a hyperbolic surface: every face by itself in the Poincaré disk, and the isometries between
-//! neighbors.
+//! An atlas of a hyperbolic surface: every face in a chart of its own, the Poincaré disk, and the isometries
+//! between the charts of neighbors.
 //!
-//! No global coordinates: developed over many faces they leave double precision, charts of single faces never
-//! do. A point is a face and a place in its chart, and walks from chart to chart.
+//! There are no global coordinates: developed over many faces they exceed double precision, charts of single
+//! faces never do. A point is a face and a place in its chart; it walks from chart to chart.
 //!
 //! Input: the faces of a surface with the lengths and angles of a hyperbolic [`Metric`]. Cost: O(m).
 
@@ -17,13 +17,13 @@ use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// A point this far outside an edge still counts as inside.
+/// Largest distance outside an edge at which a point still counts as inside.
 const INSIDE: f64 = 1e-13;
-/// A point this far outside an edge of the boundary has left the surface.
+/// Distance outside a boundary edge beyond which a point has left the surface.
 const OUTSIDE: f64 = 1e-7;
-/// Steps of a walk after which it turns at random, for it may go in a circle.
+/// Steps after which a walk turns at random, as it may go in a circle.
 const CIRCLING: usize = 50;
-/// Steps after which a walk ends wherever it is.
+/// Most steps of a walk.
 const MOST_STEPS: usize = 100_000;
 
 /// Charts of all faces of a surface.
@@ -31,22 +31,22 @@ const MOST_STEPS: usize = 100_000;
 pub(crate) struct Atlas<'a> {
     /// (m, 3): the corners of each face in its chart, counterclockwise.
     pub charts: Vec<[Complex; 3]>,
-    /// (3 m,): from the chart of a corner's face to that of the face across the opposite edge; the identity
-    /// on the boundary.
+    /// (3 m,): the isometry from the chart of a corner's face to that of the face across the opposite edge; the
+    /// identity on the boundary.
     pub transitions: Vec<Moebius>,
     /// (m, 3): μ at the corners of each face.
     pub mu: Vec<[f64; 3]>,
     opposite: &'a [u32],
 }
 
-/// Where a walk has ended.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Walk {
     /// The face.
     pub face: Face,
     /// The point in its chart.
     pub x: Complex,
-    /// From the chart in which the walk began to this one.
+    /// The isometry from the chart in which the walk began to this one.
     pub motion: Moebius,
     /// Whether the point lies beyond the boundary.
     pub is_outside: bool,
@@ -93,14 +93,14 @@ impl<'a> Atlas<'a> {
         Walk { is_outside: true, ..walk }
     }
 
-    /// The same walk, one face farther.
+    /// The walk one face farther.
     fn across(&self, walk: &Walk, corner: usize) -> Walk {
         let transition = self.transitions[corner];
         let (face, x) = (Face::of_corner(self.opposite[corner]), transition.apply(walk.x));
         Walk { face, x, motion: transition * walk.motion, is_outside: false }
     }
 
-    /// How far `x` lies inside of the edges opposite to the corners of a face, nearly in its metric.
+    /// About the distances of `x` inside the edges opposite to the corners of a face, negative outside.
     fn heights(&self, face: Face, x: Complex) -> [f64; 3] {
         let corners = self.charts[face];
         std::array::from_fn(|k| {
@@ -111,16 +111,16 @@ impl<'a> Atlas<'a> {
 
     /// The point of a face with given barycentric coordinates on the flat face in space.
     ///
-    /// Neighboring faces agree on their edge, and for a metric by vertex scaling this is the projective map
-    /// that keeps circumcircles.
+    /// Neighboring faces agree on their edge. For a metric by vertex scaling this is the projective map that
+    /// preserves circumcircles.
     pub(crate) fn at(&self, face: Face, barycentric: [f64; 3]) -> Complex {
         let (corners, mu) = (self.charts[face], self.mu[face]);
         let weighted = |k: usize| to_hyperboloid(corners[k]) * (barycentric[k] * mu[k]);
         from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)))
     }
 
-    /// The barycentric coordinates on the flat face in space of a point in the chart of the face; not
-    /// negative, 1 in sum.
+    /// The barycentric coordinates, on the flat face in space, of a point in the chart of the face; nonnegative,
+    /// 1 in sum.
     pub(crate) fn barycentric(&self, face: Face, x: Complex) -> [f64; 3] {
         let [a, b, c] = self.charts[face].map(to_hyperboloid);
         let x = to_hyperboloid(x);
@@ -137,13 +137,13 @@ fn determinant(a: Vector3, b: Vector3, x: Vector3) -> f64 {
     x.dot((a - x).cross(b - x))
 }
 
-/// The ends of the edge opposite to a corner, in the order in which its face runs through it.
+/// The ends of the edge opposite to a corner, in the direction of its face.
 fn edge(charts: &[[Complex; 3]], corner: usize) -> [Complex; 2] {
     let (face, k) = (corner / 3, corner % 3);
     [charts[face][(k + 1) % 3], charts[face][(k + 2) % 3]]
 }
 
-/// A face in the Poincaré disk, its middle at the origin.
+/// A face in the Poincaré disk, with its middle at the origin.
 fn chart(lengths: [f64; 3], angles: [f64; 3]) -> [Complex; 3] {
     let corners = [
         Complex::new(0.0, 0.0),
@@ -155,7 +155,7 @@ fn chart(lengths: [f64; 3], angles: [f64; 3]) -> [Complex; 3] {
     corners.map(|corner| seen_from(middle, corner))
 }
 
-/// Marsaglia's xorshift: the same turns in every run.
+/// Marsaglia's xorshift, so that every run takes the same turns.
 #[derive(Debug, Clone)]
 pub(crate) struct Random(pub u64);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What proves that a map of sliced surfaces is a homeomorphism with the curves in place.
+//! The certificates that a map of sliced surfaces is a homeomorphism with the curves in place.
 //!
-//! Every face is positively oriented, the images' signed areas make up the whole surface, and both banks of a
-//! slit run through the same points in order: such a map is one-to-one and onto.
+//! If every face is positively oriented, the signed areas of the images sum to that of the surface, and both
+//! banks of a slit run through the same points in order, then the map is one-to-one and onto.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ pub struct Certificates {
     pub folded: Vec<usize>,
     /// The sum of the images' signed areas in the target's metric.
     pub area: f64,
-    /// What it must be: 2π(B − 2) for B features, of pieces without such a metric the area of their layout.
+    /// The value that `area` must have: 2π(B − 2) for B features; the area of the layout for a flat piece.
     pub expected_area: f64,
     /// The largest distance of a curve's image from its partner, in parts of the target's size.
     pub curve_error: f64,
@@ -28,24 +28,24 @@ pub struct Certificates {
     pub cocycle_error: f64,
     /// Vertices that rounding has put beyond the boundary.
     pub outside: usize,
-    /// The harmonic energy over that of the identity of the source: 1 for an isometry, above 2 for a strained map; NaN where
-    /// no piece has a hyperbolic metric.
+    /// The harmonic energy over that of the identity of the source: 1 for an isometry, above 2 for a strained map;
+    /// NaN if no piece has a hyperbolic metric.
     pub energy_ratio: f64,
-    /// The largest curvature that the metrics of source and target have left.
+    /// The largest curvature left in the metrics of source and target.
     pub curvature: [f64; 2],
 }
 
-/// The certificates of one piece, curves aside.
+/// The certificates of a piece, without those of the curves.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PieceCertificates {
-    /// Faces of the sliced source.
+    /// The folded faces of the sliced source.
     pub folded: Vec<usize>,
     pub area: f64,
     pub expected_area: f64,
     pub cocycle_error: f64,
     pub outside: usize,
     pub energy: f64,
-    /// E of the identity.
+    /// The energy of the identity.
     pub rest_energy: f64,
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn certify(map: &ChartMap<'_>, chi: i64) -> PieceCertificates {
     }
 }
 
-/// Faces of the sliced source with an image that is not positively oriented, ascending.
+/// The faces of the sliced source whose images are not positively oriented, ascending.
 pub(crate) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
     let is_folded = parallel::map(map.input.faces.len(), |face| {
         let [a, b, c] = image(map, &map.input, face);
@@ -83,14 +83,14 @@ pub(crate) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] 
     [x[0], to_second.apply(x[1]), to_last.inverse().apply(x[2])]
 }
 
-/// The area of a geodesic triangle, negative where it is clockwise.
+/// The area of a geodesic triangle, negative if it is clockwise.
 pub(crate) fn signed_area([a, b, c]: [Complex; 3]) -> f64 {
     let (p, q) = (seen_from(a, b), seen_from(a, c));
     let product = p.conj() * q;
     2.0 * product.im.atan2(1.0 - product.re)
 }
 
-/// How far the transitions around a face are from closing up.
+/// The deviation from the identity of the transitions around a face.
 fn cocycle(net: &Net, face: usize) -> f64 {
     let [from_second, from_third, from_first] = [0, 1, 2].map(|k| net.transitions[3 * face + k]);
     // 1 ← 2, 2 ← 0 and 0 ← 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A map between two atlases: where each vertex lies in which chart, its harmonic energy and the derivatives of that.
+//! A map into an atlas: the chart and the place of each vertex, the harmonic energy and its derivatives.
 
 use super::atlas::{Atlas, Walk};
 use super::delaunay::{Net, Weighted, delaunay};
@@ -10,40 +10,40 @@ use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Order};
 
-/// Below this distance d coth d and d / sinh d are taken from their series.
+/// Distance below which d coth d and d / sinh d are taken from their series.
 const SERIES: f64 = 1e-4;
 
 /// A map into the atlas of the target, by local charts.
 pub(crate) struct ChartMap<'a> {
-    /// The target.
+    /// The atlas of the target.
     pub atlas: &'a Atlas<'a>,
-    /// Where each vertex is.
+    /// The places of the vertices.
     pub places: Places,
     /// The faces of the source, with transitions between the charts of their vertices' places.
     pub input: Net,
-    /// The triangulation by which the energy is taken.
+    /// The triangulation whose edges carry the energy.
     pub intrinsic: Net,
-    /// (3 m,): the weight of the edge opposite to each corner of it.
+    /// (3 m,): the weight of the edge opposite to each corner of `intrinsic`.
     pub weights: Vec<f64>,
-    /// Its edges between different places that are not both held, each by one corner.
+    /// The edges of `intrinsic` between ends that are not both held, each by one corner.
     edges: Vec<u32>,
-    /// E of the identity of the source by the same edges.
+    /// The energy of the identity of the source on these edges.
     pub rest_energy: f64,
 }
 
-/// An edge seen from both ends.
+/// The pull of an edge at both ends.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pull {
     ends: [u32; 2],
     weight: f64,
     distance: f64,
-    /// The unit vectors at either end towards the other.
+    /// The unit vectors at each end towards the other.
     towards: [Complex; 2],
 }
 
 impl<'a> ChartMap<'a> {
-    /// Takes the energy of `places` by the Delaunay triangulation of the metric in which the source's edges
-    /// are `lengths` long, but for the faces that are `kept`.
+    /// The map with `places`, its energy taken on the Delaunay triangulation of the source, whose edges have these
+    /// `lengths`; faces that are `kept` stay in it.
     pub(crate) fn by_delaunay(
         atlas: &'a Atlas<'a>,
         places: Places,
@@ -59,7 +59,7 @@ impl<'a> ChartMap<'a> {
         map
     }
 
-    /// Whether the edge of a corner is counted, from this side: not where it lies between two vertices that are held.
+    /// Whether the edge of a corner counts, from this side; edges between two held vertices do not.
     fn counts(&self, corner: u32) -> bool {
         let across = self.intrinsic.opposite[corner as usize];
         let is_held = |vertex: u32| self.places.held[vertex as usize].is_some();
@@ -72,7 +72,7 @@ impl<'a> ChartMap<'a> {
         self.energy_at(&self.places.positions)
     }
 
-    /// E with every vertex elsewhere in its chart.
+    /// E with the vertices at other positions in their charts.
     pub(crate) fn energy_at(&self, positions: &[Complex]) -> f64 {
         parallel::sum(self.edges.len(), |edge| {
             let pull = self.pull(self.edges[edge], positions);
@@ -95,12 +95,12 @@ impl<'a> ChartMap<'a> {
         Pull { ends, weight: self.weights[corner], distance: 2.0 * size.atanh(), towards }
     }
 
-    /// All edges of the energy as they pull at their ends.
+    /// The pulls of all edges.
     pub(super) fn pulls(&self) -> Vec<Pull> {
         parallel::map(self.edges.len(), |edge| self.pull(self.edges[edge], &self.places.positions))
     }
 
-    /// (n,): the gradient of E in the orthonormal frame of each vertex; zero for those held.
+    /// (n,): the gradient of E in the orthonormal frame of each vertex; zero at held vertices.
     pub(super) fn gradient(&self, pulls: &[Pull]) -> Vec<Complex> {
         let mut gradient = vec![Complex::default(); self.places.positions.len()];
         for pull in pulls {
@@ -129,8 +129,8 @@ impl<'a> ChartMap<'a> {
         sums
     }
 
-    /// The pattern of the Hessian: two unknowns for each vertex that is not held, and one held vertex more
-    /// for edges to have three corners.
+    /// The pattern of the Hessian: two unknowns for each vertex that is not held, and an additional held vertex that
+    /// makes triangles of edges.
     pub(super) fn analysis(&self) -> Result<Analysis, Error> {
         let n = self.places.positions.len();
         let mut dofs: Vec<u8> =
@@ -153,30 +153,30 @@ impl<'a> ChartMap<'a> {
         let mut rhs = vec![0.0; analysis.n_unknowns()];
         let is_free = |vertex: usize| self.places.held[vertex].is_none();
         for vertex in (0..slopes.len()).filter(|&vertex| is_free(vertex)) {
-            let at = analysis.first_unknown(vertex);
-            (rhs[at], rhs[at + 1]) = (-slopes[vertex].re, -slopes[vertex].im);
+            let first = analysis.first_unknown(vertex);
+            (rhs[first], rhs[first + 1]) = (-slopes[vertex].re, -slopes[vertex].im);
         }
         factor.solve(analysis, &mut rhs);
         parallel::map(slopes.len(), |vertex| {
             if is_free(vertex) {
-                let at = analysis.first_unknown(vertex);
-                Complex::new(rhs[at], rhs[at + 1])
+                let first = analysis.first_unknown(vertex);
+                Complex::new(rhs[first], rhs[first + 1])
             } else {
                 Complex::default()
             }
         })
     }
 
-    /// The positions after a move of every vertex along its geodesic.
-    pub(crate) fn moved(&self, moves: &[Complex], part: f64) -> Vec<Complex> {
+    /// The positions after every vertex has moved along its geodesic, by `factor` times its move.
+    pub(crate) fn moved(&self, moves: &[Complex], factor: f64) -> Vec<Complex> {
         let (positions, held) = (&self.places.positions, &self.places.held);
         parallel::map(positions.len(), |vertex| match held[vertex] {
             Some(_) => positions[vertex],
-            None => exponential(positions[vertex], part * moves[vertex]),
+            None => exponential(positions[vertex], factor * moves[vertex]),
         })
     }
 
-    /// Takes new positions in the present charts, and goes over to the charts of the faces in which they lie.
+    /// Takes new positions in the present charts, and changes to the charts of the faces in which they lie.
     pub(crate) fn recharted(&mut self, positions: Vec<Complex>) {
         let (atlas, places) = (self.atlas, &self.places);
         let stays = |vertex: usize| Walk {
@@ -206,7 +206,7 @@ impl<'a> ChartMap<'a> {
     }
 }
 
-/// The Hessian of ½ w d² as the matrix of its two ends, with two rows for each.
+/// The Hessian of ½ w d², two rows for each end.
 pub(super) fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     let d = pull.distance;
     let (along, across) =
@@ -216,13 +216,12 @@ pub(super) fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     let mut matrix = [[0.0; 6]; 6];
     for row in 0..2 {
         for column in 0..2 {
-            let own =
+            let end =
                 |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
-            // towards each other along one geodesic: the vectors at the ends are opposite, and so are their
-            // normals
+            // the vectors at the ends point towards each other along a geodesic, so their normals are opposite too
             let both = pull.weight * (e[row] * f[column] + across * n[row] * o[column]);
-            matrix[row][column] = own(e, n);
-            matrix[2 + row][2 + column] = own(f, o);
+            matrix[row][column] = end(e, n);
+            matrix[2 + row][2 + column] = end(f, o);
             matrix[row][2 + column] = both;
             matrix[2 + column][row] = both;
         }
@@ -233,7 +232,7 @@ pub(super) fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     matrix
 }
 
-/// Both ends are the same vertex.
+/// The Hessian of an edge from a vertex to itself.
 fn loop_hessian(matrix: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
     let mut sum = [[0.0; 6]; 6];
     for row in 0..4 {

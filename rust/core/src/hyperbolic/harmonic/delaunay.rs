@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The intrinsic Delaunay triangulation of a hyperbolic surface, whose cotangent weights are not negative.
+//! The intrinsic Delaunay triangulation of a hyperbolic surface, whose cotangent weights are nonnegative.
 //!
-//! Edges are flipped within the metric; vertices and metric stay (Bobenko & Springborn 2007). Whether an edge
-//! is locally Delaunay is seen from the Euclidean triangles of its chords 2 sinh(l/2), which have the same
-//! circumcircles, and their cotangents are the weights of the harmonic energy.
+//! Edges are flipped within the metric; vertices and metric stay (Bobenko & Springborn 2007). The Euclidean
+//! triangles of the chords 2 sinh(l/2), which have the same circumcircles, decide whether an edge is locally
+//! Delaunay, and their cotangents are the weights of the harmonic energy.
 //!
-//! Edges can have the same ends or go from a vertex to itself, so everything is kept by half-edge. Edges that
-//! would join two vertices of the boundary are not made: they would lie in it after the map.
+//! Edges can share both ends or go from a vertex to itself, so all data are stored by half-edge. No flip makes an
+//! edge between two boundary vertices: the map would put it into the boundary.
 //!
 //! Cost: O(m) flips in practice.
 
@@ -14,28 +14,29 @@ use crate::hyperbolic::moebius::Moebius;
 use crate::hyperbolic::slice::Opened;
 use crate::mesh::NO_CORNER;
 
-/// An edge is flipped where its cotangents sum to less than minus this.
+/// An edge is flipped if its cotangents sum to less than minus this.
 const CONVEX: f64 = 1e-9;
-/// Quadrilaterals with an angle nearer to π than this are not flipped.
+/// Least distance to π of the angles of a quadrilateral that is flipped.
 const STRAIGHT: f64 = 1e-12;
-/// Weights are at least this, those of edges that may not be flipped this.
+/// Least weight of an edge.
 const LEAST_WEIGHT: f64 = 1e-4;
+/// Least weight of an edge that may not be flipped.
 const LEAST_KEPT: f64 = 1e-2;
-/// The square of the least height of a triangle of chords, in parts of its longest edge.
+/// Area of a triangle of chords that has none, relative to the square of its longest edge.
 const LEAST_AREA: f64 = 1e-3;
 
 /// A triangulation by half-edges: corner 3 f + k stands for the edge opposite to vertex k of face f.
 #[derive(Debug, Clone)]
 pub(crate) struct Net {
-    /// (m, 3).
+    /// (m, 3): the vertices of the faces.
     pub faces: Vec<[u32; 3]>,
-    /// (3 m,).
+    /// (3 m,): the opposite corners.
     pub opposite: Vec<u32>,
-    /// (3 m,): from the chart of an edge's head to that of its tail, where the face runs from tail to head.
+    /// (3 m,): the isometry from the chart of an edge's head to that of its tail; its face runs from tail to head.
     pub transitions: Vec<Moebius>,
 }
 
-/// A triangulation with one weight and one length for each corner's edge, the same from both sides.
+/// A triangulation with the weight and the length of each corner's edge, equal on both sides.
 pub(crate) struct Weighted {
     pub net: Net,
     pub weights: Vec<f64>,
@@ -48,21 +49,21 @@ impl Net {
         Self { faces: surface.faces.clone(), opposite: surface.opposite.clone(), transitions }
     }
 
-    /// The vertices between which the edge of a corner runs.
+    /// The tail and the head of the edge of a corner.
     pub(crate) fn ends(&self, corner: usize) -> [u32; 2] {
         let face = self.faces[corner / 3];
         [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v)
     }
 }
 
-/// Flips the edges of a net to the Delaunay triangulation of the metric in which they are `lengths` long;
-/// returns it with one weight for each corner's edge, the same from both sides.
+/// Flips the edges of a net, of the given `lengths`, to the Delaunay triangulation of their metric; returns it with
+/// weights and lengths.
 ///
-/// Faces that are `kept` stay as they are: the weights of their edges are raised where they are not positive.
+/// Faces that are `kept` stay: weights of their edges that are not positive are raised.
 pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Weighted {
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
-    // 1. Flip until no edge is left that should be
+    // 1. Flips until every edge is Delaunay
     let mut queue: Vec<u32> =
         (0..lengths.len() as u32).rev().filter(|&c| c < net.opposite[c as usize]).collect();
     let mut is_queued = vec![false; lengths.len()];
@@ -116,8 +117,7 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
     let across = across as usize;
     let is_on_boundary = |corner: usize| is_boundary[net.faces[corner / 3][corner % 3] as usize];
     let (ours, theirs) = (chords(lengths, corner), chords(lengths, across));
-    // cosines of the angles opposite to the edge, up to the same factor as their cotangents have in
-    // Delaunay's condition
+    // the cosines of the opposite angles, doubled; their sum has the sign of that of the cotangents
     let cosine = |[e, a, b]: [f64; 3]| (a * a + b * b - e * e) / (a * b);
     if cosine(ours) + cosine(theirs) >= -CONVEX || is_on_boundary(corner) && is_on_boundary(across) {
         return false;
@@ -134,7 +134,7 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
 fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
     let next = |corner: usize| corner - corner % 3 + (corner + 1) % 3;
     let across = net.opposite[corner] as usize;
-    // edges j → p and p → i of the one face, i → q and q → j of the other
+    // edges j → p and p → i of the first face, i → q and q → j of the second
     let (jp, pi) = (next(corner), next(next(corner)));
     let (iq, qj) = (next(across), next(next(across)));
     let [p, q] = [corner, across].map(|corner| net.faces[corner / 3][corner % 3]);
@@ -146,9 +146,9 @@ fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
     net.faces[f] = [p, i, q];
     net.faces[g] = [q, j, p];
     let places = [3 * f, 3 * f + 2, 3 * g, 3 * g + 2];
-    // an edge that two of the four share is glued to itself and has to follow its partner
+    // two of the four edges may be glued to each other; then each has to follow its partner
     let moved = |old: u32| match [iq, pi, jp, qj].iter().position(|&c| c as u32 == old) {
-        Some(at) => places[at] as u32,
+        Some(k) => places[k] as u32,
         None => old,
     };
     for (&place, (opposite, length, transition)) in places.iter().zip(kept) {
@@ -159,7 +159,7 @@ fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
         lengths[place] = length;
         net.transitions[place] = transition;
     }
-    // the new edge: q → p in the one face, p → q in the other
+    // the new edge: q → p in the first face, p → q in the second
     let (ours, theirs) = (3 * f + 1, 3 * g + 1);
     (net.opposite[ours], net.opposite[theirs]) = (theirs as u32, ours as u32);
     (lengths[ours], lengths[theirs]) = (length, length);
@@ -168,13 +168,13 @@ fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
     places.map(|place| place as u32)
 }
 
-/// The lengths of an edge, and of the edges of its face after it.
+/// The lengths of an edge and of the two edges after it in its face.
 fn sides(lengths: &[f64], corner: usize) -> [f64; 3] {
     let first = corner - corner % 3;
     [0, 1, 2].map(|step| lengths[first + (corner + step) % 3])
 }
 
-/// The chords of an edge and of the edges of its face after it.
+/// The chords of an edge and of the two edges after it in its face.
 fn chords(lengths: &[f64], corner: usize) -> [f64; 3] {
     sides(lengths, corner).map(|length| 2.0 * (0.5 * length).sinh())
 }
@@ -193,8 +193,7 @@ fn angle(a: f64, b: f64, c: f64) -> f64 {
     2.0 * near.sqrt().atan2(far.sqrt())
 }
 
-/// The length of the other diagonal of the two faces at an edge, from the angle between two sides at its
-/// tail.
+/// The length of the other diagonal of the two faces at an edge, from the angle between two sides at its tail.
 fn diagonal(lengths: &[f64], corner: usize, across: usize) -> f64 {
     let [_, _, pi] = sides(lengths, corner);
     let [_, iq, _] = sides(lengths, across);

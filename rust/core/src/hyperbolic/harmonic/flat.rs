@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Pieces with one or two features, which have no hyperbolic metric: the disk and the cylinder.
+//! Flat maps of pieces with one or two features, which have no hyperbolic metric: disks and cylinders.
 //!
-//! Both surfaces are laid out on the same flat domain by weighted means, the features by their parameters on
-//! its straight or round boundary, and put on top of each other. One feature is laid on a circle; two on the
-//! ends of a cylinder of circumference 1, on which the arc between them says how often the map winds around.
+//! Both surfaces are laid out on one flat domain by weighted means, the features by their parameters on its
+//! straight or round boundary, and laid over each other. One feature lies on a circle; two lie on the ends of a
+//! cylinder of circumference 1, where the arc between them determines how often the map winds around.
 //!
-//! Without folds and with boundaries in order such layouts are one-to-one; their area says no more than that.
+//! Without folds and with boundaries in order such layouts are one-to-one.
 //!
-//! Cost: one sparse Cholesky factorization for either surface and a point location for each vertex.
+//! Cost: a sparse Cholesky factorization for each surface and a point location for each vertex.
 
 use crate::mesh::NO_CORNER;
 use std::f64::consts::PI;
@@ -23,22 +23,22 @@ use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
 use crate::vector::Vector3;
 
-/// How many times a layout of a cylinder may wind around it beyond its own period.
+/// Most times that a layout may wind around the cylinder beyond its period.
 const WINDINGS: i32 = 8;
-/// A point located this far from where it is was not found.
-const FOUND: f64 = 1e-9;
+/// Largest distance between a point and its location's point.
+const LOCATED: f64 = 1e-9;
 
 /// A map of a piece.
 pub(crate) struct FlatMap {
-    /// For each vertex of the sliced source a place in the sliced target.
+    /// The location in the sliced target of each vertex of the sliced source.
     pub locations: Vec<Location>,
-    /// For each vertex of the sliced target a place in the sliced source.
+    /// The location in the sliced source of each vertex of the sliced target.
     pub inverse: Vec<Location>,
-    /// What proves it.
+    /// The proof that the map is one-to-one.
     pub certificates: PieceCertificates,
 }
 
-/// One surface on the flat domain.
+/// A surface laid out on the flat domain.
 struct Laid<'a> {
     sliced: &'a Sliced,
     layout: Vec<Planar>,
@@ -47,10 +47,10 @@ struct Laid<'a> {
 /// Maps a piece with one or two features.
 ///
 /// # Errors
-/// [`NumericsError::NoEmbedding`], with faces of the pieces, where a layout folds in double precision;
+/// [`NumericsError::NoEmbedding`], with faces of the pieces, if a layout folds in double precision;
 /// [`Error::CancelledEarly`].
 pub(crate) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> Result<FlatMap, Error> {
-    // 1. Both surfaces on the same domain
+    // 1. The layouts of both surfaces
     let is_cylinder = source.sides.len() > 2;
     let theirs = if is_cylinder {
         on_cylinder(target, watch)
@@ -65,7 +65,7 @@ pub(crate) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> R
     };
     let ours = ours.map_err(|error| error.of_surface(Side::Source))?;
     let [ours, theirs] = [(source, ours), (target, theirs)].map(|(sliced, layout)| Laid { sliced, layout });
-    // 2. Where the vertices of each are on the other
+    // 2. The locations of the vertices of each surface on the other
     let locations = ours.places_on(&theirs, watch)?;
     let inverse = theirs.places_on(&ours, watch)?;
     // 3. Figures
@@ -77,15 +77,15 @@ pub(crate) fn flat_map(source: &Sliced, target: &Sliced, watch: &Watch<'_>) -> R
 }
 
 impl Laid<'_> {
-    /// For each vertex of the surface its place on another.
-    fn places_on(&self, other: &Self, watch: &Watch<'_>) -> Result<Vec<Location>, Error> {
-        let mut copies = located(other.sliced, &other.layout, &self.layout, watch)?;
-        let corners = other.sliced.disk.boundary_corners();
-        let sides = self.sliced.sides.iter().zip(&other.sliced.sides);
+    /// The location on `target` of each vertex of the surface.
+    fn places_on(&self, target: &Self, watch: &Watch<'_>) -> Result<Vec<Location>, Error> {
+        let mut copies = located(target.sliced, &target.layout, &self.layout, watch)?;
+        let corners = target.sliced.disk.boundary_corners();
+        let sides = self.sliced.sides.iter().zip(&target.sliced.sides);
         for (side, theirs) in sides.filter(|(side, _)| !side.is_arc) {
             for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
-                let (at, t) = segment(&theirs.parameters, s);
-                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[at] as usize], t);
+                let (first, t) = segment(&theirs.parameters, s);
+                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[first] as usize], t);
             }
         }
         let mut locations = vec![Location::default(); self.sliced.surface.vertex_of.len()];
@@ -108,16 +108,16 @@ impl Laid<'_> {
     fn outline_area(&self) -> f64 {
         let disk = &self.sliced.disk;
         let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NO_CORNER);
-        let part = |corner: usize| {
+        let triangle = |corner: usize| {
             let face = disk.faces[corner / 3];
             let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3] as usize]);
             0.5 * (a[0] * b[1] - a[1] * b[0])
         };
-        corners.map(part).sum()
+        corners.map(triangle).sum()
     }
 }
 
-/// The boundary by its parameters on the unit circle.
+/// The boundary laid on the unit circle by its parameters.
 fn on_circle(sliced: &Sliced) -> Vec<Option<Planar>> {
     held(sliced, |side, s| {
         let (sine, cosine) = (PI * if side == 0 { s } else { 2.0 - s }).sin_cos();
@@ -125,49 +125,49 @@ fn on_circle(sliced: &Sliced) -> Vec<Option<Planar>> {
     })
 }
 
-/// The boundary by its parameters on the polygon of the target's layout.
+/// The boundary laid on the polygon of the target's layout by its parameters.
 fn on_polygon(source: &Sliced, target: &Sliced, layout: &[Planar]) -> Vec<Option<Planar>> {
     held(source, |side, s| {
-        let other = &target.sides[side];
-        let (at, t) = segment(&other.parameters, s);
-        let [from, to] = [at, at + 1].map(|at| layout[other.vertices[at] as usize]);
+        let theirs = &target.sides[side];
+        let (first, t) = segment(&theirs.parameters, s);
+        let [from, to] = [first, first + 1].map(|k| layout[theirs.vertices[k] as usize]);
         [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis])
     })
 }
 
 fn held(sliced: &Sliced, place: impl Fn(usize, f64) -> Planar) -> Vec<Option<Planar>> {
     let mut held = vec![None; sliced.disk.vertex_of.len()];
-    for (at, side) in sliced.sides.iter().enumerate() {
+    for (number, side) in sliced.sides.iter().enumerate() {
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
-            held[vertex as usize] = Some(place(at, s));
+            held[vertex as usize] = Some(place(number, s));
         }
     }
     held
 }
 
-/// The disk's vertices on the strip −½ ≤ x ≤ ½, 0 ≤ y ≤ 1, the arc at x = ±½ free to bend.
+/// The disk's vertices laid on the strip −½ ≤ x ≤ ½, 0 ≤ y ≤ 1, with the arc near x = ±½ free to bend.
 fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error> {
     let (disk, surface) = (&sliced.disk, &sliced.surface);
-    // 1. Where the ends are: the sides are bank, arc and bank on the right half of the strip, and the same on
-    //    the left half
+    // 1. The ends of the cylinder: the sides are bank, arc and bank on the right half of the strip, then on the
+    //    left half
     let x = |side: usize, s: f64| 0.5 * if side < 3 { s } else { -s };
     let y = |side: usize| if side == 0 || side == 5 { 0.0 } else { 1.0 };
     let mut place = vec![None; surface.vertex_of.len()];
     let mut shift = vec![0.0; disk.vertex_of.len()];
     let surface_vertex: Vec<usize> = sliced.surface_vertices().iter().map(|&v| v as usize).collect();
-    for (at, side) in sliced.sides.iter().enumerate() {
+    for (number, side) in sliced.sides.iter().enumerate() {
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
-            match (side.is_arc, at) {
+            match (side.is_arc, number) {
                 (true, 1) => {}
-                // the copies on the left of the strip are one period away from those that stand for them
+                // the copies on the left of the strip are one period away from those on the right
                 (true, _) => shift[vertex as usize] = -1.0,
-                (false, 0 | 5) => place[surface_vertex[vertex as usize]] = Some([x(at, s), y(at)]),
-                // run through from the arc on: the second feature starts where the first ends
-                (false, _) => place[surface_vertex[vertex as usize]] = Some([x(at, 1.0 - s), y(at)]),
+                (false, 0 | 5) => place[surface_vertex[vertex as usize]] = Some([x(number, s), y(number)]),
+                // parameters from the arc on: the second feature starts where the first ends
+                (false, _) => place[surface_vertex[vertex as usize]] = Some([x(number, 1.0 - s), y(number)]),
             }
         }
     }
-    // the tips of the arc belong to both halves: they stand at ½
+    // the tips of the arc belong to both halves and lie at ½
     for &tip in [&sliced.sides[1].vertices[0], sliced.sides[1].vertices.last().expect("an arc has vertices")]
     {
         let place = &mut place[surface_vertex[tip as usize]];
@@ -201,7 +201,7 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
     }
 }
 
-/// Where points are among the target's faces as laid out; on a cylinder up to whole turns.
+/// The locations of points among the target's faces as laid out; on a cylinder up to whole turns.
 fn located(
     target: &Sliced,
     layout: &[Planar],
@@ -214,22 +214,23 @@ fn located(
     if target.sides.len() <= 2 {
         return Ok(locations);
     }
-    let miss = |found: &Location, [x, y]: Planar| {
-        let corners = target.disk.faces[found.triangle].map(|vertex| layout[vertex as usize]);
-        let at = |axis: usize| (0..3).map(|k| found.barycentric[k] * corners[k][axis]).sum::<f64>();
-        (at(0) - x).hypot(at(1) - y)
+    let miss = |location: &Location, [x, y]: Planar| {
+        let corners = target.disk.faces[location.triangle].map(|vertex| layout[vertex as usize]);
+        let coordinate =
+            |axis: usize| (0..3).map(|k| location.barycentric[k] * corners[k][axis]).sum::<f64>();
+        (coordinate(0) - x).hypot(coordinate(1) - y)
     };
-    for (point, found) in points.iter().zip(&mut locations) {
-        let mut best = miss(found, *point);
+    for (point, location) in points.iter().zip(&mut locations) {
+        let mut best = miss(location, *point);
         let turns = (1..=WINDINGS).flat_map(|turn| [turn, -turn]);
         for turn in turns {
-            if best < FOUND {
+            if best < LOCATED {
                 break;
             }
             let moved = [point[0] + f64::from(turn), point[1]];
-            let other = locator.locate(Vector3([moved[0], moved[1], 1.0]));
-            if miss(&other, moved) < best {
-                (best, *found) = (miss(&other, moved), other);
+            let candidate = locator.locate(Vector3([moved[0], moved[1], 1.0]));
+            if miss(&candidate, moved) < best {
+                (best, *location) = (miss(&candidate, moved), candidate);
             }
         }
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The nonlinear heat diffusion of Shi et al. (2013), algorithm 4: the explicit flow down the harmonic
+//! The nonlinear heat diffusion of Shi et al. (2013), algorithm 4: the explicit gradient flow of the harmonic
 //! energy.
 //!
 //! Every image moves along the geodesic of minus its gradient over its area, all by the longest time step
-//! that is stable on the whole surface. The energy falls with every step. It takes thousands of steps for
-//! what [`newton`](super::newton::newton) does in four, and is there for comparison.
+//! that is stable on the whole surface. The energy falls with every step. The diffusion takes thousands of steps
+//! where [`newton`](super::newton::newton) takes four; it is there for comparison.
 //!
 //! Cost: one pass over the edges per step.
 
@@ -14,10 +14,10 @@ use crate::control::{Observer, Status};
 use crate::hyperbolic::moebius::Complex;
 use crate::parallel;
 
-/// The part of the longest stable time step that is taken.
+/// Time step relative to the longest stable one.
 const CAUTION: f64 = 0.9;
-/// Steps between two questions whether to go on.
-const BETWEEN_QUESTIONS: usize = 10;
+/// Steps between two checks for cancellation.
+const BETWEEN_CHECKS: usize = 10;
 
 /// Lowers E in place for at most `max_steps` steps, until the largest component of the gradient is below
 /// `tolerance`.
@@ -40,7 +40,7 @@ pub(crate) fn diffuse(
         let slopes = map.gradient_now();
         let gradient = slopes.iter().fold(0.0, |most: f64, g| most.max(g.re.abs()).max(g.im.abs()));
         let fraction = step as f64 / max_steps.max(1) as f64;
-        let is_asked = step % BETWEEN_QUESTIONS == 0;
+        let is_asked = step % BETWEEN_CHECKS == 0;
         let status = match () {
             () if gradient <= tolerance => Status::Converged,
             () if step == max_steps => Status::MaxIterations,

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The initial map: both disks laid out on one polygon and put on top of each other.
+//! The initial map: both disks laid out on one polygon and laid over each other.
 //!
 //! It takes the place of the paper's harmonic maps between hexagons (section 4, step 4), is one-to-one by the
-//! same theorem, and need not know any coordinates of the universal cover. Both banks of a feature are run
-//! through by the same parameter, so that they agree.
+//! same theorem, and needs no coordinates of the universal cover. Both banks of a feature are laid out by the
+//! same parameter, so that they agree.
 //!
-//! From it comes all that the harmonic map needs to know about its homotopy class: a place on the target for
-//! each vertex, and for each edge the isometry between the charts of its ends, along a path of faces that
-//! lies below the edge.
+//! The initial map determines the homotopy class of the harmonic map by a place on the target for each vertex, and
+//! for each edge the isometry between the charts of its ends, along a path of faces that the edge crosses.
 //!
 //! Cost: two sparse Cholesky factorizations, a point location for each vertex and a short walk for each edge.
 
@@ -30,24 +29,24 @@ use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
 use crate::parallel;
 
-/// Walks give up after this many faces and search.
+/// Most faces of a walk, after which a search takes over.
 const MOST_STEPS: usize = 10_000;
 
-/// The source's vertices on the target.
+/// The places of the source's vertices on the target.
 #[derive(Debug, Clone)]
 pub(crate) struct Places {
-    /// (n,): the face of the sliced target in whose chart each vertex of the sliced source is.
+    /// (n,): the face of the sliced target in which each vertex of the sliced source lies.
     pub faces: Vec<Face>,
-    /// (n,): where in that chart.
+    /// (n,): the position in that face's chart.
     pub positions: Vec<Complex>,
-    /// (n,): for the vertices of the boundary, which stay, the barycentric coordinates in that face.
+    /// (n,): the barycentric coordinates in that face for vertices of the boundary, which stay.
     pub held: Vec<Option<[f64; 3]>>,
 }
 
 /// The initial map between two surfaces sliced alike, with the transitions of the source's edges.
 ///
 /// # Errors
-/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding), with faces of the pieces, where a disk has no
+/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding), with faces of the pieces, if a disk has no
 /// planar layout in double precision; [`Error::CancelledEarly`].
 pub(crate) fn initial_map(
     source: &Sliced,
@@ -55,15 +54,15 @@ pub(crate) fn initial_map(
     atlas: &Atlas<'_>,
     watch: &Watch<'_>,
 ) -> Result<(Places, Net), Error> {
-    // 1. Both disks on the same polygon
+    // 1. The layouts of both disks on one polygon
     let of = |side| move |error: Error| error.of_surface(side);
     let layouts = [
         layout_on_polygon(source, watch).map_err(of(Side::Source))?,
         layout_on_polygon(target, watch).map_err(of(Side::Target))?,
     ];
-    // 2. Where each vertex of the source's disk is on the target
+    // 2. The location on the target of each vertex of the source's disk
     let copies = places_of_copies(source, target, &layouts, watch)?;
-    // 3. One of the copies of each vertex stands for it
+    // 3. One copy of each vertex as its master
     let links = Links::new(source, target, atlas, &copies);
     let places = links.places(&copies, atlas);
     // 4. The isometries between the charts of neighbors
@@ -71,7 +70,7 @@ pub(crate) fn initial_map(
     Ok((places, Net::new(&source.surface, transitions)))
 }
 
-/// A Tutte layout with one side of the cut on each side of a regular polygon.
+/// A Tutte layout with one side of the disk on each side of a regular polygon.
 fn layout_on_polygon(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error> {
     let n_sides = sliced.sides.len();
     let corner = |side: usize| {
@@ -79,9 +78,9 @@ fn layout_on_polygon(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, 
         [cosine, sine]
     };
     let mut held = vec![None; sliced.disk.vertex_of.len()];
-    for (at, side) in sliced.sides.iter().enumerate() {
-        let (from, to) = (corner(at), corner((at + 1) % n_sides));
-        let backwards = at >= n_sides / 2;
+    for (number, side) in sliced.sides.iter().enumerate() {
+        let (from, to) = (corner(number), corner((number + 1) % n_sides));
+        let backwards = number >= n_sides / 2;
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
             let t = if backwards { 1.0 - s } else { s };
             held[vertex as usize] = Some([0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]));
@@ -90,7 +89,7 @@ fn layout_on_polygon(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, 
     planar_layout(sliced, &held, watch)
 }
 
-/// The place of each vertex of the source's disk in the target's.
+/// The location in the target's disk of each vertex of the source's.
 fn places_of_copies(
     source: &Sliced,
     target: &Sliced,
@@ -103,41 +102,41 @@ fn places_of_copies(
     let mut copies = locator.locate_all(&ours, watch).ok_or(Error::CancelledEarly)?;
 
     let corners = target.disk.boundary_corners();
-    // arcs last: where a bank ends in an arc, the faces along the arc are those that its two sides share
+    // arcs last: at the end of a bank the faces along the arc are those that the arc's two sides share
     for is_arc in [false, true] {
         for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| side.is_arc == is_arc)
         {
             for (&vertex, &s) in ours.vertices.iter().zip(&ours.parameters) {
-                let (at, t) = segment(&theirs.parameters, s);
-                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[at] as usize], t);
+                let (first, t) = segment(&theirs.parameters, s);
+                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[first] as usize], t);
             }
         }
     }
     Ok(copies)
 }
 
-/// The segment of ascending or descending parameters in which `s` lies, and where in it; of two the one of
-/// lower parameters, whichever way they run.
+/// The segment of ascending or descending parameters in which `s` lies, and the parameter in it; of two segments the
+/// one of lower parameters.
 pub(crate) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
     let n = parameters.len();
     let ascends = parameters[n - 1] > parameters[0];
     let last = n - 2;
-    let at = if ascends {
+    let first = if ascends {
         parameters.partition_point(|&p| p < s).clamp(1, last + 1) - 1
     } else {
         parameters.partition_point(|&p| p >= s).clamp(1, last + 1) - 1
     };
-    let (from, to) = (parameters[at], parameters[at + 1]);
-    (at, ((s - from) / (to - from)).clamp(0.0, 1.0))
+    let (from, to) = (parameters[first], parameters[first + 1]);
+    (first, ((s - from) / (to - from)).clamp(0.0, 1.0))
 }
 
-/// Which copy stands for each vertex, and how the charts of the others lead to its chart.
+/// The master copy of each vertex, and the isometries to its chart from those of the other copies.
 struct Links {
-    /// (n,): the vertex of the disk that stands for each vertex of the sliced source.
+    /// (n,): the master of each vertex of the sliced source, a vertex of the disk.
     masters: Vec<u32>,
-    /// For each vertex of the disk the isometry from its chart to its master's.
+    /// The isometry from the chart of each vertex of the disk to its master's.
     to_master: Vec<Moebius>,
-    /// For each vertex of the disk the vertex of the sliced source.
+    /// (n,): whether each vertex of the sliced source lies on the boundary.
     is_boundary: Vec<bool>,
 }
 
@@ -146,7 +145,7 @@ impl Links {
         let n = source.surface.vertex_of.len();
         let surface_vertex = source.surface_vertices();
         let mut masters = vec![u32::MAX; n];
-        // on the left sides first, which come before the others
+        // copies on the left sides, which come first, before the others
         let left = source.sides.iter().flat_map(|side| side.vertices.iter().copied());
         for copy in left.chain(0..copies.len() as u32) {
             let master = &mut masters[surface_vertex[copy as usize] as usize];
@@ -179,8 +178,7 @@ impl Links {
         }
     }
 
-    /// For each corner of the sliced source the isometry from the chart of its edge's head to that of its
-    /// tail.
+    /// The isometry from the chart of the head to that of the tail, for the edge of each corner of the sliced source.
     fn transitions(
         &self,
         source: &Sliced,
@@ -196,7 +194,7 @@ impl Links {
             let there = walk(&target.disk, layout, atlas, copies[tail].triangle, copies[head].triangle);
             self.to_master[tail] * there.inverse() * self.to_master[head].inverse()
         };
-        // from both sides by the same path
+        // one path for both sides
         let by_first = parallel::map(opposite.len(), |corner| {
             if opposite[corner] as usize > corner { along(corner) } else { Moebius::default() }
         });
@@ -246,7 +244,7 @@ fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {
     orient2d(from, to, point) < 0.0
 }
 
-/// The isometry from the chart of one face to that of another that is near, along the shortest path of faces.
+/// The isometry from the chart of one face to that of a face near it, along the shortest path of faces.
 fn path(opposite: &[u32], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
     let mut motions = HashMap::from([(from, Moebius::default())]);
     let mut queue = VecDeque::from([from]);

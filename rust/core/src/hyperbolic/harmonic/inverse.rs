@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The way back: where on the source each vertex of the target is.
+//! The inverse of a harmonic map: the location on the source of each vertex of the target.
 //!
-//! The image of a face of the source is a geodesic triangle. In the chart of one of its corners it is spread
-//! over the faces of the target that it covers, and the vertices found in it lie in that face, at the
-//! coordinates of the flat triangle that its corners span on the hyperboloid. Those on the boundary are found
-//! by their parameters, as on the way there.
+//! The image of a face of the source is a geodesic triangle. In the chart of one of its corners the faces of the
+//! target that it covers are unfolded, and their vertices inside the triangle lie in that face, at the coordinates
+//! in the flat triangle that its corners span on the hyperboloid. Vertices on the boundary are located by their
+//! parameters, as in the map itself.
 //!
 //! Cost: some ten faces of the target for every face of the source.
 
@@ -19,23 +19,23 @@ use crate::mesh::NO_CORNER;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// A vertex this far outside of an edge, in barycentric coordinates, may still belong to a face.
+/// Largest distance outside an edge, in barycentric coordinates, of a vertex that may still belong to a face.
 const NEAR: f64 = 1e-9;
-/// Faces of the target that one face of the source may cover.
+/// Most faces of the target that one face of the source may cover.
 const MOST_COVERED: usize = 1_000_000;
 
-/// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost it.
+/// The location in the sliced source of each vertex of the sliced target; `None` if rounding has lost it.
 pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> Vec<Option<Location>> {
-    let mut found = vec![None; target.surface.vertex_of.len()];
-    // 1. Inside: what each face of the source covers; of several the one in which a vertex lies deepest
+    let mut locations = vec![None; target.surface.vertex_of.len()];
+    // 1. Inside: the vertices that each face of the source covers; of several faces that in which one lies deepest
     let covered = parallel::map(map.input.faces.len(), |face| covered(map, target, face));
-    let mut depth = vec![-NEAR; found.len()];
+    let mut depth = vec![-NEAR; locations.len()];
     for (face, vertices) in covered.iter().enumerate() {
         for &(vertex, barycentric) in vertices {
             let inside = barycentric.iter().copied().fold(1.0, f64::min);
             if inside > depth[vertex as usize] {
                 depth[vertex as usize] = inside;
-                found[vertex as usize] = Some(settled(Face::new(face), barycentric));
+                locations[vertex as usize] = Some(settled(Face::new(face), barycentric));
             }
         }
     }
@@ -44,12 +44,12 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
     let surface_vertex = target.surface_vertices();
     for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| !side.is_arc) {
         for (&vertex, &s) in theirs.vertices.iter().zip(&theirs.parameters) {
-            let (at, t) = segment(&ours.parameters, s);
-            let corner = corners[ours.vertices[at] as usize];
-            found[surface_vertex[vertex as usize] as usize] = Some(Location::on_edge(corner, t));
+            let (first, t) = segment(&ours.parameters, s);
+            let corner = corners[ours.vertices[first] as usize];
+            locations[surface_vertex[vertex as usize] as usize] = Some(Location::on_edge(corner, t));
         }
     }
-    found
+    locations
 }
 
 fn settled(triangle: Face, barycentric: [f64; 3]) -> Location {
@@ -68,20 +68,20 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
     let first = map.places.faces[map.input.faces[face][0] as usize];
     let mut queue = vec![(first, Moebius::default())];
     let mut visited = vec![first];
-    while let Some((at, motion)) = queue.pop() {
-        let chart = map.atlas.charts[at].map(|z| straight(motion.apply(z)));
-        if at != first && !overlap(&triangle, &chart) {
+    while let Some((visited_face, motion)) = queue.pop() {
+        let chart = map.atlas.charts[visited_face].map(|z| straight(motion.apply(z)));
+        if visited_face != first && !overlap(&triangle, &chart) {
             continue;
         }
         for (k, &place) in chart.iter().enumerate() {
-            let vertex = target.surface.faces[at][k];
+            let vertex = target.surface.faces[visited_face][k];
             if let Some(barycentric) = barycentric(&triangle, place)
-                && vertices.iter().all(|&(other, _)| other != vertex)
+                && vertices.iter().all(|&(known, _)| known != vertex)
             {
                 vertices.push((vertex, barycentric));
             }
         }
-        for corner in at.corners() {
+        for corner in visited_face.corners() {
             let across = target.surface.opposite[corner];
             let beyond = Face::of_corner(across);
             if across != NO_CORNER && visited.len() < MOST_COVERED && !visited.contains(&beyond) {
@@ -93,19 +93,19 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 
     vertices
 }
 
-/// Whether two counterclockwise triangles may have a point in common: no edge of either separates them.
-fn overlap(one: &[Complex; 3], other: &[Complex; 3]) -> bool {
+/// Whether two counterclockwise triangles have a point in common: no edge of either separates them.
+fn overlap(a: &[Complex; 3], b: &[Complex; 3]) -> bool {
     let separates = |triangle: &[Complex; 3], points: &[Complex; 3]| {
         (0..3).any(|k| {
             let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
             points.iter().all(|&point| ((to - from).conj() * (point - from)).im < 0.0)
         })
     };
-    !separates(one, other) && !separates(other, one)
+    !separates(a, b) && !separates(b, a)
 }
 
-/// The coordinates of a point of Klein's model in a triangle that contains it, up to [`NEAR`], as those of
-/// the flat triangle on the hyperboloid.
+/// The barycentric coordinates of a point of Klein's model in a triangle, as those in the flat triangle on the
+/// hyperboloid; `None` if the point is farther outside than [`NEAR`].
 fn barycentric(triangle: &[Complex; 3], point: Complex) -> Option<[f64; 3]> {
     let ray = |k: Complex| -> Vector3 { Vector3([k.re, k.im, 1.0]) };
     let [a, b, c] = triangle.map(|corner| to_hyperboloid(from_klein(corner)));

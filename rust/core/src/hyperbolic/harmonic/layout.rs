@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Planar layouts of cut surfaces on a convex polygon (Tutte 1963).
 //!
-//! With positive weights and a boundary on a convex polygon the solution is an embedding, as no edge joins
-//! two vertices of the boundary that is none of it. The weights are the cotangents in space, clamped.
+//! With positive weights and the boundary on a convex polygon the solution is an embedding, as no interior edge
+//! joins two boundary vertices. The weights are the cotangents in space, clamped.
 //!
 //! Cost: one sparse Cholesky factorization.
 
@@ -16,16 +16,16 @@ use crate::mesh::geometry::corner_cotangents;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
-/// Weights are kept within this range.
+/// Range to which weights are clamped.
 const WEIGHTS: [f64; 2] = [1e-2, 1e2];
 
 /// A place in the plane.
 pub(crate) type Planar = [f64; 2];
 
-/// One position for each vertex of the disk, `held` where given; no face is folded.
+/// The position of each vertex of the disk, that in `held` if there is one; no face is folded.
 ///
 /// # Errors
-/// [`NumericsError::NoEmbedding`], with faces of the piece, where some fold in double precision;
+/// [`NumericsError::NoEmbedding`], with faces of the piece, if some fold in double precision;
 /// [`Error::CancelledEarly`].
 pub(crate) fn planar_layout(
     sliced: &Sliced,
@@ -45,7 +45,7 @@ pub(crate) fn planar_layout(
     }
 }
 
-/// (3 m,): for each corner the weight of the opposite edge.
+/// (3 m,): the weight of the edge opposite to each corner.
 pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
     let cotangents = corner_cotangents(&sliced.points, &sliced.faces);
     let opposite = &sliced.surface.opposite;
@@ -60,7 +60,7 @@ pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
     })
 }
 
-/// The weighted means of their neighbors for all vertices that are not held.
+/// The map that is the weighted mean of its neighbors at each vertex that is not held.
 fn harmonic(
     disk: &Opened,
     weights: &[f64],
@@ -87,9 +87,8 @@ impl Laplace {
         Ok(Self { analysis, is_held })
     }
 
-    /// Solves Σ w (f_i − f_j − jump(face, k)) = 0, where the edge i → j opposite to corner k of a face goes
-    /// beyond f_j by a jump, for the vertices of `map` that are not held. Each corner's weight is half the
-    /// edge's.
+    /// Solves Σ w (f_i − f_j − jump(face, k)) = 0 for the vertices of `map` that are not held; the edge i → j
+    /// opposite to corner k of a face goes beyond f_j by the jump. Each corner counts half the edge's weight.
     pub(super) fn solve(
         &self,
         faces: &[[u32; 3]],
@@ -115,7 +114,7 @@ impl Laplace {
                 NumericsError::FactorizationFailed { what: "the Laplacian of a cut surface".into() }.into()
             }
         })?;
-        // the solution is what is held, and what Newton's step from there adds
+        // the solution is the map with the held positions plus Newton's step from it
         let unknown = |vertex: u32| self.analysis.first_unknown(vertex as usize);
         let n = self.analysis.n_unknowns();
         let mut rhs = vec![0.0; 2 * n];
@@ -135,8 +134,8 @@ impl Laplace {
         }
         factor.solve(&self.analysis, &mut rhs);
         for vertex in (0..map.len()).filter(|&vertex| !self.is_held[vertex]) {
-            let at = unknown(vertex as u32);
-            map[vertex] = [map[vertex][0] + rhs[at], map[vertex][1] + rhs[n + at]];
+            let k = unknown(vertex as u32);
+            map[vertex] = [map[vertex][0] + rhs[k], map[vertex][1] + rhs[n + k]];
         }
         Ok(())
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The harmonic map of one piece onto another, from local charts to the proof that it is one-to-one.
+//! The harmonic map of a piece onto its partner, from local charts to the proof that it is one-to-one.
 
 pub(super) mod atlas;
 pub(super) mod certificates;

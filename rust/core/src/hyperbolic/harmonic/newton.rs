@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic harmonic map by Riemannian Newton.
 //!
-//! E = ½ Σ w_e d(f_i, T_ij f_j)² over the edges of the source, every image in the chart of its own face of
-//! the target. For positive weights E is geodesically convex, and its minimum in the homotopy class of a
-//! homeomorphism is an embedding (Colin de Verdière 1991; Shi et al. 2013, theorem 3.4), whatever is folded
-//! on the way there.
+//! E = ½ Σ w_e d(f_i, T_ij f_j)² over the edges of the source, every image in the chart of its face of the
+//! target. For positive weights E is geodesically convex, and its minimum in the homotopy class of a
+//! homeomorphism is an embedding (Colin de Verdière 1991; Shi et al. 2013, theorem 3.4), even if iterates
+//! have folds.
 //!
 //! With q = δ_a(b) for the two ends, d = 2 artanh |q| and unit vectors e = q/|q| and n = i e, the second
-//! variation of the arc length gives the blocks e eᵀ + (d coth d) n nᵀ for one end, and −(e_i e_jᵀ + (d /
-//! sinh d) n_i n_jᵀ) for both.
+//! variation of the arc length gives the blocks e eᵀ + (d coth d) n nᵀ for each end, and
+//! −(e_i e_jᵀ + (d / sinh d) n_i n_jᵀ) for the pair.
 //!
 //! Input: a start in the right homotopy class, and the intrinsic Delaunay weights of the source's own
 //! hyperbolic metric. Cost: one sparse Cholesky factorization of 2 n unknowns per step, three to six of them.
@@ -19,35 +19,36 @@ use crate::error::{Error, NumericsError};
 use crate::hyperbolic::moebius::Complex;
 use crate::sparse::{Factor, Failure};
 
-/// The gradient of a minimum, in its largest component.
+/// Largest component of the gradient at a minimum.
 const CONVERGED: f64 = 1e-12;
-/// Below this a step that no longer helps has come to the end of double precision.
+/// Gradient below which a step without gain has reached the limit of double precision.
 const STAGNATED: f64 = 1e-8;
-/// Newton steps at the most.
+/// Most Newton steps.
 const MOST_STEPS: usize = 60;
-/// No vertex moves farther in one step.
+/// Longest move of a vertex in one step.
 const LONGEST_MOVE: f64 = 2.0;
-/// Armijo's constant, and what rounding may add to the energy.
+/// Armijo's constant.
 const SUFFICIENT: f64 = 1e-4;
+/// Relative increase of the energy that rounding may cause.
 const ROUNDING: f64 = 1e-13;
-/// Halvings of a step.
+/// Most halvings of a step.
 const HALVINGS: i32 = 40;
 
-/// What a descent did.
+/// The record of a descent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Descent {
     /// E before the first and after each step.
     pub energies: Vec<f64>,
     /// The largest component of the gradient at the end.
     pub gradient: f64,
-    /// Why it ended.
+    /// Why the descent ended.
     pub status: Status,
 }
 
 /// Minimizes E in place.
 ///
 /// # Errors
-/// [`NumericsError::FactorizationFailed`] where the weights make the system singular in double precision;
+/// [`NumericsError::FactorizationFailed`] if the weights make the system singular in double precision;
 /// [`Error::CancelledEarly`].
 pub(crate) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Result<Descent, Error> {
     let analysis = map.analysis()?;
@@ -82,7 +83,7 @@ pub(crate) fn newton(map: &mut ChartMap<'_>, observer: &mut dyn Observer) -> Res
             (energy <= now + SUFFICIENT * t * slope + slack).then_some((moved, energy))
         });
         let Some((moved, energy)) = taken else { break };
-        // 4. Every vertex into the chart of the face that it has come to
+        // 4. Every vertex into the chart of its new face
         map.recharted(moved);
         energies.push(energy);
     }

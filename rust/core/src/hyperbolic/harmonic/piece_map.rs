@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One piece of two surfaces: from slices to places on the target.
+//! The map of a sliced piece onto its partner.
 //!
-//! Three features or more have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013, algorithm
-//! 1), fewer are laid out flat.
+//! Pieces with three or more features have a hyperbolic metric and a hyperbolic harmonic map (Shi et al. 2013,
+//! algorithm 1); pieces with fewer are laid out flat.
 
 use super::atlas::Atlas;
 use super::certificates::{PieceCertificates, certify, folded_faces};
@@ -21,12 +21,11 @@ use crate::location::Location;
 
 /// A map between two sliced pieces.
 pub(crate) struct PieceMap {
-    /// For each vertex of the sliced source its place in the sliced target.
+    /// The location in the sliced target of each vertex of the sliced source.
     pub locations: Vec<Location>,
-    /// For each vertex of the sliced target its place in the sliced source; `None` where rounding has lost
-    /// it.
+    /// The location in the sliced source of each vertex of the sliced target; `None` if rounding has lost it.
     pub inverse: Vec<Option<Location>>,
-    /// What proves it.
+    /// The proof that the map is one-to-one.
     pub certificates: PieceCertificates,
     /// The metrics of source and target, and the descent; `None` for a flat piece.
     pub hyperbolic: Option<([Metric; 2], Descent)>,
@@ -35,7 +34,7 @@ pub(crate) struct PieceMap {
 /// Maps a piece.
 ///
 /// # Errors
-/// What metric, layout and harmonic map fail with, of the faces of the pieces, and [`Error::CancelledEarly`].
+/// Those of metric, layout and harmonic map, with faces of the pieces; [`Error::CancelledEarly`].
 pub(crate) fn map_piece(
     sliced: &SlicedPair,
     options: &HyperbolicOptions<'_>,
@@ -50,8 +49,7 @@ pub(crate) fn map_piece(
         let (locations, certificates) = (flat.locations, flat.certificates);
         return Ok(PieceMap { locations, inverse, certificates, hyperbolic: None });
     }
-    // 1. Hyperbolic metrics with geodesic boundaries: that of the target to map into, that of the source for
-    //    the weights
+    // 1. Hyperbolic metrics with geodesic boundaries: the target's as the codomain, the source's for the weights
     let metric = |surface: usize, observer: &mut dyn Observer| {
         let sliced = [source, target][surface];
         let points = sliced.surface_points();
@@ -66,9 +64,9 @@ pub(crate) fn map_piece(
     let atlas = Atlas::new(&target.surface, &theirs);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
     let (places, input) = initial_map(source, target, &atlas, &Watch::new(&mut phase, 0.0, "Initial map"))?;
-    // 3. The harmonic one
-    let nothing = vec![false; source.faces.len()];
-    let mut map = ChartMap::by_delaunay(&atlas, places, input, &ours.lengths, &nothing);
+    // 3. The harmonic map
+    let none_kept = vec![false; source.faces.len()];
+    let mut map = ChartMap::by_delaunay(&atlas, places, input, &ours.lengths, &none_kept);
     let mut phase = Phase { whole: observer, from: 0.75, to: 1.0 };
     let descent = match options.solver {
         Solver::Newton => {
@@ -80,20 +78,20 @@ pub(crate) fn map_piece(
             diffuse(&mut map, &areas, options.heat_steps, options.heat_tolerance, &mut phase)
         }
     };
-    // 4. Where that is in space, and the proof
+    // 4. The locations, and the proof
     let certificates = certify(&map, chi);
     let (locations, inverse) = (locations(&map), inverse(&map, source, target));
     Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
 }
 
-/// Rounds of unfolding, each keeping faces within one more ring; the last keeps all.
+/// Rounds of unfolding, each of which keeps faces within one more ring; the last keeps all.
 const ROUNDS: usize = 6;
 
 /// Moves to a minimum in which no face of the source is folded.
 ///
-/// The harmonic map embeds the triangulation by which its energy is taken. That is another one than the
-/// source's where edges were flipped, and very flat faces of the source can then be folded by rounding or by
-/// a hair. Faces around these are kept in the triangulation.
+/// The harmonic map embeds the triangulation that carries its energy. If edges were flipped, this is not the
+/// source's, and very flat faces of the source may be slightly folded. Faces around these are kept in the
+/// triangulation.
 fn unfolded(
     map: &mut ChartMap<'_>,
     lengths: &[[f64; 3]],

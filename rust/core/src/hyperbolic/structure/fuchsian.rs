@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The Fuchsian group of a sliced surface: its disk laid out in the hyperbolic plane, and the isometries
-//! between the sides of this.
+//! between the sides of this layout.
 //!
 //! A surface with a hyperbolic metric is the hyperbolic plane (the part of it between the boundary lines)
 //! modulo a group of isometries. The surface cut along B − 1 arcs is a fundamental domain, and the group is
-//! free on the isometries g_k that take the left copy of arc k to the right one (Shi et al. 2013, section 3).
-//! Faces are laid out by composing the isometries between their charts, so that no face has its shape from
-//! another one's places.
+//! free on the isometries g_k that take the left copy of arc k to the right copy (Shi et al. 2013, section 3).
+//! Faces are laid out by composing the isometries between their charts, so that errors in positions do not
+//! change the shapes of faces.
 //!
 //! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
 
@@ -23,10 +23,10 @@ use crate::vector::Vector3;
 /// A copy of the fundamental domain in the universal cover.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverCopy {
-    /// The generators that lead to it, without cancelling neighbors: k for the k-th one, counted from 1, and
-    /// −k for its inverse. The last one acts first; the domain itself has none.
+    /// The reduced word of generators that leads to it: k for the k-th generator, counted from 1, and −k for its
+    /// inverse. The last letter acts first; the word of the domain itself is empty.
     pub word: Vec<i32>,
-    /// The isometry that takes the fundamental domain there.
+    /// The isometry that takes the fundamental domain to the copy.
     pub motion: Moebius,
 }
 
@@ -35,12 +35,12 @@ pub struct CoverCopy {
 pub(super) struct Development<'a> {
     sliced: &'a Sliced,
     atlas: &'a Atlas<'a>,
-    /// (m,): from the chart of each face to the plane.
+    /// (m,): the isometry from the chart of each face to the plane.
     pub frames: Vec<Moebius>,
 }
 
 impl<'a> Development<'a> {
-    /// Lays the disk out around the chart of one face, which stays where it is.
+    /// Lays the disk out around the chart of a face, which stays in place.
     pub(super) fn around(face: Face, sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
         let mut frames = vec![Moebius::default(); atlas.charts.len()];
         let mut is_placed = vec![false; frames.len()];
@@ -61,7 +61,7 @@ impl<'a> Development<'a> {
         Self { sliced, atlas, frames }
     }
 
-    /// Lays the disk out around a face in its middle, so that no part is farther out than it must be.
+    /// Lays the disk out around a face in its middle, so that no part is farther out than necessary.
     pub(super) fn centered(sliced: &'a Sliced, atlas: &'a Atlas<'a>) -> Self {
         let first = Self::around(Face(0), sliced, atlas);
         // the mean on the hyperboloid is where the sum of cosh(distance) is least: the farthest count most
@@ -74,7 +74,7 @@ impl<'a> Development<'a> {
         Self::around(Face::new(nearest), sliced, atlas)
     }
 
-    /// The places of the vertices of the disk, by those of their faces that lie nearest to the origin.
+    /// The positions of the vertices of the disk, each by the face at it that lies nearest to the origin.
     pub(super) fn positions(&self) -> Vec<Complex> {
         let n_vertices = self.sliced.disk.vertex_of.len();
         let mut nearest = vec![f64::INFINITY; n_vertices];
@@ -91,22 +91,22 @@ impl<'a> Development<'a> {
         positions
     }
 
-    /// (B − 1,): the isometries that take the left copy of each arc to the right one; Re a > 0.
+    /// (B − 1,): the isometries that take the left copy of each arc to the right copy; Re a > 0.
     pub(super) fn generators(&self) -> Vec<Moebius> {
         let corners = self.sliced.disk.boundary_corners();
         let arcs = self.sliced.sides.iter().filter(|side| side.is_arc);
         arcs.take(self.sliced.sides.len() / 4).map(|side| self.generator(side, &corners)).collect()
     }
 
-    /// The isometry from the left copy of an arc to the right one, by that of its edges whose copies lie
-    /// nearest to the origin.
+    /// The isometry from the left copy of an arc to the right copy, by the edge whose copies lie nearest to the
+    /// origin.
     fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
         let candidates = side.opposite_corners(corners).map(|corner| {
             let across = self.sliced.surface.opposite[corner as usize];
             let [left, right] = [corner, across].map(|corner| self.frames[Face::of_corner(corner)]);
             (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner as usize] * left.inverse())
         });
-        let nearest = candidates.min_by(|one, other| one.0.total_cmp(&other.0));
+        let nearest = candidates.min_by(|a, b| a.0.total_cmp(&b.0));
         let generator = nearest.map_or(Moebius::default(), |(_, generator)| generator);
         if generator.a.re < 0.0 { Moebius { a: -generator.a, b: -generator.b } } else { generator }
     }
@@ -121,8 +121,8 @@ fn weighted(z: Complex) -> Vector3 {
 
 /// The fundamental domain and its copies in the universal cover, at most `count` in all.
 ///
-/// They grow outward from the domain: each is a neighbor, across a copy of an arc, of an earlier one, and of
-/// all such neighbors the one whose middle is nearest to the origin comes next.
+/// They grow outward from the domain: of all neighbors of earlier copies, across copies of arcs, the one whose middle
+/// is nearest to the origin comes next.
 pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
     let letters: Vec<i32> = (1..=generators.len() as i32).flat_map(|k| [k, -k]).collect();
     let motion = |letter: i32| {
@@ -131,19 +131,19 @@ pub(super) fn cover(generators: &[Moebius], count: usize) -> Vec<CoverCopy> {
     };
     let mut copies = vec![CoverCopy { word: Vec::new(), motion: Moebius::default() }];
     let mut pending = BinaryHeap::new();
-    for at in 0.. {
-        if copies.len() >= count || at >= copies.len() {
+    for newest in 0.. {
+        if copies.len() >= count || newest >= copies.len() {
             break;
         }
         // 1. The neighbors of the newest copy
         for &letter in &letters {
-            if copies[at].word.last() != Some(&-letter) {
-                let next = copies[at].motion * motion(letter);
-                // the bits of floats that are not negative are ordered like these
-                pending.push(Reverse((next.b.norm().to_bits(), at, letter)));
+            if copies[newest].word.last() != Some(&-letter) {
+                let next = copies[newest].motion * motion(letter);
+                // the bits of nonnegative floats are ordered like the floats
+                pending.push(Reverse((next.b.norm().to_bits(), newest, letter)));
             }
         }
-        // 2. The nearest of all
+        // 2. The nearest of all neighbors
         if let Some(Reverse((_, from, letter))) = pending.pop() {
             let word = copies[from].word.iter().copied().chain([letter]).collect();
             copies.push(CoverCopy { word, motion: copies[from].motion * motion(letter) });

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hyperbolic structure of a surface with landmark curves: the objects of the paper's theory (Shi et al.
-//! 2013, section 3), by themselves.
+//! 2013, section 3).
 //!
 //! The surface sliced along its curves gets the hyperbolic metric with geodesic boundaries; a chain of arcs
-//! makes it a disk, the fundamental domain of a Fuchsian group, whose generators cut it into pairs of pants
-//! along closed geodesics and these into hexagons. The registration needs none of this.
+//! makes it a disk, the fundamental domain of a Fuchsian group. The axes of the generators are closed geodesics
+//! that cut the surface into pairs of pants, and these divide into hexagons. Registrations need none of this.
 //!
 //! Input: a surface of genus 0 with at least three features, open curves and boundary loops. Cost: that of
 //! the metric, and B layouts of the disk for B features.
@@ -39,59 +39,57 @@ use trace::closed_geodesic;
 
 /// A surface sliced along its features, with its hyperbolic metric, its Fuchsian group and its pants.
 ///
-/// The chain runs through all B features, curves as given and then the other boundary loops, each with the
-/// bank that has the surface on its left and the one that has it on its right; arc k leads from the k-th
-/// feature of the chain to the next.
+/// The chain runs through all B features, curves as given and then the other boundary loops, each with a left bank
+/// (the surface on its left) and a right bank; arc k leads from the k-th feature of the chain to the next.
 #[derive(Debug, Clone)]
 pub struct HyperbolicStructure {
-    /// (n,): the vertices of the sliced surface on the surface given.
+    /// (n,): the locations of the vertices of the sliced surface on the given surface.
     pub vertices: Vec<Location>,
-    /// (m, 3): its faces; some of those given are divided.
+    /// (m, 3): the faces of the sliced surface; some given faces are divided.
     pub faces: Vec<[u32; 3]>,
-    /// (n,): the vertices given; `None` for midpoints of edges.
+    /// (n,): the given vertex that each vertex is; `None` for midpoints of edges.
     pub vertex_of: Vec<Option<u32>>,
-    /// (m, 3): the same faces, of the surface cut along the arcs too: a disk.
+    /// (m, 3): the faces of the disk, the surface cut along the arcs too.
     pub disk_faces: Vec<[u32; 3]>,
-    /// Where the vertices of the disk lie in the Poincaré disk: the fundamental domain.
+    /// The positions of the vertices of the disk in the Poincaré disk: the fundamental domain.
     pub positions: Vec<Complex>,
-    /// The vertices of the sliced surface that those of the disk are.
+    /// The vertex of the sliced surface that each vertex of the disk copies.
     pub disk_vertex_of: Vec<u32>,
-    /// (B,): the features in the order of the chain, each with whether it runs from its end to its start.
+    /// (B,): the features in the order of the chain, each with whether it is reversed.
     pub chain: Vec<(usize, bool)>,
     /// (B,): left and right bank of each feature of the chain, as vertices of the disk along the chain.
     pub banks: Vec<[Vec<u32>; 2]>,
     /// (B − 1,): left and right copy of each arc, as vertices of the disk along the chain.
     pub arcs: Vec<[Vec<u32>; 2]>,
-    /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right one. That of
-    /// arc k goes around the first k features of the chain.
+    /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right copy. The generator
+    /// of arc k goes around the first k features of the chain.
     pub generators: Vec<Moebius>,
-    /// (B,): the lengths of the features once around, in the order in which they were given.
+    /// (B,): the lengths once around the features, in the order given.
     pub boundary_lengths: Vec<f64>,
     /// (B − 2,): the pairs of pants along the chain.
     pub pants: Vec<Pants>,
-    /// (B − 3,): the closed geodesics between them, as places on the surface given, the first once more at
-    /// the end.
+    /// (B − 3,): the closed geodesics between the pants, as locations on the given surface, the first repeated at the
+    /// end.
     pub pants_curves: Vec<Vec<Location>>,
-    /// (B − 3,): their lengths.
+    /// (B − 3,): the lengths of the closed geodesics.
     pub lengths: Vec<f64>,
-    /// The largest curvature that the metric has left.
+    /// The largest curvature left in the metric.
     pub curvature: f64,
-    /// The hyperbolic area; 2π(B − 2) but for rounding.
+    /// The hyperbolic area; 2π(B − 2) up to rounding.
     pub area: f64,
     surface_faces: Vec<[u32; 3]>,
 }
 
 impl HyperbolicStructure {
-    /// The fundamental domain and its copies in the universal cover, from the middle outward, at most `count`
-    /// in all.
+    /// The fundamental domain and its copies in the universal cover, from the middle outward; `count` in all at most.
     pub fn cover(&self, count: usize) -> Vec<CoverCopy> {
         cover(&self.generators, count)
     }
 
-    /// Places on the surface given, in space by its `vertices`.
+    /// The points in space of locations on the given surface with `vertices`.
     ///
     /// # Panics
-    /// Where `vertices` are fewer than the surface's.
+    /// If there are fewer `vertices` than the surface has.
     pub fn in_space(&self, places: &[Location], vertices: &[Vector3]) -> Vec<Vector3> {
         let point = |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle]));
         places.iter().map(point).collect()
@@ -101,13 +99,13 @@ impl HyperbolicStructure {
 /// Computes the hyperbolic structure of a surface of genus 0, closed or with boundary, sliced along open
 /// curves.
 ///
-/// Curves are paths of vertices along edges, as for [`super::register_hyperbolic`]; closed ones must be loops
-/// of the boundary, all of which are features whether they are named or not.
+/// Curves are paths of vertices along edges, as for [`super::register_hyperbolic`]; closed curves must be boundary
+/// loops. All boundary loops are features, named or not.
 ///
 /// # Errors
-/// Surfaces of another topology, curves that are no simple edge paths or touch, [`CurveError::Divides`] for
-/// closed ones inside and [`CurveError::TooFewFeatures`] for fewer than three features are refused before any
-/// work. [`NumericsError::NoHyperbolicMetric`] where double precision does not suffice; [`Error::CancelledEarly`].
+/// Before any work: surfaces of another topology, curves that are no simple edge paths or touch,
+/// [`CurveError::Divides`] for closed curves inside and [`CurveError::TooFewFeatures`] for fewer than three features.
+/// [`NumericsError::NoHyperbolicMetric`] if double precision does not suffice; [`Error::CancelledEarly`].
 pub fn hyperbolic_structure(
     mesh: &TriangleMesh,
     curves: &[Vec<usize>],
@@ -134,7 +132,7 @@ pub fn hyperbolic_structure(
     }
     let pants = all_pants(&domain, &sliced, &atlas);
     let (pants_curves, lengths) = pants_curves(&domain, &sliced, &atlas, &piece)?;
-    // 6. All in one
+    // 6. The result
     let [banks, arcs] = [false, true].map(|is_arc| both_sides(&sliced.sides, is_arc));
     let structure = HyperbolicStructure {
         vertices: vertices(&piece, &sliced),
@@ -159,7 +157,7 @@ pub fn hyperbolic_structure(
     Ok(structure)
 }
 
-/// The curves, if they and the boundary make for a hyperbolic surface.
+/// The curves; an error unless they and the boundary leave a hyperbolic surface.
 fn checked(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> Result<Vec<CurvePair>, Error> {
     let pairs = check_alone(mesh, curves)?;
     if let Some(curve) = pairs.iter().position(|pair| pair.closed && !pair.on_boundary) {
@@ -179,8 +177,7 @@ fn piece(mesh: &TriangleMesh, pairs: Vec<CurvePair>, watch: &Watch<'_>) -> Resul
     Ok(pieces(mesh, mesh, &divided, &placement).swap_remove(0).0)
 }
 
-/// Every pair of pants, by a layout around the left bank of its feature so that it is as precise far out as
-/// in the middle.
+/// All pairs of pants, each by a layout around the left bank of its feature, so that all are equally precise.
 fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Vec<Pants> {
     let corners = sliced.disk.boundary_corners();
     let last = domain.generators().len();
@@ -194,8 +191,8 @@ fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Ve
     (0..last - 1).map(of_feature).collect()
 }
 
-/// The geodesics between the pants, and their lengths, each by a layout around the edge of its arc that is
-/// nearest to it.
+/// The closed geodesics between the pants and their lengths, each by a layout around the edge of its arc nearest
+/// to it.
 fn pants_curves(
     domain: &Development<'_>,
     sliced: &Sliced,
@@ -225,15 +222,15 @@ fn pants_curves(
 /// Left and right copies of the banks, or of the arcs, along the chain.
 fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<u32>; 2]> {
     let half = sides.len() / 2;
-    let left = (0..half).filter(|&at| sides[at].is_arc == is_arc);
-    left.map(|at| {
-        let right = sides[sides.len() - 1 - at].vertices.iter().rev().copied().collect();
-        [sides[at].vertices.clone(), right]
+    let left = (0..half).filter(|&side| sides[side].is_arc == is_arc);
+    left.map(|side| {
+        let right = sides[sides.len() - 1 - side].vertices.iter().rev().copied().collect();
+        [sides[side].vertices.clone(), right]
     })
     .collect()
 }
 
-/// The lengths of the features once around, by their own numbers.
+/// The lengths once around the features, in the order given.
 fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -> Vec<f64> {
     let corners = sliced.disk.boundary_corners();
     let length = |corner: u32| metric.lengths[Face::of_corner(corner)][corner as usize % 3];
@@ -244,7 +241,7 @@ fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -
     lengths
 }
 
-/// The vertices of the sliced surface on the surface given.
+/// The locations of the vertices of the sliced surface on the given surface.
 fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
     let mut vertices = vec![Location::default(); sliced.surface.vertex_of.len()];
     for (face, corners) in sliced.surface.faces.iter().enumerate() {

@@ -5,8 +5,8 @@
 //! are the axes of g, of g⁻¹h (or of h g⁻¹, a copy of the same curve) and of h. The common perpendiculars of
 //! these lines divide it into two congruent hexagons, which are convex in Klein's model (Shi et al. 2013,
 //! section 3.1 and figure 3). Half the lengths of the boundaries determine it by the law of cosines of
-//! right-angled hexagons. Where it lies is linear algebra on the hyperboloid: a line is its unit normal in
-//! the Lorentz product, a common perpendicular the Lorentz cross product of two normals.
+//! right-angled hexagons. Its placement is linear algebra on the hyperboloid: a line is given by its unit normal
+//! in the Lorentz product, a common perpendicular by the Lorentz cross product of two normals.
 //!
 //! Cost: constant.
 
@@ -17,16 +17,16 @@ use crate::vector::Vector3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pants {
     /// The lengths of the boundaries: the pants curve before, the feature, the pants curve after; at the ends
-    /// of the chain the first and the last feature stand for curves.
+    /// of the chain the first and the last feature take the place of pants curves.
     pub boundary_lengths: [f64; 3],
     /// The corners of both hexagons in Klein's model. Their sides 0–1, 2–3 and 4–5 lie on the boundaries in
     /// the order of the lengths and are half as long, the others are the perpendiculars; 5–0 is common to
     /// both and lies on the imaginary axis with its middle in the origin. The first lies on the right, at the
     /// left bank of the feature, counterclockwise; the second is its mirror image.
     pub hexagons: [[Complex; 6]; 2],
-    /// The inner angles, π/2 but for rounding.
+    /// The inner angles, π/2 up to rounding.
     pub angles: [[f64; 6]; 2],
-    /// From the disk of the hexagons to that of the fundamental domain.
+    /// The isometry from the disk of the hexagons to that of the fundamental domain.
     pub placement: Moebius,
 }
 
@@ -38,8 +38,8 @@ pub(super) fn pants(g: Moebius, h: Moebius) -> Pants {
     // 2. A hexagon by half their lengths, and its mirror image
     let right = hexagon(lengths.map(|length| 0.5 * length));
     let hexagons = [right, right.map(|corner| -corner.conj())];
-    // 3. Where it belongs: axes of long curves nearly touch, so by the perpendicular between the first and
-    //    the feature
+    // 3. Its placement by the perpendicular between the first axis and the feature, as axes of long curves nearly
+    //    touch
     let [before, feature] = [motions[0], motions[1]].map(axis);
     let placement = Moebius::between([right[1], right[2]], feet(before, feature));
     Pants {
@@ -56,9 +56,9 @@ fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
     let half = Complex::new(0.0, (0.25 * between(a, c, b)).tanh());
     let (low, high) = (-half, half);
     let [low_end, high_end] = [exponential(low, a.into()), exponential(high, c.into())];
-    let turned = |from: Complex, at: Complex, turn: Complex, length: f64| {
-        let back = seen_from(at, from);
-        exponential(at, -back / back.norm() * turn * length)
+    let turned = |from: Complex, corner: Complex, turn: Complex, length: f64| {
+        let back = seen_from(corner, from);
+        exponential(corner, -back / back.norm() * turn * length)
     };
     let [left, right] = [Complex::i(), -Complex::i()];
     let from = turned(low, low_end, left, between(a, b, c));
@@ -67,7 +67,7 @@ fn hexagon([a, b, c]: [f64; 3]) -> [Complex; 6] {
 }
 
 /// The length of the side between those of lengths a and b in a right-angled hexagon whose third alternate
-/// side has length c. By the law of cosines, with cosh − 1 formed without cancellation.
+/// side has length c, by the law of cosines with cosh − 1 formed without cancellation.
 fn between(a: f64, b: f64, c: f64) -> f64 {
     let twice_square = (c.cosh() + (a - b).cosh()) / (a.sinh() * b.sinh());
     2.0 * (0.5 * twice_square).sqrt().asinh()
@@ -89,18 +89,18 @@ fn axis(motion: Moebius) -> Vector3 {
     lorentz_cross(from, chord) * (1.0 / half_square)
 }
 
-/// Where the common perpendicular of two disjoint lines meets the first and the second.
-fn feet(one: Vector3, other: Vector3) -> [Complex; 2] {
-    let perpendicular = lorentz_cross(one, other);
-    [one, other].map(|line| {
+/// The feet of the common perpendicular of two disjoint lines.
+fn feet(first: Vector3, second: Vector3) -> [Complex; 2] {
+    let perpendicular = lorentz_cross(first, second);
+    [first, second].map(|line| {
         let foot = lorentz_cross(line, perpendicular);
         from_hyperboloid(foot * foot[2].signum())
     })
 }
 
-/// Orthogonal to both in the Lorentz product x x' + y y' − t t'.
-fn lorentz_cross(one: Vector3, other: Vector3) -> Vector3 {
-    let Vector3([x, y, t]) = one.cross(other);
+/// A vector orthogonal to both in the Lorentz product x x' + y y' − t t'.
+fn lorentz_cross(u: Vector3, v: Vector3) -> Vector3 {
+    let Vector3([x, y, t]) = u.cross(v);
     Vector3([x, y, -t])
 }
 

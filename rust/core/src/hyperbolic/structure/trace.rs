@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Closed geodesics on a hyperbolic surface, followed from face to face.
 //!
-//! A line of the plane is known by its ends on the unit circle, and these are carried along from chart to
-//! chart. Going forward errors of the end ahead grow and those of the end behind shrink, so that the line is
-//! followed twice: once to find the edges that it crosses, from which follows exactly where it closes up, and
-//! then with each end carried in the direction in which it keeps its digits.
+//! A line is given by its ends on the unit circle, and these are carried along from chart to chart. On the way
+//! forward errors of the end ahead grow and those of the end behind shrink. So the line is followed twice: first
+//! to find the edges that it crosses, which determine exactly how it closes up; then with each end carried in the
+//! direction in which it keeps its digits.
 //!
 //! Input: an atlas, and the ends of the axis of a deck transformation in one of its charts. Cost: linear in
 //! the edges crossed.
@@ -16,25 +16,25 @@ use crate::location::Location;
 use crate::mesh::{Face, NO_CORNER, next_corner, previous_corner};
 use crate::vector::Vector3;
 
-/// The line has closed up where it crosses the first edge again after its length but for this share.
+/// Relative tolerance on the length when testing whether the line has closed.
 const ROUNDING: f64 = 1e-3;
-/// It is lost where it has not closed up after this many lengths.
+/// Lengths after which a line that has not closed is lost.
 const LOST: f64 = 1.5;
 
 /// A closed geodesic.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ClosedGeodesic {
-    /// Where it crosses edges, the first place once more at the end.
+    /// The locations at which it crosses edges, the first repeated at the end.
     pub places: Vec<Location>,
-    /// Its length.
+    /// The length.
     pub length: f64,
 }
 
 /// A line in the chart of a face, by its ends: it comes from the first and goes to the second.
 type Line = [Complex; 2];
 
-/// Follows the closed geodesic of about the given length that goes along a line in the chart of `face`;
-/// `None` where rounding has lost it.
+/// Follows the closed geodesic of about the given length along a line in the chart of `face`; `None` if rounding has
+/// lost it.
 pub(super) fn closed_geodesic(
     atlas: &Atlas<'_>,
     surface: &Opened,
@@ -42,11 +42,11 @@ pub(super) fn closed_geodesic(
     line: Line,
     length: f64,
 ) -> Option<ClosedGeodesic> {
-    // 1. The edges that it crosses
+    // 1. The edges that the line crosses
     let walk = atlas.walk(face, middle(line));
     let start = exit(atlas, walk.face, moved(walk.motion, line))?;
     let corners = crossings(atlas, surface, start, moved(walk.motion, line), length)?;
-    // 2. The line once more, from what closes it
+    // 2. The line in each chart, from the isometry that closes it
     let lines = lines(atlas, &corners);
     // 3. The crossings
     let mut places: Vec<Location> =
@@ -55,12 +55,12 @@ pub(super) fn closed_geodesic(
     Some(ClosedGeodesic { places, length: holonomy(atlas, &corners).translation_length() })
 }
 
-/// The point of a line that is nearest to the origin.
+/// The point of a line nearest to the origin.
 fn middle([from, to]: Line) -> Complex {
     from_klein(0.5 * (from + to))
 }
 
-/// A line as another chart sees it.
+/// A line in another chart.
 fn moved(motion: Moebius, line: Line) -> Line {
     line.map(|end| on_circle(motion.apply(end)))
 }
@@ -69,7 +69,7 @@ fn on_circle(end: Complex) -> Complex {
     end / end.norm()
 }
 
-/// How far a point of the hyperboloid lies on the left of a line.
+/// The height of a point of the hyperboloid above a line, positive on its left.
 fn height([from, to]: Line, point: Vector3) -> f64 {
     let chord = to - from;
     let normal = Vector3([from.re, from.im, 1.0]).cross(Vector3([chord.re, chord.im, 0.0]));
@@ -81,15 +81,15 @@ fn corner_height(atlas: &Atlas<'_>, corner: u32, line: Line) -> f64 {
     height(line, to_hyperboloid(atlas.charts[Face::of_corner(corner)][corner as usize % 3]))
 }
 
-/// The corner opposite to the edge through which a line leaves a face; `None` where it misses the face.
+/// The corner opposite to the edge through which a line leaves a face; `None` if it misses the face.
 fn exit(atlas: &Atlas<'_>, face: Face, line: Line) -> Option<u32> {
     let is_left = |corner| corner_height(atlas, corner, line) >= 0.0;
     let mut corners = face.corners().into_iter().map(|corner| corner as u32);
     corners.find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
 }
 
-/// The edges that a line crosses from one on until it closes up, each by the corner opposite to it in the
-/// face that is left.
+/// The edges that a line crosses, from the edge `start` until it closes; each by the opposite corner in the face that
+/// the line leaves.
 fn crossings(
     atlas: &Atlas<'_>,
     surface: &Opened,
@@ -117,39 +117,39 @@ fn crossings(
 
 /// The edge through which a line leaves a face that it has entered through another edge.
 fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
-    let (one, other) = if corner_height(atlas, entered, line) >= 0.0 {
+    let (exit, remaining) = if corner_height(atlas, entered, line) >= 0.0 {
         (next_corner(entered), previous_corner(entered))
     } else {
         (previous_corner(entered), next_corner(entered))
     };
-    // geodesics do not leave the surface, but may run so close to the boundary that rounding would have them
-    // do so
-    if surface.opposite[one as usize] == NO_CORNER { other } else { one }
+    // geodesics stay on the surface, but may run so close to the boundary that rounding takes them across
+    if surface.opposite[exit as usize] == NO_CORNER { remaining } else { exit }
 }
 
-/// The isometry from a chart once around to the same one.
+/// The isometry from the first chart once around to itself.
 fn holonomy(atlas: &Atlas<'_>, corners: &[u32]) -> Moebius {
     corners.iter().fold(Moebius::default(), |motion, &corner| atlas.transitions[corner as usize] * motion)
 }
 
 /// The closed line in the chart of every face that it leaves.
 fn lines(atlas: &Atlas<'_>, corners: &[u32]) -> Vec<Line> {
-    // seen from charts that come to meet it, the line moves backward
+    // the holonomy moves charts against the direction of the line
     let [to, from] = holonomy(atlas, corners).fixed_points();
     let mut lines = vec![[from, to]; corners.len()];
-    for at in 1..corners.len() {
-        let tau = atlas.transitions[corners[at - 1] as usize];
-        lines[at][0] = on_circle(tau.apply(lines[at - 1][0]));
+    for k in 1..corners.len() {
+        let tau = atlas.transitions[corners[k - 1] as usize];
+        lines[k][0] = on_circle(tau.apply(lines[k - 1][0]));
     }
     let mut end = to;
-    for at in (1..corners.len()).rev() {
-        end = on_circle(atlas.transitions[corners[at] as usize].inverse().apply(end));
-        lines[at][1] = end;
+    for k in (1..corners.len()).rev() {
+        end = on_circle(atlas.transitions[corners[k] as usize].inverse().apply(end));
+        lines[k][1] = end;
     }
     lines
 }
 
-/// Where a line crosses the edge opposite to a corner: the place on the flat face, and that in the chart.
+/// The point at which a line crosses the edge opposite to a corner: its location on the flat face and its position in
+/// the chart.
 fn crossing(atlas: &Atlas<'_>, corner: u32, line: Line) -> (Location, Complex) {
     let ends = [next_corner(corner), previous_corner(corner)];
     let [right, left] = ends.map(|corner| corner_height(atlas, corner, line));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The maps of all pieces put together to one of the surfaces, with its figures.
+//! Assembles the maps of all pieces into a map of the surfaces, with its figures.
 
 use super::features::curves::Curves;
 use super::features::piece::Piece;
@@ -18,7 +18,7 @@ use crate::mesh::TriangleMesh;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// A curve whose image strays farther than this from its partner, in parts of the target's size, was missed.
+/// Largest distance of a curve's image from its partner, relative to the target's size; beyond it the curve is missed.
 const MISSED: f64 = 1e-9;
 
 /// A registration by curves.
@@ -26,19 +26,19 @@ const MISSED: f64 = 1e-9;
 pub struct CurveRegistration {
     /// The map of the source onto the target.
     pub map: CurveMap,
-    /// The way back of the same map.
+    /// The inverse of the map.
     pub inverse: CurveMap,
-    /// How source and target were laid over each other.
+    /// The rough spheres by which source and target were laid over each other.
     pub spheres: [RoughSphere; 2],
     /// The proof that the map is one-to-one.
     pub certificates: Certificates,
-    /// The metrics of source and target for every piece that has three features or more.
+    /// The metrics of source and target for every piece with three or more features.
     pub metrics: Vec<[Metric; 2]>,
-    /// The descents of the same pieces.
+    /// The descents of these pieces.
     pub descents: Vec<Descent>,
-    /// What the caller should look at.
+    /// Signs that the curves do not say what was meant.
     pub warnings: Vec<Warning>,
-    /// Steps of all descents.
+    /// The steps of all descents.
     pub iterations: usize,
     /// Wall time of the whole call.
     pub seconds: f64,
@@ -47,34 +47,34 @@ pub struct CurveRegistration {
 /// A one-to-one map of a surface onto another that takes curves to curves.
 #[derive(Debug, Clone)]
 pub struct CurveMap {
-    /// (n,): where on the other surface each vertex comes to lie.
+    /// (n,): the location of each vertex on the other surface.
     pub locations: Vec<Location>,
-    /// The faces of the other surface that [`Self::locations`] speak of.
+    /// The faces of the other surface that [`Self::locations`] refer to.
     pub target_faces: Vec<[u32; 3]>,
-    /// (n, 3): the same places on the rough sphere of the other surface, where straight faces may fold a little along the
-    /// curves.
+    /// (n, 3): the images of the vertices on the rough sphere of the other surface, where straight faces may fold a
+    /// little along the curves.
     pub registered: Vec<Vector3>,
     /// (B,): the largest distance of the image of each curve from its partner, in parts of the other surface's size.
     pub curve_error: Vec<f64>,
     /// The curves that are farther than 10⁻⁹ from their partners.
     pub missed: Vec<usize>,
-    /// Why the run ended; [`Status::LandmarksMissed`] where there are such curves.
+    /// Why the run ended; [`Status::LandmarksMissed`] if curves were missed.
     pub status: Status,
     /// The figures of the map in space, with the folds of the certificates.
     pub distortion: Distortion,
 }
 
-/// A surface laid roughly onto the unit sphere, to tell how two surfaces lie over each other; faces may be folded.
+/// A surface laid roughly onto the unit sphere, over which its partner is laid; faces may be folded.
 #[derive(Debug, Clone)]
 pub struct RoughSphere {
-    /// (n, 3): unit rows.
+    /// (n, 3): the vertices on the unit sphere.
     pub positions: Vec<Vector3>,
-    /// Its figures.
+    /// The figures of the map to the sphere.
     pub distortion: Distortion,
 }
 
 impl CurveRegistration {
-    /// The same map from the target's side; the certificates stay those of the map as computed.
+    /// The registration of the target onto the source; the certificates stay those of the map as computed.
     pub fn inverted(&self) -> Self {
         let mut inverted = self.clone();
         std::mem::swap(&mut inverted.map, &mut inverted.inverse);
@@ -84,10 +84,10 @@ impl CurveRegistration {
 }
 
 impl CurveMap {
-    /// The place of each vertex among the other surface's `vertices`, (n, 3).
+    /// The position of each vertex on the other surface with `vertices`, (n, 3).
     ///
     /// # Panics
-    /// Where `vertices` are fewer than the other surface's.
+    /// If there are fewer `vertices` than the other surface has.
     pub fn positions(&self, vertices: &[Vector3]) -> Vec<Vector3> {
         points_on(&self.locations, vertices, &self.target_faces)
     }
@@ -101,11 +101,11 @@ impl RoughSphere {
     }
 }
 
-/// What the pieces have given so far.
+/// The maps of the pieces so far.
 pub(super) struct Assembly {
     locations: Vec<Option<Location>>,
     inverse: Vec<Option<Location>>,
-    /// Faces of the source.
+    /// The folded faces of the source.
     pub folded: Vec<usize>,
     bank_error: f64,
     certificates: Vec<PieceCertificates>,
@@ -128,7 +128,7 @@ impl Assembly {
         }
     }
 
-    /// Brings the map of a piece back to the surfaces.
+    /// Adds the map of a piece.
     pub(super) fn take(
         &mut self,
         ours: &Piece,
@@ -143,8 +143,8 @@ impl Assembly {
             let Some(vertex) = source.given_vertex(ours, copy) else { continue };
             let location = cut.given_place(theirs, location);
             match &mut self.locations[vertex] {
-                Some(other) => {
-                    let gap = other
+                Some(first) => {
+                    let gap = first
                         .point_on(target.points(), target.faces())
                         .distance(location.point_on(target.points(), target.faces()));
                     self.bank_error = self.bank_error.max(gap);
@@ -176,11 +176,12 @@ impl Assembly {
         self.folded.sort_unstable();
         self.folded.dedup();
         // 1. There and back
-        let locations: Vec<Location> = self.locations.iter().map(|found| found.unwrap_or_default()).collect();
+        let locations: Vec<Location> =
+            self.locations.iter().map(|location| location.unwrap_or_default()).collect();
         let registered = interpolated(&locations, meshes[1].faces(), &placement.target);
         let inverse = self.inverse_locations(meshes, &registered, placement);
         let back = interpolated(&inverse, meshes[0].faces(), &placement.source);
-        // 2. How well the curves lie on each other
+        // 2. The errors of the curves
         let paths = [curves.source, curves.target];
         let [there_error, back_error] =
             [(&locations, 0, 1), (&inverse, 1, 0)].map(|(locations, from, to)| -> Vec<f64> {
@@ -189,7 +190,7 @@ impl Assembly {
                 (0..paths[0].len()).map(error).collect()
             });
         let certificates = self.certificates(&there_error);
-        // 3. Figures of the map in space; the way back folds what the way there folds
+        // 3. Figures of the map in space; the inverse folds where the map does
         let positions = points_on(&locations, meshes[1].points(), meshes[1].faces());
         let there_figures = figures(meshes[0], &positions, certificates.folded.clone())?;
         let positions = points_on(&inverse, meshes[0].points(), meshes[0].faces());
@@ -212,8 +213,7 @@ impl Assembly {
         })
     }
 
-    /// The places of the target's vertices on the source; those that rounding has lost are looked up on the
-    /// sphere.
+    /// The locations of the target's vertices on the source; those that rounding has lost are located on the sphere.
     fn inverse_locations(
         &self,
         [source, target]: [&TriangleMesh; 2],
@@ -228,7 +228,7 @@ impl Assembly {
         (0..target.n_vertices()).map(|vertex| self.inverse[vertex].unwrap_or_else(|| lost(vertex))).collect()
     }
 
-    /// One direction of the map.
+    /// A direction of the map.
     fn map(
         &self,
         target: &TriangleMesh,
@@ -275,7 +275,7 @@ impl Assembly {
     }
 }
 
-/// Places as points of the unit sphere.
+/// Locations as points of the unit sphere.
 fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector3]) -> Vec<Vector3> {
     parallel::map(locations.len(), |vertex| {
         let place = locations[vertex].point_on(on_sphere, faces);
@@ -283,10 +283,10 @@ fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector3
     })
 }
 
-/// How far the image of a path's vertices strays from another path at most.
-fn strays(path: &[usize], other: &[usize], locations: &[Location], target: &TriangleMesh) -> f64 {
+/// The largest distance of the images of a path's vertices from its partner.
+fn strays(path: &[usize], partner: &[usize], locations: &[Location], target: &TriangleMesh) -> f64 {
     let segments: Vec<[Vector3; 2]> =
-        other.windows(2).map(|ends| [target.points()[ends[0]], target.points()[ends[1]]]).collect();
+        partner.windows(2).map(|ends| [target.points()[ends[0]], target.points()[ends[1]]]).collect();
     let strays = |&vertex: &usize| {
         let image = locations[vertex].point_on(target.points(), target.faces());
         segments.iter().fold(f64::INFINITY, |least, &segment| least.min(to_segment(image, segment)))
@@ -297,11 +297,11 @@ fn strays(path: &[usize], other: &[usize], locations: &[Location], target: &Tria
 /// The distance of a point from a segment.
 fn to_segment(x: Vector3, [from, to]: [Vector3; 2]) -> f64 {
     let along = to - from;
-    let part = ((x - from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-    x.distance(from + along * part)
+    let t = ((x - from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+    x.distance(from + along * t)
 }
 
-/// The figures of a map of a surface to places in space.
+/// The figures of a map of a surface into space.
 fn figures(mesh: &TriangleMesh, positions: &[Vector3], folded: Vec<usize>) -> Result<Distortion, Error> {
     distortion_in_space(mesh.points(), mesh.faces(), positions, folded, mesh.face_areas())
 }

@@ -5,8 +5,8 @@
 //! z ↦ (a z + b) / (b̄ z + ā) with |a|² − |b|² = 1. Tangent vectors at p are given in the orthonormal frame
 //! (1 − |p|²)/2 · {1, i}.
 //!
-//! Near the circle absolute coordinates lose digits, so everything that can is formed relative to one of the
-//! points. Every function takes constant time.
+//! Near the circle absolute coordinates lose digits, so quantities are formed relative to one of the points where
+//! possible. Every function takes constant time.
 
 use std::ops::Mul;
 
@@ -47,13 +47,13 @@ impl Moebius {
         (denominator * denominator).inv()
     }
 
-    /// The map that undoes this one.
+    /// The inverse map.
     pub fn inverse(&self) -> Self {
         Self { a: self.a.conj(), b: -self.b }
     }
 
     /// The isometry that takes p to `to_p` and the direction from p to q to that from `to_p` to `to_q`, hence
-    /// q to `to_q` where the distances agree.
+    /// q to `to_q` if the distances agree.
     pub fn between([p, q]: [Complex; 2], [to_p, to_q]: [Complex; 2]) -> Self {
         let turn = unit(seen_from(to_p, to_q)) * unit(seen_from(p, q)).conj();
         let half_turn = turn.sqrt();
@@ -64,14 +64,12 @@ impl Moebius {
         }
     }
 
-    /// How far the map moves the points of its axis; 0 where it has none.
+    /// The distance by which the map moves the points of its axis; 0 if it has none.
     pub fn translation_length(&self) -> f64 {
         2.0 * self.half_translation().asinh()
     }
 
-    /// The ends of the axis on the unit circle, the repelling one first; meaningless where the translation
-    /// length is
-    /// 0.
+    /// The ends of the axis on the unit circle, the repelling one first; meaningless if the translation length is 0.
     pub fn fixed_points(&self) -> [Complex; 2] {
         let root = self.half_translation().copysign(self.a.re);
         let end = |root: f64| unit(Complex::new(root, self.a.im) / self.b.conj());
@@ -84,7 +82,7 @@ impl Moebius {
         ((b - turn) * (b + turn)).max(0.0).sqrt()
     }
 
-    /// The same map with |a|² − |b|² = 1 again after rounding.
+    /// The map with |a|² − |b|² = 1 restored after rounding.
     fn normalized(self) -> Self {
         let (a, b) = (self.a.norm(), self.b.norm());
         let determinant = (a - b) * (a + b);
@@ -107,7 +105,7 @@ impl Mul for Moebius {
     }
 }
 
-/// Where q lies when p is moved to the origin without turning there.
+/// The image of q under the isometry that moves p to the origin without turning there.
 pub fn seen_from(p: Complex, q: Complex) -> Complex {
     (q - p) / (1.0 - p.conj() * q)
 }
@@ -117,7 +115,7 @@ pub fn distance(p: Complex, q: Complex) -> f64 {
     2.0 * ((q - p).norm() / (beneath_circle(p) * beneath_circle(q)).sqrt()).asinh()
 }
 
-/// Where the geodesic from p with direction v arrives after the length of v.
+/// The point of the geodesic from p with direction v at the distance |v|.
 pub fn exponential(p: Complex, v: Complex) -> Complex {
     let w = unit(v) * (0.5 * v.norm()).tanh();
     (w + p) / (1.0 + p.conj() * w)
@@ -128,8 +126,8 @@ pub fn to_hyperboloid(z: Complex) -> Vector3 {
     Vector3([2.0 * z.re, 2.0 * z.im, 1.0 + z.norm_sqr()]).map(|coordinate| coordinate / beneath_circle(z))
 }
 
-/// The point of the disk on the ray of (x, y, t), t > 0; a ray that rounding has put onto the cone or outside
-/// of it gives a point next to the circle.
+/// The point of the disk on the ray of (x, y, t), t > 0; a ray that rounding has put onto or outside the cone gives a
+/// point next to the circle.
 pub fn from_hyperboloid(Vector3([x, y, t]): Vector3) -> Complex {
     let radius = x.hypot(y);
     let height = ((t - radius) * (t + radius)).max(0.0).sqrt();
@@ -137,17 +135,17 @@ pub fn from_hyperboloid(Vector3([x, y, t]): Vector3) -> Complex {
     if z.norm() < 1.0 { z } else { unit(z) * INSIDE }
 }
 
-/// The point of Klein's model, where geodesics are straight.
+/// The corresponding point of Klein's model, where geodesics are straight.
 pub fn to_klein(z: Complex) -> Complex {
     2.0 * z / (1.0 + z.norm_sqr())
 }
 
-/// The point of the disk of a point of Klein's model.
+/// The point of the disk corresponding to a point of Klein's model.
 pub fn from_klein(k: Complex) -> Complex {
     k / (1.0 + beneath_circle(k).max(0.0).sqrt())
 }
 
-/// Positive where the triangle a, b, c is counterclockwise, negative where it is clockwise.
+/// Positive if the triangle a, b, c is counterclockwise, negative if it is clockwise.
 pub fn orientation(a: Complex, b: Complex, c: Complex) -> f64 {
     let [b, c] = [b, c].map(|corner| to_klein(seen_from(a, corner)));
     (b.conj() * c).im
@@ -159,7 +157,7 @@ fn beneath_circle(z: Complex) -> f64 {
     (1.0 - modulus) * (1.0 + modulus)
 }
 
-/// z / |z|, and 1 for 0.
+/// z / |z|; 1 for 0.
 fn unit(z: Complex) -> Complex {
     match z.norm() {
         0.0 => Complex::new(1.0, 0.0),

@@ -5,29 +5,29 @@ use super::metric::MetricMethod;
 use crate::error::Error;
 use crate::vector::Vector3;
 
-/// How the harmonic energy is minimized.
+/// The method that minimizes the harmonic energy.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// Riemannian Newton: to the minimum in a few steps.
+    /// Riemannian Newton: reaches the minimum in a few steps.
     #[default]
     Newton,
-    /// The paper's heat diffusion: thousands of small steps towards it.
+    /// The paper's heat diffusion: thousands of small steps towards the minimum.
     Heat,
 }
 
 /// Options of [`register_hyperbolic`](super::register_hyperbolic).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HyperbolicOptions<'a> {
-    /// How the hyperbolic metrics are computed.
+    /// The method that computes the hyperbolic metrics.
     pub metric: MetricMethod,
-    /// How the harmonic energy is minimized.
+    /// The method that minimizes the harmonic energy.
     pub solver: Solver,
-    /// Steps of the heat diffusion at the most.
+    /// Most steps of the heat diffusion.
     pub heat_steps: usize,
-    /// The heat diffusion ends where no component of the gradient is larger.
+    /// Largest component of the gradient at which the heat diffusion ends.
     pub heat_tolerance: f64,
-    /// The vertices of source and target on spheres around the origin, from which it is told how the surfaces
-    /// lie over each other; conformal maps where `None`. They need not be aligned.
+    /// The vertices of source and target on spheres around the origin, which lay the surfaces over each other; they
+    /// need not be aligned. `None`: conformal maps.
     pub spheres: Option<[&'a [Vector3]; 2]>,
 }
 

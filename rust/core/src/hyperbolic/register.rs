@@ -19,13 +19,13 @@ use crate::vector::Vector3;
 
 /// Registers two surfaces of genus 0, closed or with boundary, by pairs of landmark curves.
 ///
-/// Curves run along edges from vertex to vertex; open ones are matched from start to end by shares of their
-/// length, closed ones have neither start nor direction. Boundary loops are features too.
+/// Curves run along edges from vertex to vertex. Open curves are matched from start to end by shares of their
+/// length; the start and the direction of closed curves mean nothing. Boundary loops are features too.
 ///
 /// # Errors
-/// Surfaces of another topology, curves that are no simple edge paths or touch each other, and features that
-/// do not pair up are refused before any work. [`NumericsError::NoEmbedding`] and [`NumericsError::NoHyperbolicMetric`] where
-/// double precision does not suffice; [`Error::CancelledEarly`].
+/// Before any work: surfaces of another topology, curves that are no simple edge paths or touch each other, and
+/// features that do not pair up. [`NumericsError::NoEmbedding`] and [`NumericsError::NoHyperbolicMetric`] if double
+/// precision does not suffice; [`Error::CancelledEarly`].
 pub fn register_hyperbolic(
     source: &TriangleMesh,
     target: &TriangleMesh,
@@ -45,7 +45,7 @@ pub fn register_hyperbolic(
         target
     };
     let divided = divided(source, target, pairs)?;
-    // 2. Roughly onto each other, and cut into pieces
+    // 2. The surfaces laid over each other, and cut into pieces
     let watch = Watch::new(observer, 0.0, "Laying the surfaces over each other");
     let placement = placed([source, target], &divided, options.spheres, &watch)?;
     if placement.mirrored {
@@ -54,9 +54,9 @@ pub fn register_hyperbolic(
     let pieces = pieces(source, target, &divided, &placement);
     // 3. Piece by piece onto the target
     let mut assembly = Assembly::new([source, target]);
-    for (at, (ours, theirs)) in pieces.iter().enumerate() {
-        let part = |k: usize| 0.05 + 0.9 * k as f64 / pieces.len() as f64;
-        let mut phase = Phase { whole: observer, from: part(at), to: part(at + 1) };
+    for (number, (ours, theirs)) in pieces.iter().enumerate() {
+        let fraction = |k: usize| 0.05 + 0.9 * k as f64 / pieces.len() as f64;
+        let mut phase = Phase { whole: observer, from: fraction(number), to: fraction(number + 1) };
         let sliced = {
             let watch = Watch::new(&mut phase, 0.0, "Cutting open");
             let isotopy = Isotopy::between(ours, theirs, &watch);
@@ -67,7 +67,7 @@ pub fn register_hyperbolic(
         let map = map.map_err(|error| of_whole_surface(error, ours, theirs))?;
         assembly.take(ours, theirs, &sliced, map, target);
     }
-    // 4. A map without folds or none; the paper's diffusion may end before it has unfolded all
+    // 4. A map without folds or none; only the paper's diffusion may end with folds
     if options.solver == Solver::Newton
         && let Some(folded) = Elements::collect(assembly.folded.iter().copied())
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the caller of a registration by curves should look at: signs that the curves do not say what was meant.
+//! Warnings of registrations by curves: signs that the curves do not say what was meant.
 //!
 //! Cost: linear.
 
@@ -13,17 +13,17 @@ use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::vector::Vector3;
 
-/// A harmonic energy of more than this over that of the identity says that the curves hardly fit.
+/// Energy, relative to that of the identity, above which the curves hardly fit.
 const STRAINED: f64 = 2.0;
-/// Faces whose share of area changes more than this are stretched or squeezed beyond use,
+/// Factor on a face's share of the area beyond which it is stretched or squeezed too much.
 const TENFOLD: f64 = 10.0;
-/// and this share of the surface is too much of them.
+/// Share of the surface in such faces above which to warn.
 const TOO_MUCH: f64 = 0.05;
-/// Surfaces look to opposite sides for sure where their area vectors are longer than this part of their areas.
+/// Length of an area vector, relative to the area, above which a surface clearly faces one side.
 const FACING: f64 = 0.2;
 
 kinds! {
-    /// What a warning is about; each says what the indices of its elements are of.
+    /// The subject of a warning; each says what the indices of its elements refer to.
     WarningKind {
         /// Open surfaces look to opposite sides, so that the map mirrors one.
         OppositeNormals = "opposite_normals",
@@ -77,7 +77,7 @@ pub enum Warning {
         100.0 * share
     )]
     Distorted {
-        /// The faces of the source that are.
+        /// These faces of the source.
         faces: Elements,
         /// Their share of the source's area.
         share: f64,
@@ -85,7 +85,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// What the warning is about, whatever its message says.
+    /// The subject of the warning, whatever its message says.
     pub fn kind(&self) -> WarningKind {
         match self {
             Self::OppositeNormals => WarningKind::OppositeNormals,
@@ -96,12 +96,12 @@ impl Warning {
         }
     }
 
-    /// The surface whose elements are meant.
+    /// The surface of the elements.
     pub fn side(&self) -> Option<Side> {
         matches!(self, Self::Distorted { .. }).then_some(Side::Source)
     }
 
-    /// The curve that is meant.
+    /// The curve in question.
     pub fn curve(&self) -> Option<usize> {
         match self {
             Self::BackwardCurve { curve } => Some(*curve),
@@ -109,7 +109,7 @@ impl Warning {
         }
     }
 
-    /// The elements that are meant.
+    /// The elements in question.
     pub fn elements(&self) -> Option<&Elements> {
         match self {
             Self::Distorted { faces, .. } => Some(faces),
@@ -127,7 +127,7 @@ impl Warning {
     }
 }
 
-/// One warning for each doubt, the most likely cause first.
+/// The warnings, the most likely cause first.
 pub(super) fn warnings(
     meshes: [&TriangleMesh; 2],
     placement: &Placement,
@@ -146,7 +146,7 @@ pub(super) fn warnings(
     warnings
 }
 
-/// Whether two open surfaces look to opposite sides as they lie in space.
+/// Whether two open surfaces face opposite sides in space.
 fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
     let facing = meshes.map(|mesh| {
         let vectors = mesh.faces().iter().map(|&face| area_vector(triangle(mesh.points(), face)));
@@ -157,7 +157,7 @@ fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
     facing[0].norm() > FACING && facing[1].norm() > FACING && facing[0].dot(facing[1]) < -least
 }
 
-/// The faces whose share of area changes more than tenfold, where they are too much of the surface.
+/// The faces whose share of area changes more than tenfold, if they are too much of the surface.
 fn distorted(mesh: &TriangleMesh, figures: &Distortion) -> Option<Warning> {
     let areas = mesh.face_areas();
     let is_distorted = |face: &usize| figures.log2_area_ratio[*face].abs() > TENFOLD.log2();

@@ -81,11 +81,11 @@ pub(crate) mod tests {
             for turn in [[0.5, -0.1, 0.7, 0.5], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]] {
                 let known = Similarity { scale, rotation: rotation_of(turn), translation };
                 let moved: Vec<Vector3> = points.iter().map(|&x| known.apply(x)).collect();
-                let found = similarity(&points, &moved, &weights);
+                let computed = similarity(&points, &moved, &weights);
                 let lost = 1e-15 * translation.max_abs().max(scale);
-                assert!((found.scale / scale - 1.0).abs() < 1e-12 + 10.0 * lost / scale);
+                assert!((computed.scale / scale - 1.0).abs() < 1e-12 + 10.0 * lost / scale);
                 for (&x, &y) in points.iter().zip(&moved) {
-                    let apart = (found.apply(x) - y).map(|d| d / scale);
+                    let apart = (computed.apply(x) - y).map(|d| d / scale);
                     assert!(apart.distance(Vector3::ZERO) < 1e-12 + 10.0 * lost / scale);
                 }
             }

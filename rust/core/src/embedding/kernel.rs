@@ -13,14 +13,14 @@ pub(super) fn kernel_centroid(
     edges: impl Iterator<Item = [Vector3; 2]> + Clone,
     room: &mut [Vec<[f64; 2]>; 2],
 ) -> [f64; 2] {
-    let reach = edges.clone().map(|[one, _]| (one - center).norm()).fold(0.0, f64::max);
+    let reach = edges.clone().map(|[start, _]| (start - center).norm()).fold(0.0, f64::max);
     let [polygon, next] = room;
     polygon.clear();
     polygon.extend([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]]);
-    for [one, two] in edges {
-        let normal = one.cross(two - one);
+    for [start, end] in edges {
+        let normal = start.cross(end - start);
         // exactly 0 for the two edges that end at the center itself
-        let constant = center.dot((one - center).cross(two - center));
+        let constant = center.dot((start - center).cross(end - center));
         let [a, b] = basis.map(|axis| axis.dot(normal));
         clip(polygon, |z| constant + a * z[0] + b * z[1], next);
         std::mem::swap(polygon, next);
@@ -36,8 +36,8 @@ fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64, kept: &mut Vec<[
     for &to in polygon {
         let there = height(to);
         if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
-            let part = here / (here - there);
-            kept.push([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])));
+            let t = here / (here - there);
+            kept.push([0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis])));
         }
         if there >= 0.0 {
             kept.push(to);

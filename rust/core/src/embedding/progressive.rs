@@ -103,8 +103,8 @@ pub fn relaxed(
     let sweeps = 4 * RELAXED_SHAPES.len();
     for sweep in 0..sweeps {
         embedding.shape = RELAXED_SHAPES[sweep / 4];
-        let part = |sweep: usize| sweep as f64 / sweeps as f64;
-        let mut phase = Phase { whole: observer, from: part(sweep), to: part(sweep + 1) };
+        let fraction = |sweep: usize| sweep as f64 / sweeps as f64;
+        let mut phase = Phase { whole: observer, from: fraction(sweep), to: fraction(sweep + 1) };
         if embedding.sweep(&mut phase).is_err() {
             return (embedding.places, Status::Cancelled);
         }
@@ -154,18 +154,22 @@ impl<'a> Embedding<'a> {
         // 3. Bring the vertices back one by one
         let mut next_sweep = 2 * n_placed;
         let n = self.mesh.n_vertices();
-        let part = |n_placed: usize| COARSENING + (1.0 - COARSENING) * n_placed as f64 / n as f64;
+        let fraction = |n_placed: usize| COARSENING + (1.0 - COARSENING) * n_placed as f64 / n as f64;
         while let Some(collapse) = self.decimation.refine() {
             self.insert(collapse).ok_or(Stop::NoRoom)?;
             n_placed += 1;
-            if n_placed.is_multiple_of(BEAT) && !observer.progress(part(n_placed), "Refining") {
+            if n_placed.is_multiple_of(BEAT) && !observer.progress(fraction(n_placed), "Refining") {
                 return Err(Stop::Cancelled);
             }
             // 4. Relax all vertices whenever their number has doubled
             if n_placed == next_sweep || n_placed == n {
                 next_sweep *= 2;
                 for _ in 0..SWEEPS {
-                    self.sweep(&mut Phase { whole: observer, from: part(n_placed), to: part(n_placed) })?;
+                    self.sweep(&mut Phase {
+                        whole: observer,
+                        from: fraction(n_placed),
+                        to: fraction(n_placed),
+                    })?;
                 }
             }
         }
@@ -217,7 +221,7 @@ impl<'a> Embedding<'a> {
         }
         self.places[vertex as usize] = place;
         self.placed.push(vertex);
-        // 3. One of each neighbor, from the vertex onto which it had collapsed
+        // 3. One Newton step of each neighbor, first of the vertex onto which it had collapsed
         let mut ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
         let first = ring.iter().position(|&neighbor| neighbor == onto).unwrap_or(0);
         ring.rotate_left(first);
@@ -282,13 +286,13 @@ impl<'a> Embedding<'a> {
         let apex = self.decimation.apex();
         self.star.clear();
         let (mut before, mut behind) = (None, None);
-        for (one, two, target) in self.decimation.star(vertex) {
-            if one == apex {
-                behind = Some(two);
-            } else if two == apex {
-                before = Some(one);
+        for (next, after, target) in self.decimation.star(vertex) {
+            if next == apex {
+                behind = Some(after);
+            } else if after == apex {
+                before = Some(next);
             } else {
-                self.star.push(self.places[one as usize], self.places[two as usize], target);
+                self.star.push(self.places[next as usize], self.places[after as usize], target);
             }
         }
         if let (Some(before), Some(behind)) = (before, behind) {

@@ -61,14 +61,14 @@ struct Derivatives {
 }
 
 impl Face {
-    fn new(one: Vector3, two: Vector3, target: f64) -> Self {
-        let edge = two - one;
-        let product = |i: usize, j: usize| (one[i] * edge[j]).abs() + (one[j] * edge[i]).abs();
+    fn new(p: Vector3, q: Vector3, target: f64) -> Self {
+        let edge = q - p;
+        let product = |i: usize, j: usize| (p[i] * edge[j]).abs() + (p[j] * edge[i]).abs();
         Self {
-            ends: [one, two],
-            middle: (one + two) * 0.5,
+            ends: [p, q],
+            middle: (p + q) * 0.5,
             length: 1.5 * edge.dot(edge),
-            normal: one.cross(edge),
+            normal: p.cross(edge),
             rounding: CLEARLY * product(1, 2).max(product(2, 0)).max(product(0, 1)),
             target,
         }
@@ -100,8 +100,8 @@ impl Star {
     }
 
     /// Adds the face between the vertex and two neighbors, which follow it counter-clockwise.
-    pub(super) fn push(&mut self, one: Vector3, two: Vector3, target: f64) {
-        self.faces.push(Face::new(one, two, target));
+    pub(super) fn push(&mut self, p: Vector3, q: Vector3, target: f64) {
+        self.faces.push(Face::new(p, q, target));
         self.measure += target;
     }
 
@@ -197,9 +197,10 @@ impl Derivatives {
         let radius = (half * half + b * b).sqrt();
         let largest = mean.abs() + radius;
         let inverse = |value: f64| 1.0 / value.abs().max(1e-3 * largest);
-        let [one, two] = [inverse(mean + radius), inverse(mean - radius)];
-        // the inverse is (one + two)/2 of the identity and (one − two)/2 of the reflection
-        let (same, turned) = (0.5 * (one + two), if radius > 0.0 { 0.5 * (one - two) / radius } else { 0.0 });
+        let [first, second] = [inverse(mean + radius), inverse(mean - radius)];
+        // the inverse is (first + second)/2 of the identity and (first − second)/2 of the reflection
+        let (same, turned) =
+            (0.5 * (first + second), if radius > 0.0 { 0.5 * (first - second) / radius } else { 0.0 });
         let reflected = [half * g[0] + b * g[1], b * g[0] - half * g[1]];
         let direction = [0, 1].map(|k| -(same * g[k] + turned * reflected[k]));
         let slope = g[0] * direction[0] + g[1] * direction[1];
@@ -214,14 +215,10 @@ pub(super) fn angle(from: Vector3, to: Vector3) -> f64 {
 }
 
 /// The energy of the arcs beside x and its two derivatives by the angle of x.
-fn arc_energy(x: Vector3, [(before, share), (behind, other)]: [(Vector3, f64); 2]) -> [f64; 3] {
-    let (one, two) = (1.0 / angle(before, x), 1.0 / angle(x, behind));
-    let (share, other) = (ARC * share * share, ARC * other * other);
-    [
-        share * one + other * two,
-        other * two * two - share * one * one,
-        2.0 * (share * one * one * one + other * two * two * two),
-    ]
+fn arc_energy(x: Vector3, [(before, share_before), (behind, share_behind)]: [(Vector3, f64); 2]) -> [f64; 3] {
+    let (p, q) = (1.0 / angle(before, x), 1.0 / angle(x, behind));
+    let [a, b] = [share_before, share_behind].map(|share| ARC * share * share);
+    [a * p + b * q, b * q * q - a * p * p, 2.0 * (a * p * p * p + b * q * q * q)]
 }
 
 #[cfg(test)]

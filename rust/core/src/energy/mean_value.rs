@@ -90,11 +90,11 @@ pub(crate) fn correct(
 fn uniform_weights(mesh: &TriangleMesh, vertex: usize) -> Vec<(usize, f64)> {
     let corners = mesh.vertex_corners(vertex);
     let weight = 0.5 / corners.len() as f64;
-    let others = corners.iter().flat_map(|&corner| {
+    let neighbors = corners.iter().flat_map(|&corner| {
         let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
         [1, 2].map(|step| face[(k + step) % 3] as usize)
     });
-    others.map(|other| (other, weight)).collect()
+    neighbors.map(|neighbor| (neighbor, weight)).collect()
 }
 
 /// The weights (6.3b) of the one-ring of `vertex`, scaled to sum 1; a neighbor appears once per shared face.

@@ -65,9 +65,9 @@ impl Cholesky {
     /// As [`Self::refactor`], and [`Error::CancelledEarly`].
     pub(crate) fn refactor_while(&mut self, upper: &CsMat<f64>, watch: &Watch<'_>) -> Result<(), Error> {
         let values = upper.data();
-        let assemble = |at: &Element, place: &mut Place<'_, f64>| {
-            let column = if at.rows[1] == NONE { at.rows[0] } else { at.rows[1] };
-            place.add(at.rows[0] as usize, column as usize, values[at.index as usize]);
+        let assemble = |element: &Element, place: &mut Place<'_, f64>| {
+            let column = if element.rows[1] == NONE { element.rows[0] } else { element.rows[1] };
+            place.add(element.rows[0] as usize, column as usize, values[element.index as usize]);
         };
         self.factor.refactor_by(&self.symbolic, &assemble, watch).map_err(|failure| match failure {
             Failure::Cancelled => Error::CancelledEarly,

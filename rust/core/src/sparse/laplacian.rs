@@ -76,14 +76,14 @@ impl Laplacian {
         });
     }
 
-    /// Adds `part` of the mean diagonal entry to the diagonal of the assembled matrix.
-    pub fn shift_diagonal(&mut self, part: f64) {
+    /// Adds `share` of the mean diagonal entry to the diagonal of the assembled matrix.
+    pub fn shift_diagonal(&mut self, share: f64) {
         let n = self.free.len();
         // the diagonal is the last entry of each column
         let last: Vec<usize> =
             (0..n).map(|column| self.matrix.indptr().outer_inds_sz(column).end - 1).collect();
         let values = self.matrix.data_mut();
-        let shift = part * last.iter().map(|&k| values[k]).sum::<f64>() / n.max(1) as f64;
+        let shift = share * last.iter().map(|&k| values[k]).sum::<f64>() / n.max(1) as f64;
         last.iter().for_each(|&k| values[k] += shift);
     }
 

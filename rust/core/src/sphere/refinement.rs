@@ -90,8 +90,8 @@ pub(super) fn refine(
         // 1. Split the blocked faces
         let Some((next, start)) = refined.split(&map) else { break };
         // 2. Even out areas from there
-        let part = |round: usize| round as f64 / ROUNDS as f64;
-        let mut phase = Phase { whole: observer, from: part(round), to: part(round + 1) };
+        let fraction = |round: usize| round as f64 / ROUNDS as f64;
+        let mut phase = Phase { whole: observer, from: fraction(round), to: fraction(round + 1) };
         (map, status) = match next.evened_out(&start, options, history, &mut phase) {
             Ok(result) => result,
             Err(Error::CancelledEarly) => (start, Status::Cancelled),
@@ -155,10 +155,10 @@ impl Refined {
         let on_sphere = parents.iter().map(|&ends| onto_sphere(middle(map, ends)));
         let map: SpatialMap = map.iter().copied().map(Some).chain(on_sphere).collect::<Option<_>>()?;
         // 3. Targets
-        let part = |k: usize| self.targets[face_of[k]] / f64::from(parts[k]);
+        let share = |k: usize| self.targets[face_of[k]] / f64::from(parts[k]);
         let split = Self {
             mesh: TriangleMesh::new(&coordinates(points), &faces).ok()?,
-            targets: parallel::map(faces.len(), part),
+            targets: parallel::map(faces.len(), share),
             parents: self.parents.iter().copied().chain(parents).collect(),
             face_of: face_of.iter().map(|&face| self.face_of[face]).collect(),
         };

@@ -394,9 +394,9 @@ mod tests {
     fn roots_of_all_degrees_are_found() {
         assert_eq!(roots(1.0, 0.0, 0.0, 1.0), [None, None]);
         assert_eq!(roots(-1.0, 2.0, 0.0, 1.0), [Some(0.5), None]);
-        let mut found = roots(2.0, -3.0, 1.0, 1.0).map(Option::unwrap);
-        found.sort_unstable_by(f64::total_cmp);
-        assert_eq!(found, [1.0, 2.0]);
+        let mut sorted = roots(2.0, -3.0, 1.0, 1.0).map(Option::unwrap);
+        sorted.sort_unstable_by(f64::total_cmp);
+        assert_eq!(sorted, [1.0, 2.0]);
         assert_eq!(roots(1.0, 0.0, 1.0, 1.0), [None, None]);
     }
 }

@@ -190,13 +190,13 @@ impl<'a> Descent<'a> {
         self.problem.energy.unevenness(map).sqrt()
     }
 
-    /// True if the contacts could give away less than `part` of the energy.
-    pub(super) fn is_worth_less(&self, map: &[[f64; 2]], goal: &Goal, part: f64) -> bool {
+    /// True if the contacts could give away less than `share` of the energy.
+    pub(super) fn is_worth_less(&self, map: &[[f64; 2]], goal: &Goal, share: f64) -> bool {
         let Some(outline) = self.problem.outline else { return true };
         let stiffness = self.stiffness(outline, goal.weight);
         let contacts = outline.contacts(map, goal.range);
         let gain: f64 = contacts.iter().map(|contact| contact.possible_gain(stiffness)).sum();
-        gain <= part * self.problem.energy.value(map, goal.weight)
+        gain <= share * self.problem.energy.value(map, goal.weight)
     }
 
     fn stiffness(&self, outline: &Outline, weight: f64) -> Stiffness {
@@ -235,8 +235,8 @@ impl<'a> Descent<'a> {
             let mut tried = self.curvature;
             for _ in 0..MOST_ATTEMPTS {
                 let damping = DAMPING * (1.0 - tried);
-                let part = Hessian { weight, damping, least, curvature: tried };
-                match self.solve(iterate, &part, &springs, &gradient, SHIFTS[1], watch) {
+                let hessian = Hessian { weight, damping, least, curvature: tried };
+                match self.solve(iterate, &hessian, &springs, &gradient, SHIFTS[1], watch) {
                     Ok(direction) if direction.decrement > 0.0 => {
                         self.curvature =
                             if tried == self.curvature { (GROW * tried).min(1.0) } else { tried };
@@ -342,9 +342,9 @@ impl<'a> Descent<'a> {
             [of_face[2 * c], of_face[2 * c + 1]]
         });
         for (contact, [force, stiffness]) in contacts.iter().zip(springs) {
-            let at: [f64; 6] = std::array::from_fn(|k| x[contact.vertices[k / 2] as usize][k % 2]);
-            let pull = stiffness * contact.slopes.iter().zip(&at).map(|(a, b)| a * b).sum::<f64>();
-            let bent = contact.curvature(&at);
+            let motion: [f64; 6] = std::array::from_fn(|k| x[contact.vertices[k / 2] as usize][k % 2]);
+            let pull = stiffness * contact.slopes.iter().zip(&motion).map(|(a, b)| a * b).sum::<f64>();
+            let bent = contact.curvature(&motion);
             for k in 0..6 {
                 let of_entry = pull * contact.slopes[k] + curvature * force * bent[k];
                 product[contact.vertices[k / 2] as usize][k % 2] += of_entry;

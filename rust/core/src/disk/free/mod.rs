@@ -305,8 +305,8 @@ fn least_shear(
         goal.weight = match heavier {
             // interpolate the logarithms linearly, a little to the side of the tolerance
             Some([heavy, more]) if is_within => {
-                let part = (more / (0.95 * tolerance)).ln() / (more / deviation).ln();
-                heavy * (weight / heavy).powf(part.clamp(0.1, 1.0))
+                let exponent = (more / (0.95 * tolerance)).ln() / (more / deviation).ln();
+                heavy * (weight / heavy).powf(exponent.clamp(0.1, 1.0))
             }
             _ if was_within => 0.8 * weight,
             _ => LEVEL * weight,

@@ -117,13 +117,13 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status) {
         let whole = self.stopping();
-        let part = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
+        let fraction = |done: usize| done as f64 / whole.max_iterations.max(1) as f64;
         let (begun, mut done) = (history.iterations(), 0);
         loop {
             let budget = ROUND.min(whole.max_iterations - done);
             let options =
                 CgOptions { stopping: Stopping { max_iterations: budget, ..whole }, ..CgOptions::default() };
-            let mut round = Phase { whole: observer, from: part(done), to: part(done + budget) };
+            let mut round = Phase { whole: observer, from: fraction(done), to: fraction(done + budget) };
             match domain.set_preconditioner(&map, &Watch::new(&mut round, 0.0, MESSAGE)) {
                 Ok(()) => {}
                 Err(Error::CancelledEarly) => return (map, Status::Cancelled),

@@ -310,14 +310,14 @@ impl Rectangle<'_> {
 
     /// The map stretched towards the aspect of least angle energy, and the logarithm by which it is off; unchanged where the
     /// aspect is given.
-    fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, part: f64) -> (SpatialMap, f64) {
+    fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, relaxation: f64) -> (SpatialMap, f64) {
         if self.aspect.is_some() {
             return (map.clone(), 0.0);
         }
         let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
         let now = ((high[0] - low[0]) / (high[1] - low[1])).ln();
         let bound = MOST_ASPECT.ln();
-        let change = (now + 2.0 * part * best_stretch(&problem.energy, map)).clamp(-bound, bound) - now;
+        let change = (now + 2.0 * relaxation * best_stretch(&problem.energy, map)).clamp(-bound, bound) - now;
         let factor = (0.5 * change).exp();
         let stretched: SpatialMap =
             map.iter().map(|&Vector3([x, y, z])| Vector3([x * factor, y / factor, z])).collect();

@@ -86,12 +86,12 @@ impl Ring {
         let onto = self.points[neighbor];
         let mut worst = 1.0;
         for k in neighbor + 1..neighbor + n - 1 {
-            let [one, two] = [k, k + 1].map(|k| if k < n { k } else { k - n });
-            if self.apex.is_some_and(|apex| apex == one || apex == two) {
+            let [next, after] = [k, k + 1].map(|k| if k < n { k } else { k - n });
+            if self.apex.is_some_and(|apex| apex == next || apex == after) {
                 continue;
             }
-            let (edge, spoke) = (self.points[two] - self.points[one], self.points[one] - onto);
-            let next_spoke = self.points[two] - onto;
+            let (edge, spoke) = (self.points[after] - self.points[next], self.points[next] - onto);
+            let next_spoke = self.points[after] - onto;
             let squares = edge.dot(edge) + spoke.dot(spoke) + next_spoke.dot(next_spoke);
             let normal = spoke.cross(edge);
             let shape = if squares > 0.0 { normal.dot(normal) / (squares * squares) } else { 0.0 };
@@ -128,8 +128,8 @@ impl Decimation<'_> {
                     queue.push(Reverse(Candidate { cost: 0.0, vertex }));
                 }
             }
-            let part = self.collapses.len() as f64 / surplus as f64;
-            if self.collapses.len().is_multiple_of(BEAT) && !observer.progress(part, "Coarsening") {
+            let fraction = self.collapses.len() as f64 / surplus as f64;
+            if self.collapses.len().is_multiple_of(BEAT) && !observer.progress(fraction, "Coarsening") {
                 return None;
             }
         }
@@ -182,7 +182,7 @@ impl Decimation<'_> {
                 let cost = self.tie_breakers[vertex as usize] * ring.weight() * best.0.sqrt();
                 return (cost, Some(best.2));
             }
-            rated.retain(|other| other.1 != best.1);
+            rated.retain(|candidate| candidate.1 != best.1);
         }
         (f64::INFINITY, None)
     }

@@ -145,11 +145,11 @@ impl<'a> Decimation<'a> {
             *self.twin_mut(across) = corner;
         }
         // 2. Give the star its vertex back
-        let mut at = corner;
+        let mut current = corner;
         loop {
-            self.faces[at as usize / 3].vertices[at as usize % 3] = vertex;
-            at = self.turned(at);
-            if at == corner {
+            self.faces[current as usize / 3].vertices[current as usize % 3] = vertex;
+            current = self.turned(current);
+            if current == corner {
                 break;
             }
         }
@@ -228,10 +228,10 @@ impl<'a> Decimation<'a> {
     /// The faces that share the measure of the star around a corner: those of the star that are not at the apex; where there
     /// is only one, also the face across from the vertex, which inherits it.
     fn measured_faces(&self, corner: u32) -> impl Iterator<Item = u32> {
-        let own = self.around(corner).filter(|&corner| (corner as usize) < 3 * self.mesh.n_faces());
-        let is_ear = own.clone().nth(1).is_none();
-        let heir = own.clone().next().filter(|_| is_ear).map(|corner| self.twin(corner));
-        own.chain(heir).map(|corner| corner / 3)
+        let star = self.around(corner).filter(|&corner| (corner as usize) < 3 * self.mesh.n_faces());
+        let is_ear = star.clone().nth(1).is_none();
+        let heir = star.clone().next().filter(|_| is_ear).map(|corner| self.twin(corner));
+        star.chain(heir).map(|corner| corner / 3)
     }
 
     /// The faces on both sides of the edge from the vertex at a corner to that of the next corner.

@@ -68,7 +68,7 @@ pub(crate) fn descend(
     debug_assert!(options.profile == Profile::Barrier);
     let MappedSurface { mesh, targets, codomain } = *surface;
     let floors = floors(targets);
-    let part = |k: usize| match k {
+    let fraction = |k: usize| match k {
         0 => 0.0,
         _ => FIRST_PART + (1.0 - FIRST_PART) * (k - 1) as f64 / (floors.len() - 1) as f64,
     };
@@ -93,8 +93,8 @@ pub(crate) fn descend(
             // the stages were for the first floor
             options.path = AnglePath::Balanced;
         }
-        let to = if floors.len() == 1 { 1.0 } else { part(k + 1) };
-        let mut phase = Phase { whole: observer, from: part(k), to };
+        let to = if floors.len() == 1 { 1.0 } else { fraction(k + 1) };
+        let mut phase = Phase { whole: observer, from: fraction(k), to };
         (map, status) = minimize(&problem, map, &options, history, &mut phase);
         if status == Status::Cancelled {
             break;

@@ -63,13 +63,13 @@ fn quadratic<S, T>(start: &Trial<S>, trial: &Trial<T>) -> f64 {
 }
 
 /// The minimizer of the cubic through φ(0), φ'(0) and the last two trials, each (α, φ(α)).
-fn cubic<S>(start: &Trial<S>, (one, value_one): (f64, f64), (two, value_two): (f64, f64)) -> f64 {
-    let [rest_one, rest_two] =
-        [(one, value_one), (two, value_two)].map(|(step, value)| value - start.value - start.slope * step);
-    let [scaled_one, scaled_two] = [rest_one / (one * one), rest_two / (two * two)];
-    let a = (scaled_one - scaled_two) / (one - two);
-    let b = (one * scaled_two - two * scaled_one) / (one - two);
-    if a.abs() * one > 1e-12 * b.abs() {
+fn cubic<S>(start: &Trial<S>, (s, value_s): (f64, f64), (t, value_t): (f64, f64)) -> f64 {
+    let [rest_s, rest_t] =
+        [(s, value_s), (t, value_t)].map(|(step, value)| value - start.value - start.slope * step);
+    let [scaled_s, scaled_t] = [rest_s / (s * s), rest_t / (t * t)];
+    let a = (scaled_s - scaled_t) / (s - t);
+    let b = (s * scaled_t - t * scaled_s) / (s - t);
+    if a.abs() * s > 1e-12 * b.abs() {
         (-b + (b * b - 3.0 * a * start.slope).sqrt()) / (3.0 * a)
     } else {
         -0.5 * start.slope / b
@@ -85,16 +85,16 @@ mod tests {
     }
 
     #[test]
-    fn the_models_have_the_minimisers_of_a_quadratic_and_a_cubic() {
+    fn the_models_have_the_minimizers_of_a_quadratic_and_a_cubic() {
         let parabola = |x: f64| 3.0 * x * x - 2.0 * x + 1.0;
         let start = at(parabola, 0.0, -2.0);
         assert!((quadratic(&start, &at(parabola, 4.0, 0.0)) - 1.0 / 3.0).abs() < 1e-14);
         let curve = |x: f64| x.powi(3) + x * x - 5.0 * x + 7.0;
         let start = at(curve, 0.0, -5.0);
-        let found = cubic(&start, (4.0, curve(4.0)), (6.0, curve(6.0)));
-        assert!((found - 1.0).abs() < 1e-12, "{found}");
-        let found = cubic(&at(parabola, 0.0, -2.0), (4.0, parabola(4.0)), (6.0, parabola(6.0)));
-        assert!((found - 1.0 / 3.0).abs() < 1e-12, "{found}");
+        let minimizer = cubic(&start, (4.0, curve(4.0)), (6.0, curve(6.0)));
+        assert!((minimizer - 1.0).abs() < 1e-12, "{minimizer}");
+        let minimizer = cubic(&at(parabola, 0.0, -2.0), (4.0, parabola(4.0)), (6.0, parabola(6.0)));
+        assert!((minimizer - 1.0 / 3.0).abs() < 1e-12, "{minimizer}");
     }
 
     #[test]
@@ -103,8 +103,8 @@ mod tests {
             let value =
                 |x: f64| if x < barrier { (x - 0.5).powi(2) + 0.1 * (5.0 * x).sin() } else { f64::NAN };
             let start = at(value, 0.0, -0.5);
-            let found = backtrack(&start, first, |step| at(value, step, 0.0)).expect("a step");
-            assert!(found.value < start.value && found.step <= first);
+            let trial = backtrack(&start, first, |step| at(value, step, 0.0)).expect("a step");
+            assert!(trial.value < start.value && trial.step <= first);
         }
     }
 

@@ -121,9 +121,9 @@ mod tests {
         ];
         for (value, slope) in cases {
             for first in [1e-6, 1e-2, 0.5, 1.0, 10.0, 1e6] {
-                let (start, found) = search(first, value, slope);
+                let (start, trial) = search(first, value, slope);
                 assert!(
-                    WolfeOptions::default().accepts(&start, &found.expect("a step")),
+                    WolfeOptions::default().accepts(&start, &trial.expect("a step")),
                     "first trial {first}"
                 );
             }
@@ -133,14 +133,14 @@ mod tests {
     #[test]
     fn steps_that_are_not_allowed_shorten_the_bracket() {
         // infinite from 0.3 on, still falling there
-        let (start, found) = search(8.0, |x| if x < 0.3 { -x } else { f64::INFINITY }, |_| -1.0);
-        let found = found.expect("a step that decreases");
-        assert!(found.step < 0.3 && found.value < start.value);
+        let (start, trial) = search(8.0, |x| if x < 0.3 { -x } else { f64::INFINITY }, |_| -1.0);
+        let trial = trial.expect("a step that decreases");
+        assert!(trial.step < 0.3 && trial.value < start.value);
     }
 
     #[test]
     fn gives_up_where_nothing_decreases() {
-        let (_, found) = search(1.0, |x| x, |_| -1.0);
-        assert!(found.is_none());
+        let (_, trial) = search(1.0, |x| x, |_| -1.0);
+        assert!(trial.is_none());
     }
 }

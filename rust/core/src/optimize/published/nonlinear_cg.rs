@@ -53,11 +53,11 @@ pub fn minimize<D: Domain>(
             return (state.map, status);
         }
         // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none
-        let found = line_step(domain, &state, &direction, step, &options.wolfe).or_else(|| {
+        let trial = line_step(domain, &state, &direction, step, &options.wolfe).or_else(|| {
             direction = descent(&h);
             line_step(domain, &state, &direction, 1.0, &options.wolfe)
         });
-        let Some(trial) = found else {
+        let Some(trial) = trial else {
             return (state.map, Status::Stalled);
         };
         (step, state) = (trial.step, trial.data.expect("an accepted trial has its state"));

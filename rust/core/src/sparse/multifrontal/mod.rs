@@ -183,8 +183,8 @@ impl<T: Scalar> Factor<T> {
         element: &(dyn Fn(usize) -> [[f64; 6]; 6] + Sync),
         watch: &Watch<'_>,
     ) -> Result<(), Failure> {
-        let assemble = |at: &Element, place: &mut Place<'_, T>| {
-            add_element(at, &element(at.index as usize), place);
+        let assemble = |target: &Element, place: &mut Place<'_, T>| {
+            add_element(target, &element(target.index as usize), place);
         };
         self.refactor_by(&analysis.symbolic, &assemble, watch)
     }
@@ -239,14 +239,14 @@ fn for_each_place<const K: usize>(fronts: &Fronts, mut visit: impl FnMut(usize, 
 }
 
 /// Adds the matrix of a face to its front.
-fn add_element<T: Scalar>(at: &Element, matrix: &[[f64; 6]; 6], place: &mut Place<'_, T>) {
+fn add_element<T: Scalar>(element: &Element, matrix: &[[f64; 6]; 6], place: &mut Place<'_, T>) {
     for a in 0..3 {
         for b in 0..=a {
-            for i in 0..usize::from(at.dofs[a]) {
-                let last = if a == b { i + 1 } else { usize::from(at.dofs[b]) };
+            for i in 0..usize::from(element.dofs[a]) {
+                let last = if a == b { i + 1 } else { usize::from(element.dofs[b]) };
                 for j in 0..last {
                     let value = matrix[2 * a + i][2 * b + j];
-                    place.add(at.rows[a] as usize + i, at.rows[b] as usize + j, value);
+                    place.add(element.rows[a] as usize + i, element.rows[b] as usize + j, value);
                 }
             }
         }

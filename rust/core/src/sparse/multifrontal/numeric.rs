@@ -80,8 +80,8 @@ impl<T: Scalar> Default for Updates<T> {
 
 impl<T: Scalar> Updates<T> {
     fn append(&mut self, other: &Self) {
-        for (stack, other) in self.stacks.iter_mut().zip(&other.stacks) {
-            stack.push(other.top).copy_from_slice(&other.values[..other.top]);
+        for (stack, appended) in self.stacks.iter_mut().zip(&other.stacks) {
+            stack.push(appended.top).copy_from_slice(&appended.values[..appended.top]);
         }
     }
 }
@@ -171,8 +171,8 @@ where
         let rows = height - width;
         let Updates { stacks: [even, odd], late } = updates;
         let is_odd = self.fronts.front(front).is_odd;
-        let (own, of_children) = if is_odd { (odd, even) } else { (even, odd) };
-        let (update, stack) = (own.push(rows * rows), &of_children.values[..of_children.top]);
+        let (own_stack, of_children) = if is_odd { (odd, even) } else { (even, odd) };
+        let (update, stack) = (own_stack.push(rows * rows), &of_children.values[..of_children.top]);
         // 1. Assemble the panel from elements and the children's updates
         panel.fill(T::ZERO);
         let mut place = Place { panel, height, width, late };

@@ -36,9 +36,9 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
         let (of_left, rest) = rest.split_at_mut(self.unknowns(&left));
         let (of_right, of_after) = rest.split_at_mut(self.unknowns(&right));
         self.up_in_order(before, of_before, stack);
-        let mut others = Vec::new();
-        parallel::join(|| self.up(left, of_left, stack), || self.up(right, of_right, &mut others));
-        stack.extend_from_slice(&others);
+        let mut right_stack = Vec::new();
+        parallel::join(|| self.up(left, of_left, stack), || self.up(right, of_right, &mut right_stack));
+        stack.extend_from_slice(&right_stack);
         self.up_in_order(after, of_after, stack);
     }
 
@@ -48,11 +48,11 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
             let mut vector = Vec::new();
             for index in range {
                 let front = self.fronts.front(index);
-                let (own, rest) = x.split_at_mut(K * front.columns());
+                let (eliminated, rest) = x.split_at_mut(K * front.columns());
                 x = rest;
-                self.gather_children(index, own, stack, &mut vector);
+                self.gather_children(index, eliminated, stack, &mut vector);
                 forward::<T, K>(self.panel(index), front, &mut vector);
-                scatter::<T, K>(front, &vector, own, stack);
+                scatter::<T, K>(front, &vector, eliminated, stack);
             }
         });
     }
@@ -68,8 +68,8 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
         self.down_in_order(after, of_after, stack);
         let of_roots: usize =
             self.fronts.roots(right.clone()).map(|root| self.fronts.front(root).rows()).sum();
-        let mut others = stack.split_off(stack.len() - K * of_roots);
-        parallel::join(|| self.down(left, of_left, stack), || self.down(right, of_right, &mut others));
+        let mut right_stack = stack.split_off(stack.len() - K * of_roots);
+        parallel::join(|| self.down(left, of_left, stack), || self.down(right, of_right, &mut right_stack));
         self.down_in_order(before, of_before, stack);
     }
 
@@ -79,11 +79,11 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
             let mut vector = Vec::new();
             for index in range.rev() {
                 let front = self.fronts.front(index);
-                let (rest, own) = x.split_at_mut(x.len() - K * front.columns());
+                let (rest, eliminated) = x.split_at_mut(x.len() - K * front.columns());
                 x = rest;
-                gather_parent::<T, K>(front, own, stack, &mut vector);
+                gather_parent::<T, K>(front, eliminated, stack, &mut vector);
                 backward::<T, K>(self.panel(index), front, &mut vector);
-                self.scatter_to_children(index, &vector, own, stack);
+                self.scatter_to_children(index, &vector, eliminated, stack);
             }
         });
     }
@@ -98,13 +98,13 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
 
     /// The vector over all rows of a front: its right-hand side and what its children subtract.
     #[inline(always)]
-    fn gather_children(&self, index: usize, own: &[T], stack: &mut Vec<T>, vector: &mut Vec<T>) {
+    fn gather_children(&self, index: usize, eliminated: &[T], stack: &mut Vec<T>, vector: &mut Vec<T>) {
         let front = self.fronts.front(index);
         let (height, width) = (front.height(), front.columns());
         vector.clear();
         vector.resize(K * height, T::ZERO);
         for k in 0..K {
-            vector[k * height..k * height + width].copy_from_slice(&own[k * width..(k + 1) * width]);
+            vector[k * height..k * height + width].copy_from_slice(&eliminated[k * width..(k + 1) * width]);
         }
         for child in self.fronts.children(index) {
             let rows = self.fronts.front(child).rows();
@@ -123,11 +123,11 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
 
     /// Keeps the solution of the front's own columns and hands the children what they need.
     #[inline(always)]
-    fn scatter_to_children(&self, index: usize, vector: &[T], own: &mut [T], stack: &mut Vec<T>) {
+    fn scatter_to_children(&self, index: usize, vector: &[T], eliminated: &mut [T], stack: &mut Vec<T>) {
         let front = self.fronts.front(index);
         let (height, width) = (front.height(), front.columns());
         for k in 0..K {
-            own[k * width..(k + 1) * width].copy_from_slice(&vector[k * height..k * height + width]);
+            eliminated[k * width..(k + 1) * width].copy_from_slice(&vector[k * height..k * height + width]);
         }
         let of_children: usize =
             self.fronts.children(index).map(|child| self.fronts.front(child).rows()).sum();
@@ -150,11 +150,11 @@ impl<T: Scalar, const K: usize> Substitution<'_, T, K> {
 
 /// Splits the vector of a front into its own columns and what the parent must add.
 #[inline(always)]
-fn scatter<T: Scalar, const K: usize>(front: &Front, vector: &[T], own: &mut [T], stack: &mut Vec<T>) {
+fn scatter<T: Scalar, const K: usize>(front: &Front, vector: &[T], eliminated: &mut [T], stack: &mut Vec<T>) {
     let (height, width) = (front.height(), front.columns());
     for k in 0..K {
         let (columns, rows) = vector[k * height..(k + 1) * height].split_at(width);
-        own[k * width..(k + 1) * width].copy_from_slice(columns);
+        eliminated[k * width..(k + 1) * width].copy_from_slice(columns);
         stack.extend_from_slice(rows);
     }
 }
@@ -163,7 +163,7 @@ fn scatter<T: Scalar, const K: usize>(front: &Front, vector: &[T], own: &mut [T]
 #[inline(always)]
 fn gather_parent<T: Scalar, const K: usize>(
     front: &Front,
-    own: &[T],
+    eliminated: &[T],
     stack: &mut Vec<T>,
     vector: &mut Vec<T>,
 ) {
@@ -171,7 +171,7 @@ fn gather_parent<T: Scalar, const K: usize>(
     let below = stack.len() - K * rows;
     vector.clear();
     for k in 0..K {
-        vector.extend_from_slice(&own[k * width..(k + 1) * width]);
+        vector.extend_from_slice(&eliminated[k * width..(k + 1) * width]);
         vector.extend_from_slice(&stack[below + k * rows..below + (k + 1) * rows]);
     }
     stack.truncate(below);

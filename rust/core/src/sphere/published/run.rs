@@ -192,8 +192,8 @@ impl Run<'_> {
         let mut done = 0;
         while done < whole.max_iterations {
             let budget = ROUND.min(whole.max_iterations - done);
-            let part = |done: usize| done as f64 / whole.max_iterations as f64;
-            let mut phase = Phase { whole: observer, from: part(done), to: part(done + budget) };
+            let fraction = |done: usize| done as f64 / whole.max_iterations as f64;
+            let mut phase = Phase { whole: observer, from: fraction(done), to: fraction(done + budget) };
             match domain.set_preconditioner(&map, &Watch::new(&mut phase, 0.0, "Evening out areas")) {
                 Ok(()) => {}
                 Err(Error::CancelledEarly) => return (map, Status::Cancelled),

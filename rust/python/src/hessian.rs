@@ -78,13 +78,14 @@ pub fn stretch_hessian(
         };
         let energy = SpatialStretchEnergy::new(mesh, &targets);
         let hessian = energy.hessian(&image);
-        match hessian.data().iter().all(|value| value.is_finite()) {
-            true => Ok(hessian),
-            false => Err(Error::InvalidArray {
+        if hessian.data().iter().all(|value| value.is_finite()) {
+            Ok(hessian)
+        } else {
+            Err(Error::InvalidArray {
                 name: "image",
                 found: format!("of area {:e}", energy.value(&image).area),
                 expected: "a map whose faces have area, neither huge nor tiny".into(),
-            }),
+            })
         }
     })?;
     let (starts, rows, data) = matrix.into_raw_storage();

@@ -50,8 +50,8 @@ pub struct DiskMapOptions<'a> {
     /// `None`.
     pub initial: Option<&'a [[f64; 2]]>,
     /// Iteration limit. `None` for Gauss–Newton: none, but with a weight of 0 and no tolerance it stops after 11 iterations
-    /// (33 below 10,000 vertices) once the area deviation is below .5 % (.2 %). `None` for the papers' methods: 50, as in the
-    /// paper's tables. Not counted are the five fixed-point steps at the start, up to 12 unguarded steps that unfold, a
+    /// (33 below 10,000 vertices) once the area deviation is below .5 % (.2 %). `None` for the papers' methods: 50, as in
+    /// the paper's tables. Not counted are the five fixed-point steps at the start, up to 12 unguarded steps that unfold, a
     /// descent after folds were mended, and up to eight iterations per floor where targets are below 1 % of the mean.
     pub max_iterations: Option<usize>,
     /// Gauss–Newton has converged when the area deviation √(E_A/A) is below this; `None`: 2·10⁻⁴. The papers' methods have

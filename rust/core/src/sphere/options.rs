@@ -42,9 +42,9 @@ pub struct SphereMapOptions<'a> {
     /// these are the method.
     pub initial: Option<&'a [Vector3]>,
     /// Iteration limit. `None` for Gauss–Newton: none, but with a weight of 0 and no tolerance it stops after 17 iterations
-    /// (20 below 20,000 vertices, 40 below 10,000) once the area deviation is below .5 % (.2 % below 10,000 vertices). `None`
-    /// for the papers' methods: 100, as in the paper's tables. Not counted are the fixed-point steps before the descent, and a
-    /// descent after folds were mended. 0 with the fixed point returns the start map.
+    /// (20 below 20,000 vertices, 40 below 10,000) once the area deviation is below .5 % (.2 % below 10,000 vertices).
+    /// `None` for the papers' methods: 100, as in the paper's tables. Not counted are the fixed-point steps before the
+    /// descent, and a descent after folds were mended. 0 with the fixed point returns the start map.
     pub max_iterations: Option<usize>,
     /// Gauss–Newton has converged when the area deviation √(E_A/A) is below this; `None`: 2·10⁻⁴. Gradient descent has
     /// converged when ‖grad E‖ is; `None`: 10⁻⁸. For the fixed point it is ε of Algorithm 2: the iteration ends when E_S

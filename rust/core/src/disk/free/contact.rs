@@ -5,8 +5,8 @@
 //! their distance d is below h, b(x) = −(x − 1)² ln x, as in M. Li et al., Incremental potential contact, ACM Trans. Graph.
 //! 39 (2020); h is a part of the least height of the rest triangles beside both, so that a thin strip does not repel
 //! itself, and l the median edge of the outline. The energy has compact support: an outline that does not come near to
-//! itself is not changed. Pairs are found by a sweep over boxes. Cost: O(n log n) and one comparison for every two boxes that
-//! overlap in x.
+//! itself is not changed. A sweep over boxes finds the pairs. Cost: O(n log n) and one comparison for every two boxes
+//! that overlap in x.
 
 use super::energy::Energy;
 use crate::codomain::planar::PlanarMap;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Newton's method on the energy of a free outline and of its contacts.
 //!
-//! 1. The Hessians of the faces are factored, with the contacts' diagonal block at each vertex. Conjugate gradients with this
-//!    factor solve the system of faces and contacts, whose other blocks do not fit into the pattern of the mesh.
+//! 1. The Hessians of the faces are factored, with the contacts' diagonal block at each vertex. Conjugate gradients with
+//!    this factor solve the system of faces and contacts, whose other blocks do not fit into the pattern of the mesh.
 //! 2. A step ends before a face folds or an outline meets itself, and where the energy falls.
-//! 3. The descent has converged when the decrement −gᵀd of a full step is next to nothing: the map is stationary.
+//! 3. The descent has converged when the decrement −gᵀd of a full step almost vanishes: the map is stationary.
 //!
 //! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it the Hessian
 //! takes as much of the curvature as leaves it positive definite, in the end all, and the descent converges quadratically.

@@ -7,8 +7,8 @@
 //!    (`contact`), until the map is stationary.
 //! 3. Where contacts remain, further descents with contacts of shorter range.
 //!
-//! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start, and ten
-//! to fifty for the descent.
+//! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start, and
+//! ten to fifty for the descent.
 
 mod arap;
 mod contact;

@@ -17,9 +17,10 @@
 //! rounding does not, directions are solved in double precision except on the largest meshes, and nothing is repaired on
 //! the way: single precision or a repair turns a change of 1e-14 of the surface into one of 1e-2 of the map.
 //!
-//! With [`Profile::Barrier`](crate::energy::stretch::Profile) an accepted map has no folded face: the energy of every trial is infinite where a face is
-//! not positive by more than rounding. [`Profile::Stretch`](crate::energy::stretch::Profile) drops the barrier and the angles (Levenberg–Marquardt on
-//! E_A); in the plane, where areas have signs, it unfolds faces on its way.
+//! With [`Profile::Barrier`](crate::energy::stretch::Profile) an accepted map has no folded face: the energy of a trial is
+//! infinite unless every face is positive by more than rounding.
+//! [`Profile::Stretch`](crate::energy::stretch::Profile) drops the barrier and the angles (Levenberg–Marquardt on E_A); in
+//! the plane, where areas have signs, it unfolds faces on its way.
 //!
 //! Cost of one iteration: one factorization of two unknowns per vertex, two solves, some seven passes over the faces.
 

@@ -5,8 +5,8 @@
 //! the step of the quadratic model (3.3), and, where that step violates the strong Wolfe conditions (4.1)
 //! that the proof of convergence needs, a line search that satisfies them (0 < c₁ < c₂ < ½).
 //!
-//! Cost of one iteration: one evaluation of the objective (the model's), one of its gradient for every step tried, nearly always a
-//! single one, and one solve with M.
+//! Cost of one iteration: one evaluation of the objective (for the model), one of the gradient for every step tried,
+//! nearly always a single one, and one solve with M.
 
 use super::line_search::{Trial, WolfeOptions, strong_wolfe};
 use super::{Domain, Energies, Stopping};

@@ -45,7 +45,7 @@ pub(super) struct Front {
     pub(super) n_rows: u32,
     /// The number of these rows that are columns of the parent.
     pub(super) n_shared: u32,
-    /// True if its depth in the tree is odd.
+    /// True if the depth of the front in the tree is odd.
     pub(super) is_odd: bool,
     runs: Range<u32>,
     elements: Range<u32>,

@@ -145,8 +145,8 @@ fn segments_are_the_same_from_both_ends() {
     let parameters = [0.0, 0.2, 0.5, 1.0];
     let backwards = [1.0, 0.5, 0.2, 0.0];
     for s in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {
-        let ((at, t), (back, u)) = (segment(&parameters, s), segment(&backwards, s));
-        assert_eq!(at, 2 - back);
+        let ((first, t), (back, u)) = (segment(&parameters, s), segment(&backwards, s));
+        assert_eq!(first, 2 - back);
         assert!((t + u - 1.0).abs() < 1e-15, "{s}");
     }
 }

@@ -113,7 +113,7 @@ mod tests {
 
     /// A bent grid of squares, each of two triangles.
     fn grid(n: u32) -> TriangleMesh {
-        let at = |i: u32, j: u32| i * (n + 1) + j;
+        let vertex = |i: u32, j: u32| i * (n + 1) + j;
         let place = |k: u32| (f64::from(k / (n + 1)), f64::from(k % (n + 1)));
         let points: Vec<[f64; 3]> = (0..(n + 1) * (n + 1))
             .map(place)
@@ -122,7 +122,10 @@ mod tests {
         let squares = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
         let faces: Vec<[u32; 3]> = squares
             .flat_map(|(i, j)| {
-                [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+                [
+                    [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)],
+                    [vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)],
+                ]
             })
             .collect();
         TriangleMesh::new(&points, &faces).unwrap()

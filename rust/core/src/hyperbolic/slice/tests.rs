@@ -148,8 +148,8 @@ fn is_half_edge(face: &[u32; 3], a: u32, b: u32) -> bool {
 fn straight(surface: &Cutting, a: u32, b: u32, n_edges: usize) -> Vec<u32> {
     let mut path = vec![a, b];
     for _ in 0..n_edges {
-        let [before, at] = [path[path.len() - 2], path[path.len() - 1]];
-        let around: Vec<u32> = surface.neighbors(at).collect();
+        let [before, last] = [path[path.len() - 2], path[path.len() - 1]];
+        let around: Vec<u32> = surface.neighbors(last).collect();
         let from = around.iter().position(|&v| v == before).unwrap();
         path.push(around[(from + around.len() / 2) % around.len()]);
     }
@@ -225,8 +225,8 @@ fn check_places(piece: &Piece, sliced: &Sliced) {
         let whole = triangle(&piece.points, piece.faces[place.face]);
         for (corner, weights) in face.iter().zip(place.corners) {
             assert_eq!(weights.iter().sum::<f64>(), 1.0);
-            let at = whole.iter().zip(weights).map(|(&x, weight)| x * weight).sum::<Vector3>();
-            assert!(at.distance(sliced.points[*corner as usize]) < 1e-15);
+            let place = whole.iter().zip(weights).map(|(&x, weight)| x * weight).sum::<Vector3>();
+            assert!(place.distance(sliced.points[*corner as usize]) < 1e-15);
         }
         left[place.face] -= area(triangle(&sliced.points, face));
     }
@@ -359,8 +359,8 @@ fn holes_and_slits() {
 fn scattered_where(piece: &Piece, n_slits: usize, is_allowed: impl Fn(&Vec<u32>) -> bool) -> Vec<Vec<u32>> {
     let surface = Cutting::new(piece);
     let slit_near = |x: Vector3| {
-        let at = nearest(piece, x);
-        surface.neighbors(at).map(|next| straight(&surface, at, next, 3)).find(&is_allowed).unwrap()
+        let start = nearest(piece, x);
+        surface.neighbors(start).map(|next| straight(&surface, start, next, 3)).find(&is_allowed).unwrap()
     };
     let places = [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]];
     places[..n_slits].iter().map(|&x| slit_near(unit(Vector3(x)))).collect()
@@ -373,19 +373,19 @@ fn slits_one_edge_apart() {
     let a = middle_vertex(&sphere);
     let around: Vec<u32> = surface.neighbors(a).collect();
     let [b, c] = [around[0], around[1]];
-    let one = straight(&surface, a, b, 4);
+    let first = straight(&surface, a, b, 4);
     // beside the first, on the line through c that is parallel
     let next: Vec<u32> = surface.neighbors(c).collect();
     let beside = next.iter().position(|&v| v == b).unwrap();
-    let other = straight(&surface, c, next[(beside + next.len() - 1) % next.len()], 4);
-    let other = if other.iter().any(|v| one.contains(v)) {
+    let second = straight(&surface, c, next[(beside + next.len() - 1) % next.len()], 4);
+    let second = if second.iter().any(|v| first.contains(v)) {
         straight(&surface, c, next[(beside + 1) % next.len()], 4)
     } else {
-        other
+        second
     };
-    let adjacent = one.iter().any(|&v| surface.neighbors(v).any(|w| other.contains(&w)));
+    let adjacent = first.iter().any(|&v| surface.neighbors(v).any(|w| second.contains(&w)));
     assert!(adjacent);
-    check(&with_slits(sphere, &[one, other]));
+    check(&with_slits(sphere, &[first, second]));
 }
 
 #[test]
@@ -411,11 +411,11 @@ fn three_slits_that_meet_in_one_triangle() {
 #[test]
 fn a_spiral_around_another_slit() {
     let sphere = sphere(4);
-    let at = |t: f64| {
+    let point = |t: f64| {
         let (colatitude, longitude) = (0.35 + 1.2 * t, 5.0 * PI * t);
         Vector3([colatitude.sin() * longitude.cos(), colatitude.sin() * longitude.sin(), colatitude.cos()])
     };
-    let mut spiral: Vec<u32> = (0..=2000).map(|i| nearest(&sphere, at(f64::from(i) / 2000.0))).collect();
+    let mut spiral: Vec<u32> = (0..=2000).map(|i| nearest(&sphere, point(f64::from(i) / 2000.0))).collect();
     spiral.dedup();
     let surface = Cutting::new(&sphere);
     assert!(spiral.windows(2).all(|ends| surface.neighbors(ends[0]).any(|v| v == ends[1])));
@@ -448,12 +448,12 @@ fn source_and_target_of_different_resolution() {
     check_sliced(&target, &chain, &pair.target);
     assert!(pair.followed);
     // the arcs of the target stay near those of the source
-    for (one, other) in pair.source.sides.iter().zip(&pair.target.sides).filter(|(side, _)| side.is_arc) {
+    for (ours, theirs) in pair.source.sides.iter().zip(&pair.target.sides).filter(|(side, _)| side.is_arc) {
         let line = |side: &Side, sliced: &Sliced| -> Vec<Vector3> {
             side.vertices.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v as usize] as usize]).collect()
         };
-        let along = Polyline::new(line(one, &pair.source));
-        assert!(line(other, &pair.target).into_iter().all(|x| along.distance(x) < 0.1));
+        let along = Polyline::new(line(ours, &pair.source));
+        assert!(line(theirs, &pair.target).into_iter().all(|x| along.distance(x) < 0.1));
     }
 }
 
@@ -516,9 +516,9 @@ fn the_same_input_gives_the_same_cuts() {
     let sphere = sphere(3);
     let paths = scattered(&sphere, 8, 4, 2);
     let piece = with_slits(sphere, &paths);
-    let [one, other] = [check(&piece), check(&piece)];
-    assert_eq!(one.source.sides, other.source.sides);
-    assert_eq!(one.target.faces, other.target.faces);
+    let [first, second] = [check(&piece), check(&piece)];
+    assert_eq!(first.source.sides, second.source.sides);
+    assert_eq!(first.target.faces, second.target.faces);
 }
 
 #[test]
@@ -527,12 +527,12 @@ fn features_that_touch_or_are_no_paths_are_refused() {
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
     let around: Vec<u32> = surface.neighbors(a).collect();
-    let one = straight(&surface, around[0], a, 3);
+    let first = straight(&surface, around[0], a, 3);
     let touching = straight(&surface, around[2], around[1], 2);
     let crossing = vec![around[0], a, around[3]];
     let jump = vec![around[1], nearest(&sphere, sphere.points[a as usize] * -1.0)];
     for (second, is_fine) in [(touching, true), (crossing, false), (jump, false)] {
-        let piece = with_slits(sphere.clone(), &[one.clone(), second]);
+        let piece = with_slits(sphere.clone(), &[first.clone(), second]);
         let mut silent = Silent;
         let watch = Watch::new(&mut silent, 0.0, "");
         let result = slice_pair(&piece, &piece, &identity, &watch);

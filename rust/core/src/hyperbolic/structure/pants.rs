@@ -143,8 +143,8 @@ mod tests {
                 ((q - p).conj() * (r - q)).im > 0.0
             }));
             assert!(pants.hexagons[0][1].re > 0.1 && pants.hexagons[0][0].im < 0.0);
-            for (one, other) in pants.hexagons[0].iter().zip(pants.hexagons[1]) {
-                assert!((one + other.conj()).norm() < 1e-11);
+            for (right, left) in pants.hexagons[0].iter().zip(pants.hexagons[1]) {
+                assert!((right + left.conj()).norm() < 1e-11);
             }
         }
     }
@@ -162,9 +162,11 @@ mod tests {
                 }
             }
             // the other bank: the mirror image lies on the axis of h g⁻¹
-            let other = h * g.inverse();
+            let right_bank = h * g.inverse();
             let corner = pants.placement.apply(from_klein(pants.hexagons[1][2]));
-            assert!((distance(corner, other.apply(corner)) - other.translation_length()).abs() < 1e-10);
+            assert!(
+                (distance(corner, right_bank.apply(corner)) - right_bank.translation_length()).abs() < 1e-10
+            );
         }
     }
 }

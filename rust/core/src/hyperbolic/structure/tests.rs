@@ -14,14 +14,14 @@ type Points = (Vec<Vector3>, Vec<[u32; 3]>);
 
 /// Slits spread over a sphere along a spiral.
 fn slits(ball: &Points, count: usize) -> Vec<Vec<usize>> {
-    let at = |k: f64| {
+    let point = |k: f64| {
         let (z, angle) = (1.0 - 2.0 * (k + 0.5) / count as f64, 2.4 * k);
         let ring = (1.0 - z * z).max(0.0).sqrt();
         [ring * angle.cos(), ring * angle.sin(), z]
     };
     let tilt = 0.6 / (count as f64).sqrt();
     let slit = |k: usize| {
-        let [x, y, z] = at(k as f64);
+        let [x, y, z] = point(k as f64);
         path(ball, Vector3([x - tilt, y, z + 0.3 * tilt]), Vector3([x + tilt, y, z - 0.3 * tilt]))
     };
     (0..count).map(slit).collect()
@@ -31,7 +31,7 @@ fn ellipsoid(ball: &Points) -> TriangleMesh {
     mesh(ball, |x| Vector3([x[0], 0.8 * x[1], 1.3 * x[2]]))
 }
 
-fn found(count: usize) -> HyperbolicStructure {
+fn with_slits(count: usize) -> HyperbolicStructure {
     let ball = sphere(if count > 6 { 5 } else { 4 });
     hyperbolic_structure(&ellipsoid(&ball), &slits(&ball, count), MetricMethod::Newton, &mut Silent).unwrap()
 }
@@ -39,26 +39,31 @@ fn found(count: usize) -> HyperbolicStructure {
 /// Three, five and ten slits.
 fn samples() -> &'static [HyperbolicStructure] {
     static SAMPLES: OnceLock<Vec<HyperbolicStructure>> = OnceLock::new();
-    SAMPLES.get_or_init(|| [3, 5, 10].map(found).into())
+    SAMPLES.get_or_init(|| [3, 5, 10].map(with_slits).into())
 }
 
 /// The edges of a side of the disk in the plane.
-fn length(found: &HyperbolicStructure, side: &[u32]) -> f64 {
-    side.windows(2).map(|ends| distance(at(found, ends[0]), at(found, ends[1]))).sum()
+fn length(structure: &HyperbolicStructure, side: &[u32]) -> f64 {
+    side.windows(2).map(|ends| distance(position(structure, ends[0]), position(structure, ends[1]))).sum()
 }
 
-fn at(found: &HyperbolicStructure, vertex: u32) -> Complex {
-    found.positions[vertex as usize]
+fn position(structure: &HyperbolicStructure, vertex: u32) -> Complex {
+    structure.positions[vertex as usize]
 }
 
 #[test]
 fn counts_area_and_curvature() {
-    for (found, b) in samples().iter().zip([3, 5, 10]) {
-        let counts = [found.generators.len(), found.pants.len(), found.pants_curves.len(), found.arcs.len()];
+    for (structure, b) in samples().iter().zip([3, 5, 10]) {
+        let counts = [
+            structure.generators.len(),
+            structure.pants.len(),
+            structure.pants_curves.len(),
+            structure.arcs.len(),
+        ];
         assert_eq!(counts, [b - 1, b - 2, b - 3, b - 1]);
-        assert!((found.area / (TAU * (b as f64 - 2.0)) - 1.0).abs() < 1e-11);
-        assert!(found.curvature < 1e-11);
-        let mut order: Vec<usize> = found.chain.iter().map(|&(feature, _)| feature).collect();
+        assert!((structure.area / (TAU * (b as f64 - 2.0)) - 1.0).abs() < 1e-11);
+        assert!(structure.curvature < 1e-11);
+        let mut order: Vec<usize> = structure.chain.iter().map(|&(feature, _)| feature).collect();
         order.sort_unstable();
         assert_eq!(order, (0..b).collect::<Vec<_>>());
     }
@@ -66,38 +71,39 @@ fn counts_area_and_curvature() {
 
 #[test]
 fn the_domain_is_laid_out_isometrically_and_in_the_middle() {
-    for found in samples() {
-        for (sides, name) in [(&found.banks, "bank"), (&found.arcs, "arc")] {
+    for structure in samples() {
+        for (sides, name) in [(&structure.banks, "bank"), (&structure.arcs, "arc")] {
             for (k, [left, right]) in sides.iter().enumerate() {
-                let lengths = [left, right].map(|side| length(found, side));
+                let lengths = [left, right].map(|side| length(structure, side));
                 if name == "arc" {
                     assert!((lengths[0] - lengths[1]).abs() < 1e-7, "arc {k}: {lengths:?}");
                 } else {
-                    let whole = found.boundary_lengths[found.chain[k].0];
+                    let whole = structure.boundary_lengths[structure.chain[k].0];
                     assert!(
                         (lengths[0] + lengths[1] - whole).abs() < 1e-7,
                         "bank {k}: {lengths:?} of {whole}"
                     );
                     // geodesics: no way round
-                    let direct = distance(at(found, left[0]), at(found, left[left.len() - 1]));
+                    let direct =
+                        distance(position(structure, left[0]), position(structure, left[left.len() - 1]));
                     assert!((lengths[0] - direct).abs() < 1e-7);
                 }
             }
         }
-        let far = found.positions.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let far = structure.positions.iter().map(|z| z.norm()).fold(0.0, f64::max);
         assert!(far < 1.0 - 1e-6, "{far}");
     }
 }
 
 #[test]
 fn generators_take_left_arcs_to_right_ones() {
-    for found in samples() {
-        for (generator, [left, right]) in found.generators.iter().zip(&found.arcs) {
+    for structure in samples() {
+        for (generator, [left, right]) in structure.generators.iter().zip(&structure.arcs) {
             assert!(
                 (generator.a.norm_sqr() - generator.b.norm_sqr() - 1.0).abs() < 1e-9 && generator.a.re > 1.0
             );
             for (&left, &right) in left.iter().zip(right) {
-                let gap = distance(generator.apply(at(found, left)), at(found, right));
+                let gap = distance(generator.apply(position(structure, left)), position(structure, right));
                 assert!(gap < 1e-7, "{gap}");
             }
         }
@@ -106,31 +112,31 @@ fn generators_take_left_arcs_to_right_ones() {
 
 #[test]
 fn traces_are_the_lengths_of_boundaries_and_curves() {
-    for found in samples() {
-        let lengths: Vec<f64> = found.generators.iter().map(|g| g.translation_length()).collect();
+    for structure in samples() {
+        let lengths: Vec<f64> = structure.generators.iter().map(|g| g.translation_length()).collect();
         let last = lengths.len() - 1;
-        let of_feature = |k: usize| found.boundary_lengths[found.chain[k].0];
+        let of_feature = |k: usize| structure.boundary_lengths[structure.chain[k].0];
         assert!((lengths[0] - of_feature(0)).abs() < 1e-9);
         assert!((lengths[last] - of_feature(last + 1)).abs() < 1e-9);
-        for (k, pants) in found.pants.iter().enumerate() {
+        for (k, pants) in structure.pants.iter().enumerate() {
             // of the product of two translations, some of them by 11, which loses e^11 roundings
             let gap = (pants.boundary_lengths[1] - of_feature(k + 1)).abs();
             assert!(gap < 1e-8, "{gap} of {}", of_feature(k + 1));
             assert!((pants.boundary_lengths[0] - lengths[k]).abs() < 1e-9);
             assert!((pants.boundary_lengths[2] - lengths[k + 1]).abs() < 1e-9);
         }
-        (1..last).for_each(|k| assert!((found.lengths[k - 1] - lengths[k]).abs() < 1e-9));
+        (1..last).for_each(|k| assert!((structure.lengths[k - 1] - lengths[k]).abs() < 1e-9));
     }
 }
 
 #[test]
 fn the_axis_of_the_first_generator_is_the_first_boundary() {
-    for found in samples() {
-        let last = found.generators.len() - 1;
-        for (k, generator) in [(0, found.generators[0]), (last + 1, found.generators[last])] {
+    for structure in samples() {
+        let last = structure.generators.len() - 1;
+        for (k, generator) in [(0, structure.generators[0]), (last + 1, structure.generators[last])] {
             let ends = generator.fixed_points();
-            for &vertex in found.banks[k].iter().flatten() {
-                assert!(off_line(at(found, vertex), ends) < 1e-7);
+            for &vertex in structure.banks[k].iter().flatten() {
+                assert!(off_line(position(structure, vertex), ends) < 1e-7);
             }
         }
     }
@@ -146,8 +152,8 @@ fn off_line(z: Complex, [from, to]: [Complex; 2]) -> f64 {
 
 #[test]
 fn hexagons_are_right_angled_convex_and_congruent_and_fill_the_surface() {
-    for found in samples() {
-        for pants in &found.pants {
+    for structure in samples() {
+        for pants in &structure.pants {
             for (hexagon, angles) in pants.hexagons.iter().zip(pants.angles) {
                 assert!(angles.iter().all(|angle| (angle - FRAC_PI_2).abs() < 1e-8), "{angles:?}");
                 assert!((3.0 * PI - angles.iter().sum::<f64>()).abs() < 1e-8, "the area is π");
@@ -169,17 +175,17 @@ fn hexagons_are_right_angled_convex_and_congruent_and_fill_the_surface() {
 
 #[test]
 fn hexagons_lie_at_their_boundaries() {
-    for found in samples() {
-        for (k, pants) in found.pants.iter().enumerate() {
-            for (bank, hexagon) in found.banks[k + 1].iter().zip(pants.hexagons) {
+    for structure in samples() {
+        for (k, pants) in structure.pants.iter().enumerate() {
+            for (bank, hexagon) in structure.banks[k + 1].iter().zip(pants.hexagons) {
                 let corners = hexagon.map(|corner| pants.placement.apply(from_klein(corner)));
-                let ends = [at(found, bank[0]), at(found, bank[bank.len() - 1])];
+                let ends = [position(structure, bank[0]), position(structure, bank[bank.len() - 1])];
                 // the bank and the side lie on one line
                 let to_axis = Moebius::between(ends, [Complex::default(), Complex::new(0.5, 0.0)]);
                 for corner in [corners[2], corners[3]] {
                     assert!(to_axis.apply(corner).im.abs() < 1e-5);
                 }
-                let axis = |k: usize| found.generators[k].fixed_points();
+                let axis = |k: usize| structure.generators[k].fixed_points();
                 assert!(off_line(corners[0], axis(k)) < 1e-5 && off_line(corners[1], axis(k)) < 1e-5);
                 assert!(off_line(corners[4], axis(k + 1)) < 1e-5 && off_line(corners[5], axis(k + 1)) < 1e-5);
             }
@@ -189,8 +195,8 @@ fn hexagons_lie_at_their_boundaries() {
 
 #[test]
 fn axes_of_consecutive_generators_are_disjoint() {
-    for found in samples() {
-        for pair in found.generators.windows(2) {
+    for structure in samples() {
+        for pair in structure.generators.windows(2) {
             let [[a, b], [c, d]] = [pair[0].fixed_points(), pair[1].fixed_points()];
             let cross_ratio = ((c - a) * (d - b)) / ((c - b) * (d - a));
             // real, and positive where the ends are not linked
@@ -201,10 +207,10 @@ fn axes_of_consecutive_generators_are_disjoint() {
 
 #[test]
 fn pants_curves_run_on_the_surface_and_close_up() {
-    for (found, level) in samples().iter().zip([4, 4, 5]) {
+    for (structure, level) in samples().iter().zip([4, 4, 5]) {
         let surface = ellipsoid(&sphere(level));
-        for curve in &found.pants_curves {
-            let points = found.in_space(curve, surface.points());
+        for curve in &structure.pants_curves {
+            let points = structure.in_space(curve, surface.points());
             assert_eq!(curve.first(), curve.last());
             assert!(points.len() > 10);
             let longest = points.windows(2).map(|ends| ends[0].distance(ends[1])).fold(0.0, f64::max);
@@ -215,31 +221,33 @@ fn pants_curves_run_on_the_surface_and_close_up() {
 
 #[test]
 fn copies_of_the_domain_grow_outward() {
-    let found = &samples()[1];
-    let copies = found.cover(200);
+    let structure = &samples()[1];
+    let copies = structure.cover(200);
     assert_eq!(copies.len(), 200);
     assert!(copies[0].word.is_empty() && copies[0].motion == Moebius::default());
-    for (at, copy) in copies.iter().enumerate().skip(1) {
+    for (number, copy) in copies.iter().enumerate().skip(1) {
         assert!(copy.word.windows(2).all(|letters| letters[0] != -letters[1]));
         let parent = &copy.word[..copy.word.len() - 1];
-        assert!(copies[..at].iter().any(|earlier| earlier.word == parent));
+        assert!(copies[..number].iter().any(|earlier| earlier.word == parent));
         let product = copy.word.iter().fold(Moebius::default(), |product, &letter| {
-            let generator = found.generators[letter.unsigned_abs() as usize - 1];
+            let generator = structure.generators[letter.unsigned_abs() as usize - 1];
             product * if letter > 0 { generator } else { generator.inverse() }
         });
         assert!(distance(product.apply(Complex::default()), copy.motion.apply(Complex::default())) < 1e-6);
     }
     // a copy by generator k shares the right copy of arc k with the domain
     for copy in copies.iter().filter(|copy| copy.word.len() == 1 && copy.word[0] > 0) {
-        let [left, right] = &found.arcs[copy.word[0] as usize - 1];
-        assert!(distance(copy.motion.apply(at(found, left[1])), at(found, right[1])) < 1e-8);
+        let [left, right] = &structure.arcs[copy.word[0] as usize - 1];
+        assert!(
+            distance(copy.motion.apply(position(structure, left[1])), position(structure, right[1])) < 1e-8
+        );
     }
-    assert_eq!(found.cover(1).len(), 1);
+    assert_eq!(structure.cover(1).len(), 1);
 }
 
 #[test]
 fn the_result_is_the_same_every_time() {
-    let again = found(5);
+    let again = with_slits(5);
     let first = &samples()[1];
     assert_eq!(again.positions, first.positions);
     assert_eq!(again.generators, first.generators);
@@ -263,14 +271,14 @@ fn boundary_loops_are_features_named_or_not() {
         path(&open, Vector3([1.0, -0.3, 0.0]), Vector3([1.0, 0.3, 0.0])),
         path(&open, Vector3([-1.0, 0.0, -0.4]), Vector3([-1.0, 0.0, 0.3])),
     ];
-    let found =
+    let structure =
         |curves: &[Vec<usize>]| hyperbolic_structure(&surface, curves, MetricMethod::Newton, &mut Silent);
-    let unnamed = found(&slits).unwrap();
+    let unnamed = structure(&slits).unwrap();
     assert_eq!((unnamed.boundary_lengths.len(), unnamed.pants.len()), (3, 1));
     let around: Vec<usize> = surface.boundary_loops()[0].iter().map(|&v| v as usize).collect();
-    let named = found(&[&slits[..], std::slice::from_ref(&around)].concat()).unwrap();
+    let named = structure(&[&slits[..], std::slice::from_ref(&around)].concat()).unwrap();
     assert!((named.boundary_lengths[2] - unnamed.boundary_lengths[2]).abs() < 1e-9);
-    assert_eq!(found(&[around]).unwrap_err(), CurveError::TooFewFeatures { found: 1 }.into());
+    assert_eq!(structure(&[around]).unwrap_err(), CurveError::TooFewFeatures { found: 1 }.into());
 }
 
 #[test]

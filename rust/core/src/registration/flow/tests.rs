@@ -139,8 +139,8 @@ fn fields_have_the_wanted_velocities_and_no_divergence() {
         }
         for &x in points.iter().step_by(5) {
             let slope = |axis: Vector3| {
-                let at = |h: f64| axis.dot(field.velocity(x + axis * h));
-                (at(1e-5) - at(-1e-5)) / 2e-5
+                let speed = |h: f64| axis.dot(field.velocity(x + axis * h));
+                (speed(1e-5) - speed(-1e-5)) / 2e-5
             };
             let [a, b] = domain.motion(false).frame(x).axes.map(slope);
             assert!((a + b).abs() < 1e-7, "{domain:?} at {x:?}: {a} and {b}");

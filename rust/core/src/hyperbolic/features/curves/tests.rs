@@ -82,8 +82,8 @@ fn counts_must_agree() {
 #[test]
 fn bad_curves_are_refused_by_argument_number_and_place() {
     let (whole, arc) = (whole(), path(&sphere(3), X, Y));
-    let other = path(&sphere(3), Vector3([-1.0, -0.3, 0.0]), Vector3([0.0, -1.0, -0.4]));
-    let with = |curve: Vec<usize>| message(&whole, &[other.clone(), curve]);
+    let first = path(&sphere(3), Vector3([-1.0, -0.3, 0.0]), Vector3([0.0, -1.0, -0.4]));
+    let with = |curve: Vec<usize>| message(&whole, &[first.clone(), curve]);
     let short = with(arc[..2].to_vec());
     assert!(short.starts_with("source_curves: curve 1 has 1 edges"), "{short}");
     assert!(
@@ -96,9 +96,12 @@ fn bad_curves_are_refused_by_argument_number_and_place() {
     let back = with(vec![arc[0], arc[1], arc[2], arc[1]]);
     assert!(back.contains(&format!("at vertex {}, at places 1 and 3", arc[1])), "{back}");
     let meeting =
-        message(&whole, &[arc.clone(), other.clone(), path(&sphere(3), Y, Vector3([0.0, 0.6, 0.7]))]);
-    let at = arc[arc.len() - 1];
-    assert!(meeting.contains(&format!("source_curves: curves 0 and 2 meet at vertex {at}:")), "{meeting}");
+        message(&whole, &[arc.clone(), first.clone(), path(&sphere(3), Y, Vector3([0.0, 0.6, 0.7]))]);
+    let shared = arc[arc.len() - 1];
+    assert!(
+        meeting.contains(&format!("source_curves: curves 0 and 2 meet at vertex {shared}:")),
+        "{meeting}"
+    );
     let error = check([&whole, &whole], std::slice::from_ref(&arc), &[vec![0, 0, 0, 0]]).unwrap_err();
     assert!(error.to_string().starts_with("target_curves: curve 0 meets itself"), "{error}");
     assert!(error.is_mesh_error() && error.elements().is_some());

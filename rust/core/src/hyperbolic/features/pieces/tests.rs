@@ -66,8 +66,8 @@ fn without_closed_curves_the_piece_is_the_whole_surface() {
     let surface = mesh(&without(&sphere(3), |x| x[2] > 0.8), ellipsoid);
     let arc =
         path(&without(&sphere(3), |x| x[2] > 0.8), Vector3([1.0, 0.0, -0.3]), Vector3([0.0, 1.0, -0.3]));
-    let found = cut(&surface, std::slice::from_ref(&arc), std::slice::from_ref(&arc)).unwrap();
-    let [(ours, theirs)] = &found[..] else { panic!("one piece") };
+    let pieces = cut(&surface, std::slice::from_ref(&arc), std::slice::from_ref(&arc)).unwrap();
+    let [(ours, theirs)] = &pieces[..] else { panic!("one piece") };
     check(ours);
     assert_eq!((&ours.points[..], &ours.faces[..]), (surface.points(), surface.faces()));
     assert_eq!(ours.features, theirs.features);
@@ -78,11 +78,11 @@ fn without_closed_curves_the_piece_is_the_whole_surface() {
 #[test]
 fn nested_and_disjoint_circles_bound_pieces_with_the_same_parameters_on_both_sides() {
     let surface = mesh(&sphere(4), ellipsoid);
-    let found = cut(&surface, &curves(), &curves()).unwrap();
-    assert_eq!(found.len(), 4);
-    assert_eq!(found.iter().map(|(ours, _)| ours.faces.len()).sum::<usize>(), surface.n_faces());
+    let pieces = cut(&surface, &curves(), &curves()).unwrap();
+    assert_eq!(pieces.len(), 4);
+    assert_eq!(pieces.iter().map(|(ours, _)| ours.faces.len()).sum::<usize>(), surface.n_faces());
     let mut loops: Vec<Feature> = Vec::new();
-    for (ours, theirs) in &found {
+    for (ours, theirs) in &pieces {
         check(ours);
         assert_eq!((&ours.vertex_of, &ours.face_of), (&theirs.vertex_of, &theirs.face_of));
         assert_eq!(ours.features, theirs.features);
@@ -94,7 +94,7 @@ fn nested_and_disjoint_circles_bound_pieces_with_the_same_parameters_on_both_sid
     let other_side =
         |feature: &Feature| Feature { left: feature.right.clone(), right: feature.left.clone(), ..*feature };
     assert!(loops.iter().all(|feature| loops.contains(&other_side(feature))));
-    let counts: Vec<[usize; 2]> = found
+    let counts: Vec<[usize; 2]> = pieces
         .iter()
         .map(|(ours, _)| {
             let loops = ours.features.iter().filter(|feature| feature.is_loop).count();
@@ -153,8 +153,8 @@ fn the_edge_that_closes_a_curve_belongs_to_one_edge() {
             check(&their);
             for (ours, theirs) in our.features.iter().zip(&their.features).filter(|(_, their)| their.is_loop)
             {
-                let at = |bank: &Bank| [1, 0].map(|k| their.vertex_of[bank.vertices[k] as usize]);
-                let bank = [&theirs.left, &theirs.right].map(|bank| ends.contains(&at(bank)));
+                let inner_ends = |bank: &Bank| [1, 0].map(|k| their.vertex_of[bank.vertices[k] as usize]);
+                let bank = [&theirs.left, &theirs.right].map(|bank| ends.contains(&inner_ends(bank)));
                 assert!(bank[0] != bank[1], "the gap leads into the start");
                 let [of_ours, of_theirs] = [ours, theirs].map(|f| if bank[0] { &f.left } else { &f.right });
                 assert_eq!(of_ours.parameters[1], of_theirs.parameters[1]);

@@ -7,11 +7,11 @@ fn arc(center: Vector3, along: Vector3, half: f64) -> Vec<Vector3> {
     let center = unit(center);
     let normal = center.cross(unit(along));
     let side = unit(normal.cross(center));
-    let at = |k: i32| {
+    let point = |k: i32| {
         let (sine, cosine) = (half * f64::from(k) / 10.0).sin_cos();
         center * cosine + side * sine
     };
-    (-10..=10).map(at).collect()
+    (-10..=10).map(point).collect()
 }
 
 fn isotopy(source: &[Vec<Vector3>], target: &[Vec<Vector3>]) -> Option<Isotopy> {
@@ -85,10 +85,10 @@ fn rotations_have_an_axis_and_an_angle() {
         [([0.6, 0.0, 0.8], 0.7), ([0.0, -0.6, 0.8], std::f64::consts::PI), ([1.0, 0.0, 0.0], 0.0)]
     {
         let axis = Vector3(axis);
-        let (found, by) = axis_angle(turn(axis, angle));
-        assert!((by - angle).abs() < 1e-7);
-        let [x, y] =
-            [turn(axis, angle), turn(found, by)].map(|rotation| rotate(rotation, Vector3([0.3, 0.5, -0.4])));
+        let (its_axis, its_angle) = axis_angle(turn(axis, angle));
+        assert!((its_angle - angle).abs() < 1e-7);
+        let [x, y] = [turn(axis, angle), turn(its_axis, its_angle)]
+            .map(|rotation| rotate(rotation, Vector3([0.3, 0.5, -0.4])));
         assert!(x.distance(y) < 1e-7);
     }
 }

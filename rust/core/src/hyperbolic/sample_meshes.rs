@@ -34,7 +34,7 @@ pub(super) fn sphere(level: u32) -> (Vec<Vector3>, Vec<[u32; 3]>) {
     (points.iter().enumerate().map(uneven).collect(), faces)
 }
 
-/// What is left without the faces for which `is_hole` holds at their middle.
+/// The mesh without the faces for which `is_hole` holds at their middle.
 pub(super) fn without(
     (points, faces): &(Vec<Vector3>, Vec<[u32; 3]>),
     is_hole: impl Fn(Vector3) -> bool,

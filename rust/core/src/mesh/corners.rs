@@ -28,7 +28,7 @@ pub(crate) fn half_edge(faces: &[[u32; 3]], corner: u32) -> [u32; 2] {
 
 /// Every edge with the corners opposite to it.
 pub(crate) struct EdgeTable {
-    /// Where the edges of each lower vertex start.
+    /// The start of each lower vertex's edges in `entries`.
     start: Vec<u32>,
     /// Higher vertex (upper half) and corner (lower half), sorted for each lower vertex.
     entries: Vec<u64>,

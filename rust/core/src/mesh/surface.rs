@@ -102,7 +102,7 @@ impl Surface {
         mesh.as_ref().map_err(Clone::clone)
     }
 
-    /// The triangles for figures that do not need a manifold; those of the mesh where there is one already.
+    /// The triangles for figures that do not need a manifold; those of the mesh if it is there already.
     ///
     /// # Errors
     /// Faces without area.

@@ -15,7 +15,7 @@ use crate::vector::Vector3;
 pub struct Topology {
     /// Vertices − edges + faces.
     pub euler_characteristic: i64,
-    /// The number of handles, summed over the components; `None` where a component is not orientable.
+    /// The number of handles, summed over the components; `None` if a component is not orientable.
     pub genus: Option<usize>,
     /// Whether the faces can be oriented consistently.
     pub orientable: bool,

@@ -12,7 +12,7 @@ use crate::vector::Vector3;
 
 /// A point of the disk or of the sphere.
 pub trait DomainPoint: Copy + Send + Sync {
-    /// The point in space, where the disk lies in the plane z = 1.
+    /// The point in space, with the disk in the plane z = 1.
     fn lifted(self) -> Vector3;
 
     /// A map to the domain.

@@ -143,7 +143,7 @@ fn euler_characteristic(mesh: &TriangleMesh, components: &[u32], component: u32,
     vertices as i64 - (3 * faces + boundary) as i64 / 2 + faces as i64
 }
 
-/// The fixed vertices within one edge of the faces, or all of them where there are none.
+/// The fixed vertices within one edge of the faces, or all fixed vertices if there are none.
 pub(super) fn pins_near(mesh: &TriangleMesh, fixed: &[usize], folded: &[usize]) -> Option<Elements> {
     let corners = folded.iter().flat_map(|&face| mesh.faces()[face]);
     let around = corners.flat_map(|vertex| mesh.vertex_corners(vertex as usize));

@@ -38,7 +38,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The patch of the vertices `free` (ascending); `None` where its outline cannot bound a map without folds.
+    /// The patch of the vertices `free` (ascending); `None` if its outline cannot bound a map without folds.
     pub(super) fn new(
         mesh: &TriangleMesh,
         given: &Positions,

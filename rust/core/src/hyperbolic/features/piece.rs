@@ -9,7 +9,7 @@ use crate::vector::Vector3;
 pub(crate) struct Bank {
     /// At least two vertices of the piece.
     pub vertices: Vec<u32>,
-    /// As many parameters, strictly increasing from 0 to 1.
+    /// The parameters of the vertices, strictly increasing from 0 to 1.
     pub parameters: Vec<f64>,
 }
 

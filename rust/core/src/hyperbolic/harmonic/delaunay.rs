@@ -130,7 +130,7 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
 
 /// Flips the edge of a corner; returns the corners of the four edges around it.
 ///
-/// Of faces (p, i, j) and (q, j, i) it makes (p, i, q) and (q, j, p).
+/// Faces (p, i, j) and (q, j, i) become (p, i, q) and (q, j, p).
 fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
     let next = |corner: usize| corner - corner % 3 + (corner + 1) % 3;
     let across = net.opposite[corner] as usize;

@@ -34,7 +34,7 @@ pub(crate) struct PieceMap {
 /// Maps a piece.
 ///
 /// # Errors
-/// Those of metric, layout and harmonic map, with faces of the pieces; [`Error::CancelledEarly`].
+/// The errors of metric, layout and harmonic map, with faces of the pieces; [`Error::CancelledEarly`].
 pub(crate) fn map_piece(
     sliced: &SlicedPair,
     options: &HyperbolicOptions<'_>,

@@ -218,7 +218,7 @@ fn check_sliced(piece: &Piece, chain: &[(usize, bool)], sliced: &Sliced) {
     check_sides(piece, chain, sliced);
 }
 
-/// Every corner lies where its place says, and the parts of a face have its area.
+/// Checks that every corner lies at its place, and that the parts of a face have its area.
 fn check_places(piece: &Piece, sliced: &Sliced) {
     let mut left: Vec<f64> = piece.faces.iter().map(|&face| area(triangle(&piece.points, face))).collect();
     for (&face, place) in sliced.faces.iter().zip(&sliced.places) {
@@ -472,7 +472,7 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
     let paths =
         [near(Vector3([1.0, 0.0, 0.3])), near(Vector3([0.0, 1.0, 0.3])), near(Vector3([-1.0, 0.0, 0.3]))];
     let piece = with_slits(sphere.clone(), &paths);
-    // the long way round each time: through the south pole
+    // the long way around each time: through the south pole
     let detour = |line: &[Vector3]| {
         let [from, to] = [line[0], line[line.len() - 1]];
         let ends = [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The structure of spheres with slits and holes, by what theory says of it.
+//! The structure of spheres with slits and holes, against its theory.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::OnceLock;
@@ -83,7 +83,7 @@ fn the_domain_is_laid_out_isometrically_and_in_the_middle() {
                         (lengths[0] + lengths[1] - whole).abs() < 1e-7,
                         "bank {k}: {lengths:?} of {whole}"
                     );
-                    // geodesics: no way round
+                    // geodesics: no detour
                     let direct =
                         distance(position(structure, left[0]), position(structure, left[left.len() - 1]));
                     assert!((lengths[0] - direct).abs() < 1e-7);

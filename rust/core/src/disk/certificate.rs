@@ -6,6 +6,7 @@
 
 use super::boundary::runs_once_around;
 use crate::distortion::folded_in_plane;
+use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::TriangleMesh;
 use crate::parallel;
 
@@ -16,6 +17,17 @@ const SMALLEST_RATIO: f64 = 1e-3;
 /// Faces whose exact orientation in `map` is not positive.
 pub(super) fn folded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Vec<usize> {
     folded_in_plane(mesh.faces(), map)
+}
+
+/// Refuses a map with folds.
+///
+/// # Errors
+/// [`NumericsError::NoEmbedding`] with the folded faces.
+pub(super) fn refuse_folds(mesh: &TriangleMesh, map: &[[f64; 2]]) -> Result<(), Error> {
+    match Elements::collect(folded(mesh, map)) {
+        None => Ok(()),
+        Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
+    }
 }
 
 /// True if `map` is a bijection onto its image: no folded face, boundary once around.

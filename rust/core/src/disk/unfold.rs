@@ -62,7 +62,8 @@ fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[u32]) -> Option<Vec<[f64;
 mod tests {
     use super::*;
     use crate::Boundary;
-    use crate::disk::published::objective::DiskDomain;
+    use crate::disk::boundary::arc_length;
+    use crate::disk::published::objective::DiskObjective;
     use crate::disk::start;
 
     /// A square grid of n × n vertices.
@@ -75,9 +76,10 @@ mod tests {
     }
 
     fn tutte(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
-        let mut domain = DiskDomain::new(mesh, mesh.face_areas(), Boundary::ArcLength).unwrap();
+        let mut objective = DiskObjective::new(mesh, mesh.face_areas(), Boundary::ArcLength).unwrap();
         let mut silent = crate::Silent;
-        start::tutte(mesh, &mut domain, &crate::control::Watch::new(&mut silent, 0.0, "")).unwrap()
+        let watch = crate::control::Watch::new(&mut silent, 0.0, "");
+        start::tutte(mesh, &mut objective, arc_length(mesh), &watch).unwrap()
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use super::options::SphereMapOptions;
 use super::published::fixed_point::{FixedPointStopping, fixed_point};
-use super::published::objective::SphereDomain;
+use super::published::objective::SphereObjective;
 use super::run::Run;
 use super::{start, unfold};
 use crate::codomain::motion::Motion;
@@ -20,12 +20,11 @@ use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status};
 use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
-use crate::energy::stretch::Profile;
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::geometry::triangle;
 use crate::mesh::renumbering::Renumbered;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
-use crate::optimize::gauss_newton::area_tolerance::within_tolerance;
+use crate::optimize::gauss_newton::area_tolerance::descend;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, target_floors};
 use crate::parallel;
 use crate::sparse::{Order, elimination_order};
@@ -36,8 +35,8 @@ const FIXED_POINT_STEPS: usize = 5;
 /// The fixed-point steps end when the stretch energy falls by no more than this.
 const FIXED_POINT_TOLERANCE: f64 = 1e-2;
 
-/// Iterations: the number that suffices where it leaves a small area deviation, and a limit that no descent reaches.
-const ITERATIONS: [usize; 2] = [20, 1000];
+/// Iterations that suffice where they leave a small area deviation.
+const USUAL_ITERATIONS: usize = 20;
 
 /// Surfaces with fewer vertices get twice as many iterations, which are cheap there.
 const SMALL: usize = 10_000;
@@ -59,9 +58,6 @@ const FAR: f64 = 0.12;
 
 /// A result with an E_A above this part of the area is uneven; another start may do better.
 const UNEVEN: f64 = 2e-4;
-
-/// The descent has converged when the area deviation is below this.
-const TOLERANCE: f64 = 2e-4;
 
 impl Run<'_> {
     /// An area-preserving map without folds, computed on the mesh in elimination order.
@@ -151,12 +147,12 @@ impl Run<'_> {
             Err(Error::CancelledEarly) => return Err(Error::CancelledEarly),
             Err(_) => return Ok((None, Status::Stalled)),
         };
-        let domain = SphereDomain::new(self.mesh, targets);
+        let objective = SphereObjective::new(self.mesh, targets);
         let stopping =
             FixedPointStopping { max_iterations: FIXED_POINT_STEPS, tolerance: FIXED_POINT_TOLERANCE };
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let (stepped, status) =
-            fixed_point(&domain, self.weights, start.clone(), &stopping, history, &mut phase);
+            fixed_point(&objective, self.weights, start.clone(), &stopping, history, &mut phase);
         // 3. Either of them, where it is not bad
         let candidates = [stepped, start].into_iter().filter(holds);
         let best = candidates.min_by(|a, b| problem.unevenness(a).total_cmp(&problem.unevenness(b)));
@@ -191,35 +187,22 @@ impl Run<'_> {
         if status == Status::Cancelled {
             return (problem, map, status);
         }
-        let [usual, most] = ITERATIONS;
         let usual = match self.mesh.n_vertices() {
-            0..SMALL => 2 * usual,
-            SMALL..LARGE => usual,
+            0..SMALL => 2 * USUAL_ITERATIONS,
+            SMALL..LARGE => USUAL_ITERATIONS,
             _ => USUAL_WHERE_LARGE,
         };
-        // a tolerance that was asked for must be reached
-        let is_asked = self.options.max_iterations.is_some() || self.options.tolerance.is_some();
-        let options = GaussNewtonOptions {
-            profile: Profile::Barrier,
-            angle_weight: self.options.angle_weight,
-            path,
-            usual_iterations: if is_asked { usize::MAX } else { usual },
-            most_iterations: self.options.max_iterations.unwrap_or(most),
-            tolerance: self.options.tolerance.unwrap_or(TOLERANCE),
-            until_open: None,
-        };
+        let SphereMapOptions { angle_weight, max_iterations, tolerance, area_tolerance, .. } = *self.options;
+        let guarded = GaussNewtonOptions::guarded(angle_weight, max_iterations, tolerance, usual);
+        let options = GaussNewtonOptions { path, ..guarded };
         let begun = map.clone();
         let surface = target_floors::MappedSurface {
             mesh: self.mesh,
             targets: self.targets,
             codomain: Codomain::Sphere,
         };
-        let (problem, map, status) = match self.options.area_tolerance {
-            Some(tolerance) => {
-                within_tolerance(&surface, problem, map, tolerance, &options, history, observer)
-            }
-            None => target_floors::descend(&surface, problem, map, &options, history, observer),
-        };
+        let (problem, map, status) =
+            descend(&surface, problem, map, area_tolerance, &options, history, observer);
         if self.is_bijective(&map) {
             (problem, map, status)
         } else {

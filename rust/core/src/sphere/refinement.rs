@@ -15,7 +15,7 @@ use super::Run;
 use std::f64::consts::PI;
 
 use super::options::SphereMapOptions;
-use super::published::objective::SphereDomain;
+use super::published::objective::SphereObjective;
 use super::published::run::energy_share;
 use crate::codomain::SpatialMap;
 use crate::codomain::spherical::onto_sphere;
@@ -121,7 +121,7 @@ impl Refined {
 
     /// E_A over the area of the image.
     fn unevenness(&self, map: &SpatialMap) -> f64 {
-        energy_share(&SphereDomain::new(&self.mesh, &self.targets), map)
+        energy_share(&SphereObjective::new(&self.mesh, &self.targets), map)
     }
 
     /// The faces that cannot have their targets, as flags.

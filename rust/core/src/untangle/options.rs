@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The options of [`untangle`](super::untangle).
 
-/// Options of [`untangle`].
+/// Options of [`untangle`](super::untangle).
 #[derive(Debug, Clone, Copy)]
 pub struct UntangleOptions<'a> {
     /// Vertices that stay in place, in addition to those of the boundary.

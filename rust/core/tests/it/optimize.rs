@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The optimisers on a domain whose minimum is known: they are generic, so any domain will do.
+//! The optimizers on objectives whose minimum is known: they are generic, so any objective will do.
 
 use authalic::optimize::published::gradient_descent::{self, DescentOptions, LineSearch};
 use authalic::optimize::published::nonlinear_cg::{CgOptions, minimize};
-use authalic::optimize::published::{Domain, Energies, Stopping};
+use authalic::optimize::published::{Energies, Objective, Stopping};
 use authalic::{History, Silent, Status};
 
 /// ½ xᵀ A x − bᵀ x with A = tridiag(−1, 2 + i, −1), preconditioned by its diagonal or not at all.
@@ -23,15 +23,15 @@ impl Quadratic {
     }
 }
 
-impl Domain for Quadratic {
+impl Objective for Quadratic {
     type Map = Vec<f64>;
 
-    fn objective(&self, x: &Vec<f64>) -> f64 {
+    fn value(&self, x: &Vec<f64>) -> f64 {
         self.product(x).iter().zip(x).map(|(product, x)| 0.5 * product * x - x).sum()
     }
 
     fn gradient(&self, x: &Vec<f64>) -> (Energies, Vec<f64>) {
-        let objective = self.objective(x);
+        let objective = self.value(x);
         let gradient = self.product(x).iter().map(|product| product - 1.0).collect();
         (Energies { objective, authalic_energy: objective }, gradient)
     }
@@ -48,20 +48,20 @@ impl Domain for Quadratic {
     }
 }
 
-fn run(domain: &Quadratic, max_iterations: usize, tolerance: f64) -> (Vec<f64>, Status, History) {
+fn run(objective: &Quadratic, max_iterations: usize, tolerance: f64) -> (Vec<f64>, Status, History) {
     let options = CgOptions { stopping: Stopping { max_iterations, tolerance }, ..CgOptions::default() };
     let mut history = History::start();
-    let (x, status) = minimize(domain, vec![0.0; domain.n], &options, &mut history, &mut Silent);
+    let (x, status) = minimize(objective, vec![0.0; objective.n], &options, &mut history, &mut Silent);
     (x, status, history)
 }
 
 #[test]
 fn conjugate_gradients_solve_a_quadratic() {
     for preconditioned in [false, true] {
-        let domain = Quadratic { n: 30, preconditioned };
-        let (x, status, history) = run(&domain, 200, 1e-7);
+        let objective = Quadratic { n: 30, preconditioned };
+        let (x, status, history) = run(&objective, 200, 1e-7);
         assert_eq!(status, Status::Converged);
-        domain.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-6));
+        objective.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-6));
         let energies: Vec<f64> = history.records().iter().map(|record| record.authalic_energy).collect();
         assert!(energies.windows(2).all(|pair| pair[1] <= pair[0]), "the energy never rises");
     }
@@ -75,16 +75,16 @@ fn a_good_preconditioner_saves_iterations() {
 
 #[test]
 fn an_observer_cancels_between_iterations() {
-    let domain = Quadratic { n: 30, preconditioned: false };
+    let objective = Quadratic { n: 30, preconditioned: false };
     let mut calls = 0;
     let mut observer = |_: f64, _: &str| {
         calls += 1;
         calls < 4
     };
     let mut history = History::start();
-    let (x, status) = minimize(&domain, vec![0.0; 30], &CgOptions::default(), &mut history, &mut observer);
+    let (x, status) = minimize(&objective, vec![0.0; 30], &CgOptions::default(), &mut history, &mut observer);
     assert_eq!((status, history.iterations()), (Status::Cancelled, 3));
-    assert!(domain.objective(&x) < 0.0);
+    assert!(objective.value(&x) < 0.0);
 }
 
 #[test]
@@ -100,15 +100,15 @@ const LINE_SEARCHES: [LineSearch; 2] = [LineSearch::Interpolation, LineSearch::B
 /// xᵀ A x on the unit sphere of n dimensions, A = diag(1, 2, …, n): not convex; ±e₀ are its minima, of value 1.
 struct Rayleigh;
 
-impl Domain for Rayleigh {
+impl Objective for Rayleigh {
     type Map = Vec<f64>;
 
-    fn objective(&self, x: &Vec<f64>) -> f64 {
+    fn value(&self, x: &Vec<f64>) -> f64 {
         x.iter().enumerate().map(|(i, x)| (i + 1) as f64 * x * x).sum()
     }
 
     fn gradient(&self, x: &Vec<f64>) -> (Energies, Vec<f64>) {
-        let objective = self.objective(x);
+        let objective = self.value(x);
         let tangent = x.iter().enumerate().map(|(i, x)| 2.0 * ((i + 1) as f64 - objective) * x).collect();
         (Energies { objective, authalic_energy: objective - 1.0 }, tangent)
     }
@@ -127,15 +127,15 @@ impl Domain for Rayleigh {
 /// x + 1/x on the half line x > 0, the only part that is allowed; the minimum is at 1.
 struct HalfLine;
 
-impl Domain for HalfLine {
+impl Objective for HalfLine {
     type Map = f64;
 
-    fn objective(&self, x: &f64) -> f64 {
+    fn value(&self, x: &f64) -> f64 {
         if *x > 0.0 { x + 1.0 / x } else { f64::INFINITY }
     }
 
     fn gradient(&self, x: &f64) -> (Energies, Vec<f64>) {
-        let objective = self.objective(x);
+        let objective = self.value(x);
         (Energies { objective, authalic_energy: objective }, vec![1.0 - 1.0 / (x * x)])
     }
 
@@ -151,15 +151,15 @@ impl Domain for HalfLine {
 /// 0 at the start and 1 everywhere else, with a gradient that knows nothing of it.
 struct Pit;
 
-impl Domain for Pit {
+impl Objective for Pit {
     type Map = f64;
 
-    fn objective(&self, x: &f64) -> f64 {
+    fn value(&self, x: &f64) -> f64 {
         if *x == 0.0 { 0.0 } else { 1.0 }
     }
 
     fn gradient(&self, x: &f64) -> (Energies, Vec<f64>) {
-        let objective = self.objective(x);
+        let objective = self.value(x);
         (Energies { objective, authalic_energy: objective }, vec![1.0])
     }
 
@@ -172,15 +172,15 @@ impl Domain for Pit {
     }
 }
 
-fn descend<D: Domain>(
-    domain: &D,
+fn descend<D: Objective>(
+    objective: &D,
     start: D::Map,
     line_search: LineSearch,
     (max_iterations, tolerance): (usize, f64),
 ) -> (D::Map, Status, History) {
     let options = DescentOptions { stopping: Stopping { max_iterations, tolerance }, line_search };
     let mut history = History::start();
-    let (x, status) = gradient_descent::minimize(domain, start, &options, &mut history, &mut Silent);
+    let (x, status) = gradient_descent::minimize(objective, start, &options, &mut history, &mut Silent);
     (x, status, history)
 }
 
@@ -197,10 +197,10 @@ fn assert_never_rises(history: &History) {
 #[test]
 fn gradient_descent_solves_a_quadratic() {
     for (line_search, preconditioned) in LINE_SEARCHES.into_iter().flat_map(|l| [(l, false), (l, true)]) {
-        let domain = Quadratic { n: 8, preconditioned };
-        let (x, status, history) = descend(&domain, vec![0.0; 8], line_search, (400, 1e-6));
+        let objective = Quadratic { n: 8, preconditioned };
+        let (x, status, history) = descend(&objective, vec![0.0; 8], line_search, (400, 1e-6));
         assert_eq!(status, Status::Converged, "{line_search:?}");
-        domain.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-5));
+        objective.product(&x).iter().for_each(|product| assert!((product - 1.0).abs() < 1e-5));
         assert_never_rises(&history);
     }
 }
@@ -244,27 +244,27 @@ fn gradient_descent_is_cancelled_between_iterations() {
             heard.len() <= last
         };
         let options = DescentOptions { line_search, ..DescentOptions::default() };
-        let (domain, mut history) = (Quadratic { n: 12, preconditioned: false }, History::start());
+        let (objective, mut history) = (Quadratic { n: 12, preconditioned: false }, History::start());
         let (x, status) =
-            gradient_descent::minimize(&domain, vec![0.0; 12], &options, &mut history, &mut observer);
+            gradient_descent::minimize(&objective, vec![0.0; 12], &options, &mut history, &mut observer);
         assert_eq!((status, history.iterations()), (Status::Cancelled, last));
-        assert_eq!(domain.objective(&x), energies(&history)[last], "the map of the last iteration");
+        assert_eq!(objective.value(&x), energies(&history)[last], "the map of the last iteration");
         assert_eq!(heard, (0..=last).map(|done| done as f64 / 50.0).collect::<Vec<_>>());
     }
 }
 
 #[test]
 fn gradient_descent_keeps_its_limit_and_records_every_iteration() {
-    let domain = Quadratic { n: 12, preconditioned: false };
+    let objective = Quadratic { n: 12, preconditioned: false };
     for line_search in LINE_SEARCHES {
         for limit in [0, 1, 7] {
-            let (x, status, history) = descend(&domain, vec![0.5; 12], line_search, (limit, 0.0));
+            let (x, status, history) = descend(&objective, vec![0.5; 12], line_search, (limit, 0.0));
             assert_eq!((status, history.iterations()), (Status::MaxIterations, limit));
             let records = history.records();
             assert!(records.iter().map(|record| record.iteration).eq(0..=limit));
             assert!(records[1..].iter().all(|record| record.step > 0.0) && records[0].step == 0.0);
             assert!(records.windows(2).all(|pair| pair[0].seconds <= pair[1].seconds));
-            let (last, gradient) = domain.gradient(&x);
+            let (last, gradient) = objective.gradient(&x);
             assert_eq!(records[limit].authalic_energy, last.authalic_energy);
             let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
             assert!((records[limit].gradient_norm - norm).abs() < 1e-14 * norm);
@@ -274,12 +274,12 @@ fn gradient_descent_keeps_its_limit_and_records_every_iteration() {
 
 #[test]
 fn gradient_descent_goes_on_with_the_history_of_an_earlier_phase() {
-    let domain = Quadratic { n: 12, preconditioned: false };
+    let objective = Quadratic { n: 12, preconditioned: false };
     let stopping = Stopping { max_iterations: 3, tolerance: 0.0 };
     let options = DescentOptions { stopping, ..DescentOptions::default() };
     let mut history = History::start();
-    let (x, _) = gradient_descent::minimize(&domain, vec![0.0; 12], &options, &mut history, &mut Silent);
-    gradient_descent::minimize(&domain, x, &options, &mut history, &mut Silent);
+    let (x, _) = gradient_descent::minimize(&objective, vec![0.0; 12], &options, &mut history, &mut Silent);
+    gradient_descent::minimize(&objective, x, &options, &mut history, &mut Silent);
     assert!(history.records().iter().map(|record| record.iteration).eq(0..=6));
     assert_never_rises(&history);
 }

@@ -9,14 +9,12 @@
 //! The Hessian takes m − 1 as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing. Every
 //! term is positive semidefinite except the curvature of ρ, which is left out or added on demand.
 
+use super::face::{Element, Jacobian, STIFFENING, add_area_curvature, add_dirichlet, add_square, stiffened};
 use crate::codomain::planar::PlanarMap;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::vector::Vector3;
-
-/// β of f.
-const STIFFENING: f64 = 0.1;
 
 /// Rest triangles are fattened to a height of at least this part of their longest edge.
 const FLATTEST: f64 = 1e-7;
@@ -24,9 +22,6 @@ const FLATTEST: f64 = 1e-7;
 /// A face is positive by more than its rounding error where left − right > this · (|left| + |right|): the filter of
 /// Shewchuk's orient2d, (3 + 16ε)ε with ε = 2⁻⁵³.
 const ROUNDING: f64 = 3.330_669_073_875_471_6e-16;
-
-/// The matrix of a face over the two unknowns of each of its corners.
-pub(super) type Element = [[f64; 6]; 6];
 
 /// The rest triangles of a surface.
 pub(super) struct Energy<'a> {
@@ -57,14 +52,6 @@ pub(super) struct Hessian {
     pub least: f64,
     /// The part of the curvature of the area that is added, from 0 to 1; 1 gives the exact Hessian.
     pub curvature: f64,
-}
-
-/// The linear map of a face.
-#[derive(Clone, Copy)]
-struct Jacobian {
-    /// (a, b, c, d).
-    entries: [f64; 4],
-    ratio: f64,
 }
 
 impl<'a> Energy<'a> {
@@ -197,43 +184,6 @@ impl<'a> Energy<'a> {
     }
 }
 
-impl Jacobian {
-    /// The derivatives of the determinant.
-    fn cofactors(&self) -> [f64; 4] {
-        let [a, b, c, d] = self.entries;
-        [d, -c, -b, a]
-    }
-
-    /// m − 1.
-    fn shear(&self) -> f64 {
-        let [a, b, c, d] = self.entries;
-        0.5 * ((a - d).powi(2) + (b + c).powi(2)) / self.ratio
-    }
-
-    /// The derivatives of m − 1.
-    fn shear_slopes(&self) -> [f64; 4] {
-        let [a, b, c, d] = self.entries;
-        let (along, cofactors) = ([a - d, b + c, b + c, d - a], self.cofactors());
-        let shear = self.shear();
-        std::array::from_fn(|k| (along[k] - shear * cofactors[k]) / self.ratio)
-    }
-
-    /// The rows W of the Hessian Wᵀ W of m − 1 where ρ is taken for linear.
-    fn quadratic_over_linear(&self, cofactors: &[f64; 4]) -> [[f64; 4]; 2] {
-        let [a, b, c, d] = self.entries;
-        let root = self.ratio.sqrt();
-        let row = |along: [f64; 4], length: f64| {
-            std::array::from_fn(|k| along[k] / root - length / (self.ratio * root) * cofactors[k])
-        };
-        [row([1.0, 0.0, 0.0, -1.0], a - d), row([0.0, 1.0, 1.0, 0.0], b + c)]
-    }
-}
-
-/// f.
-fn stiffened(shear: f64) -> f64 {
-    shear + 0.5 * STIFFENING * shear * shear
-}
-
 /// The gradients of the hat functions on a triangle in the plane, similar to the one in space and of area `target`.
 fn rest_hats(corners: [Vector3; 3], target: f64) -> [[f64; 2]; 3] {
     // from the longest edge, so that the height is the least and no difference cancels
@@ -252,41 +202,6 @@ fn rest_hats(corners: [Vector3; 3], target: f64) -> [[f64; 2]; 3] {
     let mut hats = [[0.0; 2]; 3];
     [of_top, of_left, of_right].into_iter().enumerate().for_each(|(k, hat)| hats[(apex + k) % 3] = hat);
     hats
-}
-
-/// Adds `factor` times the square of a linear form in the entries of the Jacobian.
-fn add_square(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3], form: &[f64; 4]) {
-    let row: [f64; 6] = std::array::from_fn(|k| {
-        let (g, axis) = (hats[k / 2], k % 2);
-        form[2 * axis] * g[0] + form[2 * axis + 1] * g[1]
-    });
-    for i in 0..6 {
-        for j in 0..6 {
-            element[i][j] += factor * row[i] * row[j];
-        }
-    }
-}
-
-/// Adds `factor` times the second derivative of the determinant of the Jacobian.
-fn add_area_curvature(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3]) {
-    for i in 0..3 {
-        for j in 0..3 {
-            let twist = factor * (hats[i][0] * hats[j][1] - hats[i][1] * hats[j][0]);
-            element[2 * i][2 * j + 1] += twist;
-            element[2 * j + 1][2 * i] += twist;
-        }
-    }
-}
-
-/// Adds `factor` times the squared length of the Jacobian.
-fn add_dirichlet(element: &mut Element, factor: f64, hats: &[[f64; 2]; 3]) {
-    for i in 0..3 {
-        for j in 0..3 {
-            let product = factor * (hats[i][0] * hats[j][0] + hats[i][1] * hats[j][1]);
-            element[2 * i][2 * j] += product;
-            element[2 * i + 1][2 * j + 1] += product;
-        }
-    }
 }
 
 #[cfg(test)]

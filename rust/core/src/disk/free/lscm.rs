@@ -8,7 +8,8 @@
 
 use std::f64::consts::TAU;
 
-use super::energy::{Element, Energy};
+use super::energy::Energy;
+use super::face::Element;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::sparse::{Analysis, Factor, Failure};

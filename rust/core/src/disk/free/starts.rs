@@ -4,9 +4,9 @@
 use std::f64::consts::TAU;
 
 use super::arap::as_rigid_as_possible;
-use super::contact::Outline;
 use super::energy::Energy;
 use super::lscm::{of_area_one, spectral_conformal};
+use super::outline::Outline;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};

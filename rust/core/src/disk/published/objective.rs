@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Maps to the unit disk as a [`Domain`]: interior vertices in the plane, boundary vertices held or sliding
+//! Maps to the unit disk as a [`Objective`]: interior vertices in the plane, boundary vertices held or sliding
 //! on the circle.
 //!
 //! Reduced coordinates: first coordinates of the interior vertices, then their second ones, then, where the
@@ -18,7 +18,7 @@ use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
-use crate::optimize::published::{Domain, Energies};
+use crate::optimize::published::{Energies, Objective};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 
@@ -45,7 +45,7 @@ struct SlidingBoundary {
 
 /// Maps of one mesh to the unit disk.
 #[derive(Debug)]
-pub(crate) struct DiskDomain<'a> {
+pub(crate) struct DiskObjective<'a> {
     mesh: &'a TriangleMesh,
     energy: StretchEnergy<'a>,
     interior: Block,
@@ -57,7 +57,7 @@ pub(crate) struct DiskDomain<'a> {
     guarded: bool,
 }
 
-impl<'a> DiskDomain<'a> {
+impl<'a> DiskObjective<'a> {
     /// Analyzes the systems of the domain; the preconditioner must be set before it is used.
     pub(crate) fn new(mesh: &'a TriangleMesh, targets: &'a [f64], boundary: Boundary) -> Result<Self, Error> {
         let interior = Block::analyze(mesh, Laplacian::new(mesh, |vertex| !mesh.is_boundary(vertex)))?;
@@ -153,10 +153,10 @@ impl<'a> DiskDomain<'a> {
     }
 }
 
-impl Domain for DiskDomain<'_> {
+impl Objective for DiskObjective<'_> {
     type Map = PlanarMap;
 
-    fn objective(&self, map: &Self::Map) -> f64 {
+    fn value(&self, map: &Self::Map) -> f64 {
         self.full_objective(map, self.energy.value(map))
     }
 

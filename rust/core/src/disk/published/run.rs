@@ -5,15 +5,16 @@
 //! behind a barrier; last of all the same descent from Tutte's embedding.
 
 use super::fixed_point::fixed_point;
-use super::objective::DiskDomain;
+use super::objective::DiskObjective;
 use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Phase, Status, Watch};
+use crate::disk::boundary::arc_length;
 use crate::disk::options::Method;
 use crate::disk::run::Run;
 use crate::disk::{certificate, start, unfold};
 use crate::error::{Elements, Error, NumericsError};
 use crate::optimize::published::nonlinear_cg::{CgOptions, minimize};
-use crate::optimize::published::{Domain as _, Stopping};
+use crate::optimize::published::{Objective as _, Stopping};
 
 /// Fixed-point steps before the conjugate gradients, the paper's 5.
 const FIXED_POINT_STEPS: usize = 5;
@@ -30,26 +31,26 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, Status), Error> {
-        let mut domain = DiskDomain::new(self.mesh, self.targets, self.options.boundary)?;
+        let mut objective = DiskObjective::new(self.mesh, self.targets, self.options.boundary)?;
         // 1. The method as published
-        let (map, status) = self.as_published(&mut domain, history, observer)?;
+        let (map, status) = self.as_published(&mut objective, history, observer)?;
         let bijective = certificate::is_bijective(self.mesh, &map);
-        if bijective && (status == Status::Cancelled || !domain.nearly_folds(&map)) {
+        if bijective && (status == Status::Cancelled || !objective.nearly_folds(&map)) {
             return Ok((map, status));
         }
         // 2. Unfold folded faces, then a descent that keeps every face open
-        domain.guard();
+        objective.guard();
         let mended = if bijective { Some(map) } else { unfold::unfold(self.mesh, &map) };
         let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
-        let mended = mended.map(|map| self.descend(&mut domain, map, status, history, &mut phase));
+        let mended = mended.map(|map| self.descend(&mut objective, map, status, history, &mut phase));
         // 3. Where that fails or leaves a face nearly folded, the same descent from Tutte's embedding
         match mended {
-            Some((map, status)) if status == Status::Cancelled || !domain.nearly_folds(&map) => {
+            Some((map, status)) if status == Status::Cancelled || !objective.nearly_folds(&map) => {
                 Ok((map, status))
             }
             mended => {
                 let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-                self.descend_from_tutte(&mut domain, mended, status, history, &mut phase)
+                self.descend_from_tutte(&mut objective, mended, status, history, &mut phase)
             }
         }
     }
@@ -57,21 +58,22 @@ impl Run<'_> {
     /// Tutte's embedding and the guarded descent from it, or `mended` where that is the better map.
     fn descend_from_tutte(
         &self,
-        domain: &mut DiskDomain<'_>,
+        objective: &mut DiskObjective<'_>,
         mended: Option<(PlanarMap, Status)>,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, Status), Error> {
-        let tutte = start::tutte(self.mesh, domain, &Watch::new(observer, 0.0, MESSAGE))?;
+        let tutte =
+            start::tutte(self.mesh, objective, arc_length(self.mesh), &Watch::new(observer, 0.0, MESSAGE))?;
         let folded = certificate::folded(self.mesh, &tutte);
         match (Elements::collect(folded.into_iter().map(|face| self.given_face(face))), mended) {
             (Some(folded), None) => Err(NumericsError::NoEmbedding { folded }.into()),
             (Some(_), Some(mended)) => Ok(mended),
-            (None, None) => Ok(self.descend(domain, tutte, status, history, observer)),
+            (None, None) => Ok(self.descend(objective, tutte, status, history, observer)),
             (None, Some(mended)) => {
-                let descended = self.descend(domain, tutte, status, history, observer);
-                let is_better = domain.objective(&descended.0) < domain.objective(&mended.0);
+                let descended = self.descend(objective, tutte, status, history, observer);
+                let is_better = objective.value(&descended.0) < objective.value(&mended.0);
                 Ok(if is_better { descended } else { mended })
             }
         }
@@ -80,7 +82,7 @@ impl Run<'_> {
     /// Harmonic start, fixed-point steps, conjugate gradients; may fold.
     fn as_published(
         &self,
-        domain: &mut DiskDomain<'_>,
+        objective: &mut DiskObjective<'_>,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, Status), Error> {
@@ -89,11 +91,11 @@ impl Run<'_> {
             (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
             (initial, method) => {
                 let watch = Watch::new(observer, 0.0, MESSAGE);
-                let begin = || start::start(self.mesh, domain, &watch);
+                let begin = || start::start(self.mesh, objective, &watch);
                 let start = initial.map_or_else(begin, |map| Ok(map.to_vec()))?;
                 let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
                 let mut phase = Phase { whole: observer, from: 0.0, to };
-                fixed_point(domain, start, &self.fixed_point_stopping(), history, &mut phase)
+                fixed_point(objective, start, &self.fixed_point_stopping(), history, &mut phase)
             }
         };
         if self.options.method == Method::FixedPoint || status == Status::Cancelled {
@@ -101,7 +103,7 @@ impl Run<'_> {
         }
         // 2. Conjugate gradients
         let mut phase = Phase { whole: observer, from: 0.2, to: 0.8 };
-        Ok(self.conjugate_gradients(domain, map, history, &mut phase))
+        Ok(self.conjugate_gradients(objective, map, history, &mut phase))
     }
 
     /// Conjugate gradients in rounds of at most [`ROUND`] iterations, each with the preconditioner of the
@@ -111,7 +113,7 @@ impl Run<'_> {
     /// round that stalls may go on with a new one.
     fn conjugate_gradients(
         &self,
-        domain: &mut DiskDomain<'_>,
+        objective: &mut DiskObjective<'_>,
         mut map: PlanarMap,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -124,12 +126,12 @@ impl Run<'_> {
             let options =
                 CgOptions { stopping: Stopping { max_iterations: budget, ..whole }, ..CgOptions::default() };
             let mut round = Phase { whole: observer, from: fraction(done), to: fraction(done + budget) };
-            match domain.set_preconditioner(&map, &Watch::new(&mut round, 0.0, MESSAGE)) {
+            match objective.set_preconditioner(&map, &Watch::new(&mut round, 0.0, MESSAGE)) {
                 Ok(()) => {}
                 Err(Error::CancelledEarly) => return (map, Status::Cancelled),
                 Err(_) => return (map, Status::Stalled),
             }
-            let (reached, status) = minimize(domain, map, &options, history, &mut round);
+            let (reached, status) = minimize(objective, map, &options, history, &mut round);
             let advanced = history.iterations() - begun > done;
             done = history.iterations() - begun;
             match status {
@@ -143,16 +145,16 @@ impl Run<'_> {
     /// Conjugate gradients that keep an unfolded map unfolded; a run already cancelled returns the map unchanged.
     fn descend(
         &self,
-        domain: &mut DiskDomain<'_>,
+        objective: &mut DiskObjective<'_>,
         map: PlanarMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status) {
-        if status == Status::Cancelled || !domain.objective(&map).is_finite() {
+        if status == Status::Cancelled || !objective.value(&map).is_finite() {
             return (map, if status == Status::Cancelled { status } else { Status::Stalled });
         }
-        self.conjugate_gradients(domain, map, history, observer)
+        self.conjugate_gradients(objective, map, history, observer)
     }
 
     fn stopping(&self) -> Stopping {

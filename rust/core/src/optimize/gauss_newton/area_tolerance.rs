@@ -7,7 +7,7 @@
 //! It starts each descent from the minimum of a larger λ, because shear stays in a map.
 
 use super::angle_schedule::AnglePath;
-use super::target_floors::{MappedSurface, descend};
+use super::target_floors::{self, MappedSurface};
 use super::{GaussNewtonOptions, Problem, minimize};
 use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Phase, Status};
@@ -50,9 +50,26 @@ impl Stationary {
     }
 }
 
+/// A guarded descent through all floors of the targets, to the map of least shear within a tolerance where one is given;
+/// `problem` has the energy of the first floor, and is returned with that of the last.
+pub(crate) fn descend(
+    surface: &MappedSurface<'_>,
+    problem: Problem,
+    start: SpatialMap,
+    area_tolerance: Option<f64>,
+    options: &GaussNewtonOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (Problem, SpatialMap, Status) {
+    match area_tolerance {
+        Some(tolerance) => within_tolerance(surface, problem, start, tolerance, options, history, observer),
+        None => target_floors::descend(surface, problem, start, options, history, observer),
+    }
+}
+
 /// The map of least shear with √(E_A/A) ≤ `tolerance` that is reached from `start`; [`Status::Stalled`] where areas cannot
 /// be made that even. `problem` has the energy of the first floor, and is returned with that of the last.
-pub(crate) fn within_tolerance(
+fn within_tolerance(
     surface: &MappedSurface<'_>,
     problem: Problem,
     start: SpatialMap,
@@ -65,7 +82,7 @@ pub(crate) fn within_tolerance(
     let begun = history.iterations();
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
     let first = GaussNewtonOptions { angle_weight: FIRST, ..*options };
-    let (problem, map, status) = descend(surface, problem, start, &first, history, &mut phase);
+    let (problem, map, status) = target_floors::descend(surface, problem, start, &first, history, &mut phase);
     let search = Search { problem: &problem, options: *options, goal: tolerance.ln(), begun };
     let mut best = search.stationary(FIRST, map, status);
     let (mut coarser, mut round) = (None, 0);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The iterations: weights, direction, step, and end.
 
-use super::angle_schedule::{AnglePath, AngleSchedule, MANY, Progress, SHORT};
+use super::angle_schedule::{AngleSchedule, Progress, SHORT};
 use super::problem::{GaussNewtonOptions, Problem, State};
+use super::stopping::{MESSAGE, StoppingRule, Trend};
 use super::system::{LARGE, Linearized, NEAR, Newton};
 use super::trial::{Trial, shrinkage};
 use crate::codomain::SpatialMap;
@@ -27,7 +28,7 @@ const LEAST_DEVIATION: f64 = 1e-3;
 /// Lower bound of the deviation that the damping adds to every face.
 const LEAST_DAMPING: f64 = 3e-4;
 
-/// That lower bound on more than [`LARGE`] vertices; smaller values break the single-precision factorization.
+/// Lower bound of the same on more than [`LARGE`] vertices; smaller values break the single-precision factorization.
 const SINGLE_PRECISION: f64 = 2e-3;
 
 /// No vertex moves farther than this in one step.
@@ -38,22 +39,6 @@ const MOST_TRIALS: usize = 30;
 
 /// A step must gain this part of what the slope promises.
 const SUFFICIENT: f64 = 1e-4;
-
-/// Area deviation below which a descent ends after the usual iterations: on surfaces of fewer than [`MANY`] vertices, on
-/// others, and after stages, which few surfaces need.
-const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
-
-/// Area deviation below which a slow descent ends.
-const GOOD_ENOUGH: f64 = 0.005;
-
-/// Area deviation below which a descent ends at once on surfaces of [`MANY`] vertices or more.
-const EVEN: f64 = 7e-4;
-
-/// Iterations over which a descent must lower E_A by [`LEAST_GAIN`], or it is slow.
-const PATIENCE: usize = 5;
-
-/// The part of E_A that [`PATIENCE`] iterations must gain.
-const LEAST_GAIN: f64 = 0.05;
 
 /// An energy below this part of the area counts as zero.
 const NOTHING: f64 = 1e-12;
@@ -97,12 +82,13 @@ pub(crate) fn minimize(
         if sums.total() < best.0 && descent.keeps_the_best() {
             best = (sums.total(), state.map.clone());
         }
-        if let Some(status) = descent.verdict(done, &sums, &trend, observer) {
+        let (schedule, is_flat) = (&descent.schedule, descent.flat);
+        if let Some(status) = descent.stopping.verdict(done, &sums, &trend, schedule, is_flat, observer) {
             history.push_start(sums.authalic_energy, 0.0);
             return (descent.best_of(best, &sums, state.map, history), status);
         }
         // 2. One factorization, the direction
-        let watch = Watch::new(observer, descent.fraction(done), MESSAGE);
+        let watch = Watch::new(observer, descent.stopping.fraction(done), MESSAGE);
         let damping = descent.damping_of(&sums);
         let is_near = descent.is_near();
         let newton =
@@ -131,35 +117,13 @@ pub(crate) fn minimize(
     unreachable!("the verdict ends the loop")
 }
 
-const MESSAGE: &str = "Evening out areas";
-
-/// The energies and gradient norms of the iterations so far.
-#[derive(Default)]
-struct Trend {
-    energies: Vec<f64>,
-    norms: Vec<f64>,
-}
-
-impl Trend {
-    /// True if the last iterations gained almost nothing, and were not about to leave a saddle.
-    fn is_slow(&self) -> bool {
-        let Some(before) = self.norms.len().checked_sub(PATIENCE) else { return false };
-        let [then, now] = [before, self.norms.len()].map(|k| self.energies[k]);
-        let is_leaving = self.norms[self.norms.len() - 1] > self.norms[before];
-        now > (1.0 - LEAST_GAIN) * then && !is_leaving
-    }
-}
-
 /// The state of the iterations.
 struct Descent<'a> {
     problem: &'a Problem,
     options: GaussNewtonOptions,
     linearized: Linearized,
     schedule: AngleSchedule,
-    /// The area deviation below which to end after the usual iterations.
-    even_enough: f64,
-    /// True if iterations are costly.
-    is_large: bool,
+    stopping: StoppingRule,
     /// True if the last second-order correction was useless.
     is_straight: bool,
     /// The scale of the targets; NaN before the first iteration.
@@ -178,7 +142,6 @@ struct Descent<'a> {
 impl<'a> Descent<'a> {
     fn new(problem: &'a Problem, options: GaussNewtonOptions) -> Self {
         let targets = problem.energy.targets();
-        let is_large = problem.motions.len() >= MANY;
         let has_landmarks = !problem.penalty.vertices().is_empty();
         Self {
             problem,
@@ -190,12 +153,7 @@ impl<'a> Descent<'a> {
                 problem.motions.len(),
                 has_landmarks,
             ),
-            even_enough: match options.path {
-                AnglePath::Staged => EVEN_ENOUGH[2],
-                AnglePath::Balanced | AnglePath::Held => EVEN_ENOUGH[usize::from(is_large || has_landmarks)],
-            },
-            // landmarks must meet, however even areas are
-            is_large: is_large && !has_landmarks && options.profile == Profile::Barrier,
+            stopping: StoppingRule::new(problem, options),
             is_straight: false,
             scale: f64::NAN,
             damping: DAMPING,
@@ -241,45 +199,6 @@ impl<'a> Descent<'a> {
         self.flat &= angle == before;
         self.scale = sums.area / self.total_target;
         Weights { scale: self.scale, angle, profile: self.options.profile }
-    }
-
-    /// The status with which to end, if any.
-    fn verdict(
-        &self,
-        done: usize,
-        sums: &Sums,
-        trend: &Trend,
-        observer: &mut dyn Observer,
-    ) -> Option<Status> {
-        let options = &self.options;
-        let (is_held, is_staged) = (self.schedule.is_held(), self.schedule.is_staged());
-        let is_slow = options.angle_weight == 0.0 && !is_staged && trend.is_slow();
-        let deviation = (sums.total() / sums.area).sqrt();
-        let is_asked = options.usual_iterations == usize::MAX;
-        let is_even = deviation <= options.tolerance
-            || (!is_staged && deviation <= self.even_enough && trend.norms.len() >= options.usual_iterations)
-            || (!is_staged && !is_asked && self.is_large && deviation <= EVEN);
-        let is_open = options.until_open.is_some_and(|least| done >= least && sums.angle_energy.is_finite());
-        if (is_even && !is_held) || is_open || (is_held && self.flat) {
-            Some(Status::Converged)
-        } else if is_slow {
-            // a minimum that is not 0, as coarse surfaces have, is stationary
-            let is_at_rest = self.flat || (!is_asked && deviation <= GOOD_ENOUGH);
-            Some(if is_at_rest { Status::Converged } else { Status::Stalled })
-        } else if done >= options.most_iterations {
-            Some(Status::MaxIterations)
-        } else if observer.progress(self.fraction(done), MESSAGE) {
-            None
-        } else {
-            Some(Status::Cancelled)
-        }
-    }
-
-    /// The fraction done after `done` iterations.
-    fn fraction(&self, done: usize) -> f64 {
-        // nearly all runs end after the usual iterations; progress must never go back
-        let usual = self.options.usual_iterations.min(self.options.most_iterations).max(1);
-        1.0 - 0.1f64.powf(done as f64 / usual as f64)
     }
 
     /// The next map and the length of the step; `None` where no step lowers the energy.

@@ -28,6 +28,7 @@ pub(crate) mod angle_schedule;
 pub(crate) mod area_tolerance;
 mod descent;
 mod problem;
+mod stopping;
 mod system;
 pub(crate) mod target_floors;
 mod trial;

@@ -41,6 +41,45 @@ pub(crate) struct GaussNewtonOptions {
     pub until_open: Option<usize>,
 }
 
+/// Limit of the iterations, which no descent reaches, unless another is asked for.
+const MOST_ITERATIONS: usize = 1000;
+
+/// The descent has converged when the area deviation is below this, unless another tolerance is asked for.
+const TOLERANCE: f64 = 2e-4;
+
+impl GaussNewtonOptions {
+    /// A guarded descent by what the caller asked for; after `usual_iterations` nearly even areas are enough for those who
+    /// asked for nothing else.
+    pub(crate) fn guarded(
+        angle_weight: f64,
+        max_iterations: Option<usize>,
+        tolerance: Option<f64>,
+        usual_iterations: usize,
+    ) -> Self {
+        let is_asked = max_iterations.is_some() || tolerance.is_some();
+        Self {
+            profile: Profile::Barrier,
+            angle_weight,
+            path: AnglePath::Balanced,
+            usual_iterations: if is_asked { usize::MAX } else { usual_iterations },
+            most_iterations: max_iterations.unwrap_or(MOST_ITERATIONS),
+            tolerance: tolerance.unwrap_or(TOLERANCE),
+            until_open: None,
+        }
+    }
+
+    /// Unguarded iterations that unfold: until no face is folded, at least and at most so many.
+    pub(crate) fn unguarded(self, [least, most]: [usize; 2]) -> Self {
+        Self {
+            profile: Profile::Stretch,
+            until_open: Some(least),
+            usual_iterations: most,
+            most_iterations: self.most_iterations.min(most),
+            ..self
+        }
+    }
+}
+
 impl Problem {
     /// The problem with another energy of the same surface.
     pub(crate) fn with_energy(self, energy: AuthalicEnergy) -> Self {

@@ -9,7 +9,7 @@
 //! about a dozen (bounded).
 
 use super::line_search::Trial;
-use super::{Domain, Energies, Stopping, bounded, interpolation};
+use super::{Energies, Objective, Stopping, bounded, interpolation};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
 
@@ -43,20 +43,20 @@ const REACH: f64 = 8.0;
 /// Relative precision of the bounded search.
 const PRECISION: f64 = 1e-3;
 
-/// Lowers the domain's objective from `start` and returns the last map, which has the lowest objective, with the status.
-pub fn minimize<D: Domain>(
-    domain: &D,
+/// Lowers the objective from `start` and returns the last map, which has the lowest objective, with the status.
+pub fn minimize<D: Objective>(
+    objective: &D,
     start: D::Map,
     options: &DescentOptions,
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (D::Map, Status) {
     let mut map = start;
-    let (mut energies, mut gradient) = domain.gradient(&map);
+    let (mut energies, mut gradient) = objective.gradient(&map);
     let mut last: Option<(f64, f64)> = None;
     for done in 0.. {
         // 1. The direction d = −M⁻¹g and the slope φ'(0) = gᵀd
-        let h = domain.precondition(&map, &gradient);
+        let h = objective.precondition(&map, &gradient);
         let slope = -parallel::dot(&gradient, &h);
         let norm = (-slope).max(0.0).sqrt();
         match last {
@@ -70,14 +70,14 @@ pub fn minimize<D: Domain>(
         // 2. A step along it
         let direction = parallel::map(h.len(), |i| -h[i]);
         let first = first_trial(&direction, energies, slope, last);
-        let Some((step, moved)) = line_step(domain, &map, energies, (&direction, slope), first, options)
+        let Some((step, moved)) = line_step(objective, &map, energies, (&direction, slope), first, options)
         else {
             return (map, Status::Stalled);
         };
         // 3. The map there
         last = Some((step, energies.objective));
         map = moved;
-        (energies, gradient) = domain.gradient(&map);
+        (energies, gradient) = objective.gradient(&map);
     }
     unreachable!("the stopping rule ends the loop")
 }
@@ -93,8 +93,8 @@ fn first_trial(direction: &[f64], energies: Energies, slope: f64, last: Option<(
 }
 
 /// The step and the map there, by the line search asked for; `None` where nothing decreases enough.
-fn line_step<D: Domain>(
-    domain: &D,
+fn line_step<D: Objective>(
+    objective: &D,
     map: &D::Map,
     energies: Energies,
     (direction, slope): (&[f64], f64),
@@ -106,8 +106,8 @@ fn line_step<D: Domain>(
     }
     let start = Trial { step: 0.0, value: energies.objective, slope, data: () };
     let evaluate = |step: f64| {
-        let moved = domain.retract(map, direction, step);
-        Trial { step, value: domain.objective(&moved), slope: 0.0, data: moved }
+        let moved = objective.retract(map, direction, step);
+        Trial { step, value: objective.value(&moved), slope: 0.0, data: moved }
     };
     let first = match options.line_search {
         LineSearch::Interpolation => first,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The papers' optimizers. They know a map only through its [`Domain`], so that the disk and the sphere share them.
+//! The papers' optimizers. They know a map only through its [`Objective`], so that the disk and the sphere share them.
 
 mod bounded;
 pub mod gradient_descent;
@@ -55,17 +55,17 @@ pub struct Energies {
     pub authalic_energy: f64,
 }
 
-/// A space of maps with an energy, as an optimizer sees it.
+/// What is minimized over a space of maps, as an optimizer sees it.
 ///
-/// Directions, gradients and preconditioned gradients are vectors in coordinates of the domain, in which its
+/// Directions, gradients and preconditioned gradients are vectors in coordinates of the space of maps, in which the
 /// retraction starts as a straight line: one number per degree of freedom on the disk, three per vertex,
 /// tangent to the sphere, on the sphere.
-pub trait Domain {
+pub trait Objective {
     /// A map.
     type Map: Clone;
 
     /// The objective at `map`; +∞ where the map is not allowed.
-    fn objective(&self, map: &Self::Map) -> f64;
+    fn value(&self, map: &Self::Map) -> f64;
 
     /// The energies at `map` and the gradient of the objective in reduced coordinates.
     fn gradient(&self, map: &Self::Map) -> (Energies, Vec<f64>);

@@ -9,7 +9,7 @@
 //! nearly always a single one, and one solve with M.
 
 use super::line_search::{Trial, WolfeOptions, strong_wolfe};
-use super::{Domain, Energies, Stopping};
+use super::{Energies, Objective, Stopping};
 use crate::control::{History, Observer, Status};
 use crate::parallel;
 
@@ -30,18 +30,18 @@ struct State<M> {
     gradient: Vec<f64>,
 }
 
-/// Lowers the domain's objective from `start` and returns the last map, which has the lowest objective, with the status.
-pub fn minimize<D: Domain>(
-    domain: &D,
+/// Lowers the objective from `start` and returns the last map, which has the lowest objective, with the status.
+pub fn minimize<D: Objective>(
+    objective: &D,
     start: D::Map,
     options: &CgOptions,
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (D::Map, Status) {
     // 1. Gradient g, preconditioned gradient h = M⁻¹g, direction p = −h
-    let (energies, gradient) = domain.gradient(&start);
+    let (energies, gradient) = objective.gradient(&start);
     let mut state = State { map: start, energies, gradient };
-    let mut h = domain.precondition(&state.map, &state.gradient);
+    let mut h = objective.precondition(&state.map, &state.gradient);
     let mut norm2 = parallel::dot(&state.gradient, &h);
     let mut direction = descent(&h);
     let mut step = 1.0;
@@ -53,16 +53,16 @@ pub fn minimize<D: Domain>(
             return (state.map, status);
         }
         // 2. A step along p by the quadratic model, safeguarded; back to −h once where p gives none
-        let trial = line_step(domain, &state, &direction, step, &options.wolfe).or_else(|| {
+        let trial = line_step(objective, &state, &direction, step, &options.wolfe).or_else(|| {
             direction = descent(&h);
-            line_step(domain, &state, &direction, 1.0, &options.wolfe)
+            line_step(objective, &state, &direction, 1.0, &options.wolfe)
         });
         let Some(trial) = trial else {
             return (state.map, Status::Stalled);
         };
         (step, state) = (trial.step, trial.data.expect("an accepted trial has its state"));
         // 3. Fletcher–Reeves in the metric of M⁻¹: β = hᵀg / λ
-        h = domain.precondition(&state.map, &state.gradient);
+        h = objective.precondition(&state.map, &state.gradient);
         let last_norm2 = std::mem::replace(&mut norm2, parallel::dot(&state.gradient, &h));
         let beta = norm2 / last_norm2;
         parallel::fill_with_old(&mut direction, |i, p| beta * p - h[i]);
@@ -77,8 +77,8 @@ fn descent(h: &[f64]) -> Vec<f64> {
 
 /// The step (3.3) from φ(0), φ'(0) and φ at the last step, accepted under the strong Wolfe conditions or
 /// searched for.
-fn line_step<D: Domain>(
-    domain: &D,
+fn line_step<D: Objective>(
+    objective: &D,
     state: &State<D::Map>,
     direction: &[f64],
     last_step: f64,
@@ -90,7 +90,7 @@ fn line_step<D: Domain>(
     }
     let value = state.energies.objective;
     let start = Trial { step: 0.0, value, slope, data: None };
-    let last = domain.objective(&domain.retract(&state.map, direction, last_step));
+    let last = objective.value(&objective.retract(&state.map, direction, last_step));
     let bend = last - value - last_step * slope;
     let quadratic = -0.5 * last_step * last_step * slope / bend;
     let first = match bend {
@@ -100,19 +100,19 @@ fn line_step<D: Domain>(
         // still descending there: beyond it
         _ => 2.0 * last_step,
     };
-    let evaluate = |step: f64| evaluate(domain, state, direction, step);
+    let evaluate = |step: f64| evaluate(objective, state, direction, step);
     strong_wolfe(&start, evaluate(first), wolfe, evaluate)
 }
 
 /// φ and φ' at `step`, with the map and the gradient there.
-fn evaluate<D: Domain>(
-    domain: &D,
+fn evaluate<D: Objective>(
+    objective: &D,
     state: &State<D::Map>,
     direction: &[f64],
     step: f64,
 ) -> Trial<Option<State<D::Map>>> {
-    let map = domain.retract(&state.map, direction, step);
-    let (energies, gradient) = domain.gradient(&map);
+    let map = objective.retract(&state.map, direction, step);
+    let (energies, gradient) = objective.gradient(&map);
     let slope = parallel::dot(&gradient, direction);
     Trial { step, value: energies.objective, slope, data: Some(State { map, energies, gradient }) }
 }

@@ -18,11 +18,11 @@
 //!
 //! Cost of one iteration: one Cholesky analysis and factorization of about 0.6 n vertices.
 
-use super::objective::SphereDomain;
+use super::objective::SphereObjective;
 use crate::codomain::SpatialMap;
 use crate::control::{History, Observer, Status, Watch};
 use crate::error::Error;
-use crate::optimize::published::Domain;
+use crate::optimize::published::Objective;
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 use crate::sphere::stereographic::{Chart, weighted_median};
@@ -44,17 +44,17 @@ pub(crate) struct FixedPointStopping {
 
 /// Iterates from `start`; `weights` are the vertices' shares of the target area.
 pub(crate) fn fixed_point(
-    domain: &SphereDomain<'_>,
+    objective: &SphereObjective<'_>,
     weights: &[f64],
     start: SpatialMap,
     stopping: &FixedPointStopping,
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (SpatialMap, Status) {
-    let stretch = |map: &SpatialMap| domain.energy().value(map).objective;
+    let stretch = |map: &SpatialMap| objective.energy().value(map).objective;
     let (mut map, mut chart) = (start, Chart::North);
     let mut energy = stretch(&map);
-    record(domain, &map, history, true);
+    record(objective, &map, history, true);
     for done in 0.. {
         // 1. Stop where converged or at a limit
         if done >= stopping.max_iterations {
@@ -67,7 +67,7 @@ pub(crate) fn fixed_point(
         // 2. The other hemisphere's chart, solved and rescaled
         chart = chart.inverted();
         let watch = Watch::new(observer, fraction, MESSAGE);
-        let moved = match iterate(domain, weights, &map, chart, &watch) {
+        let moved = match iterate(objective, weights, &map, chart, &watch) {
             Ok(moved) => moved,
             Err(Error::CancelledEarly) => return (map, Status::Cancelled),
             Err(_) => return (map, Status::Stalled),
@@ -78,7 +78,7 @@ pub(crate) fn fixed_point(
             return (map, Status::Converged);
         }
         (map, energy) = (moved, energy - delta);
-        record(domain, &map, history, false);
+        record(objective, &map, history, false);
         if delta <= stopping.tolerance {
             return (map, Status::Converged);
         }
@@ -88,13 +88,13 @@ pub(crate) fn fixed_point(
 
 /// One step of the iteration in one chart.
 fn iterate(
-    domain: &SphereDomain<'_>,
+    objective: &SphereObjective<'_>,
     weights: &[f64],
     map: &SpatialMap,
     chart: Chart,
     watch: &Watch<'_>,
 ) -> Result<SpatialMap, Error> {
-    let (mesh, by_corner) = (domain.mesh(), domain.energy().laplacian_weights(map));
+    let (mesh, by_corner) = (objective.mesh(), objective.energy().laplacian_weights(map));
     let mut plane = chart.project_all(map);
     let modulus = |z: [f64; 2]| z[0].hypot(z[1]);
     // 1. Solve for the vertices inside
@@ -109,8 +109,8 @@ fn iterate(
     Ok(parallel::map(map.len(), |v| if lifted[v].is_finite() { lifted[v] } else { map[v] }))
 }
 
-fn record(domain: &SphereDomain<'_>, map: &SpatialMap, history: &mut History, is_start: bool) {
-    let (energies, gradient) = domain.gradient(map);
+fn record(objective: &SphereObjective<'_>, map: &SpatialMap, history: &mut History, is_start: bool) {
+    let (energies, gradient) = objective.gradient(map);
     let norm = parallel::dot(&gradient, &gradient).sqrt();
     if is_start {
         history.push_start(energies.authalic_energy, norm)

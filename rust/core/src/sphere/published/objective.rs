@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Maps onto the unit sphere as a [`Domain`]: the power manifold (S²)ⁿ.
+//! Maps onto the unit sphere as a [`Objective`]: the power manifold (S²)ⁿ.
 //!
 //! Sutti & Yueh (2024), sections 4 and 5: directions are tangent, (x, y, z) of vertex 0, then of vertex 1,
 //! and so on; the Riemannian gradient is the Euclidean one projected to the tangent planes (5.1), and the
@@ -15,7 +15,7 @@ use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{determinant_rounding, triangle};
-use crate::optimize::published::{Domain, Energies};
+use crate::optimize::published::{Energies, Objective};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian};
 use crate::vector::{Vector3, coordinates};
@@ -25,7 +25,7 @@ const SHIFT: f64 = 1e-6;
 
 /// Maps of one mesh onto the unit sphere.
 #[derive(Debug)]
-pub(crate) struct SphereDomain<'a> {
+pub(crate) struct SphereObjective<'a> {
     mesh: &'a TriangleMesh,
     energy: SpatialStretchEnergy<'a>,
     /// Only in a guarded descent.
@@ -34,7 +34,7 @@ pub(crate) struct SphereDomain<'a> {
     guarded: bool,
 }
 
-impl<'a> SphereDomain<'a> {
+impl<'a> SphereObjective<'a> {
     pub(crate) fn new(mesh: &'a TriangleMesh, targets: &'a [f64]) -> Self {
         let energy = SpatialStretchEnergy::new(mesh, targets).scale_free();
         Self { mesh, energy, preconditioner: None, guarded: false }
@@ -82,10 +82,10 @@ impl<'a> SphereDomain<'a> {
     }
 }
 
-impl Domain for SphereDomain<'_> {
+impl Objective for SphereObjective<'_> {
     type Map = SpatialMap;
 
-    fn objective(&self, map: &SpatialMap) -> f64 {
+    fn value(&self, map: &SpatialMap) -> f64 {
         self.full_objective(map, self.energy.value(map))
     }
 

@@ -5,7 +5,7 @@
 //! and a descent behind a barrier, from the corrected map or else from the start.
 
 use super::fixed_point::{FixedPointStopping, fixed_point};
-use super::objective::SphereDomain;
+use super::objective::SphereObjective;
 use crate::codomain::SpatialMap;
 use crate::codomain::spherical::onto_sphere;
 use crate::control::{History, Observer, Phase, Status, Watch};
@@ -13,7 +13,7 @@ use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere, relaxed};
 use crate::error::Error;
 use crate::optimize::published::gradient_descent::{DescentOptions, minimize};
-use crate::optimize::published::{Domain as _, Stopping};
+use crate::optimize::published::{Objective as _, Stopping};
 use crate::parallel;
 use crate::sphere::options::SphereMethod;
 use crate::sphere::run::Run;
@@ -41,28 +41,28 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        let mut domain = SphereDomain::new(self.mesh, self.targets);
+        let mut objective = SphereObjective::new(self.mesh, self.targets);
         // 1. Start map and fixed-point steps
         let start = self.start(&mut Phase { whole: observer, from: 0.0, to: 0.05 })?;
         let mut phase = Phase { whole: observer, from: 0.05, to: 0.4 };
-        let (stepped, status) = self.fixed_point(&domain, &start, history, &mut phase);
+        let (stepped, status) = self.fixed_point(&objective, &start, history, &mut phase);
         // 2. The paper's correction
-        let stepped = self.corrected(&domain, &stepped, history).unwrap_or(stepped);
+        let stepped = self.corrected(&objective, &stepped, history).unwrap_or(stepped);
         // 3. Gradient descent
         let mut phase = Phase { whole: observer, from: 0.4, to: 0.8 };
-        let (map, status) = self.gradient_descent(&domain, stepped.clone(), status, history, &mut phase);
+        let (map, status) = self.gradient_descent(&objective, stepped.clone(), status, history, &mut phase);
         if !self.options.unfold || self.folded(&map).is_empty() {
             return Ok((map, status));
         }
         // 4. The correction again, or else the best map without folds, and a descent from there that keeps every face open
-        let (map, status) = self.mended(&mut domain, map, &start, status, history, observer)?;
+        let (map, status) = self.mended(&mut objective, map, &start, status, history, observer)?;
         // 5. Never worse than an earlier map without folds
-        let energy = energy_share(&domain, &map);
+        let energy = energy_share(&objective, &map);
         let better = [start, stepped]
             .into_iter()
-            .filter(|earlier| energy_share(&domain, earlier) < energy && self.folded(earlier).is_empty());
-        match better.min_by(|a, b| energy_share(&domain, a).total_cmp(&energy_share(&domain, b))) {
-            Some(earlier) => Ok((recorded(&domain, earlier, history), status)),
+            .filter(|earlier| energy_share(&objective, earlier) < energy && self.folded(earlier).is_empty());
+        match better.min_by(|a, b| energy_share(&objective, a).total_cmp(&energy_share(&objective, b))) {
+            Some(earlier) => Ok((recorded(&objective, earlier, history), status)),
             None => Ok((map, status)),
         }
     }
@@ -70,33 +70,33 @@ impl Run<'_> {
     /// A map without folds from one with folds; for a run already cancelled the cheapest.
     fn mended(
         &self,
-        domain: &mut SphereDomain<'_>,
+        objective: &mut SphereObjective<'_>,
         map: SpatialMap,
         start: &SpatialMap,
         status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        let corrected = self.corrected(domain, &map, history);
+        let corrected = self.corrected(objective, &map, history);
         if status == Status::Cancelled && (corrected.is_some() || self.folded(start).is_empty()) {
             return Ok((corrected.unwrap_or_else(|| start.clone()), status));
         }
-        domain.guard();
+        objective.guard();
         let (unfolded, status) = match corrected {
             Some(map) => (map, status),
             None => {
                 let mut phase = Phase { whole: observer, from: 0.8, to: 0.9 };
-                self.rescued(domain, &map, history, &mut phase)?
+                self.rescued(objective, &map, history, &mut phase)?
             }
         };
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
-        Ok(self.guarded_descent(domain, unfolded, status, history, &mut phase))
+        Ok(self.guarded_descent(objective, unfolded, status, history, &mut phase))
     }
 
     /// The unfolded map; `None` where it raises E_A beyond what a descent can be expected to win back.
     fn corrected(
         &self,
-        domain: &SphereDomain<'_>,
+        objective: &SphereObjective<'_>,
         map: &SpatialMap,
         history: &mut History,
     ) -> Option<SpatialMap> {
@@ -104,14 +104,15 @@ impl Run<'_> {
             return None;
         }
         let unfolded = unfold::unfold(self.mesh, map)?;
-        let is_cheap = energy_share(domain, &unfolded) <= DEAREST_CORRECTION * energy_share(domain, map);
-        is_cheap.then(|| recorded(domain, unfolded, history))
+        let is_cheap =
+            energy_share(objective, &unfolded) <= DEAREST_CORRECTION * energy_share(objective, map);
+        is_cheap.then(|| recorded(objective, unfolded, history))
     }
 
     /// Of the unfolded map and the progressive one, both relaxed, the one with the lower guarded objective.
     fn rescued(
         &self,
-        domain: &SphereDomain<'_>,
+        objective: &SphereObjective<'_>,
         map: &SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -128,7 +129,7 @@ impl Run<'_> {
                 let mut phase = Phase { whole: observer, from, to: from + 0.3 };
                 (map, status) = relaxed(self.mesh, self.targets, map, &mut phase);
             }
-            let value = domain.objective(&map);
+            let value = objective.value(&map);
             if value.is_finite() && best.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
                 best = Some((value, map));
             }
@@ -138,13 +139,13 @@ impl Run<'_> {
             None if status == Status::Cancelled => return Err(Error::CancelledEarly),
             None => self.conformal(&mut Phase { whole: observer, from: 1.0, to: 1.0 })?,
         };
-        Ok((recorded(domain, map, history), status))
+        Ok((recorded(objective, map, history), status))
     }
 
     /// Fixed-point steps from the start map; none before a gradient descent from a given map.
     fn fixed_point(
         &self,
-        domain: &SphereDomain<'_>,
+        objective: &SphereObjective<'_>,
         start: &SpatialMap,
         history: &mut History,
         observer: &mut dyn Observer,
@@ -153,7 +154,7 @@ impl Run<'_> {
             (SphereMethod::GradientDescent, Some(_)) => (start.clone(), Status::MaxIterations),
             _ => {
                 let stopping = self.fixed_point_stopping();
-                fixed_point(domain, self.weights, start.clone(), &stopping, history, observer)
+                fixed_point(objective, self.weights, start.clone(), &stopping, history, observer)
             }
         }
     }
@@ -161,7 +162,7 @@ impl Run<'_> {
     /// Gradient descent, if that is the method and the run is not cancelled.
     fn gradient_descent(
         &self,
-        domain: &SphereDomain<'_>,
+        objective: &SphereObjective<'_>,
         map: SpatialMap,
         status: Status,
         history: &mut History,
@@ -172,20 +173,20 @@ impl Run<'_> {
         }
         let line_search = self.options.line_search;
         let options = DescentOptions { stopping: self.stopping(), line_search };
-        minimize(domain, map, &options, history, observer)
+        minimize(objective, map, &options, history, observer)
     }
 
     /// A descent from a map without folds that keeps every face open, with a new preconditioner every [`ROUND`]
     /// iterations; a run already cancelled returns the map unchanged.
     fn guarded_descent(
         &self,
-        domain: &mut SphereDomain<'_>,
+        objective: &mut SphereObjective<'_>,
         mut map: SpatialMap,
         mut status: Status,
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (SpatialMap, Status) {
-        if status == Status::Cancelled || !domain.objective(&map).is_finite() {
+        if status == Status::Cancelled || !objective.value(&map).is_finite() {
             return (map, if status == Status::Cancelled { status } else { Status::Stalled });
         }
         let whole = self.stopping();
@@ -194,7 +195,7 @@ impl Run<'_> {
             let budget = ROUND.min(whole.max_iterations - done);
             let fraction = |done: usize| done as f64 / whole.max_iterations as f64;
             let mut phase = Phase { whole: observer, from: fraction(done), to: fraction(done + budget) };
-            match domain.set_preconditioner(&map, &Watch::new(&mut phase, 0.0, "Evening out areas")) {
+            match objective.set_preconditioner(&map, &Watch::new(&mut phase, 0.0, "Evening out areas")) {
                 Ok(()) => {}
                 Err(Error::CancelledEarly) => return (map, Status::Cancelled),
                 Err(_) => return (map, Status::Stalled),
@@ -202,7 +203,7 @@ impl Run<'_> {
             let stopping = Stopping { max_iterations: budget, ..whole };
             let begun = history.iterations();
             let options = DescentOptions { stopping, ..DescentOptions::default() };
-            (map, status) = minimize(domain, map, &options, history, &mut phase);
+            (map, status) = minimize(objective, map, &options, history, &mut phase);
             done += budget;
             let advanced = history.iterations() > begun;
             if matches!(status, Status::Converged | Status::Cancelled) || !advanced {
@@ -256,14 +257,14 @@ impl Run<'_> {
 }
 
 /// E_A/A, which does not depend on the size of the image.
-pub(crate) fn energy_share(domain: &SphereDomain<'_>, map: &SpatialMap) -> f64 {
-    let value = domain.energy().value(map);
+pub(crate) fn energy_share(objective: &SphereObjective<'_>, map: &SpatialMap) -> f64 {
+    let value = objective.energy().value(map);
     value.authalic_energy / value.area
 }
 
 /// The map, with a record of step 0 for it in the history.
-fn recorded(domain: &SphereDomain<'_>, map: SpatialMap, history: &mut History) -> SpatialMap {
-    let (energies, gradient) = domain.gradient(&map);
+fn recorded(objective: &SphereObjective<'_>, map: SpatialMap, history: &mut History) -> SpatialMap {
+    let (energies, gradient) = objective.gradient(&map);
     history.push(energies.authalic_energy, 0.0, parallel::dot(&gradient, &gradient).sqrt());
     map
 }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A surface to be mapped with a free outline, and what is computed once for it.
+
+use super::energy::Energy;
+use super::outline::Outline;
+use crate::disk::options::DiskMapOptions;
+use crate::mesh::TriangleMesh;
+use crate::sparse::Analysis;
+
+/// The energy, system and outline of a surface, computed once.
+pub(super) struct Prepared<'a> {
+    pub energy: &'a Energy<'a>,
+    pub analysis: &'a Analysis,
+    pub outline: &'a Outline,
+}
+
+/// A surface to be mapped with a free outline.
+pub(in crate::disk) struct Free<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub targets: &'a [f64],
+    pub options: &'a DiskMapOptions<'a>,
+}

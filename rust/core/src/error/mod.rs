@@ -183,3 +183,30 @@ impl Error {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_of_a_surface_keeps_what_it_says_as_data() {
+        let folded = Elements::collect([3, 5]).unwrap();
+        let error = Error::from(NumericsError::NoEmbedding { folded }).of_surface(Side::Target);
+        let whole = error.with_faces(|face| 10 * face);
+        assert_eq!((whole.kind(), whole.side()), (ErrorKind::NoEmbedding, Some(Side::Target)));
+        assert_eq!(whole.elements().unwrap().first, [30, 50]);
+        assert!(whole.is_solver_error() && !whole.is_mesh_error());
+        assert!(whole.to_string().starts_with("the target: ") && whole.to_string().contains("30, 50"));
+        let curve = Error::from(CurveError::NoArc { curve: Some(2) }).of_surface(Side::Source);
+        assert_eq!((curve.side(), curve.curve(), curve.second_curve()), (Some(Side::Source), Some(2), None));
+        assert_eq!(Error::CancelledEarly.of_surface(Side::Source), Error::CancelledEarly);
+    }
+
+    #[test]
+    fn arguments_say_which_surface_they_are_about() {
+        let of = |name| Error::InvalidArray { name, found: String::new(), expected: String::new() }.side();
+        assert_eq!(of("source_landmarks"), Some(Side::Source));
+        assert_eq!(of("target faces"), Some(Side::Target));
+        assert_eq!(of("faces"), None);
+    }
+}

@@ -11,7 +11,7 @@ from installed import library
 GARBLED = "xyzzy face 3 of the source: 7 vertices (1, 2)"
 FACTS: dict[str, Any] = {"side": None, "curve": None, "second_curve": None, "indices": (), "count": 0}
 FUNCTIONS = (
-    *("cut", "disk_map", "sphere_map", "distortion", "untangle", "homotopy"),
+    *("Surface", "cut", "disk_map", "sphere_map", "distortion", "untangle", "homotopy"),
     *("register_disks", "register_spheres", "register_hyperbolic"),
 )
 

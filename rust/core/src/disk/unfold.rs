@@ -61,8 +61,8 @@ fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[u32]) -> Option<Vec<[f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Boundary;
     use crate::disk::boundary::arc_length;
+    use crate::disk::options::Boundary;
     use crate::disk::published::objective::DiskObjective;
     use crate::disk::start;
 
@@ -77,7 +77,7 @@ mod tests {
 
     fn tutte(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
         let mut objective = DiskObjective::new(mesh, mesh.face_areas(), Boundary::ArcLength).unwrap();
-        let mut silent = crate::Silent;
+        let mut silent = crate::control::Silent;
         let watch = crate::control::Watch::new(&mut silent, 0.0, "");
         start::tutte(mesh, &mut objective, arc_length(mesh), &watch).unwrap()
     }

@@ -246,10 +246,11 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::Silent;
     use crate::mesh::TriangleMesh;
     use crate::sparse::processor::with_each_width;
+    use crate::sphere::sphere_map;
     use crate::vector::{Vector3, coordinates};
-    use crate::{Silent, sphere_map};
 
     /// An octahedron split five times, with bumps and without symmetry.
     fn bumpy_ball() -> TriangleMesh {

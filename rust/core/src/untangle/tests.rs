@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
-use crate::Silent;
+use crate::control::Silent;
 use crate::error::MapError;
 
 /// A square grid of n × n vertices, one unit apart, and its places in the plane.

@@ -173,9 +173,10 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::Silent;
+    use crate::disk::disk_map;
     use crate::mesh::TriangleMesh;
     use crate::sparse::processor::with_each_width;
-    use crate::{Silent, disk_map};
 
     /// A wavy cap of 41 rings.
     fn cap() -> TriangleMesh {

@@ -171,9 +171,10 @@ impl Rectangle<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Boundary;
+    use crate::control::Silent;
+    use crate::disk::disk_map;
+    use crate::disk::options::Boundary;
     use crate::mesh::TriangleMesh;
-    use crate::{Silent, disk_map};
 
     /// A flat grid of `rows` × `columns` vertices of these sides.
     pub(super) fn grid(rows: u32, columns: u32, [width, height]: [f64; 2]) -> TriangleMesh {
@@ -192,7 +193,7 @@ mod tests {
         TriangleMesh::new(&vertices, &faces).unwrap()
     }
 
-    fn mapped(mesh: &TriangleMesh, corners: Option<[usize; 4]>, aspect: Option<f64>) -> crate::DiskMap {
+    fn mapped(mesh: &TriangleMesh, corners: Option<[usize; 4]>, aspect: Option<f64>) -> crate::disk::DiskMap {
         let options =
             DiskMapOptions { boundary: Boundary::Rectangle, corners, aspect, ..DiskMapOptions::default() };
         disk_map(mesh, &options, &mut Silent).unwrap()

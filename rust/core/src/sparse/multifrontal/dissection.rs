@@ -10,7 +10,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::graph::{Graph, NONE};
-use crate::Error;
+use crate::error::Error;
 use crate::sparse::faer::minimum_degree;
 
 /// Parts of at most this many vertices are not cut.

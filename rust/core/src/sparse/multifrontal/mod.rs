@@ -22,8 +22,8 @@ mod schedule;
 mod solve;
 
 use super::faer::{Scalar, minimum_degree};
-use crate::Error;
 use crate::control::Watch;
+use crate::error::Error;
 pub(crate) use dense::Failure;
 use elimination::Elimination;
 pub(super) use fronts::Element;

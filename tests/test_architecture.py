@@ -24,6 +24,7 @@ CORE_ROOMS = (
     {"disk", "sphere", "untangle"},
     {"registration"},
     {"hyperbolic"},
+    {"testing"},
 )
 
 # The rooms of `hyperbolic/` likewise.

@@ -6,11 +6,15 @@
 //! image's area A = Σ|a_τ|; then E_A = Σ (a_τ − |τ|)²/|τ| (Liu & Yueh 2023, equations (5.1) and (5.2)).
 //! Exact predicates decide which faces are folded.
 
-use crate::mesh::Face;
+use std::borrow::Cow;
+
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use crate::arrays::{from_rows, from_vectors, rows_of};
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::geometry::{area, triangle};
+use crate::mesh::{Face, Surface};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -27,11 +31,11 @@ pub struct Distortion {
     /// Population standard deviation of the area ratio.
     pub area_ratio_std: f64,
     /// log₂ of the area ratio of each face, (m,); −∞ for a folded face.
-    pub log2_area_ratio: Vec<f64>,
+    pub log2_area_ratio: Array1<f64>,
     /// Faces whose exact orientation in the image is not positive, ascending.
     pub folded: Vec<usize>,
     /// σ₁/σ₂ ≥ 1 of the linear map of each face, (m,); 1 where angles are preserved, +∞ for a folded face.
-    pub angle_distortion: Vec<f64>,
+    pub angle_distortion: Array1<f64>,
     /// Mean of [`Self::angle_distortion`] over the faces.
     pub angle_distortion_mean: f64,
     /// 99th percentile of [`Self::angle_distortion`], linearly interpolated.
@@ -42,7 +46,7 @@ pub struct Distortion {
 
 /// A map of vertices, into the plane or onto the unit sphere.
 #[derive(Debug, Clone, Copy)]
-pub enum Image<'a> {
+pub(crate) enum Image<'a> {
     /// (n, 2) positions; a face is positive where it runs counter-clockwise.
     Plane(&'a [[f64; 2]]),
     /// (n, 3) positions around the origin; a face is positive where it is seen counter-clockwise from
@@ -52,7 +56,7 @@ pub enum Image<'a> {
 
 impl Image<'_> {
     /// The number of vertices.
-    fn len(self) -> usize {
+    pub(crate) fn len(self) -> usize {
         match self {
             Self::Plane(map) => map.len(),
             Self::Sphere(map) => map.len(),
@@ -64,6 +68,51 @@ impl Image<'_> {
         match self {
             Self::Plane(map) => Vector3([map[vertex][0], map[vertex][1], 0.0]),
             Self::Sphere(map) => map[vertex],
+        }
+    }
+}
+
+/// A map of vertices that is owned.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum OwnedImage {
+    /// (n, 2) positions in the plane.
+    Plane(Vec<[f64; 2]>),
+    /// (n, 3) positions around the origin.
+    Sphere(Vec<Vector3>),
+}
+
+impl OwnedImage {
+    /// The rows of an array for the `n_vertices` vertices of a surface.
+    pub(crate) fn new(array: ArrayView2<'_, f64>, n_vertices: usize) -> Result<Self, Error> {
+        let (length, width) = array.dim();
+        if !matches!(width, 2 | 3) {
+            let (found, expected) =
+                (format!("of shape ({length}, {width})"), "of shape (n, 2) or (n, 3)".into());
+            return Err(Error::InvalidArray { name: "image", found, expected });
+        }
+        if length != n_vertices {
+            let expected = format!("of shape ({n_vertices}, 2) or ({n_vertices}, 3), one row per vertex");
+            return Err(Error::InvalidArray { name: "image", found: format!("of {length} rows"), expected });
+        }
+        match width {
+            2 => Ok(Self::Plane(rows_of("image", array)?.into_owned())),
+            _ => Ok(Self::Sphere(rows_of("image", array)?.iter().copied().map(Vector3).collect())),
+        }
+    }
+
+    /// The map as the functions inside take it.
+    pub(crate) fn view(&self) -> Image<'_> {
+        match self {
+            Self::Plane(map) => Image::Plane(map),
+            Self::Sphere(map) => Image::Sphere(map),
+        }
+    }
+
+    /// The map as an array, (n, 2) or (n, 3).
+    pub(crate) fn into_array(self) -> Array2<f64> {
+        match self {
+            Self::Plane(map) => from_rows(map),
+            Self::Sphere(map) => from_vectors(map),
         }
     }
 }
@@ -120,6 +169,40 @@ pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector3]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
 
+/// Measures a map of a surface: area ratios, authalic energy, folds, angle distortion.
+///
+/// `image` is (n, 2) in the plane, where a face is positive counter-clockwise, or (n, 3) around the origin, where it is
+/// positive counter-clockwise from outside. `density` (m,) is a positive target measure of each face on any scale; the
+/// face areas where `None`. Targets are rescaled so that they sum to the image's area. The surface need not be a
+/// manifold.
+///
+/// # Errors
+/// Faces without area, an image or a density of another shape, coordinates that are not finite, a density that is not
+/// positive, an image without area.
+///
+/// ```
+/// use authalic::{Surface, distortion};
+/// use ndarray::array;
+///
+/// let vertices = array![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let square = Surface::new(&vertices, array![[0, 1, 2], [0, 2, 3]])?;
+/// let image = array![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+/// let figures = distortion(&square, image.view(), None)?;
+/// assert_eq!(figures.area_ratio_std, 0.0);
+/// assert!((figures.angle_distortion_max - 2.0).abs() < 1e-12);
+/// # Ok::<(), authalic::Error>(())
+/// ```
+pub fn distortion(
+    surface: &Surface,
+    image: ArrayView2<'_, f64>,
+    density: Option<ArrayView1<'_, f64>>,
+) -> Result<Distortion, Error> {
+    let image = OwnedImage::new(image, surface.n_vertices())?;
+    let triangles = surface.triangles()?;
+    let targets = targets(density, triangles.areas)?;
+    measure(triangles.points, triangles.faces, image.view(), &targets)
+}
+
 /// Measures a map of the surface `points`, `faces` with one positive target area per face.
 ///
 /// The lengths must agree, indices must be in range, and the faces must have area and one orientation, as those of a
@@ -128,7 +211,7 @@ pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector3]) -> Vec<usize> {
 /// # Errors
 /// [`MapError::NonFinite`] for coordinates that are not finite, [`Error::InvalidArray`] where the whole image
 /// has no area.
-pub fn distortion(
+pub(crate) fn measure(
     points: &[Vector3],
     faces: &[[u32; 3]],
     image: Image<'_>,
@@ -197,9 +280,9 @@ fn assembled(
         authalic_energy: energy,
         area_ratio_mean: mean,
         area_ratio_std: variance.sqrt(),
-        log2_area_ratio: parallel::map(ratio.len(), |face| ratio[face].max(0.0).log2()),
+        log2_area_ratio: parallel::map(ratio.len(), |face| ratio[face].max(0.0).log2()).into(),
         folded,
-        angle_distortion: angle,
+        angle_distortion: angle.into(),
         angle_distortion_mean: angle_mean,
         angle_distortion_p99: angle_p99,
         angle_distortion_max: angle_max,
@@ -236,12 +319,26 @@ pub(crate) fn distortion_of_wholes(
     assembled(&areas, &targets, folded, angle, image.factor)
 }
 
+/// The target measure of each face: the given one, or its area.
+///
+/// # Errors
+/// As [`normalized_density`].
+pub(crate) fn targets<'a>(
+    density: Option<ArrayView1<'_, f64>>,
+    areas: &'a [f64],
+) -> Result<Cow<'a, [f64]>, Error> {
+    match density {
+        Some(density) => Ok(normalized_density(&density.to_vec(), areas.len())?.into()),
+        None => Ok(areas.into()),
+    }
+}
+
 /// Checks one target measure per face and scales the largest to 1, so that sums neither over- nor underflow.
 ///
 /// # Errors
 /// [`Error::InvalidArray`] for another length, [`MapError::Density`] for values that are not positive and
 /// finite.
-pub fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
+fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
     if density.len() != n_faces {
         let (found, expected) =
             (format!("of shape ({},)", density.len()), format!("of shape ({n_faces},), one value per face"));
@@ -323,7 +420,7 @@ mod tests {
     const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
     fn measured(map: &[[f64; 2]]) -> Distortion {
-        distortion(&SQUARE, &HALVES, Image::Plane(map), &[0.5, 0.5]).unwrap()
+        measure(&SQUARE, &HALVES, Image::Plane(map), &[0.5, 0.5]).unwrap()
     }
 
     #[test]
@@ -366,7 +463,7 @@ mod tests {
     #[test]
     fn faces_of_the_sphere_are_positive_seen_from_outside() {
         let octant = [0, 1, 2].map(Vector3::unit);
-        let figures = |face| distortion(&octant, &[face], Image::Sphere(&octant), &[1.0]).unwrap();
+        let figures = |face| measure(&octant, &[face], Image::Sphere(&octant), &[1.0]).unwrap();
         assert!(figures([0, 1, 2]).folded.is_empty());
         assert_eq!(figures([0, 2, 1]).folded, [0]);
     }
@@ -374,7 +471,7 @@ mod tests {
     #[test]
     fn a_collapsed_image_is_refused() {
         let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
-        let refused = distortion(&SQUARE, &HALVES, Image::Plane(&flat), &[0.5, 0.5]);
+        let refused = measure(&SQUARE, &HALVES, Image::Plane(&flat), &[0.5, 0.5]);
         assert!(matches!(refused, Err(Error::InvalidArray { name: "image", .. })));
     }
 

@@ -1,23 +1,118 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Area-preserving (authalic) maps of triangle meshes: [`disk_map`] for surfaces with a boundary,
-//! [`sphere_map`] for closed ones.
+//! Area-preserving (authalic) maps of triangle meshes.
+//!
+//! An authalic map preserves areas: a face that covers one percent of the surface covers one percent of the image.
+//! [`disk_map`] maps a surface with one boundary to the unit disk or onto a rectangle, [`sphere_map`] a closed surface
+//! onto the unit sphere. No result has a folded face, which exact predicates decide. [`register_disks`] and
+//! [`register_spheres`] map one surface onto another by landmark points, [`register_hyperbolic`] by landmark curves.
+//! [`untangle`] removes the folds of a given map, [`distortion`] measures any map.
+//!
+//! All of them take a [`Surface`]: vertices (n, 3) and faces (m, 3) as arrays of the crate [`ndarray`], checked once and
+//! never copied again. Results are arrays too.
+//!
+//! # A disk
 //!
 //! ```
-//! use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};
+//! use authalic::{DiskMapOptions, Silent, Surface, disk_map};
+//! use ndarray::array;
 //!
 //! // a pyramid without its base: one boundary loop, so a disk
-//! let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
-//! let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
-//! let mesh = TriangleMesh::new(&vertices, &faces)?;
+//! let vertices = array![[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+//! let surface = Surface::new(vertices, array![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
 //!
-//! let map = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent)?;
+//! let map = disk_map(&surface, &DiskMapOptions::default(), &mut Silent)?;
 //!
-//! println!("{} after {} iterations", map.status.as_str(), map.history.iterations());
-//! assert!(map.distortion.folded.is_empty());
+//! assert_eq!(map.uv.shape(), [5, 2]);
+//! assert!(map.distortion.folded.is_empty() && map.distortion.area_ratio_std < 1e-6);
 //! # Ok::<(), authalic::Error>(())
 //! ```
 //!
-//! Rooms and their order are described in `ARCHITECTURE.md`.
+//! # A sphere
+//!
+//! An [`Observer`] hears of the progress and may end the run, which then returns the best map so far.
+//!
+//! ```
+//! use authalic::{SphereMapOptions, Surface, sphere_map};
+//! use ndarray::array;
+//!
+//! let vertices = array![[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+//! let faces = array![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+//! let surface = Surface::new(vertices, faces)?;
+//!
+//! let mut keep_going = |fraction: f64, _message: &str| (0.0..=1.0).contains(&fraction);
+//! let map = sphere_map(&surface, &SphereMapOptions::default(), &mut keep_going)?;
+//!
+//! println!("{} after {} iterations", map.status.as_str(), map.history.iterations());
+//! assert!(map.positions.rows().into_iter().all(|row| (row.dot(&row) - 1.0).abs() < 1e-12));
+//! # Ok::<(), authalic::Error>(())
+//! ```
+//!
+//! # Registration by landmark points
+//!
+//! ```
+//! use authalic::{Landmarks, RegistrationOptions, Silent, Surface, homotopy, register_spheres};
+//! use ndarray::array;
+//!
+//! let corners = array![[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
+//! let faces = array![[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]];
+//! let small = Surface::new(&corners, &faces)?;
+//! let large = Surface::new(&corners * 3.0, &faces)?;
+//!
+//! let landmarks = Landmarks { source: &[0, 1], target: &[0, 1] };
+//! let options = RegistrationOptions::default();
+//! let registration = register_spheres(&small, &large, &landmarks, &options, &mut Silent)?;
+//!
+//! let map = &registration.correspondence;
+//! assert!((map.positions() - &corners * 3.0).iter().all(|difference| difference.abs() < 1e-6));
+//! // per-vertex data of the target at the vertices of the source, and the middle of the morph
+//! let heights = map.pull_vertices(large.vertices().slice(ndarray::s![.., 2..]))?;
+//! let middle = homotopy(small.vertices(), map, 0.5, false)?;
+//! assert!((heights[[0, 0]] - 3.0).abs() < 1e-6 && (middle[[0, 2]] - 2.0).abs() < 1e-6);
+//! # Ok::<(), authalic::Error>(())
+//! ```
+//!
+//! # Registration by landmark curves
+//!
+//! Curves are paths of vertices along edges; boundary loops are features too. The certificates prove that the map is
+//! one-to-one.
+//!
+//! ```
+//! use authalic::{HyperbolicOptions, LandmarkCurves, Silent, Surface, register_hyperbolic};
+//! use ndarray::Array2;
+//!
+//! // a ball without its poles: 13 rings of 24 vertices
+//! let vertices = Array2::from_shape_fn((13 * 24, 3), |(vertex, axis)| {
+//!     let (height, angle) = (-0.9 + 0.15 * (vertex / 24) as f64, (vertex % 24) as f64 * std::f64::consts::TAU / 24.0);
+//!     let radius = (1.0 - height * height).sqrt();
+//!     [radius * angle.cos(), radius * angle.sin(), height][axis]
+//! });
+//! let faces = Array2::from_shape_fn((12 * 48, 3), |(face, corner)| {
+//!     let (quad, is_upper) = (face as u32 / 2, face % 2 == 1);
+//!     let (below, beside) = (quad, quad / 24 * 24 + (quad + 1) % 24);
+//!     (if is_upper { [below, beside + 24, below + 24] } else { [below, beside, beside + 24] })[corner]
+//! });
+//! let band = Surface::new(vertices, faces)?;
+//!
+//! let curves = [vec![76, 100, 124, 148], vec![88, 112, 136, 160, 184]];
+//! let curves = LandmarkCurves { source: &curves, target: &curves };
+//! let registration = register_hyperbolic(&band, &band, &curves, &HyperbolicOptions::default(), &mut Silent)?;
+//!
+//! assert!(registration.certificates.folded.is_empty() && registration.certificates.curve_error < 1e-9);
+//! # Ok::<(), authalic::Error>(())
+//! ```
+//!
+//! # Errors and determinism
+//!
+//! Only broken input and failed numerics are errors; they name the elements at fault as data ([`Error`]). A run that stops
+//! early returns its best map with a [`Status`]. Results do not depend on the number of threads.
+//!
+//! # Feature flags
+//!
+//! None is on by default.
+//!
+//! - `metis`: orders the unknowns of large systems (from about 200,000 vertices) by nested dissection with METIS, which
+//!   makes their factorizations faster. METIS is C code under the Apache license that is compiled along: this needs a C
+//!   compiler.
 
 mod alignment;
 mod arrays;
@@ -25,28 +120,45 @@ mod codomain;
 mod control;
 mod disk;
 mod distortion;
-pub mod embedding;
-pub mod energy;
+mod embedding;
+mod energy;
 mod error;
-pub mod hyperbolic;
+mod hyperbolic;
 mod location;
-pub mod mesh;
-pub mod optimize;
+mod mesh;
+mod optimize;
 mod options;
 mod parallel;
-pub mod registration;
-pub mod sparse;
+mod registration;
+mod sparse;
 mod sphere;
+#[doc(hidden)]
+pub mod testing;
 mod untangle;
 mod vector;
 
 pub use control::{History, Observer, Record, Silent, Status};
-pub use disk::{Boundary, DiskMap, DiskMapOptions, Method, disk_map};
-pub use distortion::{Distortion, Image, distortion, folded_in_plane, folded_on_sphere, normalized_density};
+pub use disk::{Boundary, DiskMap, DiskMapOptions, DiskMethod, disk_map};
+pub use distortion::{Distortion, distortion};
+pub use energy::{SparseColumns, stretch_hessian};
 pub use error::{
     CurveError, Elements, Error, ErrorKind, LandmarkError, MapError, MeshError, NumericsError, Side,
 };
+pub use hyperbolic::{
+    Certificates, Complex, CoverCopy, CurveMap, CurveRegistration, Descent, FlowOptions, HarmonicSolver,
+    HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants, RoughSphere,
+    Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
+};
 pub use mesh::{Patch, Surface, Topology};
+pub use optimize::published::gradient_descent::LineSearch;
+pub use registration::{
+    Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,
+    homotopy, register_disks, register_spheres,
+};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
-pub use untangle::{UntangleOptions, Untangled, UntangledImage, untangle};
-pub use vector::Vector3;
+pub use untangle::{UntangleOptions, Untangled, untangle};
+
+/// The examples of the crate's README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Arrays in and out: any real dtype and memory layout in, C-contiguous float64 and int64 out.
 
-use authalic::{Elements, Vector3};
-use numpy::ndarray::{Array2, ArrayView2};
+use authalic::Elements;
+use numpy::ndarray::{Array, Array1, Array2, ArrayView, Dimension};
 use numpy::{
-    PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -12,22 +13,31 @@ use pyo3::types::PyTuple;
 
 use crate::errors::{bad_array, bad_indices};
 
-/// An (n, 2) array for Python.
-pub type Pairs = Py<PyArray2<f64>>;
+/// An (n, 2) or (n, 3) array for Python.
+pub type Reals = Py<PyArray2<f64>>;
 
 /// Real numbers of shape (n, N).
 pub fn real_table<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array2<f64>> {
     table::<f64, N>(object, name, "float64", "iufb", "real numbers")
 }
 
-/// The same as rows.
-pub fn points<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[f64; N]>> {
-    Ok(rows(real_table::<N>(object, name)?.view()).to_vec())
+/// The image of a map: real numbers of shape (n, 2) or (n, 3).
+pub fn image(object: &Bound<'_, PyAny>) -> PyResult<Array2<f64>> {
+    let name = "image";
+    match as_array(object, name)?.shape() {
+        [_, 2] => real_table::<2>(object, name),
+        [_, _] => real_table::<3>(object, name),
+        shape => Err(bad_array(object.py(), name, shape_words(shape), "of shape (n, 2) or (n, 3)".into())),
+    }
 }
 
-/// Points in space: real numbers of shape (n, 3).
-pub fn vectors(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Vector3>> {
-    Ok(points(object, name)?.into_iter().map(Vector3).collect())
+/// One real number per face, of shape (m,).
+pub fn reals(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array1<f64>> {
+    let array: PyReadonlyArrayDyn<'_, f64> = converted(object, name, "float64", "iufb", "real numbers")?;
+    array.as_array().into_dimensionality().map(|values| values.into_owned()).map_err(|_| {
+        let found = shape_words(array.shape());
+        bad_array(object.py(), name, found, "of shape (m,), one value per face".into())
+    })
 }
 
 /// Faces or seams: integers of shape (n, N) that fit a vertex index. Reals are taken where they are whole.
@@ -102,35 +112,14 @@ pub fn from_values(py: Python<'_>, values: Vec<f64>, shape: Vec<usize>) -> PyRes
     Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any().unbind())
 }
 
-/// Real numbers of shape (n,).
-pub fn values(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<f64>> {
-    let array: PyReadonlyArrayDyn<'_, f64> = converted(object, name, "float64", "iufb", "real numbers")?;
-    match array.shape() {
-        [_] => Ok(array.as_slice()?.to_vec()),
-        shape => {
-            Err(bad_array(object.py(), name, shape_words(shape), "of shape (m,), one value per face".into()))
-        }
-    }
+/// An array for Python, without a copy.
+pub fn from_array<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) -> Py<PyArray<T, D>> {
+    array.into_pyarray(py).unbind()
 }
 
-/// The second length of an (n, k) array.
-pub fn width(object: &Bound<'_, PyAny>, name: &str) -> PyResult<usize> {
-    match as_array(object, name)?.shape() {
-        [_, width] => Ok(*width),
-        shape => Err(bad_array(object.py(), name, shape_words(shape), "of shape (n, 2) or (n, 3)".into())),
-    }
-}
-
-/// Points of a (n, N) float64 array.
-pub fn from_points<const N: usize>(py: Python<'_>, rows: &[impl Copy + Into<[f64; N]>]) -> Pairs {
-    let array = PyArray1::from_iter(py, rows.iter().flat_map(|&row| row.into()));
-    array.reshape([rows.len(), N]).expect("the lengths agree").unbind()
-}
-
-/// Rows to a (n, N) int64 array.
-pub fn from_indices<const N: usize>(py: Python<'_>, rows: &[[u32; N]]) -> Py<PyArray2<i64>> {
-    let flat = PyArray1::from_iter(py, rows.as_flattened().iter().map(|&i| i64::from(i)));
-    flat.reshape([rows.len(), N]).expect("the lengths agree").unbind()
+/// Indices to an int64 array.
+pub fn from_indices<D: Dimension>(py: Python<'_>, indices: ArrayView<'_, u32, D>) -> Py<PyArray<i64, D>> {
+    from_array(py, indices.mapv(i64::from))
 }
 
 /// Indices to an (n,) int64 array.
@@ -227,11 +216,6 @@ fn narrow(
         n => format!("indices of the {n} vertices, 0 to {}", n - 1),
     };
     Err(bad_indices(py, name, &found, &expected, &bad))
-}
-
-/// The rows of a table in C order.
-pub fn rows<T, const N: usize>(table: ArrayView2<'_, T>) -> &[[T; N]] {
-    table.to_slice().expect("in C order").as_chunks().0
 }
 
 fn shape_words(shape: &[usize]) -> String {

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::disk_map`.
 
-use authalic::{Boundary, DiskMapOptions, Method};
+use authalic::{Boundary, DiskMapOptions, DiskMethod};
 use numpy::PyArray2;
+use numpy::ndarray::ArrayView2;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_indices, from_points, index_list, points, values};
+use crate::arrays::{Reals, from_array, from_indices, index_list, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
-use crate::surface::Given;
+use crate::surface::{Given, oriented};
 
 /// A one-to-one map of a disk to the unit disk.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct DiskMap {
     /// (n, 2) float64: the image of each vertex in the unit disk, or on the rectangle asked for.
-    uv: Py<PyArray2<f64>>,
+    uv: Reals,
     /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
     faces: Py<PyArray2<i64>>,
     /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says.
@@ -34,14 +35,14 @@ pub struct DiskMap {
 }
 
 impl DiskMap {
-    pub fn new(py: Python<'_>, map: &authalic::DiskMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, map: authalic::DiskMap, faces: ArrayView2<'_, u32>) -> PyResult<Self> {
         Ok(Self {
-            uv: from_points(py, &map.uv),
+            uv: from_array(py, map.uv),
             faces: from_indices(py, faces),
             status: map.status.as_str(),
             iterations: map.history.iterations(),
             history: history(py, map.history.records())?,
-            distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+            distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             seconds: map.seconds,
         })
     }
@@ -173,13 +174,14 @@ pub fn disk_map(
     let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
-    let density = density.map(|density| values(density, "density")).transpose()?;
-    let initial = initial.map(|initial| points::<2>(initial, "initial")).transpose()?;
+    let density = density.map(|density| reals(density, "density")).transpose()?;
+    let initial = initial.map(|initial| real_table::<2>(initial, "initial")).transpose()?;
     let corners = corners.map(|corners| parse_corners(corners, given.n_vertices())).transpose()?;
     // 2. The run
     let (map, surface) = run(py, progress, move |observer| {
         let surface = given.surface()?;
-        let (density, initial) = (density.as_deref(), initial.as_deref());
+        let density = density.as_ref().map(|density| density.view());
+        let initial = initial.as_ref().map(|initial| initial.view());
         let options = DiskMapOptions {
             method,
             boundary,
@@ -194,18 +196,17 @@ pub fn disk_map(
             corners,
             aspect,
         };
-        Ok((authalic::disk_map(surface.mesh()?, &options, observer)?, surface))
+        Ok((authalic::disk_map(&surface, &options, observer)?, surface))
     })?;
     // 3. The result
-    let mesh = surface.mesh().expect("it was mapped");
-    DiskMap::new(py, &map, mesh.faces())
+    DiskMap::new(py, map, oriented(&surface))
 }
 
-fn parse_method(method: &str) -> PyResult<Method> {
+fn parse_method(method: &str) -> PyResult<DiskMethod> {
     match method {
-        "fixed_point" => Ok(Method::FixedPoint),
-        "conjugate_gradient" => Ok(Method::ConjugateGradient),
-        "gauss_newton" => Ok(Method::GaussNewton),
+        "fixed_point" => Ok(DiskMethod::FixedPoint),
+        "conjugate_gradient" => Ok(DiskMethod::ConjugateGradient),
+        "gauss_newton" => Ok(DiskMethod::GaussNewton),
         other => Err(bad_option(format!(
             "method must be \"gauss_newton\", \"conjugate_gradient\" or \"fixed_point\", but is {other:?}"
         ))),

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::distortion`.
 
-use authalic::{Image, Vector3, normalized_density};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, points, values, vectors, width};
-use crate::errors::bad_array;
+use crate::arrays::{self, from_array, from_index_list, reals};
 use crate::run::run;
 use crate::surface::Given;
 
@@ -34,14 +32,14 @@ pub struct Distortion {
 }
 
 impl Distortion {
-    pub fn new(py: Python<'_>, figures: &authalic::Distortion) -> Self {
+    pub fn new(py: Python<'_>, figures: authalic::Distortion) -> Self {
         Self {
             authalic_energy: figures.authalic_energy,
             area_ratio_mean: figures.area_ratio_mean,
             area_ratio_std: figures.area_ratio_std,
-            log2_area_ratio: PyArray1::from_slice(py, &figures.log2_area_ratio).unbind(),
+            log2_area_ratio: from_array(py, figures.log2_area_ratio),
             folded: from_index_list(py, figures.folded.iter().copied()),
-            angle_distortion: PyArray1::from_slice(py, &figures.angle_distortion).unbind(),
+            angle_distortion: from_array(py, figures.angle_distortion),
             angle_distortion_mean: figures.angle_distortion_mean,
             angle_distortion_p99: figures.angle_distortion_p99,
             angle_distortion_max: figures.angle_distortion_max,
@@ -59,42 +57,6 @@ impl Distortion {
             self.folded.bind(py).len()?,
             self.angle_distortion_mean,
         ))
-    }
-}
-
-/// A map of the vertices, owned.
-pub(crate) enum OwnedImage {
-    Plane(Vec<[f64; 2]>),
-    Sphere(Vec<Vector3>),
-}
-
-impl OwnedImage {
-    pub(crate) fn extract(image: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Self> {
-        let owned = match width(image, "image")? {
-            2 => Self::Plane(points(image, "image")?),
-            _ => Self::Sphere(vectors(image, "image")?),
-        };
-        match owned.rows() {
-            rows if rows == n_vertices => Ok(owned),
-            rows => {
-                let expected = format!("of shape ({n_vertices}, 2) or ({n_vertices}, 3), one row per vertex");
-                Err(bad_array(image.py(), "image", format!("of {rows} rows"), expected))
-            }
-        }
-    }
-
-    pub(crate) fn view(&self) -> Image<'_> {
-        match self {
-            Self::Plane(map) => Image::Plane(map),
-            Self::Sphere(map) => Image::Sphere(map),
-        }
-    }
-
-    fn rows(&self) -> usize {
-        match self {
-            Self::Plane(map) => map.len(),
-            Self::Sphere(map) => map.len(),
-        }
     }
 }
 
@@ -140,17 +102,11 @@ pub fn distortion(
     image: Option<&Bound<'_, PyAny>>,
     density: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Distortion> {
-    let (given, image) = Given::with_image(vertices, faces, image)?;
-    let image = OwnedImage::extract(image, given.n_vertices())?;
-    let density = density.map(|density| values(density, "density")).transpose()?;
+    let (given, map) = Given::with_image(vertices, faces, image)?;
+    let map = arrays::image(map)?;
+    let density = density.map(|density| reals(density, "density")).transpose()?;
     let figures = run(py, None, move |_| {
-        let surface = given.surface()?;
-        let triangles = surface.triangles()?;
-        let targets = match density {
-            Some(density) => normalized_density(&density, surface.n_faces())?,
-            None => triangles.areas.to_vec(),
-        };
-        authalic::distortion(triangles.points, triangles.faces, image.view(), &targets)
+        authalic::distortion(&given.surface()?, map.view(), density.as_ref().map(|density| density.view()))
     })?;
-    Ok(Distortion::new(py, &figures))
+    Ok(Distortion::new(py, figures))
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The two exceptions of the package, what becomes which, and the facts that exceptions and warnings carry.
 
-use authalic::hyperbolic::{Warning, WarningKind};
-use authalic::{Elements, Error, ErrorKind, Side};
+use authalic::{Elements, Error, ErrorKind, Side, Warning, WarningKind};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

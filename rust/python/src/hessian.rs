@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the Hessian of the stretch energy.
 
-use authalic::energy::SpatialStretchEnergy;
-use authalic::{Elements, Error, MapError, normalized_density};
 use numpy::PyArray1;
+use numpy::ndarray::Array1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, values, vectors};
-use crate::errors::bad_array;
+use crate::arrays::{from_array, from_index_list, real_table, reals};
 use crate::run::run;
 use crate::surface::Given;
 
@@ -59,36 +57,12 @@ pub fn stretch_hessian(
     density: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Columns> {
     let (given, image) = Given::with_image(vertices, faces, image)?;
-    let image = vectors(image, "image")?;
-    if image.len() != given.n_vertices() {
-        let expected = format!("of shape ({}, 3), one row per vertex", given.n_vertices());
-        return Err(bad_array(py, "image", format!("of {} rows", image.len()), expected));
-    }
-    let density = density.map(|density| values(density, "density")).transpose()?;
-    let matrix = run(py, None, move |_| {
-        let surface = given.surface()?;
-        let mesh = surface.mesh()?;
-        let not_finite = |v: &usize| !image[*v].is_finite();
-        if let Some(vertices) = Elements::collect((0..image.len()).filter(not_finite)) {
-            return Err(MapError::NonFinite { name: "image", vertices }.into());
-        }
-        let targets = match density {
-            Some(density) => normalized_density(&density, mesh.n_faces())?,
-            None => mesh.face_areas().to_vec(),
-        };
-        let energy = SpatialStretchEnergy::new(mesh, &targets);
-        let hessian = energy.hessian(&image);
-        if hessian.data().iter().all(|value| value.is_finite()) {
-            Ok(hessian)
-        } else {
-            Err(Error::InvalidArray {
-                name: "image",
-                found: format!("of area {:e}", energy.value(&image).area),
-                expected: "a map whose faces have area, neither huge nor tiny".into(),
-            })
-        }
+    let image = real_table::<3>(image, "image")?;
+    let density = density.map(|density| reals(density, "density")).transpose()?;
+    let hessian = run(py, None, move |_| {
+        let density = density.as_ref().map(|density| density.view());
+        authalic::stretch_hessian(&given.surface()?, image.view(), density)
     })?;
-    let (starts, rows, data) = matrix.into_raw_storage();
-    let (rows, starts) = (rows.into_iter(), starts.into_iter());
-    Ok((PyArray1::from_vec(py, data).unbind(), from_index_list(py, rows), from_index_list(py, starts)))
+    let list = |indices: Array1<usize>| from_index_list(py, indices.into_iter());
+    Ok((from_array(py, hessian.data), list(hessian.indices), list(hessian.indptr)))
 }

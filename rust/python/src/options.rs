@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What several bindings share: options and the history.
 
-use authalic::Record;
-use authalic::hyperbolic::{FlowOptions, MetricMethod};
+use authalic::{FlowOptions, MetricMethod, Record};
 use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::sphere_map`.
 
-use authalic::optimize::published::gradient_descent::LineSearch;
-use authalic::{SphereMapOptions, SphereMethod};
+use authalic::{LineSearch, SphereMapOptions, SphereMethod};
+use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, from_indices, from_points, rows, values, vectors};
+use crate::arrays::{from_array, from_index_list, from_indices, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
 use crate::options::{history, parse_iterations};
 use crate::run::run;
-use crate::surface::Given;
+use crate::surface::{Given, oriented};
 
 /// A one-to-one map of a closed surface to the unit sphere.
 #[pyclass(frozen, get_all, module = "authalic")]
@@ -61,20 +61,14 @@ pub struct Refinement {
 }
 
 impl Refinement {
-    fn new(py: Python<'_>, found: &authalic::Refinement, vertices: &[[f64; 3]]) -> PyResult<Self> {
-        let mut all = vertices.to_vec();
-        for &[a, b] in &found.parents {
-            let [a, b] = [all[a as usize], all[b as usize]];
-            // halves first, so that huge coordinates do not overflow
-            all.push(std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k]));
-        }
+    fn new(py: Python<'_>, found: authalic::Refinement, surface: &authalic::Surface) -> PyResult<Self> {
         Ok(Self {
-            parents: from_indices(py, &found.parents),
-            vertices: from_points(py, &all[vertices.len()..]),
-            positions: from_points(py, &found.positions),
-            faces: from_indices(py, &found.faces),
-            face_of: from_index_list(py, found.face_of.iter().map(|face| face.index())),
-            distortion: Py::new(py, Distortion::new(py, &found.distortion))?,
+            vertices: from_array(py, found.vertices(surface)),
+            parents: from_indices(py, found.parents.view()),
+            positions: from_array(py, found.positions),
+            faces: from_indices(py, found.faces.view()),
+            face_of: from_index_list(py, found.face_of.into_iter()),
+            distortion: Py::new(py, Distortion::new(py, found.distortion))?,
         })
     }
 }
@@ -93,14 +87,14 @@ impl Refinement {
 
 impl SphereMap {
     /// The map without a refinement.
-    pub fn new(py: Python<'_>, map: &authalic::SphereMap, faces: &[[u32; 3]]) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, map: authalic::SphereMap, faces: ArrayView2<'_, u32>) -> PyResult<Self> {
         Ok(Self {
-            positions: from_points(py, &map.positions),
+            positions: from_array(py, map.positions),
             faces: from_indices(py, faces),
             status: map.status.as_str(),
             iterations: map.history.iterations(),
             history: history(py, map.history.records())?,
-            distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+            distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             refinement: None,
             seconds: map.seconds,
         })
@@ -221,12 +215,13 @@ pub fn sphere_map(
     let (method, line_search) = (parse_method(method)?, parse_line_search(line_search)?);
     let max_iterations = max_iterations.map(parse_iterations).transpose()?;
     let given = Given::new(vertices, faces)?;
-    let density = density.map(|density| values(density, "density")).transpose()?;
-    let initial = initial.map(|initial| vectors(initial, "initial")).transpose()?;
+    let density = density.map(|density| reals(density, "density")).transpose()?;
+    let initial = initial.map(|initial| real_table::<3>(initial, "initial")).transpose()?;
     // 2. The run
-    let (map, surface) = run(py, progress, move |observer| {
+    let (mut map, surface) = run(py, progress, move |observer| {
         let surface = given.surface()?;
-        let (density, initial) = (density.as_deref(), initial.as_deref());
+        let density = density.as_ref().map(|density| density.view());
+        let initial = initial.as_ref().map(|initial| initial.view());
         let options = SphereMapOptions {
             method,
             line_search,
@@ -239,17 +234,12 @@ pub fn sphere_map(
             refine,
             unfold,
         };
-        Ok((authalic::sphere_map(surface.mesh()?, &options, observer)?, surface))
+        Ok((authalic::sphere_map(&surface, &options, observer)?, surface))
     })?;
     // 3. The result
-    let refinement = map
-        .refinement
-        .as_ref()
-        .map(|found| Refinement::new(py, found, rows(surface.vertices())))
-        .transpose()?;
+    let refinement = map.refinement.take().map(|found| Refinement::new(py, *found, &surface)).transpose()?;
     let refinement = refinement.map(|found| Py::new(py, found)).transpose()?;
-    let mesh = surface.mesh().expect("it was mapped");
-    Ok(SphereMap { refinement, ..SphereMap::new(py, &map, mesh.faces())? })
+    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface))? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

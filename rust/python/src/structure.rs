@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::hyperbolic`'s structure of a surface: Fuchsian group, pants and hexagons.
 
-use authalic::Vector3;
-use authalic::hyperbolic as core;
-use authalic::hyperbolic::moebius::{Complex, Moebius};
+use authalic::{self as core, Complex, Moebius};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::arrays::{Pairs, from_index_list, from_indices, from_points, rows};
+use crate::arrays::{Reals, from_array, from_index_list, from_indices};
 use crate::errors::bad_option;
 use crate::options::{choice, metrics};
 use crate::registration::vertex_paths;
@@ -77,7 +75,7 @@ pub struct HyperbolicStructure {
     disk_faces: Py<PyArray2<i64>>,
     /// (n_disk, 2) float64: where its vertices lie in the Poincaré disk.
     #[pyo3(get)]
-    positions: Pairs,
+    positions: Reals,
     /// (n_disk,) int64: which rows of `vertices` they are.
     #[pyo3(get)]
     disk_vertex_of: Py<PyArray1<i64>>,
@@ -124,22 +122,19 @@ pub struct HyperbolicStructure {
 type Sides = (Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 
 impl HyperbolicStructure {
-    fn new(py: Python<'_>, found: core::HyperbolicStructure, surface: &authalic::Surface) -> PyResult<Self> {
-        let vertices: Vec<Vector3> = rows(surface.vertices()).iter().copied().map(Vector3).collect();
+    fn new(py: Python<'_>, found: core::HyperbolicStructure) -> PyResult<Self> {
         let list = |values: &[u32]| from_index_list(py, values.iter().map(|&i| i as usize));
         let sides = |sides: &[[Vec<u32>; 2]]| -> Vec<Sides> {
             sides.iter().map(|[left, right]| (list(left), list(right))).collect()
         };
         let vertex_of = found.vertex_of.iter().map(|vertex| vertex.map_or(-1, i64::from));
-        let positions: Vec<[f64; 2]> = found.positions.iter().map(|z| [z.re, z.im]).collect();
         let pants = found.pants.iter().map(|pants| Py::new(py, Pants::new(py, pants)?));
-        let curves = found.pants_curves.iter();
         Ok(Self {
-            vertices: from_points(py, &found.in_space(&found.vertices, &vertices)),
-            faces: from_indices(py, &found.faces),
+            vertices: from_array(py, found.vertices()),
+            faces: from_indices(py, found.faces().view()),
             vertex_of: PyArray1::from_iter(py, vertex_of).unbind(),
-            disk_faces: from_indices(py, &found.disk_faces),
-            positions: from_points(py, &positions),
+            disk_faces: from_indices(py, found.disk_faces().view()),
+            positions: from_array(py, found.positions()),
             disk_vertex_of: list(&found.disk_vertex_of),
             order: from_index_list(py, found.chain.iter().map(|&(feature, _)| feature)),
             reversed: PyArray1::from_iter(py, found.chain.iter().map(|&(_, reversed)| reversed)).unbind(),
@@ -148,7 +143,7 @@ impl HyperbolicStructure {
             generators: isometries(py, &found.generators)?,
             boundary_lengths: PyArray1::from_slice(py, &found.boundary_lengths).unbind(),
             pants: pants.collect::<PyResult<_>>()?,
-            pants_curves: curves.map(|curve| from_points(py, &found.in_space(curve, &vertices))).collect(),
+            pants_curves: found.pants_curves().into_iter().map(|curve| from_array(py, curve)).collect(),
             lengths: PyArray1::from_slice(py, &found.lengths).unbind(),
             curvature: found.curvature,
             area: found.area,
@@ -273,9 +268,8 @@ pub fn hyperbolic_structure(
     let metric = choice("metric", metric, &metrics())?;
     let given = Given::new(vertices, faces)?;
     let curves = vertex_paths(curves, "curves", given.n_vertices())?;
-    let (found, surface) = run(py, progress, move |observer| {
-        let surface = given.surface()?;
-        Ok((core::hyperbolic_structure(surface.mesh()?, &curves, metric, observer)?, surface))
+    let found = run(py, progress, move |observer| {
+        core::hyperbolic_structure(&given.surface()?, &curves, metric, observer)
     })?;
-    HyperbolicStructure::new(py, found, &surface)
+    HyperbolicStructure::new(py, found)
 }

@@ -2,14 +2,14 @@
 //! Bindings of `authalic::Surface`: the handle, its patches, and surfaces as arguments.
 
 use authalic::{Error, Topology};
-use numpy::ndarray::{Array2, aview2};
+use numpy::ndarray::{Array2, ArrayView2, aview2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-use crate::arrays::{from_index_list, from_indices, index_table, real_table};
+use crate::arrays::{from_array, from_index_list, from_indices, index_table, real_table};
 use crate::errors::bad_array;
 use crate::run::run;
 
@@ -213,13 +213,13 @@ pub struct Patch {
 
 impl Patch {
     fn new(py: Python<'_>, patch: authalic::Patch) -> PyResult<Self> {
-        let face_of = patch.corner_of.iter().map(|corners| corners[0] as usize / 3);
+        let face_of = patch.corner_of.column(0).iter().map(|&corner| corner as usize / 3).collect::<Vec<_>>();
         Ok(Self {
-            vertices: PyArray2::from_array(py, &patch.surface.vertices()).unbind(),
-            faces: PyArray2::from_owned_array(py, patch.surface.faces().mapv(i64::from)).unbind(),
+            vertices: from_array(py, patch.surface.vertices().to_owned()),
+            faces: from_indices(py, patch.surface.faces()),
             vertex_of: from_index_list(py, patch.vertex_of.iter().map(|&vertex| vertex as usize)),
-            corner_of: from_indices(py, &patch.corner_of),
-            face_of: from_index_list(py, face_of),
+            corner_of: from_indices(py, patch.corner_of.view()),
+            face_of: from_index_list(py, face_of.into_iter()),
             euler_characteristic: patch.topology.euler_characteristic,
             genus: patch.topology.genus,
             boundary_loops: index_lists(py, &patch.topology.boundary_loops),
@@ -387,6 +387,11 @@ fn missing(py: Python<'_>, name: &'static str, expected: &str) -> PyErr {
 
 fn too_many() -> PyErr {
     PyTypeError::new_err("faces go with vertices; a Surface has its own")
+}
+
+/// The faces of a surface that has been mapped.
+pub fn oriented(surface: &authalic::Surface) -> ArrayView2<'_, u32> {
+    surface.oriented_faces().expect("a map needs them")
 }
 
 /// The surface behind a Surface or a Patch.

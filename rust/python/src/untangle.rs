@@ -3,13 +3,13 @@
 
 use std::time::Instant;
 
-use authalic::{UntangleOptions, UntangledImage};
+use authalic::UntangleOptions;
 use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_index_list, from_points, index_list};
-use crate::distortion::{Distortion, OwnedImage};
+use crate::arrays::{self, Reals, from_array, from_index_list, index_list};
+use crate::distortion::Distortion;
 use crate::errors::bad_array;
 use crate::run::run;
 use crate::surface::Given;
@@ -18,7 +18,7 @@ use crate::surface::Given;
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Untangled {
     /// (n, 2) or (n, 3) float64: the map, of the shape given; rows of vertices that did not move are the same bits.
-    image: Py<PyAny>,
+    image: Reals,
     /// (k,) int64: the vertices that moved, ascending.
     moved: Py<PyArray1<i64>>,
     /// (k,) int64: the faces that were folded, ascending.
@@ -107,24 +107,20 @@ pub fn untangle(
     // 1. Arguments to plain data
     let began = Instant::now();
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
-    let image = OwnedImage::extract(image, given.n_vertices())?;
+    let image = arrays::image(image)?;
     let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, given.n_vertices()))?;
     // 2. The run
     let map = run(py, progress, move |observer| {
-        let surface = given.surface()?;
         let options = UntangleOptions { fixed: &fixed, tolerance };
-        authalic::untangle(surface.mesh()?, image.view(), &options, observer)
+        authalic::untangle(&given.surface()?, image.view(), &options, observer)
     })?;
     // 3. The result
     Ok(Untangled {
-        image: match &map.image {
-            UntangledImage::Plane(map) => from_points(py, map).into_any(),
-            UntangledImage::Sphere(map) => from_points(py, map).into_any(),
-        },
+        image: from_array(py, map.image),
         moved: from_index_list(py, map.moved.iter().copied()),
         folded_before: from_index_list(py, map.folded_before.iter().copied()),
         status: map.status.as_str(),
-        distortion: Py::new(py, Distortion::new(py, &map.distortion))?,
+        distortion: Py::new(py, Distortion::new(py, map.distortion))?,
         seconds: began.elapsed().as_secs_f64(),
     })
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Checks of surface and options before a disk map is computed.
 
-use super::options::{Boundary, DiskMapOptions, Method};
+use super::options::{Boundary, DiskMapOptions, DiskMethod};
 use super::{boundary, rectangle};
 use crate::error::{Elements, Error, MapError, MeshError};
 use crate::mesh::TriangleMesh;
@@ -13,10 +13,10 @@ pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result
         Err(Error::Mesh(MeshError::SeveralBoundaries { .. })) if options.fill_holes => {}
         verdict => verdict?,
     }
-    if let Some(initial) = options.initial {
+    if let Some(initial) = options.initial_rows() {
         check_initial(mesh, options, initial)?;
     }
-    if options.boundary == Boundary::Rectangle && options.method != Method::GaussNewton {
+    if options.boundary == Boundary::Rectangle && options.method != DiskMethod::GaussNewton {
         let expected =
             "arc_length or sliding for the papers' methods; only gauss_newton has rectangles".into();
         return Err(Error::InvalidOption { name: "boundary", found: "rectangle".into(), expected });
@@ -25,16 +25,16 @@ pub(super) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result
         let (found, expected) = ("true".into(), "false unless the boundary is free".into());
         return Err(Error::InvalidOption { name: "overlap", found, expected });
     }
-    if options.boundary == Boundary::Free && options.method != Method::GaussNewton {
+    if options.boundary == Boundary::Free && options.method != DiskMethod::GaussNewton {
         let expected = "arc_length or sliding for the papers' methods; only gauss_newton frees it".into();
         return Err(Error::InvalidOption { name: "boundary", found: "free".into(), expected });
     }
     rectangle::check(mesh, options)?;
-    check_angle_weight(options.angle_weight, options.method == Method::GaussNewton)?;
+    check_angle_weight(options.angle_weight, options.method == DiskMethod::GaussNewton)?;
     check_area_tolerance(
         options.area_tolerance,
         options.angle_weight,
-        options.method == Method::GaussNewton,
+        options.method == DiskMethod::GaussNewton,
     )?;
     match options.tolerance {
         Some(tolerance) if !(tolerance >= 0.0 && tolerance.is_finite()) => Err(Error::InvalidOption {

@@ -23,17 +23,18 @@ mod run;
 mod start;
 pub(crate) mod unfold;
 
-use std::borrow::Cow;
+use ndarray::{Array2, aview2};
 
+use crate::arrays::{from_rows, rows_of};
 use crate::control::{History, Observer, Status};
-use crate::distortion::{Distortion, Image, distortion, normalized_density};
+use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Surface, TriangleMesh};
 use crate::parallel;
 
 use crate::codomain::planar::PlanarMap;
 pub(crate) use holes::closed;
-pub use options::{Boundary, DiskMapOptions, Method};
+pub use options::{Boundary, DiskMapOptions, DiskMethod};
 use run::Run;
 
 /// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
@@ -42,7 +43,7 @@ pub struct DiskMap {
     /// (n, 2): the image of each vertex in the unit disk, or on the rectangle asked for; positive faces run
     /// counter-clockwise. Without a start map the lowest boundary vertex lies at (1, 0) of the disk, and with a free
     /// boundary to the right of the mean of all vertices.
-    pub uv: Vec<[f64; 2]>,
+    pub uv: Array2<f64>,
     /// Why the run ended.
     pub status: Status,
     /// The energy after every iteration; where holes were filled, that of the filled surface.
@@ -60,28 +61,38 @@ pub struct DiskMap {
 /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds in double precision.
 ///
 /// ```
-/// use authalic::{DiskMapOptions, Silent, disk_map, mesh::TriangleMesh};
-/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
-/// let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
-/// let mesh = TriangleMesh::new(&vertices, &faces)?;
-/// let map = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent)?;
+/// use authalic::{DiskMapOptions, Silent, Surface, disk_map};
+/// use ndarray::array;
+///
+/// let vertices = array![[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let surface = Surface::new(vertices, array![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
+/// let map = disk_map(&surface, &DiskMapOptions::default(), &mut Silent)?;
 /// assert!(map.distortion.folded.is_empty());
 /// assert!(map.distortion.area_ratio_std < 1e-6);
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn disk_map(
+    surface: &Surface,
+    options: &DiskMapOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<DiskMap, Error> {
+    let initial = options.initial.map(|initial| rows_of::<2, _>("initial", initial)).transpose()?;
+    let options = DiskMapOptions { initial: initial.as_deref().map(aview2), ..*options };
+    map_disk(surface.mesh()?, &options, observer)
+}
+
+/// [`disk_map`] of a mesh, with a start map in row-major order.
+pub(crate) fn map_disk(
     mesh: &TriangleMesh,
     options: &DiskMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<DiskMap, Error> {
     let mut history = History::start();
+    let options = &options.by_ref();
     // 1. Check the surface and the options
     checks::check(mesh, options)?;
     // 2. Targets; holes filled virtually
-    let given: Cow<'_, [f64]> = match options.density {
-        Some(density) => normalized_density(density, mesh.n_faces())?.into(),
-        None => mesh.face_areas().into(),
-    };
+    let given = targets(options.density, mesh.face_areas())?;
     let filled = match mesh.boundary_loops().len() {
         1 => None,
         _ if options.boundary == Boundary::Free => None,
@@ -91,15 +102,15 @@ pub fn disk_map(
     // 3. Minimize the energy without folds
     let run = Run { mesh: surface, targets, options, n_given_faces: mesh.n_faces() };
     let (mut uv, status) = match options.method {
-        Method::GaussNewton if options.boundary == Boundary::Rectangle => {
+        DiskMethod::GaussNewton if options.boundary == Boundary::Rectangle => {
             rectangle::solve(&run, &mut history, observer)?
         }
-        Method::GaussNewton if options.boundary == Boundary::Free => {
+        DiskMethod::GaussNewton if options.boundary == Boundary::Free => {
             let free = free::Free { mesh, targets: &given, options };
             free.map(&mut history, observer)?
         }
-        Method::GaussNewton => run.renumbered(&mut history, observer)?,
-        Method::FixedPoint | Method::ConjugateGradient => run.solve(&mut history, observer)?,
+        DiskMethod::GaussNewton => run.renumbered(&mut history, observer)?,
+        DiskMethod::FixedPoint | DiskMethod::ConjugateGradient => run.solve(&mut history, observer)?,
     };
     let status = if status != Status::Cancelled && !observer.progress(1.0, "Done") {
         Status::Cancelled
@@ -112,8 +123,8 @@ pub fn disk_map(
     }
     // 5. Figures of the given faces
     uv.truncate(mesh.n_vertices());
-    let distortion = distortion(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
-    Ok(DiskMap { uv, status, seconds: history.seconds(), history, distortion })
+    let distortion = measure(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
+    Ok(DiskMap { uv: from_rows(uv), status, seconds: history.seconds(), history, distortion })
 }
 
 /// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the rotation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One computation on a surface with one boundary loop.
 
+use ndarray::aview2;
+
 use super::options::DiskMapOptions;
 use crate::codomain::planar::PlanarMap;
 use crate::control::{Observer, Silent, Status, Watch};
@@ -40,8 +42,9 @@ impl Run<'_> {
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let targets = by_order.of_faces(self.targets);
-        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
-        let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let initial = self.options.initial_rows().map(|map| by_order.of_vertices(map));
+        let options =
+            DiskMapOptions { initial: initial.as_deref().map(aview2), density: None, ..*self.options };
         let run = Run { mesh: &by_order.mesh, targets: &targets, options: &options, ..*self };
         let given_face = |face| self.given_face(by_order.given_face(face));
         let (map, status) =

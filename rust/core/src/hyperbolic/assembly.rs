@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Assembles the maps of all pieces into a map of the surfaces, with its figures.
 
-use super::features::curves::Curves;
+use ndarray::{Array1, Array2};
+
+use super::features::curves::LandmarkCurves;
 use super::features::piece::Piece;
 use super::features::placement::Placement;
 use super::harmonic::certificates::{Certificates, PieceCertificates};
@@ -10,12 +12,14 @@ use super::harmonic::piece_map::PieceMap;
 use super::metric::Metric;
 use super::slice::sliced::SlicedPair;
 use super::warnings::{Warning, warnings};
+use crate::arrays::from_vectors;
 use crate::control::{History, Status};
-use crate::distortion::{Distortion, Image, distortion, distortion_in_space};
+use crate::distortion::{Distortion, Image, distortion_in_space, measure};
 use crate::error::Error;
 use crate::location::{Location, Locator, points_on};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Surface, TriangleMesh};
 use crate::parallel;
+use crate::registration::correspondence::{Correspondence, Registered};
 use crate::vector::Vector3;
 
 /// Largest distance of a curve's image from its partner, relative to the target's size; beyond it the curve is missed.
@@ -47,15 +51,13 @@ pub struct CurveRegistration {
 /// A one-to-one map of a surface onto another that takes curves to curves.
 #[derive(Debug, Clone)]
 pub struct CurveMap {
-    /// (n,): the location of each vertex on the other surface.
-    pub locations: Vec<Location>,
-    /// The faces of the other surface that [`Self::locations`] refer to.
-    pub target_faces: Vec<[u32; 3]>,
+    /// The location of each vertex on the other surface.
+    pub correspondence: Correspondence,
     /// (n, 3): the images of the vertices on the rough sphere of the other surface, where straight faces may fold a
     /// little along the curves.
-    pub registered: Vec<Vector3>,
+    pub registered: Array2<f64>,
     /// (B,): the largest distance of the image of each curve from its partner, in parts of the other surface's size.
-    pub curve_error: Vec<f64>,
+    pub curve_error: Array1<f64>,
     /// The curves that are farther than 10⁻⁹ from their partners.
     pub missed: Vec<usize>,
     /// Why the run ended; [`Status::LandmarksMissed`] if curves were missed.
@@ -68,7 +70,7 @@ pub struct CurveMap {
 #[derive(Debug, Clone)]
 pub struct RoughSphere {
     /// (n, 3): the vertices on the unit sphere.
-    pub positions: Vec<Vector3>,
+    pub positions: Array2<f64>,
     /// The figures of the map to the sphere.
     pub distortion: Distortion,
 }
@@ -83,21 +85,11 @@ impl CurveRegistration {
     }
 }
 
-impl CurveMap {
-    /// The position of each vertex on the other surface with `vertices`, (n, 3).
-    ///
-    /// # Panics
-    /// If there are fewer `vertices` than the other surface has.
-    pub fn positions(&self, vertices: &[Vector3]) -> Vec<Vector3> {
-        points_on(&self.locations, vertices, &self.target_faces)
-    }
-}
-
 impl RoughSphere {
     fn new(mesh: &TriangleMesh, positions: &[Vector3]) -> Result<Self, Error> {
         let image = Image::Sphere(positions);
-        let distortion = distortion(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
-        Ok(Self { positions: positions.to_vec(), distortion })
+        let distortion = measure(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
+        Ok(Self { positions: from_vectors(positions.to_vec()), distortion })
     }
 }
 
@@ -168,8 +160,9 @@ impl Assembly {
 
     pub(super) fn finish(
         mut self,
+        surfaces: [&Surface; 2],
         meshes: [&TriangleMesh; 2],
-        curves: &Curves<'_>,
+        curves: &LandmarkCurves<'_>,
         placement: &Placement,
         history: &History,
     ) -> Result<CurveRegistration, Error> {
@@ -197,9 +190,17 @@ impl Assembly {
         let back_figures = figures(meshes[1], &positions, Vec::new())?;
         let warnings = warnings(meshes, placement, self.is_sure, &certificates, &there_figures);
         // 4. Both directions
+        let on_sphere = [&placement.source, &placement.target];
+        let onto =
+            |side: usize| Registered::new(surfaces[side], meshes[side].faces(), on_sphere[side].clone());
+        let from = |side: usize, registered: &[Vector3]| {
+            Registered::new(surfaces[side], meshes[side].faces(), registered.to_vec())
+        };
+        let there = Correspondence::new(from(0, &registered), onto(1), locations);
+        let way_back = Correspondence::new(from(1, &back), onto(0), inverse);
         Ok(CurveRegistration {
-            map: self.map(meshes[1], locations, registered, there_error, there_figures),
-            inverse: self.map(meshes[0], inverse, back, back_error, back_figures),
+            map: self.map(there, registered, there_error, there_figures),
+            inverse: self.map(way_back, back, back_error, back_figures),
             spheres: [
                 RoughSphere::new(meshes[0], &placement.source)?,
                 RoughSphere::new(meshes[1], &placement.target)?,
@@ -231,8 +232,7 @@ impl Assembly {
     /// A direction of the map.
     fn map(
         &self,
-        target: &TriangleMesh,
-        locations: Vec<Location>,
+        correspondence: Correspondence,
         registered: Vec<Vector3>,
         curve_error: Vec<f64>,
         distortion: Distortion,
@@ -240,8 +240,8 @@ impl Assembly {
         let missed: Vec<usize> =
             (0..curve_error.len()).filter(|&curve| curve_error[curve] > MISSED).collect();
         let status = self.status(&missed);
-        let target_faces = target.faces().to_vec();
-        CurveMap { locations, target_faces, registered, curve_error, missed, status, distortion }
+        let (registered, curve_error) = (from_vectors(registered), curve_error.into());
+        CurveMap { correspondence, registered, curve_error, missed, status, distortion }
     }
 
     fn status(&self, missed: &[usize]) -> Status {

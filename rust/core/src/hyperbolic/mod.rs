@@ -25,7 +25,7 @@ mod assembly;
 mod features;
 mod harmonic;
 mod metric;
-pub mod moebius;
+pub(crate) mod moebius;
 mod options;
 mod register;
 #[cfg(test)]
@@ -37,11 +37,12 @@ mod tests;
 mod warnings;
 
 pub use assembly::{CurveMap, CurveRegistration, RoughSphere};
-pub use features::curves::Curves;
+pub use features::curves::LandmarkCurves;
 pub use harmonic::certificates::Certificates;
 pub use harmonic::newton::Descent;
-pub use metric::{FlowOptions, FlowRecord, Metric, MetricMethod};
-pub use options::{HyperbolicOptions, Solver};
+pub use metric::{FlowOptions, MetricMethod};
+pub use moebius::{Complex, Moebius};
+pub use options::{HarmonicSolver, HyperbolicOptions};
 pub use register::register_hyperbolic;
 pub use structure::fuchsian::CoverCopy;
 pub use structure::pants::Pants;

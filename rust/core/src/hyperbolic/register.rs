@@ -2,18 +2,19 @@
 //! Registration by landmark curves, the whole pipeline (Shi et al. 2013, algorithm 1).
 
 use super::assembly::{Assembly, CurveRegistration};
-use super::features::curves::Curves;
+use super::features::curves::LandmarkCurves;
 use super::features::piece::Piece;
 use super::features::pieces::pieces;
 use super::features::placement::placed;
 use super::features::regions::divided;
 use super::harmonic::piece_map::map_piece;
-use super::options::{HyperbolicOptions, Solver};
+use super::options::{HarmonicSolver, HyperbolicOptions};
 use super::slice::isotopy::Isotopy;
 use super::slice::slice_pair;
 use crate::control::{History, Observer, Phase, Watch};
 use crate::error::{CurveError, Elements, Error, NumericsError, Side};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Surface, TriangleMesh};
+use crate::registration::correspondence::meshes;
 use crate::registration::inside_out;
 use crate::vector::Vector3;
 
@@ -27,15 +28,18 @@ use crate::vector::Vector3;
 /// features that do not pair up. [`NumericsError::NoEmbedding`] and [`NumericsError::NoHyperbolicMetric`] if double
 /// precision does not suffice; [`Error::CancelledEarly`].
 pub fn register_hyperbolic(
-    source: &TriangleMesh,
-    target: &TriangleMesh,
-    curves: &Curves<'_>,
+    source_surface: &Surface,
+    target_surface: &Surface,
+    curves: &LandmarkCurves<'_>,
     options: &HyperbolicOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<CurveRegistration, Error> {
     let history = History::start();
     // 1. Refuse what cannot be registered before any work
+    let (source, target) = meshes(source_surface, target_surface)?;
     options.check()?;
+    let spheres = options.sphere_vectors()?;
+    let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
     let pairs = curves.check(source, target)?;
     let same_side;
     let target = if is_closed(source) && is_closed(target) && inside_out(source, target) {
@@ -47,7 +51,7 @@ pub fn register_hyperbolic(
     let divided = divided(source, target, pairs)?;
     // 2. The surfaces laid over each other, and cut into pieces
     let watch = Watch::new(observer, 0.0, "Laying the surfaces over each other");
-    let placement = placed([source, target], &divided, options.spheres, &watch)?;
+    let placement = placed([source, target], &divided, spheres, &watch)?;
     if placement.mirrored {
         return Err(CurveError::Mirrored.into());
     }
@@ -68,13 +72,14 @@ pub fn register_hyperbolic(
         assembly.take(ours, theirs, &sliced, map, target);
     }
     // 4. A map without folds or none; only the paper's diffusion may end with folds
-    if options.solver == Solver::Newton
+    if options.solver == HarmonicSolver::Newton
         && let Some(folded) = Elements::collect(assembly.folded.iter().copied())
     {
         return Err(Error::from(NumericsError::NoEmbedding { folded }).of_surface(Side::Source));
     }
     // 5. Figures
-    let result = assembly.finish([source, target], curves, &placement, &history)?;
+    let surfaces = [source_surface, target_surface];
+    let result = assembly.finish(surfaces, [source, target], curves, &placement, &history)?;
     observer.progress(1.0, "Done");
     Ok(result)
 }

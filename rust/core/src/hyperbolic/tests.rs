@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stages between metric and certificates, each by its own mathematics, on slit spheres.
 
-use super::features::curves::Curves;
+use super::features::curves::LandmarkCurves;
 use super::features::piece::Piece;
 use super::features::pieces::pieces;
 use super::features::placement::placed;
@@ -40,7 +40,7 @@ fn slit_spheres(level: u32) -> SlicedPair {
     let moved = |x: Vector3| Vector3([x[0] + 0.15 * x[1], x[1] - 0.1 * x[2], x[2] + 0.05]);
     let ours = ENDS.map(|[from, to]| path(&grid, from, to)).to_vec();
     let theirs = ENDS.map(|[from, to]| path(&grid, moved(from), moved(to))).to_vec();
-    let curves = Curves { source: &ours, target: &theirs };
+    let curves = LandmarkCurves { source: &ours, target: &theirs };
     let pairs = curves.check(&source, &target).unwrap();
     let divided = divided(&source, &target, pairs).unwrap();
     let mut silent = Silent;

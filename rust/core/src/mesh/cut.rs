@@ -12,13 +12,13 @@
 //!
 //! The cost is linear in the mesh, up to the union-find of its corners.
 
-use ndarray::{CowArray, Ix2};
+use ndarray::{Array2, CowArray, Ix2};
 
 use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
 use super::orientation::Orientation;
 use super::topology::Topology;
 use super::{Surface, geometry, validate};
-use crate::arrays::{row_major, rows};
+use crate::arrays::{from_rows, row_major, rows};
 use crate::error::{Elements, Error, MeshError};
 
 /// A connected part of a cut surface.
@@ -30,7 +30,7 @@ pub struct Patch {
     /// The vertex of the cut surface of which each vertex is a copy, (n,), ascending.
     pub vertex_of: Vec<u32>,
     /// The corner of the cut surface (3 × face + corner) that each corner was, (m, 3).
-    pub corner_of: Vec<[u32; 3]>,
+    pub corner_of: Array2<u32>,
     /// The topology of the patch, even if it has faces without area or duplicates.
     pub topology: Topology,
 }
@@ -55,7 +55,7 @@ impl Surface {
     /// Seams that are out of range, or no edges of the surface.
     pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
         let seams = row_major::<2, _>("seams", seams.into())?;
-        along(self, rows(&seams))
+        along(self, rows(seams.view()))
     }
 }
 
@@ -98,7 +98,7 @@ impl Draft {
             let (points, _) = geometry::normalized(surface.vertex_rows());
             Topology::of_faces(&points, surface.face_rows())
         });
-        Patch { surface, vertex_of, corner_of, topology }
+        Patch { surface, vertex_of, corner_of: from_rows(corner_of), topology }
     }
 }
 

@@ -24,7 +24,7 @@ pub(crate) use corners::{
 };
 pub use cut::Patch;
 pub use indices::Face;
-pub use orientation::{Orientation, consistent};
-pub use surface::{Surface, Triangles};
+pub use orientation::consistent;
+pub use surface::Surface;
 pub use topology::Topology;
 pub use triangle_mesh::TriangleMesh;

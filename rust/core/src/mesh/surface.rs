@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use ndarray::{Array2, ArrayView2, CowArray, Ix2};
+use ndarray::{Array2, ArrayView2, CowArray, Ix2, aview2};
 
 use super::soup::TriangleSoup;
 use super::{Topology, TriangleMesh, validate};
@@ -51,7 +51,7 @@ impl Surface {
     ) -> Result<Self, Error> {
         let vertices = row_major::<3, _>("vertices", vertices.into())?;
         let faces = row_major::<3, _>("faces", faces.into())?;
-        validate::arrays(rows(&vertices), rows(&faces))?;
+        validate::arrays(rows(vertices.view()), rows(faces.view()))?;
         Ok(Self::of_checked(vertices, faces))
     }
 
@@ -72,6 +72,14 @@ impl Surface {
     /// The faces as given, (m, 3).
     pub fn faces(&self) -> ArrayView2<'_, u32> {
         self.0.faces.view()
+    }
+
+    /// The faces oriented like most of their component, (m, 3), as maps have them.
+    ///
+    /// # Errors
+    /// As [`Self::topology`].
+    pub fn oriented_faces(&self) -> Result<ArrayView2<'_, u32>, Error> {
+        self.mesh().map(|mesh| aview2(mesh.faces()))
     }
 
     /// The number of vertices.
@@ -97,7 +105,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Self::topology`].
-    pub fn mesh(&self) -> Result<&TriangleMesh, Error> {
+    pub(crate) fn mesh(&self) -> Result<&TriangleMesh, Error> {
         let mesh = self.0.mesh.get_or_init(|| TriangleMesh::of_checked(self.vertex_rows(), self.face_rows()));
         mesh.as_ref().map_err(Clone::clone)
     }
@@ -106,7 +114,7 @@ impl Surface {
     ///
     /// # Errors
     /// Faces without area.
-    pub fn triangles(&self) -> Result<Triangles<'_>, Error> {
+    pub(crate) fn triangles(&self) -> Result<Triangles<'_>, Error> {
         if let Some(Ok(mesh)) = self.0.mesh.get() {
             return Ok(Triangles { points: mesh.points(), faces: mesh.faces(), areas: mesh.face_areas() });
         }
@@ -115,12 +123,18 @@ impl Surface {
         Ok(Triangles { points: &soup.points, faces: &soup.faces, areas: &soup.areas })
     }
 
+    /// The surface of a mesh in its own coordinates.
+    #[cfg(test)]
+    pub(crate) fn of_mesh(mesh: &TriangleMesh) -> Self {
+        Self::of_checked_rows(crate::vector::coordinates(mesh.points().to_vec()), mesh.faces().to_vec())
+    }
+
     pub(crate) fn vertex_rows(&self) -> &[[f64; 3]] {
-        rows(&self.0.vertices)
+        rows(self.vertices())
     }
 
     pub(crate) fn face_rows(&self) -> &[[u32; 3]] {
-        rows(&self.0.faces)
+        rows(self.faces())
     }
 }
 
@@ -134,7 +148,7 @@ impl PartialEq for Surface {
 
 /// Triangles with an area, each component oriented consistently.
 #[derive(Debug, Clone, Copy)]
-pub struct Triangles<'a> {
+pub(crate) struct Triangles<'a> {
     /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
     pub points: &'a [Vector3],
     /// The faces, (m, 3), oriented like most of their component.
@@ -145,7 +159,7 @@ pub struct Triangles<'a> {
 
 #[cfg(test)]
 mod tests {
-    use ndarray::{ShapeBuilder, array, aview2};
+    use ndarray::{ShapeBuilder, array};
 
     use super::*;
     use crate::error::MeshError;

@@ -14,7 +14,7 @@ use crate::vector::Vector3;
 /// Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
 ///
 /// ```
-/// use authalic::mesh::TriangleMesh;
+/// use authalic::testing::TriangleMesh;
 ///
 /// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 /// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]])?;

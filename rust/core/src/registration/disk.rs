@@ -6,47 +6,52 @@
 //! the areas of the faces next to it too.
 
 use super::Landmarks;
+use super::correspondence::{Correspondence, Registered, meshes};
 use super::landmark_descent::Carrying;
 use super::landmarks::best_turn;
 use super::options::RegistrationOptions;
 use super::result::{DiskRegistration, Registration};
 use super::verdict::{MISSED, located, missed, verdict};
+use crate::arrays::{from_rows, rows};
 use crate::codomain::CanonicalDomain;
 use crate::codomain::planar::{flat, lifted};
 use crate::control::{History, Observer, Phase, Status};
-use crate::disk::{DiskMap, DiskMapOptions, disk_map};
-use crate::distortion::{Image, distortion, folded_in_plane};
+use crate::disk::{DiskMap, DiskMapOptions, map_disk};
+use crate::distortion::{Image, folded_in_plane, measure};
 use crate::error::{Error, Side};
 use crate::location::Locator;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Surface, TriangleMesh};
 use crate::vector::Vector3;
 
 /// Registers two disks by landmarks inside them.
 ///
 /// # Errors
 /// Surfaces that are no disks, landmarks that are no pairs of interior vertices, and options out of range, all before
-/// any work; the errors of [`disk_map`]; [`Error::CancelledEarly`].
+/// any work; the errors of [`disk_map`](crate::disk_map); [`Error::CancelledEarly`].
 ///
 /// ```
-/// use authalic::registration::{Landmarks, RegistrationOptions, register_disks};
-/// use authalic::{Silent, mesh::TriangleMesh};
-/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
-/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
+/// use authalic::{Landmarks, RegistrationOptions, Silent, Surface, register_disks};
+/// use ndarray::array;
+///
+/// let vertices = array![[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let surface = Surface::new(&vertices, array![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
 /// let landmarks = Landmarks { source: &[0], target: &[0] };
-/// let registration = register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// let options = RegistrationOptions::default();
+/// let registration = register_disks(&surface, &surface, &landmarks, &options, &mut Silent)?;
 /// assert!(registration.distortion.folded.is_empty() && registration.missed.is_empty());
-/// assert_eq!(registration.positions(&vertices)[0], vertices[0]);
+/// assert_eq!(registration.correspondence.positions().row(0), vertices.row(0));
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn register_disks(
-    source: &TriangleMesh,
-    target: &TriangleMesh,
+    source_surface: &Surface,
+    target_surface: &Surface,
     landmarks: &Landmarks<'_>,
     options: &RegistrationOptions,
     observer: &mut dyn Observer,
 ) -> Result<DiskRegistration, Error> {
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
+    let (source, target) = meshes(source_surface, target_surface)?;
     source.require_disk().map_err(|error| error.of_surface(Side::Source))?;
     target.require_disk().map_err(|error| error.of_surface(Side::Target))?;
     landmarks.check(source, target, CanonicalDomain::Disk)?;
@@ -54,7 +59,7 @@ pub fn register_disks(
     // 2. Both surfaces to the disk
     let alone = DiskMapOptions { angle_weight: options.angle_weight, ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
-        disk_map(mesh, &alone, observer).map_err(|error| error.of_surface(side))
+        map_disk(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
     let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
     let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
@@ -73,11 +78,12 @@ pub fn register_disks(
     let there = disk(source, landmarks.source, &places);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
     let (carried, status) = there.carry(turned.clone(), &mut history, &mut phase)?;
-    let there = Meeting { gap: there.farthest(&carried), source: carried, target: lifted(&g.uv), status };
+    let there =
+        Meeting { gap: there.farthest(&carried), source: carried, target: lifted(rows(g.uv.view())), status };
     let met = if there.gap > MISSED && status != Status::Cancelled {
         let back = disk(target, landmarks.target, &ours);
         let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
-        let (carried, status) = back.carry(lifted(&g.uv), &mut history, &mut phase)?;
+        let (carried, status) = back.carry(lifted(rows(g.uv.view())), &mut history, &mut phase)?;
         let back = Meeting { gap: back.farthest(&carried), source: turned, target: carried, status };
         if back.gap < there.gap { back } else { there }
     } else {
@@ -94,7 +100,7 @@ pub fn register_disks(
     let registered = flat(&met.source);
     let target_registered = flat(&met.target);
     let figures = |mesh: &TriangleMesh, map: &[[f64; 2]]| {
-        distortion(mesh.points(), mesh.faces(), Image::Plane(map), mesh.face_areas())
+        measure(mesh.points(), mesh.faces(), Image::Plane(map), mesh.face_areas())
     };
     let target_distortion = figures(target, &target_registered)?;
     let distortion = figures(source, &registered)?;
@@ -102,14 +108,15 @@ pub fn register_disks(
         observer.progress(1.0, "Done");
     }
     let status = verdict(status, [f.status, g.status], &missed, [&distortion, &target_distortion]);
+    let source = Registered::new(source_surface, source.faces(), met.source);
+    let target = Registered::new(target_surface, target.faces(), met.target);
     Ok(Registration {
-        locations,
-        registered,
-        target_registered,
-        target_faces: target.faces().to_vec(),
+        correspondence: Correspondence::new(source, target, locations),
+        registered: from_rows(registered),
+        target_registered: from_rows(target_registered),
         source_map: f,
         target_map: g,
-        landmark_error,
+        landmark_error: landmark_error.into(),
         status,
         missed,
         iterations: history.iterations(),
@@ -131,11 +138,16 @@ struct Meeting {
 fn turned(mesh: &TriangleMesh, map: &DiskMap, turn: f64) -> Vec<Vector3> {
     let (sine, cosine) = turn.sin_cos();
     let turned: Vec<[f64; 2]> =
-        map.uv.iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
-    if folded_in_plane(mesh.faces(), &turned).is_empty() { lifted(&turned) } else { lifted(&map.uv) }
+        rows(map.uv.view()).iter().map(|&[u, v]| [cosine * u - sine * v, sine * u + cosine * v]).collect();
+    if folded_in_plane(mesh.faces(), &turned).is_empty() {
+        lifted(&turned)
+    } else {
+        lifted(rows(map.uv.view()))
+    }
 }
 
 /// The images of some vertices.
 fn picked(map: &DiskMap, vertices: &[usize]) -> Vec<Vector3> {
-    lifted(&vertices.iter().map(|&vertex| map.uv[vertex]).collect::<Vec<_>>())
+    let uv = rows(map.uv.view());
+    lifted(&vertices.iter().map(|&vertex| uv[vertex]).collect::<Vec<_>>())
 }

@@ -9,11 +9,11 @@
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
 //! Cost: the two maps, and about as much again for carrying the landmarks.
 
+pub(crate) mod correspondence;
 mod disk;
 mod figures;
 mod flow;
 mod given_faces;
-mod inverse;
 mod landmark_descent;
 mod landmarks;
 mod morph;
@@ -23,17 +23,11 @@ mod sphere;
 mod transfer;
 mod verdict;
 
-pub use crate::alignment::similarity::{Similarity, similarity};
-pub use crate::location::Location;
+pub use correspondence::Correspondence;
 pub use disk::register_disks;
-pub use figures::{area_ratios, compare, vertex_areas};
-pub use given_faces::{GivenFaces, nearest_given_corners, pull_given_corners};
-pub use inverse::{DomainPoint, lifted};
 pub use landmarks::Landmarks;
-pub use morph::{aligned_homotopy, homotopy};
+pub use morph::homotopy;
 pub use options::RegistrationOptions;
 pub use result::{DiskRegistration, Registration, SphereRegistration};
 pub(crate) use sphere::inside_out;
 pub use sphere::register_spheres;
-pub use transfer::{corner_sides, nearest_corners, nearest_vertices, pull_corners, pull_rows, pull_vertices};
-pub use verdict::MISSED;

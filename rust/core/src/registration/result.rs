@@ -1,40 +1,39 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The result of a registration by points.
 
-use crate::control::Status;
+use ndarray::{Array1, Array2};
+
+use super::correspondence::Correspondence;
+use crate::control::{Observer, Status};
 use crate::disk::DiskMap;
 use crate::distortion::Distortion;
-use crate::location::{Location, points_on};
+use crate::error::Error;
 use crate::sphere::SphereMap;
-use crate::vector::Vector3;
 
 /// A registration of disks.
-pub type DiskRegistration = Registration<DiskMap, [f64; 2]>;
+pub type DiskRegistration = Registration<DiskMap>;
 
 /// A registration of spheres.
-pub type SphereRegistration = Registration<SphereMap, Vector3>;
+pub type SphereRegistration = Registration<SphereMap>;
 
-/// A one-to-one map g of a source surface onto a target.
+/// A registration of a source surface onto a target by landmarks.
 #[derive(Debug, Clone)]
-pub struct Registration<Map, Point> {
-    /// (n,): the location of each source vertex on the target.
-    pub locations: Vec<Location>,
-    /// The source's vertices in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀ on
-    /// the sphere.
-    pub registered: Vec<Point>,
+pub struct Registration<Map> {
+    /// g: the location of each source vertex on the target.
+    pub correspondence: Correspondence,
+    /// The source's vertices, (n, 2) or (n, 3), in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀
+    /// on the sphere.
+    pub registered: Array2<f64>,
     /// The target's vertices in that domain: g on the disk, h₁∘f₁ on the sphere. On the disk they are moved only where
     /// moving the source's landmarks alone misses some.
-    pub target_registered: Vec<Point>,
-    /// The faces of the target that [`Self::locations`] refer to, all positively oriented in
-    /// [`Self::target_registered`].
-    pub target_faces: Vec<[u32; 3]>,
+    pub target_registered: Array2<f64>,
     /// The map of the source alone.
     pub source_map: Map,
     /// The map of the target alone.
     pub target_map: Map,
     /// (k,): the final distance of each landmark from its partner, in the parameter domain of radius 1.
-    pub landmark_error: Vec<f64>,
-    /// The pairs that did not meet: farther apart than [`MISSED`](super::MISSED) in the domain, or than .5 % of the
+    pub landmark_error: Array1<f64>,
+    /// The pairs that did not meet: farther apart than 10⁻³ in the domain, or than .5 % of the
     /// target's size on the target.
     pub missed: Vec<usize>,
     /// Why the run ended; [`Status::LandmarksMissed`] if some pairs did not meet.
@@ -50,12 +49,24 @@ pub struct Registration<Map, Point> {
     pub seconds: f64,
 }
 
-impl<Map, Point> Registration<Map, Point> {
-    /// g: the position of each source vertex on the target with `vertices`, (n, 3).
+impl<Map: Clone> Registration<Map> {
+    /// The registration of the target onto the source: g⁻¹, from the same maps to the domain. Cost: one point location per
+    /// vertex of the target.
     ///
-    /// # Panics
-    /// If there are fewer `vertices` than the target has.
-    pub fn positions(&self, vertices: &[Vector3]) -> Vec<Vector3> {
-        points_on(&self.locations, vertices, &self.target_faces)
+    /// # Errors
+    /// [`Error::CancelledEarly`] where the observer ends it.
+    pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
+        Ok(Self {
+            correspondence: self.correspondence.inverse(observer)?,
+            registered: self.target_registered.clone(),
+            target_registered: self.registered.clone(),
+            source_map: self.target_map.clone(),
+            target_map: self.source_map.clone(),
+            distortion: self.target_distortion.clone(),
+            target_distortion: self.distortion.clone(),
+            landmark_error: self.landmark_error.clone(),
+            missed: self.missed.clone(),
+            ..*self
+        })
     }
 }

@@ -5,20 +5,22 @@
 //! h₁ move both landmarks of a pair to the middle between them, so that each surface moves only half the way.
 
 use super::Landmarks;
+use super::correspondence::{Correspondence, Registered, meshes};
 use super::landmark_descent::Carrying;
 use super::options::RegistrationOptions;
 use super::result::{Registration, SphereRegistration};
 use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
+use crate::arrays::{from_vectors, vectors};
 use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Phase, Status};
-use crate::distortion::{Image, distortion, folded_on_sphere};
+use crate::distortion::{Image, folded_on_sphere, measure};
 use crate::error::{Error, Side};
 use crate::location::Locator;
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
+use crate::mesh::{Surface, TriangleMesh};
 use crate::parallel;
-use crate::sphere::{SphereMap, SphereMapOptions, sphere_map};
+use crate::sphere::{SphereMapOptions, map_sphere};
 use crate::vector::Vector3;
 
 /// Two meeting places are too close below this part of the distance of their landmarks on either surface.
@@ -33,28 +35,31 @@ const LEAST_TURN: f64 = 1e-9;
 ///
 /// # Errors
 /// Surfaces that are no spheres, landmarks that are no pairs of vertices, and options out of range, all before
-/// any work; the errors of [`sphere_map`]; [`Error::CancelledEarly`].
+/// any work; the errors of [`sphere_map`](crate::sphere_map); [`Error::CancelledEarly`].
 ///
 /// ```
-/// use authalic::registration::{Landmarks, RegistrationOptions, register_spheres};
-/// use authalic::{Silent, mesh::TriangleMesh};
-/// let vertices = [[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
-/// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
-/// let mesh = TriangleMesh::new(&vertices, &faces)?;
+/// use authalic::{Landmarks, RegistrationOptions, Silent, Surface, register_spheres};
+/// use ndarray::array;
+///
+/// let vertices = array![[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+/// let faces = array![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+/// let surface = Surface::new(vertices, faces)?;
 /// let landmarks = Landmarks { source: &[0, 2], target: &[0, 2] };
-/// let registration = register_spheres(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut Silent)?;
+/// let options = RegistrationOptions::default();
+/// let registration = register_spheres(&surface, &surface, &landmarks, &options, &mut Silent)?;
 /// assert!(registration.distortion.folded.is_empty() && registration.missed.is_empty());
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn register_spheres(
-    source: &TriangleMesh,
-    target: &TriangleMesh,
+    source_surface: &Surface,
+    target_surface: &Surface,
     landmarks: &Landmarks<'_>,
     options: &RegistrationOptions,
     observer: &mut dyn Observer,
 ) -> Result<SphereRegistration, Error> {
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
+    let (source, target) = meshes(source_surface, target_surface)?;
     source.require_sphere().map_err(|error| error.of_surface(Side::Source))?;
     target.require_sphere().map_err(|error| error.of_surface(Side::Target))?;
     landmarks.check(source, target, CanonicalDomain::Sphere)?;
@@ -69,14 +74,15 @@ pub fn register_spheres(
     // 2. Both surfaces to the sphere
     let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
-        sphere_map(mesh, &alone, observer).map_err(|error| error.of_surface(side))
+        map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
     let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
     let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks, and the middle of each pair
-    let turned = turned(source, &f0, landmarks, &f1);
+    let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
+    let turned = turned(source, on_sphere, landmarks, &target_on_sphere);
     let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| turned[p]).collect();
-    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| target_on_sphere[q]).collect();
     let places = meeting_places(&ours, &theirs);
     // 4. h₀ and h₁: the landmarks of both carried to the middles
     let carrying = |mesh, landmarks| Carrying {
@@ -90,7 +96,7 @@ pub fn register_spheres(
     let (registered, first) = carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
     let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
     let (target_registered, second) =
-        carrying(target, landmarks.target).carry(f1.positions.clone(), &mut history, &mut phase)?;
+        carrying(target, landmarks.target).carry(target_on_sphere, &mut history, &mut phase)?;
     // 5. h₁⁻¹: the locations of the source on the target
     let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
@@ -100,7 +106,7 @@ pub fn register_spheres(
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
     let figures = |mesh: &TriangleMesh, map: &[Vector3]| {
-        distortion(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
+        measure(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
     };
     let target_distortion = figures(target, &target_registered)?;
     let distortion = figures(source, &registered)?;
@@ -108,14 +114,17 @@ pub fn register_spheres(
         observer.progress(1.0, "Done");
     }
     let status = verdict(status, [f0.status, f1.status], &missed, [&distortion, &target_distortion]);
+    let maps = [&registered, &target_registered].map(|map| from_vectors(map.clone()));
+    let [on_domain, target_on_domain] = maps;
+    let source = Registered::new(source_surface, source.faces(), registered);
+    let target = Registered::new(target_surface, target.faces(), target_registered);
     Ok(Registration {
-        locations,
-        registered,
-        target_registered,
-        target_faces: target.faces().to_vec(),
+        correspondence: Correspondence::new(source, target, locations),
+        registered: on_domain,
+        target_registered: target_on_domain,
         source_map: f0,
         target_map: f1,
-        landmark_error,
+        landmark_error: landmark_error.into(),
         status,
         missed,
         iterations: history.iterations(),
@@ -140,19 +149,24 @@ fn volume(mesh: &TriangleMesh) -> f64 {
 
 /// The source's map rotated so that its landmarks come nearest to the target's, or as it is if rounding would
 /// fold a sliver.
-fn turned(source: &TriangleMesh, f0: &SphereMap, landmarks: &Landmarks<'_>, f1: &SphereMap) -> Vec<Vector3> {
-    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| f0.positions[p]).collect();
-    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1.positions[q]).collect();
+fn turned(
+    source: &TriangleMesh,
+    f0: Vec<Vector3>,
+    landmarks: &Landmarks<'_>,
+    f1: &[Vector3],
+) -> Vec<Vector3> {
+    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| f0[p]).collect();
+    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1[q]).collect();
     // the least of equally good rotations, as about the axis of two opposite landmarks
     let axes = [0, 1, 2].map(Vector3::unit);
     let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
     let (ours, theirs) = ([&ours[..], &axes].concat(), [&theirs[..], &axes].concat());
     let rotation = best_rotation(&ours, &theirs, &weights);
-    let turned = parallel::map(f0.positions.len(), |vertex| {
-        let turned = rotate(rotation, f0.positions[vertex]);
+    let turned = parallel::map(f0.len(), |vertex| {
+        let turned = rotate(rotation, f0[vertex]);
         turned * (1.0 / turned.norm())
     });
-    if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0.positions.clone() }
+    if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0 }
 }
 
 /// The meeting places of the pairs: their middles, or the target's landmarks if some middles would coincide, as those

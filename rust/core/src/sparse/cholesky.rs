@@ -9,7 +9,7 @@ use sprs::CsMat;
 
 use super::multifrontal::dense::Failure;
 use super::multifrontal::{Element, Factor, NONE, Order, Place, Symbolic};
-use crate::control::{Silent, Watch};
+use crate::control::Watch;
 use crate::error::{Error, NumericsError};
 use crate::mesh::TriangleMesh;
 
@@ -26,7 +26,8 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
-    pub fn analyze(upper: &CsMat<f64>) -> Result<Self, Error> {
+    #[cfg(test)]
+    pub(crate) fn analyze(upper: &CsMat<f64>) -> Result<Self, Error> {
         Self::analyze_in(Order::Sparse, upper)
     }
 
@@ -54,8 +55,9 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`NumericsError::FactorizationFailed`] where the matrix is not positive definite to working precision.
-    pub fn refactor(&mut self, upper: &CsMat<f64>) -> Result<(), Error> {
-        let mut silent = Silent;
+    #[cfg(test)]
+    pub(crate) fn refactor(&mut self, upper: &CsMat<f64>) -> Result<(), Error> {
+        let mut silent = crate::control::Silent;
         self.refactor_while(upper, &Watch::new(&mut silent, 0.0, ""))
     }
 

@@ -14,6 +14,7 @@ use super::published::fixed_point::{FixedPointStopping, fixed_point};
 use super::published::objective::SphereObjective;
 use super::run::Run;
 use super::{start, unfold};
+use crate::arrays::from_vectors;
 use crate::codomain::motion::Motion;
 use crate::codomain::spherical::onto_sphere;
 use crate::codomain::{Codomain, SpatialMap};
@@ -75,8 +76,12 @@ impl Run<'_> {
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let (targets, weights) = (by_order.of_faces(self.targets), by_order.of_vertices(self.weights));
-        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
-        let options = SphereMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let initial = self.options.initial_map().map(|map| from_vectors(by_order.of_vertices(&map)));
+        let options = SphereMapOptions {
+            initial: initial.as_ref().map(|map| map.view()),
+            density: None,
+            ..*self.options
+        };
         let run = Run { mesh: &by_order.mesh, targets: &targets, weights: &weights, options: &options };
         let solved = run.gauss_newton(history, observer);
         let (map, status) = solved.map_err(|error| error.with_faces(|face| by_order.given_face(face)))?;
@@ -133,7 +138,7 @@ impl Run<'_> {
     ) -> Result<(Option<SpatialMap>, Status), Error> {
         let holds = |map: &SpatialMap| problem.energy.is_embedding(map);
         // 1. A given map only needs to be unfolded
-        if let Some(initial) = self.options.initial {
+        if let Some(initial) = self.options.initial_map() {
             let map: SpatialMap = initial.iter().filter_map(|&x| onto_sphere(x)).collect();
             let map = if holds(&map) { Some(map) } else { unfold::unfold(self.mesh, &map).filter(holds) };
             // a map that covers the sphere twice has no folded faces either
@@ -246,10 +251,11 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arrays::vectors;
     use crate::control::Silent;
     use crate::mesh::TriangleMesh;
     use crate::sparse::processor::with_each_width;
-    use crate::sphere::sphere_map;
+    use crate::sphere::map_sphere;
     use crate::vector::{Vector3, coordinates};
 
     /// An octahedron split five times, with bumps and without symmetry.
@@ -286,10 +292,11 @@ mod tests {
         let mesh = bumpy_ball();
         for angle_weight in [0.0, 1e-3] {
             let options = SphereMapOptions { angle_weight, ..Default::default() };
-            let mut maps = with_each_width(|| sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
-            maps.push(sphere_map(&mesh, &options, &mut Silent).unwrap().positions);
+            let mut maps = with_each_width(|| map_sphere(&mesh, &options, &mut Silent).unwrap().positions);
+            maps.push(map_sphere(&mesh, &options, &mut Silent).unwrap().positions);
             for map in &maps[1..] {
-                let most = map.iter().zip(&maps[0]).map(|(&x, &y)| x.distance(y)).fold(0.0, f64::max);
+                let [map, first] = [map, &maps[0]].map(|map| vectors(map.view()));
+                let most = map.iter().zip(&first).map(|(&x, &y)| x.distance(y)).fold(0.0, f64::max);
                 assert!(most < 1e-6, "{angle_weight}: {most}");
             }
         }

@@ -20,13 +20,13 @@ mod start;
 mod stereographic;
 pub(crate) mod unfold;
 
-use std::borrow::Cow;
+use ndarray::{Array2, aview2};
 
+use crate::arrays::{from_vectors, rows_of};
 use crate::control::{History, Observer, Phase, Status};
-use crate::distortion::{Distortion, Image, distortion, normalized_density};
+use crate::distortion::{Distortion, Image, measure, targets};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
-use crate::vector::Vector3;
+use crate::mesh::{Surface, TriangleMesh};
 
 use crate::codomain::SpatialMap;
 pub use options::{SphereMapOptions, SphereMethod};
@@ -43,7 +43,7 @@ const UNREFINED: f64 = 0.4;
 pub struct SphereMap {
     /// (n, 3): the image of each vertex, unit rows; positive faces are seen counter-clockwise from outside.
     /// Without a start map, the map is rotated to align with the surface.
-    pub positions: Vec<Vector3>,
+    pub positions: Array2<f64>,
     /// Why the run ended.
     pub status: Status,
     /// The energy after every iteration, by unsigned areas as in the paper, with a record of step 0 where a mended map
@@ -65,28 +65,39 @@ pub struct SphereMap {
 /// [`SphereMapOptions::unfold`] off.
 ///
 /// ```
-/// use authalic::{Silent, SphereMapOptions, mesh::TriangleMesh, sphere_map};
-/// let vertices = [[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
-/// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
-/// let mesh = TriangleMesh::new(&vertices, &faces)?;
-/// let map = sphere_map(&mesh, &SphereMapOptions::default(), &mut Silent)?;
+/// use authalic::{Silent, SphereMapOptions, Surface, sphere_map};
+/// use ndarray::array;
+///
+/// let vertices = array![[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+/// let faces = array![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+/// let surface = Surface::new(vertices, faces)?;
+/// let map = sphere_map(&surface, &SphereMapOptions::default(), &mut Silent)?;
 /// assert!(map.distortion.folded.is_empty());
-/// assert!(map.positions.iter().all(|[x, y, z]| (x * x + y * y + z * z - 1.0).abs() < 1e-12));
+/// assert!(map.positions.rows().into_iter().all(|row| (row.dot(&row) - 1.0).abs() < 1e-12));
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn sphere_map(
+    surface: &Surface,
+    options: &SphereMapOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<SphereMap, Error> {
+    let initial = options.initial.map(|initial| rows_of::<3, _>("initial", initial)).transpose()?;
+    let options = SphereMapOptions { initial: initial.as_deref().map(aview2), ..*options };
+    map_sphere(surface.mesh()?, &options, observer)
+}
+
+/// [`sphere_map`] of a mesh, with a start map in row-major order.
+pub(crate) fn map_sphere(
     mesh: &TriangleMesh,
     options: &SphereMapOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<SphereMap, Error> {
     let mut history = History::start();
+    let options = &options.by_ref();
     // 1. Check the surface and the options
     options.check(mesh)?;
     // 2. Targets, and each vertex's share of them
-    let targets: Cow<'_, [f64]> = match options.density {
-        Some(density) => normalized_density(density, mesh.n_faces())?.into(),
-        None => mesh.face_areas().into(),
-    };
+    let targets = targets(options.density, mesh.face_areas())?;
     let weights = mesh.vertex_shares(&targets);
     // 3. Minimize the energy without folds
     let run = Run { mesh, targets: &targets, weights: &weights, options };
@@ -113,7 +124,7 @@ pub fn sphere_map(
     let (positions, distortion, refinement) = match refined {
         None => {
             let positions = over_the_surface(mesh, map, &weights, options);
-            let figures = distortion(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;
+            let figures = measure(mesh.points(), mesh.faces(), Image::Sphere(&positions), &targets)?;
             (positions, figures, None)
         }
         Some(refined) => {
@@ -124,7 +135,14 @@ pub fn sphere_map(
             (positions, of_faces, Some(Box::new(refined.into_refinement(of_split_points, of_parts))))
         }
     };
-    Ok(SphereMap { positions, status, seconds: history.seconds(), history, distortion, refinement })
+    Ok(SphereMap {
+        positions: from_vectors(positions),
+        status,
+        seconds: history.seconds(),
+        history,
+        distortion,
+        refinement,
+    })
 }
 
 /// The map aligned with its surface, or unchanged where a start was given.

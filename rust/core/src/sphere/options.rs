@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The options of sphere maps and their check.
 
+use ndarray::{ArrayView1, ArrayView2};
+
+use crate::arrays::vectors;
 use crate::codomain::SpatialMap;
 use crate::codomain::spherical::onto_sphere;
 use crate::error::{Elements, Error, MapError};
@@ -32,7 +35,7 @@ pub struct SphereMapOptions<'a> {
     /// The line search of the gradient descent; by default interpolation, which the paper found faster and no less exact.
     pub line_search: LineSearch,
     /// Target measure of each face, (m,), positive, on any scale; the face areas where `None`.
-    pub density: Option<&'a [f64]>,
+    pub density: Option<ArrayView1<'a, f64>>,
     /// λ ≥ 0, the weight of the angle distortion against that of areas, for Gauss–Newton only; 0 preserves areas alone.
     pub angle_weight: f64,
     /// Instead of a weight: the least shear whose area deviation √(E_A/A) is within this tolerance, for Gauss–Newton only;
@@ -40,7 +43,7 @@ pub struct SphereMapOptions<'a> {
     pub area_tolerance: Option<f64>,
     /// A start map, (n, 3), no row zero, outward oriented. `None`: the conformal map, followed by fixed-point steps unless
     /// these are the method.
-    pub initial: Option<&'a [Vector3]>,
+    pub initial: Option<ArrayView2<'a, f64>>,
     /// Iteration limit. `None` for Gauss–Newton: none, but with a weight of 0 and no tolerance it stops after 17 iterations
     /// (20 below 20,000 vertices, 40 below 10,000) once the area deviation is below .5 % (.2 % below 10,000 vertices).
     /// `None` for the papers' methods: 100, as in the paper's tables. Not counted are the fixed-point steps before the
@@ -76,11 +79,23 @@ impl Default for SphereMapOptions<'_> {
 }
 
 impl SphereMapOptions<'_> {
+    /// The options for the time of a run: views of arrays do not shorten their lifetimes by themselves.
+    pub(super) fn by_ref(&self) -> SphereMapOptions<'_> {
+        let density = self.density.as_ref().map(|density| density.view());
+        let initial = self.initial.as_ref().map(|initial| initial.view());
+        SphereMapOptions { density, initial, ..*self }
+    }
+
+    /// The start map, which [`sphere_map`](super::sphere_map) has brought into row-major order.
+    pub(super) fn initial_map(&self) -> Option<SpatialMap> {
+        self.initial.map(vectors)
+    }
+
     /// Refuses a surface that is no sphere, and options out of range.
     pub(super) fn check(&self, mesh: &TriangleMesh) -> Result<(), Error> {
         mesh.require_sphere()?;
-        if let Some(initial) = self.initial {
-            check_initial(mesh, initial)?;
+        if let Some(initial) = self.initial_map() {
+            check_initial(mesh, &initial)?;
         }
         check_angle_weight(self.angle_weight, self.method == SphereMethod::GaussNewton)?;
         check_area_tolerance(

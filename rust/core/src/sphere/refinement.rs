@@ -14,18 +14,21 @@
 use super::Run;
 use std::f64::consts::PI;
 
+use ndarray::Array2;
+
 use super::options::SphereMapOptions;
 use super::published::objective::SphereObjective;
 use super::published::run::energy_share;
+use crate::arrays::{from_rows, from_vectors, rows};
 use crate::codomain::SpatialMap;
 use crate::codomain::spherical::onto_sphere;
 use crate::control::{History, Observer, Phase, Status};
-use crate::distortion::{Distortion, Image, distortion, distortion_of_wholes};
+use crate::distortion::{Distortion, Image, distortion_of_wholes, measure};
 use crate::error::Error;
 use crate::mesh::bisection::{Bisection, bisect_longest_edges};
 use crate::mesh::geometry::triangle;
 use crate::mesh::ties::tie_breakers;
-use crate::mesh::{Face, TriangleMesh};
+use crate::mesh::{Face, Surface, TriangleMesh};
 use crate::parallel;
 use crate::vector::{Vector3, coordinates};
 
@@ -49,15 +52,31 @@ const SAGITTA: f64 = 1.0 / 16.0;
 pub struct Refinement {
     /// (k, 2): the ends of the edge that each split point halves: vertices, or earlier split points, which are numbered
     /// on from the vertices.
-    pub parents: Vec<[u32; 2]>,
+    pub parents: Array2<u32>,
     /// (k, 3): the images of the split points, unit rows.
-    pub positions: Vec<Vector3>,
+    pub positions: Array2<f64>,
     /// (m', 3): the faces between vertices and split points, oriented as the surface.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Array2<u32>,
     /// (m',): the given face that each of `faces` is a part of, ascending.
-    pub face_of: Vec<Face>,
+    pub face_of: Vec<usize>,
     /// The distortion of these faces.
     pub distortion: Distortion,
+}
+
+impl Refinement {
+    /// The split points on the surface that was mapped, (k, 3).
+    ///
+    /// # Panics
+    /// Where `surface` has fewer vertices.
+    pub fn vertices(&self, surface: &Surface) -> Array2<f64> {
+        let mut all = rows(surface.vertices()).to_vec();
+        for &[a, b] in rows(self.parents.view()) {
+            let [a, b]: [[f64; 3]; 2] = [all[a as usize], all[b as usize]];
+            // halves first, so that huge coordinates do not overflow
+            all.push(std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k]));
+        }
+        from_rows(all.split_off(surface.n_vertices()))
+    }
 }
 
 /// A surface with some faces split.
@@ -173,7 +192,8 @@ impl Refined {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        let options = SphereMapOptions { initial: Some(start), density: None, ..*options };
+        let start = from_vectors(start.clone());
+        let options = SphereMapOptions { initial: Some(start.view()), density: None, ..*options };
         let weights = self.mesh.vertex_shares(&self.targets);
         let run = Run { mesh: &self.mesh, targets: &self.targets, weights: &weights, options: &options };
         run.renumbered(history, observer)
@@ -182,14 +202,19 @@ impl Refined {
     /// The distortion of the split faces, and of the given ones.
     pub(super) fn figures(&self, map: &[Vector3]) -> Result<(Distortion, Distortion), Error> {
         let (points, faces, image) = (self.mesh.points(), self.mesh.faces(), Image::Sphere(map));
-        let of_parts = distortion(points, faces, image, &self.targets)?;
+        let of_parts = measure(points, faces, image, &self.targets)?;
         let of_faces = distortion_of_wholes(&of_parts, faces, image, &self.targets, &self.face_of)?;
         Ok((of_parts, of_faces))
     }
 
     /// The result for the caller, with the images of the split points.
     pub(super) fn into_refinement(self, positions: SpatialMap, distortion: Distortion) -> Refinement {
-        let faces = self.mesh.faces().to_vec();
-        Refinement { parents: self.parents, positions, faces, face_of: self.face_of, distortion }
+        Refinement {
+            parents: from_rows(self.parents),
+            positions: from_vectors(positions),
+            faces: from_rows(self.mesh.faces().to_vec()),
+            face_of: self.face_of.into_iter().map(Face::index).collect(),
+            distortion,
+        }
     }
 }

@@ -27,14 +27,15 @@ mod triangle;
 
 use std::collections::BTreeSet;
 
+use ndarray::{Array2, ArrayView2};
+
 use crate::control::{Observer, Status, Watch};
-use crate::distortion::{Distortion, Image, distortion};
+use crate::distortion::{Distortion, Image, OwnedImage, measure};
 use crate::error::{Elements, Error, NumericsError};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Surface, TriangleMesh};
 pub use options::UntangleOptions;
 use patch::Patch;
 use positions::Positions;
-pub use positions::UntangledImage;
 use solve::{Effort, Outcome};
 
 const MESSAGE: &str = "Untangling";
@@ -43,7 +44,7 @@ const MESSAGE: &str = "Untangling";
 #[derive(Debug, Clone)]
 pub struct Untangled {
     /// The map: (n, 2) or (n, 3), as given.
-    pub image: UntangledImage,
+    pub image: Array2<f64>,
     /// The vertices that moved, ascending.
     pub moved: Vec<usize>,
     /// The faces that were folded, ascending.
@@ -55,7 +56,8 @@ pub struct Untangled {
     pub distortion: Distortion,
 }
 
-/// Removes the folds of `image`, a map of `mesh`, and changes as little as possible.
+/// Removes the folds of `image`, a map of `surface` into the plane (n, 2) or onto a sphere around the origin (n, 3), and
+/// changes as little as possible.
 ///
 /// Each component keeps the orientation of most of its area. A map without folds comes back as it is.
 ///
@@ -65,17 +67,30 @@ pub struct Untangled {
 /// if the observer cancelled before there was one.
 ///
 /// ```
-/// use authalic::{Image, Silent, UntangleOptions, UntangledImage, mesh::TriangleMesh, untangle};
-/// let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
-/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
+/// use authalic::{Silent, Surface, UntangleOptions, untangle};
+/// use ndarray::array;
+///
+/// let vertices = array![[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+/// let surface = Surface::new(vertices, array![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])?;
 /// // the apex has left the square
-/// let image = [[2., 0.], [1., 0.], [0., 1.], [-1., 0.], [0., -1.]];
-/// let map = untangle(&mesh, Image::Plane(&image), &UntangleOptions::default(), &mut Silent)?;
+/// let image = array![[2., 0.], [1., 0.], [0., 1.], [-1., 0.], [0., -1.]];
+/// let map = untangle(&surface, image.view(), &UntangleOptions::default(), &mut Silent)?;
 /// assert_eq!((map.folded_before, map.moved), (vec![0, 3], vec![0]));
 /// assert!(map.distortion.folded.is_empty());
 /// # Ok::<(), authalic::Error>(())
 /// ```
 pub fn untangle(
+    surface: &Surface,
+    image: ArrayView2<'_, f64>,
+    options: &UntangleOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Untangled, Error> {
+    let image = OwnedImage::new(image, surface.n_vertices())?;
+    untangled(surface.mesh()?, image.view(), options, observer)
+}
+
+/// [`untangle`] of a mesh.
+fn untangled(
     mesh: &TriangleMesh,
     image: Image<'_>,
     options: &UntangleOptions<'_>,
@@ -99,8 +114,8 @@ pub fn untangle(
     let Run { now, status, .. } = run;
     let moved: Vec<usize> = (0..mesh.n_vertices()).filter(|&v| now.differs(&given, v)).collect();
     let upright = now.clone().into_image();
-    let distortion = distortion(mesh.points(), mesh.faces(), upright.view(), mesh.face_areas())?;
-    let image = now.turned_over(&mirrored).written_over(image, &moved);
+    let distortion = measure(mesh.points(), mesh.faces(), upright.view(), mesh.face_areas())?;
+    let image = now.turned_over(&mirrored).written_over(image, &moved).into_array();
     Ok(Untangled { image, moved, folded_before, status, distortion })
 }
 

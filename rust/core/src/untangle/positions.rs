@@ -4,7 +4,7 @@
 //! The sphere's charts are gnomonic: great circles become straight lines, so a face is folded in the chart if and only
 //! if it is folded on the sphere.
 
-use crate::distortion::{Image, folded_in_plane, folded_on_sphere};
+use crate::distortion::{Image, OwnedImage, folded_in_plane, folded_on_sphere};
 use crate::mesh::TriangleMesh;
 use crate::vector::Vector3;
 
@@ -139,27 +139,27 @@ impl Positions {
     }
 
     /// The given image with the positions of the moved vertices replaced.
-    pub(super) fn written_over(&self, image: Image<'_>, moved: &[usize]) -> UntangledImage {
+    pub(super) fn written_over(&self, image: Image<'_>, moved: &[usize]) -> OwnedImage {
         match (self, image) {
             (Self::Plane(map), Image::Plane(given)) => {
                 let (mut out, unit) = (given.to_vec(), unit(given));
                 moved.iter().for_each(|&v| out[v] = map[v].map(|x| x * unit));
-                UntangledImage::Plane(out)
+                OwnedImage::Plane(out)
             }
             (Self::Sphere(map), Image::Sphere(given)) => {
                 let mut out = given.to_vec();
                 moved.iter().for_each(|&v| out[v] = map[v]);
-                UntangledImage::Sphere(out)
+                OwnedImage::Sphere(out)
             }
             _ => self.clone().into_image(),
         }
     }
 
     /// The positions as they are.
-    pub(super) fn into_image(self) -> UntangledImage {
+    pub(super) fn into_image(self) -> OwnedImage {
         match self {
-            Self::Plane(map) => UntangledImage::Plane(map),
-            Self::Sphere(map) => UntangledImage::Sphere(map),
+            Self::Plane(map) => OwnedImage::Plane(map),
+            Self::Sphere(map) => OwnedImage::Sphere(map),
         }
     }
 }
@@ -263,23 +263,4 @@ fn tangent_frame(z: Vector3) -> [Vector3; 3] {
     let least = (0..3).min_by(|&a, &b| z[a].abs().total_cmp(&z[b].abs())).expect("three axes");
     let x = unit_vector(Vector3::unit(least).cross(z));
     [x, z.cross(x), z]
-}
-
-/// The positions of a map, owned.
-#[derive(Debug, Clone, PartialEq)]
-pub enum UntangledImage {
-    /// (n, 2) positions in the plane.
-    Plane(Vec<[f64; 2]>),
-    /// (n, 3) positions on the sphere.
-    Sphere(Vec<Vector3>),
-}
-
-impl UntangledImage {
-    /// The positions as an [`Image`].
-    pub fn view(&self) -> Image<'_> {
-        match self {
-            Self::Plane(map) => Image::Plane(map),
-            Self::Sphere(map) => Image::Sphere(map),
-        }
-    }
 }

@@ -14,14 +14,11 @@ fn grid(n: u32) -> (TriangleMesh, Vec<[f64; 2]>) {
 
 fn solved(mesh: &TriangleMesh, image: &[[f64; 2]], fixed: &[usize]) -> Result<Untangled, Error> {
     let options = UntangleOptions { fixed, ..UntangleOptions::default() };
-    untangle(mesh, Image::Plane(image), &options, &mut Silent)
+    untangled(mesh, Image::Plane(image), &options, &mut Silent)
 }
 
 fn flat(map: &Untangled) -> &[[f64; 2]] {
-    match &map.image {
-        UntangledImage::Plane(map) => map,
-        UntangledImage::Sphere(_) => panic!("a planar map"),
-    }
+    crate::arrays::rows(map.image.view())
 }
 
 #[test]
@@ -57,7 +54,7 @@ fn pins_and_outline_stay_and_mirrored_maps_stay_mirrored() {
     assert_eq!(flat(&map)[40], image[40]);
     assert!(map.distortion.folded.is_empty());
     let upright: Vec<[f64; 2]> = flat(&map).iter().map(|&[x, y]| [-x, y]).collect();
-    assert!(crate::folded_in_plane(mesh.faces(), &upright).is_empty());
+    assert!(crate::distortion::folded_in_plane(mesh.faces(), &upright).is_empty());
     (0..81).filter(|&v| mesh.is_boundary(v)).for_each(|v| assert_eq!(flat(&map)[v], image[v]));
 }
 
@@ -68,7 +65,7 @@ fn a_shuffled_interior_is_untangled() {
     let shuffled: Vec<[f64; 2]> = (0..100).map(|k| image[interior[k * 37 % 100]]).collect();
     interior.iter().zip(shuffled).for_each(|(&v, x)| image[v] = x);
     let map = solved(&mesh, &image, &[]).unwrap();
-    assert!(crate::folded_in_plane(mesh.faces(), flat(&map)).is_empty());
+    assert!(crate::distortion::folded_in_plane(mesh.faces(), flat(&map)).is_empty());
 }
 
 #[test]

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cutting along seams: what comes out, what it remembers of the input, and what is refused.
 
+use authalic::testing::TriangleMesh;
+use authalic::{Elements, Error, MeshError, Patch};
 use std::collections::BTreeSet;
 
-use crate::common::{self, TestMesh, cut, faces_of, vertices_of};
-use authalic::mesh::TriangleMesh;
-use authalic::{Elements, Error, MeshError, Patch};
+use crate::common::public::{cut, faces_of, triples, vertices_of};
+use crate::common::{self, TestMesh};
 use proptest::prelude::*;
 
 /// Every corner of the input lies in exactly one patch, at its own vertex and position.
@@ -13,12 +14,12 @@ fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch
     let mut rebuilt = vec![[u32::MAX; 3]; faces.len()];
     for patch in patches {
         assert_eq!(vertices_of(patch).len(), patch.vertex_of.len());
-        assert_eq!(faces_of(patch).len(), patch.corner_of.len());
-        assert!(patch.vertex_of.is_sorted() && patch.corner_of.is_sorted());
+        assert_eq!(faces_of(patch).len(), patch.corner_of.nrows());
+        assert!(patch.vertex_of.is_sorted() && patch.corner_of.iter().is_sorted());
         for (&v, position) in patch.vertex_of.iter().zip(vertices_of(patch)) {
             assert_eq!(vertices[v as usize], *position);
         }
-        for (face, corners) in faces_of(patch).iter().zip(&patch.corner_of) {
+        for (face, corners) in faces_of(patch).iter().zip(triples(&patch.corner_of)) {
             for (&v, &corner) in face.iter().zip(corners) {
                 rebuilt[corner as usize / 3][corner as usize % 3] = patch.vertex_of[v as usize];
             }
@@ -27,7 +28,7 @@ fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch
         assert!(used.into_iter().eq(0..vertices_of(patch).len() as u32), "every vertex is used");
     }
     assert_eq!(rebuilt, faces);
-    let lowest: Vec<u32> = patches.iter().map(|patch| patch.corner_of[0][0]).collect();
+    let lowest: Vec<u32> = patches.iter().map(|patch| patch.corner_of[[0, 0]]).collect();
     assert!(lowest.is_sorted());
 }
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Disk maps by their properties, on every test mesh that is a disk.
 
+use crate::common::public::{disk_map, planar};
+use authalic::testing::{TriangleMesh, doubled_area, folded_in_plane};
+use authalic::{Boundary, DiskMap, DiskMapOptions, DiskMethod, Error, MapError, MeshError, Silent, Status};
+use ndarray::{aview1, aview2};
 use std::f64::consts::TAU;
 
 use crate::common;
-use authalic::mesh::TriangleMesh;
-use authalic::{
-    Boundary, DiskMap, DiskMapOptions, Error, MapError, MeshError, Method, Silent, Status, disk_map,
-    folded_in_plane,
-};
 use proptest::prelude::*;
 
-const METHODS: [Method; 3] = [Method::FixedPoint, Method::ConjugateGradient, Method::GaussNewton];
+const METHODS: [DiskMethod; 3] =
+    [DiskMethod::FixedPoint, DiskMethod::ConjugateGradient, DiskMethod::GaussNewton];
 const BOUNDARIES: [Boundary; 2] = [Boundary::ArcLength, Boundary::Sliding];
 
 fn mapped(mesh: &TriangleMesh, options: DiskMapOptions<'_>) -> DiskMap {
@@ -21,11 +21,11 @@ fn mapped(mesh: &TriangleMesh, options: DiskMapOptions<'_>) -> DiskMap {
 /// A bijection onto a convex polygon in the unit disk: no fold, boundary on the circle, once around.
 fn assert_bijective(mesh: &TriangleMesh, map: &DiskMap) {
     assert!(map.distortion.folded.is_empty());
-    assert!(folded_in_plane(mesh.faces(), &map.uv).is_empty());
-    assert!(map.uv.iter().all(|uv| uv[0].hypot(uv[1]) <= 1.0 + 1e-12));
+    assert!(folded_in_plane(mesh.faces(), planar(&map.uv)).is_empty());
+    assert!(planar(&map.uv).iter().all(|uv| uv[0].hypot(uv[1]) <= 1.0 + 1e-12));
     let boundary = &mesh.boundary_loops()[0];
     let angle = |k: usize| {
-        let uv = map.uv[boundary[k % boundary.len()] as usize];
+        let uv = planar(&map.uv)[boundary[k % boundary.len()] as usize];
         assert!((uv[0].hypot(uv[1]) - 1.0).abs() < 1e-12);
         uv[1].atan2(uv[0])
     };
@@ -60,9 +60,9 @@ fn conjugate_gradients_beat_the_fixed_point_and_a_sliding_boundary_a_held_one() 
     let energy = |method, boundary| {
         mapped(&mesh, DiskMapOptions { method, boundary, ..Default::default() }).distortion.authalic_energy
     };
-    let held = energy(Method::ConjugateGradient, Boundary::ArcLength);
-    assert!(held < energy(Method::FixedPoint, Boundary::ArcLength));
-    assert!(energy(Method::ConjugateGradient, Boundary::Sliding) < held);
+    let held = energy(DiskMethod::ConjugateGradient, Boundary::ArcLength);
+    assert!(held < energy(DiskMethod::FixedPoint, Boundary::ArcLength));
+    assert!(energy(DiskMethod::ConjugateGradient, Boundary::Sliding) < held);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn arcs_are_proportional_to_boundary_lengths() {
         (0..boundary.len()).map(|k| common::distance(length(k)[0], length(k)[1])).collect();
     let total: f64 = lengths.iter().sum();
     for (k, length) in lengths.iter().enumerate() {
-        let [a, b] = pair(k).map(|v| map.uv[v]);
+        let [a, b] = pair(k).map(|v| planar(&map.uv)[v]);
         let arc = 2.0 * (0.5 * (a[0] - b[0]).hypot(a[1] - b[1])).asin();
         assert!((arc - TAU * length / total).abs() < 1e-12);
     }
@@ -103,12 +103,11 @@ fn a_density_is_honoured() {
         .iter()
         .map(|face| if mesh.points()[face[0] as usize][0] > 0.0 { 3.0 } else { 1.0 })
         .collect();
-    let map = mapped(&mesh, DiskMapOptions { density: Some(&density), ..Default::default() });
+    let map = mapped(&mesh, DiskMapOptions { density: Some(aview1(&density)), ..Default::default() });
     assert!(map.distortion.area_ratio_std < 0.05);
     let area = |value: f64| -> f64 {
         let part = mesh.faces().iter().zip(&density).filter(|(_, density)| **density == value);
-        part.map(|(face, _)| 0.5 * authalic::energy::stretch::doubled_area(face.map(|v| map.uv[v as usize])))
-            .sum()
+        part.map(|(face, _)| 0.5 * doubled_area(face.map(|v| planar(&map.uv)[v as usize]))).sum()
     };
     let count = |value: f64| density.iter().filter(|density| **density == value).count() as f64;
     let ratio = (area(3.0) / count(3.0)) / (area(1.0) / count(1.0));
@@ -121,8 +120,8 @@ fn holes_are_refused_or_filled() {
         let refused = disk_map(&mesh, &DiskMapOptions::default(), &mut Silent);
         assert!(matches!(refused, Err(Error::Mesh(MeshError::SeveralBoundaries { .. }))));
         let map = mapped(&mesh, DiskMapOptions { fill_holes: true, ..Default::default() });
-        assert_eq!(map.uv.len(), mesh.n_vertices());
-        assert!(folded_in_plane(mesh.faces(), &map.uv).is_empty());
+        assert_eq!(map.uv.nrows(), mesh.n_vertices());
+        assert!(folded_in_plane(mesh.faces(), planar(&map.uv)).is_empty());
         assert!(map.distortion.area_ratio_std < 0.1, "{}", map.distortion.area_ratio_std);
     }
 }
@@ -151,15 +150,16 @@ fn a_hole_without_area_is_filled_too() {
 fn a_start_map_is_improved_and_a_folded_one_unfolded() {
     let mesh = common::bumpy_disk(10).mesh();
     let options =
-        DiskMapOptions { max_iterations: Some(5), method: Method::FixedPoint, ..Default::default() };
+        DiskMapOptions { max_iterations: Some(5), method: DiskMethod::FixedPoint, ..Default::default() };
     let first = mapped(&mesh, options);
-    let mut folded = first.uv.clone();
+    let mut folded = planar(&first.uv).to_vec();
     (0..folded.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| folded[v] = [0.0, 0.0]);
     for method in METHODS {
         let further =
-            mapped(&mesh, DiskMapOptions { initial: Some(&first.uv), method, ..Default::default() });
+            mapped(&mesh, DiskMapOptions { initial: Some(first.uv.view()), method, ..Default::default() });
         assert!(further.distortion.authalic_energy < first.distortion.authalic_energy, "{method:?}");
-        let unfolded = mapped(&mesh, DiskMapOptions { initial: Some(&folded), method, ..Default::default() });
+        let unfolded =
+            mapped(&mesh, DiskMapOptions { initial: Some(aview2(&folded)), method, ..Default::default() });
         assert_bijective(&mesh, &unfolded);
     }
 }
@@ -167,12 +167,16 @@ fn a_start_map_is_improved_and_a_folded_one_unfolded() {
 #[test]
 fn a_start_map_off_the_circle_is_refused() {
     let mesh = common::bumpy_disk(4).mesh();
-    let good = mapped(&mesh, DiskMapOptions::default()).uv;
+    let good = planar(&mapped(&mesh, DiskMapOptions::default()).uv).to_vec();
     let refusal = |change: &dyn Fn(&mut Vec<[f64; 2]>)| {
         let mut initial = good.clone();
         change(&mut initial);
-        disk_map(&mesh, &DiskMapOptions { initial: Some(&initial), ..Default::default() }, &mut Silent)
-            .unwrap_err()
+        disk_map(
+            &mesh,
+            &DiskMapOptions { initial: Some(aview2(&initial)), ..Default::default() },
+            &mut Silent,
+        )
+        .unwrap_err()
     };
     let on_boundary = mesh.boundary_loops()[0][0] as usize;
     assert!(matches!(
@@ -238,11 +242,11 @@ fn options_out_of_range_are_refused() {
         Error::InvalidOption { .. }
     ));
     assert!(matches!(
-        refused(DiskMapOptions { density: Some(&[0.0]), ..Default::default() }),
+        refused(DiskMapOptions { density: Some(aview1(&[0.0])), ..Default::default() }),
         Error::Map(MapError::Density { .. })
     ));
     assert!(matches!(
-        refused(DiskMapOptions { density: Some(&[]), ..Default::default() }),
+        refused(DiskMapOptions { density: Some(aview1(&[])), ..Default::default() }),
         Error::InvalidArray { .. }
     ));
 }
@@ -275,7 +279,7 @@ proptest! {
             .collect();
         let mesh = TriangleMesh::new(&vertices, &base.faces).unwrap();
         let density: Vec<f64> = (0..mesh.n_faces()).map(|face| (contrast * heights[face % heights.len()]).exp()).collect();
-        let map = mapped(&mesh, DiskMapOptions { method, boundary, density: Some(&density), max_iterations: Some(20), ..Default::default() });
+        let map = mapped(&mesh, DiskMapOptions { method, boundary, density: Some(aview1(&density)), max_iterations: Some(20), ..Default::default() });
         assert_bijective(&mesh, &map);
     }
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The progressive embedding by its properties: no fold on any sphere or disk, however bad its shape.
 
+use authalic::testing::{Stop, TriangleMesh, folded_in_plane, progressive_disk, progressive_sphere, relaxed};
+use authalic::{Silent, Status};
 use std::f64::consts::TAU;
 
 use crate::common::closed::{assert_bijective, capsule, parallels, spheres, spiky_spheres, tetrahedron};
 use crate::common::{self, distance, grid};
-use authalic::embedding::{Stop, progressive_disk, progressive_sphere, relaxed};
-use authalic::mesh::TriangleMesh;
-use authalic::{Silent, Status, folded_in_plane};
 use proptest::prelude::*;
 
 type Point = [f64; 3];

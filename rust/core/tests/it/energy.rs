@@ -3,10 +3,7 @@
 
 use crate::common;
 use approx::assert_relative_eq;
-use authalic::energy::StretchEnergy;
-use authalic::energy::stretch::Profile;
-use authalic::mesh::TriangleMesh;
-use authalic::sparse::Laplacian;
+use authalic::testing::{Laplacian, Profile, StretchEnergy, TriangleMesh};
 use std::f64::consts::PI;
 
 /// A smooth unfolded map of a mesh into the plane, different for every mesh.

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The default method folds no face, on whatever shape, and comes far closer to E_A = 0 than the papers' methods.
 
+use crate::common::public::{disk_map, planar, spatial, sphere_map};
+use authalic::testing::TriangleMesh;
+use authalic::{
+    Boundary, DiskMap, DiskMapOptions, DiskMethod, Silent, SphereMap, SphereMapOptions, SphereMethod,
+};
+use ndarray::aview1;
 use std::time::Instant;
 
 use crate::common::closed::{
@@ -10,11 +16,6 @@ use crate::common::closed::{
 use crate::common::planar::{assert_one_to_one, authalic_energy};
 use crate::common::random::{Random, delaunay_cap, surface, without_vertex};
 use crate::common::{self, TestMesh, bumpy_disk, cap, ellipsoid, grid, icosphere, slit_sphere};
-use authalic::mesh::TriangleMesh;
-use authalic::{
-    Boundary, DiskMap, DiskMapOptions, Method, Silent, SphereMap, SphereMapOptions, SphereMethod, disk_map,
-    sphere_map,
-};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -25,20 +26,24 @@ const BOUNDARIES: [Boundary; 3] = [Boundary::ArcLength, Boundary::Sliding, Bound
 fn disk(mesh: &TriangleMesh, options: DiskMapOptions<'_>, context: &str) -> DiskMap {
     let context = &format!("{context}, {:?}", options.boundary);
     let map = disk_map(mesh, &options, &mut Silent).unwrap_or_else(|error| panic!("{context}: {error}"));
-    assert_one_to_one(mesh, &map.uv, options.boundary, context);
+    assert_one_to_one(mesh, planar(&map.uv), options.boundary, context);
     assert_eq!(map.distortion.folded, [0usize; 0], "{context}");
-    let targets = options.density.unwrap_or(mesh.face_areas());
-    assert_agree(map.distortion.authalic_energy, authalic_energy(mesh, &map.uv, targets), context);
+    let targets = options.density.map_or(mesh.face_areas().to_vec(), |density| density.to_vec());
+    assert_agree(map.distortion.authalic_energy, authalic_energy(mesh, planar(&map.uv), &targets), context);
     map
 }
 
 /// The map of a sphere, sound in every respect.
 fn sphere(mesh: &TriangleMesh, options: SphereMapOptions<'_>, context: &str) -> SphereMap {
     let map = sphere_map(mesh, &options, &mut Silent).unwrap_or_else(|error| panic!("{context}: {error}"));
-    assert_bijective(mesh, &map.positions, context);
+    assert_bijective(mesh, &spatial(&map.positions), context);
     assert_eq!(map.distortion.folded, [0usize; 0], "{context}");
-    let targets = options.density.unwrap_or(mesh.face_areas());
-    assert_agree(map.distortion.authalic_energy, energy_of(mesh, &map.positions, targets).0, context);
+    let targets = options.density.map_or(mesh.face_areas().to_vec(), |density| density.to_vec());
+    assert_agree(
+        map.distortion.authalic_energy,
+        energy_of(mesh, &spatial(&map.positions), &targets).0,
+        context,
+    );
     map
 }
 
@@ -53,11 +58,11 @@ fn check(mesh: &TriangleMesh, context: &str) -> f64 {
 
 fn check_density(mesh: &TriangleMesh, density: Option<&[f64]>, context: &str) -> f64 {
     if mesh.require_sphere().is_ok() {
-        let options = SphereMapOptions { density, ..Default::default() };
+        let options = SphereMapOptions { density: density.map(aview1), ..Default::default() };
         return sphere(mesh, options, context).distortion.area_ratio_std;
     }
     let deviation = |boundary| {
-        let options = DiskMapOptions { boundary, density, ..Default::default() };
+        let options = DiskMapOptions { boundary, density: density.map(aview1), ..Default::default() };
         disk(mesh, options, context).distortion.area_ratio_std
     };
     BOUNDARIES.into_iter().map(deviation).fold(0.0, f64::max)
@@ -204,7 +209,7 @@ fn energies(shape: &TestMesh) -> [f64; 2] {
             sphere(&mesh, options, shape.name).distortion.authalic_energy
         });
     }
-    [Method::GaussNewton, Method::ConjugateGradient].map(|method| {
+    [DiskMethod::GaussNewton, DiskMethod::ConjugateGradient].map(|method| {
         let options = DiskMapOptions { method, ..Default::default() };
         disk(&mesh, options, shape.name).distortion.authalic_energy
     })

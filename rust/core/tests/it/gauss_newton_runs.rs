@@ -6,25 +6,27 @@ use crate::common::closed::{
     assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
 };
 use crate::common::planar::{areas, assert_one_to_one};
+use crate::common::public::{array, disk_map, planar, spatial, sphere_map};
 use crate::common::random::{Random, rough_disk, without_vertex};
 use crate::common::{self, TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
-use authalic::mesh::TriangleMesh;
+use authalic::testing::TriangleMesh;
 use authalic::{
-    Boundary, DiskMap, DiskMapOptions, Distortion, Error, History, MapError, Method, Silent, SphereMap,
-    SphereMapOptions, SphereMethod, Status, Vector3, disk_map, sphere_map,
+    Boundary, DiskMap, DiskMapOptions, DiskMethod, Distortion, Error, History, MapError, Silent, SphereMap,
+    SphereMapOptions, SphereMethod, Status,
 };
+use ndarray::{Array1, Array2, aview1, aview2};
 
 const BOUNDARIES: [Boundary; 3] = [Boundary::ArcLength, Boundary::Sliding, Boundary::Free];
 
 fn disk(mesh: &TriangleMesh, options: DiskMapOptions<'_>) -> DiskMap {
     let map = disk_map(mesh, &options, &mut Silent).expect("a disk has a map");
-    assert_one_to_one(mesh, &map.uv, options.boundary, "disk");
+    assert_one_to_one(mesh, planar(&map.uv), options.boundary, "disk");
     map
 }
 
 fn sphere(mesh: &TriangleMesh, options: SphereMapOptions<'_>) -> SphereMap {
     let map = sphere_map(mesh, &options, &mut Silent).expect("a sphere has a map");
-    assert_bijective(mesh, &map.positions, "sphere");
+    assert_bijective(mesh, &spatial(&map.positions), "sphere");
     map
 }
 
@@ -46,7 +48,7 @@ fn rough() -> TriangleMesh {
 
 /// Area and angle terms of the energy over the total target, Σ T ψ(ρ) and Σ T ((m − 1) + ½ β (m − 1)²), for areas on the
 /// scale of the targets. In the plane m = ½ (σ₁/σ₂ + σ₂/σ₁).
-fn energy_terms(areas: &[f64], targets: &[f64], angles: &[f64]) -> [f64; 2] {
+fn energy_terms(areas: &[f64], targets: &[f64], angles: &Array1<f64>) -> [f64; 2] {
     let mut terms = [0.0; 2];
     for ((area, target), angle) in areas.iter().zip(targets).zip(angles) {
         let (ratio, excess) = (area / target, 0.5 * (angle + 1.0 / angle) - 1.0);
@@ -84,10 +86,10 @@ fn every_iteration_lowers_the_energy_where_its_weights_are_constant() {
             };
             disk(&mesh, options)
         };
-        let begun: f64 = areas(&mesh, &run(0).uv).iter().sum();
+        let begun: f64 = areas(&mesh, planar(&run(0).uv)).iter().sum();
         let targets = scaled_to(mesh.face_areas(), begun);
         let value = |map: &DiskMap| {
-            let areas = scaled_to(&areas(&mesh, &map.uv), begun);
+            let areas = scaled_to(&areas(&mesh, planar(&map.uv)), begun);
             let at = |scale: f64| {
                 let areas: Vec<f64> = areas.iter().map(|area| scale * area).collect();
                 energy_terms(&areas, &targets, &map.distortion.angle_distortion).iter().sum::<f64>()
@@ -137,13 +139,13 @@ fn histories_are_finite_and_end_with_the_result() {
 #[test]
 fn histories_of_runs_from_a_start_map_are_finite() {
     let mesh = bumpy_disk(8).mesh();
-    let initial = disk(&mesh, DiskMapOptions { method: Method::FixedPoint, ..Default::default() }).uv;
-    let map = disk(&mesh, DiskMapOptions { initial: Some(&initial), ..Default::default() });
+    let initial = disk(&mesh, DiskMapOptions { method: DiskMethod::FixedPoint, ..Default::default() }).uv;
+    let map = disk(&mesh, DiskMapOptions { initial: Some(initial.view()), ..Default::default() });
     assert_sound(&map.history, map.distortion.authalic_energy, "disk");
     let mesh = bumpy();
     let options = SphereMapOptions { method: SphereMethod::FixedPoint, ..Default::default() };
     let initial = sphere(&mesh, options).positions;
-    let map = sphere(&mesh, SphereMapOptions { initial: Some(&initial), ..Default::default() });
+    let map = sphere(&mesh, SphereMapOptions { initial: Some(initial.view()), ..Default::default() });
     assert_sound(&map.history, map.distortion.authalic_energy, "sphere");
 }
 
@@ -167,10 +169,10 @@ fn more_weight_on_angles_costs_areas_and_betters_angles_on_disks() {
         for boundary in BOUNDARIES {
             let figures = ANGLE_WEIGHTS.map(|angle_weight| {
                 let map = disk(&mesh, DiskMapOptions { boundary, angle_weight, ..Default::default() });
-                let targets = scaled_to(mesh.face_areas(), areas(&mesh, &map.uv).iter().sum());
+                let targets = scaled_to(mesh.face_areas(), areas(&mesh, planar(&map.uv)).iter().sum());
                 let total: f64 = targets.iter().sum();
                 let figures = &map.distortion;
-                let terms = energy_terms(&areas(&mesh, &map.uv), &targets, &figures.angle_distortion);
+                let terms = energy_terms(&areas(&mesh, planar(&map.uv)), &targets, &figures.angle_distortion);
                 let [area, angle] = terms.map(|term| term / total);
                 [area, angle, figures.area_ratio_std, figures.angle_distortion_mean]
             });
@@ -185,7 +187,7 @@ fn more_weight_on_angles_costs_areas_and_betters_angles_on_spheres() {
         let mesh = shape.mesh();
         let figures = ANGLE_WEIGHTS.map(|angle_weight| {
             let map = sphere(&mesh, SphereMapOptions { angle_weight, ..Default::default() });
-            let areas = image_areas(&mesh, &map.positions);
+            let areas = image_areas(&mesh, &spatial(&map.positions));
             let targets = scaled_to(mesh.face_areas(), areas.iter().sum());
             let figures = &map.distortion;
             let [area, angle] = energy_terms(&areas, &targets, &figures.angle_distortion);
@@ -210,12 +212,12 @@ fn weights_of_angles_that_make_no_sense_are_refused() {
         assert!(matches!(error, Error::InvalidOption { name: "angle_weight", .. }), "{error}");
     };
     for weight in [-1e-9, f64::NEG_INFINITY, f64::INFINITY, f64::NAN] {
-        is_right(of_disk(Method::GaussNewton, weight).unwrap_err());
+        is_right(of_disk(DiskMethod::GaussNewton, weight).unwrap_err());
         is_right(of_sphere(SphereMethod::GaussNewton, weight).unwrap_err());
     }
     for (disks, spheres) in [
-        (Method::FixedPoint, SphereMethod::FixedPoint),
-        (Method::ConjugateGradient, SphereMethod::GradientDescent),
+        (DiskMethod::FixedPoint, SphereMethod::FixedPoint),
+        (DiskMethod::ConjugateGradient, SphereMethod::GradientDescent),
     ] {
         is_right(of_disk(disks, 0.1).unwrap_err());
         is_right(of_sphere(spheres, 0.1).unwrap_err());
@@ -245,22 +247,22 @@ fn densities_are_honoured() {
     };
     let on_disk = density(&open);
     for boundary in BOUNDARIES {
-        let options = DiskMapOptions { boundary, density: Some(&on_disk), ..Default::default() };
-        assert_threefold(&areas(&open, &disk(&open, options).uv), &on_disk);
+        let options = DiskMapOptions { boundary, density: Some(aview1(&on_disk)), ..Default::default() };
+        assert_threefold(&areas(&open, planar(&disk(&open, options).uv)), &on_disk);
     }
     let on_sphere = density(&closed);
-    let map = sphere(&closed, SphereMapOptions { density: Some(&on_sphere), ..Default::default() });
-    assert_threefold(&image_areas(&closed, &map.positions), &on_sphere);
+    let map = sphere(&closed, SphereMapOptions { density: Some(aview1(&on_sphere)), ..Default::default() });
+    assert_threefold(&image_areas(&closed, &spatial(&map.positions)), &on_sphere);
 }
 
 #[test]
 fn start_maps_of_disks_are_improved_and_folded_ones_unfolded() {
     for mesh in [bumpy_disk(10).mesh(), rough(), finger()] {
-        let options = DiskMapOptions { method: Method::FixedPoint, ..Default::default() };
+        let options = DiskMapOptions { method: DiskMethod::FixedPoint, ..Default::default() };
         let first = disk(&mesh, options);
         let mut random = Random::new(11);
         let mut spoiled = |of: &dyn Fn(&mut Random) -> [f64; 2]| {
-            let mut uv = first.uv.clone();
+            let mut uv = planar(&first.uv).to_vec();
             (0..uv.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| uv[v] = of(&mut random));
             uv
         };
@@ -270,10 +272,10 @@ fn start_maps_of_disks_are_improved_and_folded_ones_unfolded() {
             spoiled(&|random| [0, 1].map(|_| random.between(-0.7, 0.7))),
         ];
         for boundary in BOUNDARIES {
-            let from = |initial| {
-                disk(&mesh, DiskMapOptions { initial: Some(initial), boundary, ..Default::default() })
+            let from = |initial: &[[f64; 2]]| {
+                disk(&mesh, DiskMapOptions { initial: Some(aview2(initial)), boundary, ..Default::default() })
             };
-            let energy = from(&first.uv).distortion.authalic_energy;
+            let energy = from(planar(&first.uv)).distortion.authalic_energy;
             assert!(energy < first.distortion.authalic_energy, "{boundary:?}");
             folded.iter().for_each(|initial| _ = from(initial));
         }
@@ -285,21 +287,21 @@ fn start_maps_of_spheres_are_improved_and_folded_ones_unfolded() {
     for mesh in [bumpy(), spiky_spheres()[1].mesh()] {
         let options = SphereMapOptions { method: SphereMethod::FixedPoint, ..Default::default() };
         let first = sphere(&mesh, options);
-        let from = |initial: &[Vector3]| {
-            sphere(&mesh, SphereMapOptions { initial: Some(initial), ..Default::default() })
+        let from = |initial: &Array2<f64>| {
+            sphere(&mesh, SphereMapOptions { initial: Some(initial.view()), ..Default::default() })
         };
         let energy = from(&first.positions).distortion.authalic_energy;
         assert!(energy < first.distortion.authalic_energy);
         for step in [2, 9, 40] {
-            let mut folded = first.positions.clone();
+            let mut folded = spatial(&first.positions);
             folded.iter_mut().step_by(step).for_each(|x| x[2] = -x[2]);
             if !common::closed::folded(&mesh, &folded).is_empty() {
                 match sphere_map(
                     &mesh,
-                    &SphereMapOptions { initial: Some(&folded), ..Default::default() },
+                    &SphereMapOptions { initial: Some(array(&folded).view()), ..Default::default() },
                     &mut Silent,
                 ) {
-                    Ok(map) => assert_bijective(&mesh, &map.positions, "from a folded start map"),
+                    Ok(map) => assert_bijective(&mesh, &spatial(&map.positions), "from a folded start map"),
                     Err(error) => {
                         assert!(matches!(error, Error::Map(MapError::InitialSphere { .. })), "{error}")
                     }
@@ -346,7 +348,7 @@ fn a_run_cancelled_at_any_report_returns_a_sound_map() {
             cancelled_everywhere(
                 |observer| disk_map(&mesh, &options, observer),
                 |map| {
-                    assert_one_to_one(&mesh, &map.uv, boundary, "cancelled");
+                    assert_one_to_one(&mesh, planar(&map.uv), boundary, "cancelled");
                     map.status
                 },
             );
@@ -356,7 +358,7 @@ fn a_run_cancelled_at_any_report_returns_a_sound_map() {
         cancelled_everywhere(
             |observer| sphere_map(&mesh, &SphereMapOptions::default(), observer),
             |map| {
-                assert_bijective(&mesh, &map.positions, "cancelled");
+                assert_bijective(&mesh, &spatial(&map.positions), "cancelled");
                 map.status
             },
         );

@@ -2,17 +2,19 @@
 //! Registrations by curves by their properties: certificates, curves on curves, refusals, cancelling.
 
 use crate::common::closed::{dot, radial, rotation};
+use crate::common::public::{register_hyperbolic, spatial};
 use crate::common::random::Random;
 use crate::common::{TestMesh, distance, icosphere};
-use authalic::hyperbolic::{CurveRegistration, Curves, HyperbolicOptions, register_hyperbolic};
-use authalic::mesh::TriangleMesh;
-use authalic::{CurveError, Error, Side, Silent, Status};
+use authalic::testing::TriangleMesh;
+use authalic::{
+    CurveError, CurveRegistration, Error, HyperbolicOptions, LandmarkCurves, Side, Silent, Status,
+};
 use proptest::prelude::*;
 
 type Point = [f64; 3];
 
 fn register(meshes: [&TriangleMesh; 2], paths: [&[Vec<usize>]; 2]) -> Result<CurveRegistration, Error> {
-    let curves = Curves { source: paths[0], target: paths[1] };
+    let curves = LandmarkCurves { source: paths[0], target: paths[1] };
     register_hyperbolic(meshes[0], meshes[1], &curves, &HyperbolicOptions::default(), &mut Silent)
 }
 
@@ -96,12 +98,13 @@ fn assert_sound(
     prop_assert!(proof.curve_error.max(proof.bank_error) < 1e-11, "{:?}", proof);
     prop_assert!(proof.cocycle_error < 1e-7, "{:?}", proof);
     prop_assert_eq!(found.map.status, Status::Converged);
-    for location in &found.map.locations {
-        let sum: f64 = location.barycentric.iter().sum();
-        prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
-        prop_assert!(location.triangle.index() < meshes[1].n_faces());
+    let map = &found.map.correspondence;
+    for (triangle, weights) in map.triangles().iter().zip(map.barycentric().rows()) {
+        let sum: f64 = weights.iter().sum();
+        prop_assert!((sum - 1.0).abs() < 1e-14 && weights.iter().all(|&w| w >= 0.0));
+        prop_assert!(*triangle < meshes[1].n_faces());
     }
-    let positions = found.map.positions(meshes[1].points());
+    let positions = spatial(&map.positions());
     for (ours, theirs) in paths[0].iter().zip(paths[1]) {
         let images: Vec<Point> = ours.iter().map(|&v| positions[v].into()).collect();
         let [path, other] = [(0, ours), (1, theirs)].map(|(side, path)| {
@@ -127,7 +130,7 @@ fn curves_that_cannot_be_cut_along_are_refused_before_any_work() {
     let good = paths(2, &mut Random::new(3), 2);
     let refused = |source: &[Vec<usize>], target: &[Vec<usize>]| {
         let mut observer = |_: f64, _: &str| panic!("something was computed");
-        let (curves, options) = (Curves { source, target }, HyperbolicOptions::default());
+        let (curves, options) = (LandmarkCurves { source, target }, HyperbolicOptions::default());
         register_hyperbolic(&mesh, &mesh, &curves, &options, &mut observer).unwrap_err()
     };
     assert!(matches!(
@@ -189,7 +192,7 @@ proptest! {
             calls += 1;
             calls <= last
         };
-        let (curves, options) = (Curves { source: &ours, target: &ours }, HyperbolicOptions::default());
+        let (curves, options) = (LandmarkCurves { source: &ours, target: &ours }, HyperbolicOptions::default());
         match register_hyperbolic(&source, &target, &curves, &options, &mut observer) {
             Ok(found) => prop_assert!(found.certificates.folded.is_empty()),
             Err(error) => prop_assert_eq!(error, Error::CancelledEarly),

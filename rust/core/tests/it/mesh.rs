@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a `TriangleMesh` accepts, repairs, refuses and knows.
 
+use authalic::testing::{TriangleMesh, consistent, geometry};
+use authalic::{Elements, Error, MeshError};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 use crate::common::{self, TestMesh, distance};
-use authalic::mesh::{TriangleMesh, consistent, geometry};
-use authalic::{Elements, Error, MeshError};
 use proptest::prelude::*;
 
 fn refusal(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Error {

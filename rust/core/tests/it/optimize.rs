@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The optimizers on objectives whose minimum is known: they are generic, so any objective will do.
 
-use authalic::optimize::published::gradient_descent::{self, DescentOptions, LineSearch};
-use authalic::optimize::published::nonlinear_cg::{CgOptions, minimize};
-use authalic::optimize::published::{Energies, Objective, Stopping};
-use authalic::{History, Silent, Status};
+use authalic::testing::{
+    CgOptions, DescentOptions, Energies, Objective, Stopping, gradient_descent, nonlinear_cg::minimize,
+};
+use authalic::{History, LineSearch, Silent, Status};
 
 /// ½ xᵀ A x − bᵀ x with A = tridiag(−1, 2 + i, −1), preconditioned by its diagonal or not at all.
 struct Quadratic {

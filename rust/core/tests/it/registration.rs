@@ -2,13 +2,15 @@
 //! Registrations by their properties: no folds, landmarks on landmarks, identities, refusals, inverse.
 
 use crate::common::closed::{bumpy, spheres};
+use crate::common::public::{planar, spatial, triples};
+use crate::common::public::{register_disks, register_spheres};
 use crate::common::random::Random;
-use crate::common::{self, TestMesh, bumpy_disk, cap, distance, ellipsoid};
-use authalic::mesh::TriangleMesh;
-use authalic::registration::{
-    DiskRegistration, Landmarks, RegistrationOptions, SphereRegistration, register_disks, register_spheres,
+use crate::common::{self, bumpy_disk, cap, distance, ellipsoid};
+use authalic::testing::{TriangleMesh, Vector3, folded_in_plane, folded_on_sphere};
+use authalic::{
+    DiskRegistration, Error, LandmarkError, Landmarks, RegistrationOptions, Silent, SphereRegistration,
+    Status,
 };
-use authalic::{Error, LandmarkError, Silent, Status, Vector3, folded_in_plane, folded_on_sphere};
 use proptest::prelude::*;
 
 fn disks(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> DiskRegistration {
@@ -33,15 +35,19 @@ fn assert_sound(
     found: &DiskRegistration,
     pairs: [&[usize]; 2],
 ) -> Result<(), TestCaseError> {
-    prop_assert!(folded_in_plane(faces, &found.registered).is_empty());
-    prop_assert!(folded_in_plane(&found.target_faces, &found.target_registered).is_empty());
-    for location in &found.locations {
-        let sum: f64 = location.barycentric.iter().sum();
-        prop_assert!((sum - 1.0).abs() < 1e-14 && location.barycentric.iter().all(|&w| w >= 0.0));
-        prop_assert!(location.triangle.index() < found.target_faces.len());
+    let (registered, target_registered) = (planar(&found.registered), planar(&found.target_registered));
+    let target_faces = found.correspondence.target_faces();
+    prop_assert!(folded_in_plane(faces, registered).is_empty());
+    prop_assert!(folded_in_plane(triples(&target_faces), target_registered).is_empty());
+    for (triangle, weights) in
+        found.correspondence.triangles().iter().zip(found.correspondence.barycentric().rows())
+    {
+        let sum: f64 = weights.iter().sum();
+        prop_assert!((sum - 1.0).abs() < 1e-14 && weights.iter().all(|&w| w >= 0.0));
+        prop_assert!(*triangle < target_faces.nrows());
     }
     for (k, error) in found.landmark_error.iter().enumerate() {
-        let [[a, b], [c, d]] = [found.registered[pairs[0][k]], found.target_registered[pairs[1][k]]];
+        let [[a, b], [c, d]] = [registered[pairs[0][k]], target_registered[pairs[1][k]]];
         prop_assert!((error - (a - c).hypot(b - d)).abs() < 1e-14);
         prop_assert!(*error <= 1e-3 || found.missed.contains(&k));
     }
@@ -49,14 +55,9 @@ fn assert_sound(
     Ok(())
 }
 
-/// The vertices of a mesh.
-fn points(mesh: &TestMesh) -> Vec<Vector3> {
-    mesh.vertices.iter().copied().map(Vector3).collect()
-}
-
-/// The largest distance of g(v) to v, in units of the mesh.
-fn moved(mesh: &TestMesh, positions: &[Vector3]) -> f64 {
-    positions.iter().zip(&mesh.vertices).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
+/// The largest distance of g(v) to v, in units of the mesh, of which the bounding box has a diagonal of 1.
+fn moved(mesh: &TriangleMesh, positions: &[Vector3]) -> f64 {
+    positions.iter().zip(mesh.points()).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
 }
 
 #[test]
@@ -68,7 +69,7 @@ fn a_disk_onto_itself_is_the_identity() {
             continue;
         }
         let found = disks(&mesh, &mesh, [&marks, &marks]);
-        assert!(moved(&disk, &found.positions(&points(&disk))) < 1e-6 * mesh.scale(), "{}", disk.name);
+        assert!(moved(&mesh, &spatial(&found.correspondence.positions())) < 1e-6, "{}", disk.name);
         assert!(found.missed.is_empty() && found.distortion.folded.is_empty(), "{}", disk.name);
     }
 }
@@ -79,7 +80,7 @@ fn a_sphere_onto_itself_is_the_identity() {
         let mesh = sphere.mesh();
         let marks = picked(&mesh, 4, 2);
         let found = closed(&mesh, &mesh, [&marks, &marks]);
-        assert!(moved(&sphere, &found.positions(&points(&sphere))) < 1e-6 * mesh.scale(), "{}", sphere.name);
+        assert!(moved(&mesh, &spatial(&found.correspondence.positions())) < 1e-6, "{}", sphere.name);
         assert!(found.missed.is_empty() && found.distortion.folded.is_empty(), "{}", sphere.name);
     }
 }
@@ -89,9 +90,10 @@ fn closed_surfaces_meet_in_their_landmarks() {
     let (source, target) = (bumpy(), ellipsoid(3, [1.0, 2.0, 3.0]).mesh());
     let (ours, theirs) = (picked(&source, 5, 7), picked(&target, 5, 8));
     let found = closed(&source, &target, [&ours, &theirs]);
-    assert!(folded_on_sphere(source.faces(), &found.registered).is_empty());
-    assert!(folded_on_sphere(&found.target_faces, &found.target_registered).is_empty());
-    let positions = found.positions(target.points());
+    assert!(folded_on_sphere(source.faces(), &spatial(&found.registered)).is_empty());
+    let target_faces = found.correspondence.target_faces();
+    assert!(folded_on_sphere(triples(&target_faces), &spatial(&found.target_registered)).is_empty());
+    let positions = spatial(&found.correspondence.positions());
     for (k, (&p, &q)) in ours.iter().zip(&theirs).enumerate() {
         let is_there = found.landmark_error[k] <= 1e-3 && distance(positions[p], target.points()[q]) < 5e-3;
         assert!(is_there || found.missed.contains(&k), "pair {k}");
@@ -103,11 +105,13 @@ fn the_inverse_exchanges_both_surfaces() {
     let (source, target) = (bumpy_disk(7).mesh(), cap(8, 1.4).mesh());
     let (ours, theirs) = (picked(&source, 3, 3), picked(&target, 3, 4));
     let found = disks(&source, &target, [&ours, &theirs]);
-    let back = found.inverse(source.faces(), &mut Silent).unwrap();
-    assert_eq!((back.registered.len(), back.locations.len()), (target.n_vertices(), target.n_vertices()));
-    assert_sound(&found.target_faces, &back, [&theirs, &ours]).unwrap();
-    let again = back.inverse(&found.target_faces, &mut Silent).unwrap();
-    assert_eq!(again.locations, found.locations);
+    let back = found.inverse(&mut Silent).unwrap();
+    let n_located = back.correspondence.triangles().len();
+    assert_eq!((back.registered.nrows(), n_located), (target.n_vertices(), target.n_vertices()));
+    assert_sound(triples(&found.correspondence.target_faces()), &back, [&theirs, &ours]).unwrap();
+    let again = back.inverse(&mut Silent).unwrap();
+    assert_eq!(again.correspondence.triangles(), found.correspondence.triangles());
+    assert_eq!(again.correspondence.barycentric(), found.correspondence.barycentric());
     let [before, after] = [&found, &again].map(|found| found.distortion.authalic_energy);
     assert!((after - before).abs() < 1e-9 * before, "{before} {after}");
 }
@@ -169,7 +173,7 @@ proptest! {
         let options = RegistrationOptions::default();
         match register_disks(&source, &target, &landmarks, &options, &mut observer) {
             Ok(found) => {
-                prop_assert!(folded_in_plane(source.faces(), &found.registered).is_empty());
+                prop_assert!(folded_in_plane(source.faces(), planar(&found.registered)).is_empty());
                 prop_assert_eq!(found.status == Status::Cancelled, calls > last);
             }
             Err(error) => prop_assert_eq!(error, Error::CancelledEarly),

@@ -2,14 +2,11 @@
 //! The stretch energy of maps into space against independent formulas: cross products, cotangents, finite
 //! differences, the identities that its degree of four and its invariance under rotations imply.
 
+use authalic::testing::{Profile, SpatialStretchEnergy, StretchEnergy, TriangleMesh, Vector3};
 use std::f64::consts::PI;
 
 use crate::common;
 use approx::assert_relative_eq;
-use authalic::Vector3;
-use authalic::energy::stretch::Profile;
-use authalic::energy::{SpatialStretchEnergy, StretchEnergy};
-use authalic::mesh::TriangleMesh;
 use sprs::CsMat;
 
 const PROFILES: [Profile; 2] = [Profile::Stretch, Profile::Barrier];

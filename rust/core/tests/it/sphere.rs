@@ -5,9 +5,11 @@ use crate::common::closed::{
     LINE_SEARCHES, METHODS, assert_bijective, bumpy, dot, energies, energy_of, folded, image_areas, mapped,
     radial, refused, rotation, spheres, spiky_spheres, star, with,
 };
+use crate::common::public::spatial;
 use crate::common::{self, TestMesh};
-use authalic::mesh::TriangleMesh;
-use authalic::{Error, MapError, MeshError, SphereMapOptions, SphereMethod, Vector3, folded_on_sphere};
+use authalic::testing::{TriangleMesh, Vector3, folded_on_sphere};
+use authalic::{Error, MapError, MeshError, SphereMapOptions, SphereMethod};
+use ndarray::aview1;
 use proptest::prelude::*;
 
 type Point = [f64; 3];
@@ -36,7 +38,7 @@ fn every_sphere_is_mapped_one_to_one_by_every_method() {
         for (method, line_search) in METHODS.into_iter().flat_map(|m| LINE_SEARCHES.map(|l| (m, l))) {
             let map = mapped(&mesh, SphereMapOptions { method, line_search, ..Default::default() });
             let context = format!("{}, {method:?}, {line_search:?}", sphere.name);
-            assert_bijective(&mesh, &map.positions, &context);
+            assert_bijective(&mesh, &spatial(&map.positions), &context);
             assert!(map.distortion.folded.is_empty(), "{context}");
             let records = map.history.records();
             assert!(records.iter().map(|record| record.iteration).eq(0..records.len()), "{context}");
@@ -52,7 +54,7 @@ fn the_start_map_is_one_to_one() {
         let mesh = sphere.mesh();
         for method in METHODS {
             let map = mapped(&mesh, SphereMapOptions { max_iterations: Some(0), ..with(method) });
-            assert_bijective(&mesh, &map.positions, sphere.name);
+            assert_bijective(&mesh, &spatial(&map.positions), sphere.name);
             assert_eq!(map.history.iterations(), 0, "{}", sphere.name);
         }
     }
@@ -64,7 +66,7 @@ fn the_figures_are_those_of_the_map() {
         let mesh = sphere.mesh();
         for method in METHODS {
             let map = mapped(&mesh, with(method));
-            let (energy, _) = energy_of(&mesh, &map.positions, mesh.face_areas());
+            let (energy, _) = energy_of(&mesh, &spatial(&map.positions), mesh.face_areas());
             let reported = map.distortion.authalic_energy;
             assert!(
                 (reported - energy).abs() <= 1e-9 * energy + 1e-13,
@@ -114,7 +116,7 @@ fn the_normalised_energy_never_rises_in_gradient_descent() {
                 line_search,
                 ..with(SphereMethod::GradientDescent)
             };
-            energy_of(&mesh, &mapped(&mesh, options).positions, mesh.face_areas()).1
+            energy_of(&mesh, &spatial(&mapped(&mesh, options).positions), mesh.face_areas()).1
         };
         let energies: Vec<f64> = (10..30).map(after).collect();
         assert!(energies.windows(2).all(|pair| pair[1] < pair[0]), "{line_search:?}: {energies:?}");
@@ -179,7 +181,7 @@ fn no_rotation_lays_the_map_over_the_surface_any_better() {
     for sphere in spheres() {
         let mesh = sphere.mesh();
         for method in METHODS {
-            let map = mapped(&mesh, with(method)).positions;
+            let map = spatial(&mapped(&mesh, with(method)).positions);
             let at = |turn| overlap(&mesh, &map, mesh.face_areas(), rotation(turn));
             let best = at([1.0, 0.0, 0.0, 0.0]);
             for x in grid {
@@ -199,7 +201,8 @@ fn an_icosphere_keeps_its_place() {
     for level in [2, 3] {
         let mesh = common::icosphere(level).mesh();
         let map = mapped(&mesh, SphereMapOptions::default());
-        let furthest = mesh.points().iter().zip(&map.positions).map(|(p, x)| {
+        let positions = spatial(&map.positions);
+        let furthest = mesh.points().iter().zip(&positions).map(|(p, x)| {
             let length = common::distance(*p, [0.0; 3]);
             common::distance(p.map(|c| c / length), *x)
         });
@@ -234,7 +237,7 @@ fn a_surface_turned_inside_out_is_mapped_as_its_faces_are_oriented() {
     let mesh = TriangleMesh::new(&sphere.vertices, &inward).unwrap();
     let map = mapped(&mesh, SphereMapOptions::default());
     assert_eq!(mesh.faces(), inward);
-    assert_bijective(&mesh, &map.positions, "inward");
+    assert_bijective(&mesh, &spatial(&map.positions), "inward");
 }
 
 // Density
@@ -245,17 +248,18 @@ fn a_density_is_honoured() {
     let height = |face: &[u32; 3]| face.iter().map(|&v| mesh.points()[v as usize][2]).sum::<f64>();
     let density: Vec<f64> = mesh.faces().iter().map(|face| 2.0 + height(face).signum()).collect();
     for method in METHODS {
-        let options = SphereMapOptions { density: Some(&density), max_iterations: Some(300), ..with(method) };
+        let options =
+            SphereMapOptions { density: Some(aview1(&density)), max_iterations: Some(300), ..with(method) };
         let map = mapped(&mesh, options);
-        assert_bijective(&mesh, &map.positions, "density");
+        assert_bijective(&mesh, &spatial(&map.positions), "density");
         assert!(map.distortion.area_ratio_std < 0.1, "{method:?} {}", map.distortion.area_ratio_std);
-        let areas = image_areas(&mesh, &map.positions);
+        let areas = image_areas(&mesh, &spatial(&map.positions));
         let mean = |value: f64| {
             let part = || areas.iter().zip(&density).filter(|(_, density)| **density == value);
             part().map(|(area, _)| area).sum::<f64>() / part().count() as f64
         };
         assert!((mean(3.0) / mean(1.0) - 3.0).abs() < 0.1, "{method:?} {}", mean(3.0) / mean(1.0));
-        let (energy, _) = energy_of(&mesh, &map.positions, &density);
+        let (energy, _) = energy_of(&mesh, &spatial(&map.positions), &density);
         assert!((map.distortion.authalic_energy - energy).abs() < 1e-9 * energy);
     }
 }
@@ -266,8 +270,9 @@ fn the_scale_of_a_density_does_not_matter() {
     let on = |scale: f64, iterations| {
         let density: Vec<f64> = (0..mesh.n_faces()).map(|face| scale * (2.0 + (face as f64).sin())).collect();
         let max_iterations = Some(iterations);
-        mapped(&mesh, SphereMapOptions { density: Some(&density), max_iterations, ..Default::default() })
-            .positions
+        let options =
+            SphereMapOptions { density: Some(aview1(&density)), max_iterations, ..Default::default() };
+        spatial(&mapped(&mesh, options).positions)
     };
     assert_eq!(on(1.0, 100), on(2f64.powi(40), 100), "a power of two changes no bit");
     // rounding of the density grows with the iterations
@@ -281,8 +286,9 @@ fn the_scale_of_a_density_does_not_matter() {
 #[test]
 fn bad_densities_are_refused() {
     let mesh = common::icosphere(0).mesh();
-    let refusal =
-        |density: &[f64]| refused(&mesh, SphereMapOptions { density: Some(density), ..Default::default() });
+    let refusal = |density: &[f64]| {
+        refused(&mesh, SphereMapOptions { density: Some(aview1(&density)), ..Default::default() })
+    };
     let mut density = vec![1.0; 20];
     assert!(matches!(refusal(&density[1..]), Error::InvalidArray { name: "density", .. }));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-13] {
@@ -302,12 +308,12 @@ fn folds_are_reported_where_they_are_not_unfolded() {
         let mesh = sphere.mesh();
         for method in METHODS {
             let map = mapped(&mesh, SphereMapOptions { unfold: false, ..with(method) });
-            assert_eq!(map.distortion.folded, folded(&mesh, &map.positions), "{}", sphere.name);
-            assert_eq!(map.distortion.folded, folded_on_sphere(mesh.faces(), &map.positions));
+            assert_eq!(map.distortion.folded, folded(&mesh, &spatial(&map.positions)), "{}", sphere.name);
+            assert_eq!(map.distortion.folded, folded_on_sphere(mesh.faces(), &spatial(&map.positions)));
             found += map.distortion.folded.len();
             // what is reported is what the method ended with
             let last = *energies(&map).last().expect("the start at least");
-            let signed = |face: &usize| 4.0 * image_areas(&mesh, &map.positions)[*face];
+            let signed = |face: &usize| 4.0 * image_areas(&mesh, &spatial(&map.positions))[*face];
             let folds: f64 = map.distortion.folded.iter().map(signed).sum();
             assert!((map.distortion.authalic_energy - folds - last).abs() < 1e-9 * (1.0 + last));
         }
@@ -391,7 +397,7 @@ proptest! {
         // bounded, as densities too far apart are refused
         let density: Vec<f64> = mesh.face_areas().iter().enumerate()
             .map(|(face, area)| area * (contrast * radii[face % radii.len()].min(2.0)).exp()).collect();
-        let options = SphereMapOptions { method, line_search, density: Some(&density), max_iterations: Some(20), ..Default::default() };
-        assert_bijective(&mesh, &mapped(&mesh, options).positions, "random sphere");
+        let options = SphereMapOptions { method, line_search, density: Some(aview1(&density)), max_iterations: Some(20), ..Default::default() };
+        assert_bijective(&mesh, &spatial(&mapped(&mesh, options).positions), "random sphere");
     }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a run onto the sphere goes and ends: start maps, progress, cancel, limits and tolerances.
 
+use crate::common::public::{array, spatial, sphere_map};
+use authalic::testing::{TriangleMesh, Vector3};
+use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status};
 use std::f64::consts::PI;
 
 use crate::common;
@@ -8,8 +11,6 @@ use crate::common::closed::{
     METHODS, assert_bijective, bumpy, dot, energies, energy_of, folded, image_areas, mapped, refused,
     rotation, spiky_spheres, with,
 };
-use authalic::mesh::TriangleMesh;
-use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Status, Vector3, sphere_map};
 
 // Start maps
 
@@ -17,18 +18,19 @@ use authalic::{Error, MapError, SphereMap, SphereMapOptions, SphereMethod, Statu
 fn a_start_map_is_improved_and_keeps_its_rotation() {
     let mesh = bumpy();
     let options = SphereMapOptions { max_iterations: Some(3), ..with(SphereMethod::FixedPoint) };
-    let first = mapped(&mesh, options).positions;
+    let first = spatial(&mapped(&mesh, options).positions);
     let turn = rotation([0.3, 0.8, -0.2, 0.4]);
     let turned: Vec<Vector3> = first.iter().map(|x| Vector3(turn.map(|row| dot(row, *x)))).collect();
     for method in METHODS {
-        let map = mapped(&mesh, SphereMapOptions { initial: Some(&turned), ..with(method) });
-        assert_bijective(&mesh, &map.positions, "from a start map");
-        let [before, after] = [&turned, &map.positions].map(|map| energy_of(&mesh, map, mesh.face_areas()).0);
+        let map = mapped(&mesh, SphereMapOptions { initial: Some(array(&turned).view()), ..with(method) });
+        assert_bijective(&mesh, &spatial(&map.positions), "from a start map");
+        let [before, after] =
+            [&turned, &spatial(&map.positions)].map(|map| energy_of(&mesh, map, mesh.face_areas()).0);
         assert!(after < before, "{method:?}: {after} {before}");
         assert!((energies(&map)[0] - before).abs() < 1e-9 * before, "{method:?}: the history begins there");
         // it still lies nearer to the start map than to its rotated copy
         let to = |other: &[Vector3]| {
-            map.positions.iter().zip(other).map(|(a, b)| common::distance(*a, *b)).sum::<f64>()
+            spatial(&map.positions).iter().zip(other).map(|(a, b)| common::distance(*a, *b)).sum::<f64>()
         };
         assert!(to(&turned) < 0.5 * to(&first), "{method:?}");
     }
@@ -37,16 +39,20 @@ fn a_start_map_is_improved_and_keeps_its_rotation() {
 #[test]
 fn a_start_map_without_iterations_is_returned_on_the_sphere() {
     let mesh = bumpy();
-    let start = mapped(&mesh, SphereMapOptions::default()).positions;
+    let start = spatial(&mapped(&mesh, SphereMapOptions::default()).positions);
     let stretched: Vec<Vector3> =
         start.iter().enumerate().map(|(v, x)| x.map(|c| c * (1.0 + v as f64))).collect();
     for initial in [&start, &stretched] {
         for method in METHODS {
+            let initial = array(initial);
             let options =
-                SphereMapOptions { initial: Some(initial), max_iterations: Some(0), ..with(method) };
+                SphereMapOptions { initial: Some(initial.view()), max_iterations: Some(0), ..with(method) };
             let map = mapped(&mesh, options);
-            let furthest =
-                map.positions.iter().zip(&start).map(|(a, b)| common::distance(*a, *b)).fold(0.0, f64::max);
+            let furthest = spatial(&map.positions)
+                .iter()
+                .zip(&start)
+                .map(|(a, b)| common::distance(*a, *b))
+                .fold(0.0, f64::max);
             assert!(furthest < 1e-15, "{furthest}");
             assert_eq!(map.history.iterations(), 0);
         }
@@ -55,7 +61,8 @@ fn a_start_map_without_iterations_is_returned_on_the_sphere() {
 
 /// The start map with some vertices on the other side of the sphere.
 fn spoiled(mesh: &TriangleMesh, vertices: &[usize]) -> Vec<Vector3> {
-    let mut map = mapped(mesh, SphereMapOptions { max_iterations: Some(5), ..Default::default() }).positions;
+    let options = SphereMapOptions { max_iterations: Some(5), ..Default::default() };
+    let mut map = spatial(&mapped(mesh, options).positions);
     vertices.iter().for_each(|&v| map[v] = map[v].map(|x| -x));
     assert!(!folded(mesh, &map).is_empty());
     map
@@ -65,12 +72,13 @@ fn spoiled(mesh: &TriangleMesh, vertices: &[usize]) -> Vec<Vector3> {
 fn a_folded_start_map_is_unfolded() {
     let mesh = bumpy();
     for vertices in [&[5][..], &[3, 80, 120], &[40, 41, 42, 43, 44, 45, 46, 47]] {
-        let initial = spoiled(&mesh, vertices);
+        let initial = array(&spoiled(&mesh, vertices));
         for method in METHODS {
             for max_iterations in [Some(0), Some(4), None] {
-                let options = SphereMapOptions { initial: Some(&initial), max_iterations, ..with(method) };
+                let options =
+                    SphereMapOptions { initial: Some(initial.view()), max_iterations, ..with(method) };
                 let map = mapped(&mesh, options);
-                assert_bijective(&mesh, &map.positions, "from a folded start map");
+                assert_bijective(&mesh, &spatial(&map.positions), "from a folded start map");
             }
         }
     }
@@ -79,11 +87,13 @@ fn a_folded_start_map_is_unfolded() {
 #[test]
 fn a_start_map_that_is_none_is_refused() {
     let mesh = bumpy();
-    let good = mapped(&mesh, SphereMapOptions::default()).positions;
+    let good = spatial(&mapped(&mesh, SphereMapOptions::default()).positions);
     let refusal = |change: &dyn Fn(&mut Vec<Vector3>)| {
         let mut initial = good.clone();
         change(&mut initial);
-        METHODS.map(|method| refused(&mesh, SphereMapOptions { initial: Some(&initial), ..with(method) }))
+        let initial = array(&initial);
+        METHODS
+            .map(|method| refused(&mesh, SphereMapOptions { initial: Some(initial.view()), ..with(method) }))
     };
     let all = |errors: [Error; 2], is_right: &dyn Fn(&Error) -> bool| {
         errors.iter().for_each(|error| assert!(is_right(error) && error.is_mesh_error(), "{error}"));
@@ -146,7 +156,7 @@ fn a_run_cancelled_at_any_report_returns_a_sound_map() {
             };
             let map = sphere_map(&mesh, &options, &mut observer).unwrap();
             assert_eq!((map.status, calls), (Status::Cancelled, last + 1));
-            assert_bijective(&mesh, &map.positions, "cancelled");
+            assert_bijective(&mesh, &spatial(&map.positions), "cancelled");
             assert!(map.history.iterations() <= last);
         }
     }
@@ -188,7 +198,7 @@ fn the_fixed_point_stops_where_the_stretch_energy_falls_too_little() {
     let mesh = bumpy();
     // E_S with image and targets on the scale of the sphere: (4π/A) (E_A + A)
     let stretch = |map: &SphereMap| {
-        let area: f64 = image_areas(&mesh, &map.positions).iter().sum();
+        let area: f64 = image_areas(&mesh, &spatial(&map.positions)).iter().sum();
         4.0 * PI / area * (map.distortion.authalic_energy + area)
     };
     let run = |tolerance, limit| {

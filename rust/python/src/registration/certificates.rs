@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The certificates of a registration by curves as Python sees them.
 
-use authalic::hyperbolic as core;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -38,7 +37,7 @@ pub struct Certificates {
 }
 
 impl Certificates {
-    pub(super) fn new(py: Python<'_>, certificates: &core::Certificates) -> Self {
+    pub(super) fn new(py: Python<'_>, certificates: &authalic::Certificates) -> Self {
         Self {
             folded: from_index_list(py, certificates.folded.iter().copied()),
             area: certificates.area,

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::hyperbolic`'s registration.
 
-use authalic::Side;
-use authalic::hyperbolic::{self as core, Curves, HyperbolicOptions, Solver};
+use authalic::{HarmonicSolver, HyperbolicOptions, LandmarkCurves, Side};
 use pyo3::prelude::*;
 
-use super::finished::{Finished, Outcome};
+use super::finished::Finished;
 use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
-use crate::arrays::vectors;
+use crate::arrays::real_table;
 use crate::errors::bad_option;
 use crate::options::{choice, metrics, parse_iterations};
 use crate::run::run;
@@ -115,7 +114,7 @@ pub fn register_hyperbolic(
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
         (Some(ours), Some(theirs)) => {
-            Some([vectors(ours, "source_sphere")?, vectors(theirs, "target_sphere")?])
+            Some([real_table::<3>(ours, "source_sphere")?, real_table::<3>(theirs, "target_sphere")?])
         }
         _ => {
             return Err(bad_option(
@@ -125,14 +124,15 @@ pub fn register_hyperbolic(
     };
     let finished = run(py, progress, move |observer| {
         let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
-        let curves = Curves { source: &source_curves, target: &target_curves };
-        let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
+        let curves = LandmarkCurves { source: &source_curves, target: &target_curves };
+        let spheres = spheres.as_ref().map(|[ours, theirs]| [ours.view(), theirs.view()]);
         let options = HyperbolicOptions { spheres, ..options };
-        let outcome = core::register_hyperbolic(source.mesh()?, target.mesh()?, &curves, &options, observer)?;
-        Finished::of_surfaces(&source, &target, Outcome::Curves(outcome.into()))
+        let registration = authalic::register_hyperbolic(&source, &target, &curves, &options, observer)?;
+        Ok(Finished::Curves(registration.into()))
     })?;
     Registration::new(py, finished)
 }
 
 /// The ways to the harmonic map by their names.
-const SOLVERS: [(&str, Solver); 2] = [("newton", Solver::Newton), ("heat", Solver::Heat)];
+const SOLVERS: [(&str, HarmonicSolver); 2] =
+    [("newton", HarmonicSolver::Newton), ("heat", HarmonicSolver::Heat)];

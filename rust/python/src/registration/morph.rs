@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the morph along a registration.
 
-use authalic::Vector3;
 use pyo3::prelude::*;
 
 use super::result::Registration;
-use crate::arrays::{Pairs, from_points, rows, vectors};
-use crate::errors::{bad_array, bad_option};
+use crate::arrays::{Reals, from_array, real_table};
 use crate::run::run;
 use crate::surface::handle;
 
@@ -55,24 +53,13 @@ pub fn homotopy(
     registration: &Registration,
     t: f64,
     align: bool,
-) -> PyResult<Pairs> {
+) -> PyResult<Reals> {
     let finished = registration.finished.clone();
-    let (vertices, n) = (vertices_of(vertices)?, finished.positions.len());
-    if vertices.len() != n {
-        let (shape, expected) = (format!("of shape ({}, 3)", vertices.len()), format!("of shape ({n}, 3)"));
-        return Err(bad_array(py, "vertices", shape, expected));
-    }
-    if !t.is_finite() {
-        return Err(bad_option(format!("t must be a finite number, but is {t}")));
-    }
-    let morphed = run(py, None, move |_| Ok(finished.morphed(&vertices, t, align)))?;
-    Ok(from_points(py, &morphed))
-}
-
-/// Vertices, or those of a surface.
-fn vertices_of(object: &Bound<'_, PyAny>) -> PyResult<Vec<Vector3>> {
-    match handle(object) {
-        Some(surface) => Ok(rows(surface.vertices()).iter().copied().map(Vector3).collect()),
-        None => vectors(object, "vertices"),
-    }
+    let vertices = match handle(vertices) {
+        Some(surface) => surface.vertices().to_owned(),
+        None => real_table::<3>(vertices, "vertices")?,
+    };
+    let morphed =
+        run(py, None, move |_| authalic::homotopy(vertices.view(), finished.correspondence(), t, align))?;
+    Ok(from_array(py, morphed))
 }

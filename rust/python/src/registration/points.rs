@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the registrations by points.
 
-use authalic::mesh::TriangleMesh;
-use authalic::registration::{self, Landmarks, RegistrationOptions};
-use authalic::{Error, Side};
+use authalic::{Error, Landmarks, Observer, RegistrationOptions, Side, Surface};
 use pyo3::prelude::*;
 
-use super::finished::{Finished, Outcome};
+use super::finished::Finished;
 use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked};
 use crate::arrays::index_list;
@@ -82,9 +80,7 @@ pub fn register_disks(
     let options = RegistrationOptions { weight, angle_weight };
     let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
     let finished = run(py, progress, move |observer| {
-        arguments.register(|source, target, landmarks, options| {
-            registration::register_disks(source, target, landmarks, options, observer).map(Outcome::Disk)
-        })
+        arguments.register(authalic::register_disks, observer).map(Finished::Disk)
     })?;
     Registration::new(py, finished)
 }
@@ -155,9 +151,7 @@ pub fn register_spheres(
     let options = RegistrationOptions { weight, angle_weight };
     let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
     let finished = run(py, progress, move |observer| {
-        arguments.register(|source, target, landmarks, options| {
-            registration::register_spheres(source, target, landmarks, options, observer).map(Outcome::Sphere)
-        })
+        arguments.register(authalic::register_spheres, observer).map(Finished::Sphere)
     })?;
     Registration::new(py, finished)
 }
@@ -186,19 +180,14 @@ impl Arguments {
         Ok(Self { source, target, source_landmarks, target_landmarks, options })
     }
 
-    /// Checks the meshes and registers them.
-    fn register(
-        self,
-        register: impl FnOnce(
-            &TriangleMesh,
-            &TriangleMesh,
-            &Landmarks<'_>,
-            &RegistrationOptions,
-        ) -> Result<Outcome, Error>,
-    ) -> Result<Finished, Error> {
+    /// Checks the surfaces and registers them.
+    fn register<T>(self, register: Register<T>, observer: &mut dyn Observer) -> Result<T, Error> {
         let (source, target) = (checked(self.source, Side::Source)?, checked(self.target, Side::Target)?);
         let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
-        let outcome = register(source.mesh()?, target.mesh()?, &landmarks, &self.options)?;
-        Finished::of_surfaces(&source, &target, outcome)
+        register(&source, &target, &landmarks, &self.options, observer)
     }
 }
+
+/// A registration by points of the core.
+type Register<T> =
+    fn(&Surface, &Surface, &Landmarks<'_>, &RegistrationOptions, &mut dyn Observer) -> Result<T, Error>;

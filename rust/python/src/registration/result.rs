@@ -3,14 +3,14 @@
 
 use std::sync::Arc;
 
-use authalic::hyperbolic::RoughSphere;
-use authalic::{DiskMap, History, SphereMap, Status, registration};
+use authalic::{Correspondence, DiskMap, Error, History, RoughSphere, SphereMap, Status};
+use numpy::ndarray::{Array1, Array2, Array3, ArrayView2, aview1};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use super::certificates::Certificates;
-use super::finished::{Finished, Outcome, Per, either};
-use crate::arrays::{Values, from_index_list, from_indices, from_points, from_values};
+use super::finished::{Finished, Per};
+use crate::arrays::{Reals, Values, from_array, from_index_list, from_indices, from_values};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, warning};
 use crate::run::run;
@@ -32,10 +32,10 @@ pub struct Registration {
     /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with
     /// their landmarks in place.
     #[pyo3(get)]
-    registered: Py<PyAny>,
+    registered: Reals,
     /// (n_t, 2) or (n_t, 3) float64: the target vertices there.
     #[pyo3(get)]
-    target_registered: Py<PyAny>,
+    target_registered: Reals,
     /// (m, 3) int64: the source faces as oriented; those turned against the rest were flipped.
     #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
@@ -98,91 +98,131 @@ pub struct Registration {
 
 impl Registration {
     pub(super) fn new(py: Python<'_>, finished: Finished) -> PyResult<Self> {
-        let (registered, target_registered, source_map, target_map) = match &finished.outcome {
-            Outcome::Disk(f) => (
-                from_points(py, &f.registered).into_any(),
-                from_points(py, &f.target_registered).into_any(),
-                disk_map(py, &f.source_map, &finished.source.faces)?,
-                disk_map(py, &f.target_map, &finished.target.faces)?,
-            ),
-            Outcome::Sphere(f) => (
-                from_points(py, &f.registered).into_any(),
-                from_points(py, &f.target_registered).into_any(),
-                sphere_map(py, &f.source_map, &finished.source.faces)?,
-                sphere_map(py, &f.target_map, &finished.target.faces)?,
-            ),
-            Outcome::Curves(curves) => (
-                from_points(py, &curves.map.registered).into_any(),
-                from_points(py, &curves.spheres[1].positions).into_any(),
-                rough_sphere(py, &curves.spheres[0], &finished.source.faces)?,
-                rough_sphere(py, &curves.spheres[1], &finished.target.faces)?,
-            ),
-        };
-        let (certificates, warnings, energies) = match &finished.outcome {
-            Outcome::Curves(curves) => (
+        let map = finished.correspondence();
+        let (faces, target_faces) = (map.faces(), map.target_faces());
+        let [registered, target_registered] = in_domain(&finished).map(|array| from_array(py, array));
+        let [source_map, target_map] = maps(py, &finished, [faces.view(), target_faces.view()])?;
+        let figures = Figures::of(&finished);
+        let (certificates, warnings, energies) = match &finished {
+            Finished::Curves(curves) => (
                 Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
                 curves.warnings.iter().map(|doubt| warning(py, doubt)).collect::<PyResult<_>>()?,
                 curves.descents.iter().map(|d| PyArray1::from_slice(py, &d.energies).unbind()).collect(),
             ),
             _ => (None, Vec::new(), Vec::new()),
         };
-        let locations = finished.locations();
-        let barycentric: Vec<[f64; 3]> = locations.iter().map(|location| location.barycentric).collect();
-        let triangles = locations.iter().map(|location| location.triangle.index());
-        let area_distortion = finished.area_ratio.iter().map(|ratio| ratio.max(1.0 / ratio)).collect();
-        let (missed, status, distortion) =
-            either!(&finished.outcome, f => (&f.missed, f.status.as_str(), &f.distortion));
-        let (landmark_error, target_distortion, iterations, seconds) = match &finished.outcome {
-            Outcome::Disk(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
-            Outcome::Sphere(f) => (&f.landmark_error, &f.target_distortion, f.iterations, f.seconds),
-            Outcome::Curves(f) => (&f.map.curve_error, &f.inverse.distortion, f.iterations, f.seconds),
-        };
+        let area_ratio = map.area_ratio();
         Ok(Self {
-            positions: from_points(py, &finished.positions),
-            triangles: from_index_list(py, triangles),
-            barycentric: from_points(py, &barycentric),
+            positions: from_array(py, map.positions()),
+            triangles: from_index_list(py, map.triangles().into_iter()),
+            barycentric: from_array(py, map.barycentric()),
             registered,
             target_registered,
-            faces: from_indices(py, &finished.source.faces),
-            target_faces: from_indices(py, &finished.target.faces),
+            faces: from_indices(py, faces.view()),
+            target_faces: from_indices(py, target_faces.view()),
             source_map,
             target_map,
-            landmark_error: PyArray1::from_slice(py, landmark_error).unbind(),
-            missed: from_index_list(py, missed.iter().copied()),
-            status,
-            distortion: Py::new(py, Distortion::new(py, distortion))?,
-            area_ratio: PyArray1::from_slice(py, &finished.area_ratio).unbind(),
-            area_distortion: PyArray1::from_vec(py, area_distortion).unbind(),
-            target_distortion: Py::new(py, Distortion::new(py, target_distortion))?,
+            landmark_error: from_array(py, figures.landmark_error.clone()),
+            missed: from_index_list(py, figures.missed.iter().copied()),
+            status: figures.status.as_str(),
+            distortion: Py::new(py, Distortion::new(py, figures.distortion.clone()))?,
+            area_distortion: from_array(py, area_ratio.mapv(|ratio| ratio.max(1.0 / ratio))),
+            area_ratio: from_array(py, area_ratio),
+            target_distortion: Py::new(py, Distortion::new(py, figures.target_distortion.clone()))?,
             certificates,
             warnings,
             energies,
-            iterations,
-            seconds,
+            iterations: figures.iterations,
+            seconds: figures.seconds,
             finished: Arc::new(finished),
         })
     }
 }
 
-fn disk_map(py: Python<'_>, map: &DiskMap, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
-    Ok(Py::new(py, disk::DiskMap::new(py, map, faces)?)?.into_any())
+/// What all kinds of registrations have.
+struct Figures<'a> {
+    landmark_error: &'a Array1<f64>,
+    missed: &'a [usize],
+    status: Status,
+    distortion: &'a authalic::Distortion,
+    target_distortion: &'a authalic::Distortion,
+    iterations: usize,
+    seconds: f64,
 }
 
-fn sphere_map(py: Python<'_>, map: &SphereMap, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
-    Ok(Py::new(py, sphere::SphereMap::new(py, map, faces)?)?.into_any())
+impl<'a> Figures<'a> {
+    fn of(finished: &'a Finished) -> Self {
+        match finished {
+            Finished::Disk(registration) => Self::of_points(registration),
+            Finished::Sphere(registration) => Self::of_points(registration),
+            Finished::Curves(curves) => Self {
+                landmark_error: &curves.map.curve_error,
+                missed: &curves.map.missed,
+                status: curves.map.status,
+                distortion: &curves.map.distortion,
+                target_distortion: &curves.inverse.distortion,
+                iterations: curves.iterations,
+                seconds: curves.seconds,
+            },
+        }
+    }
+
+    fn of_points<Map>(registration: &'a authalic::Registration<Map>) -> Self {
+        Self {
+            landmark_error: &registration.landmark_error,
+            missed: &registration.missed,
+            status: registration.status,
+            distortion: &registration.distortion,
+            target_distortion: &registration.target_distortion,
+            iterations: registration.iterations,
+            seconds: registration.seconds,
+        }
+    }
+}
+
+/// The vertices of source and target in the domain.
+fn in_domain(finished: &Finished) -> [Array2<f64>; 2] {
+    match finished {
+        Finished::Disk(found) => [found.registered.clone(), found.target_registered.clone()],
+        Finished::Sphere(found) => [found.registered.clone(), found.target_registered.clone()],
+        Finished::Curves(found) => [found.map.registered.clone(), found.spheres[1].positions.clone()],
+    }
+}
+
+/// The maps of source and target alone, with their faces.
+fn maps(
+    py: Python<'_>,
+    finished: &Finished,
+    [faces, target_faces]: [ArrayView2<'_, u32>; 2],
+) -> PyResult<[Py<PyAny>; 2]> {
+    let disk = |map: &DiskMap, faces| {
+        Ok::<_, PyErr>(Py::new(py, disk::DiskMap::new(py, map.clone(), faces)?)?.into_any())
+    };
+    let sphere = |map: &SphereMap, faces| {
+        Ok::<_, PyErr>(Py::new(py, sphere::SphereMap::new(py, map.clone(), faces)?)?.into_any())
+    };
+    Ok(match finished {
+        Finished::Disk(found) => [disk(&found.source_map, faces)?, disk(&found.target_map, target_faces)?],
+        Finished::Sphere(found) => {
+            [sphere(&found.source_map, faces)?, sphere(&found.target_map, target_faces)?]
+        }
+        Finished::Curves(found) => [
+            sphere(&without_iterations(&found.spheres[0]), faces)?,
+            sphere(&without_iterations(&found.spheres[1]), target_faces)?,
+        ],
+    })
 }
 
 /// A surface laid roughly onto the sphere, as a map without iterations.
-fn rough_sphere(py: Python<'_>, sphere: &RoughSphere, faces: &[[u32; 3]]) -> PyResult<Py<PyAny>> {
-    let map = SphereMap {
+fn without_iterations(sphere: &RoughSphere) -> SphereMap {
+    SphereMap {
         positions: sphere.positions.clone(),
         status: Status::Converged,
         history: History::start(),
         distortion: sphere.distortion.clone(),
         refinement: None,
         seconds: 0.0,
-    };
-    sphere_map(py, &map, faces)
+    }
 }
 
 #[pymethods]
@@ -226,23 +266,24 @@ impl Registration {
                 return Err(bad_option(message));
             }
         };
-        let (source, target) = (&self.finished.source, &self.finished.target);
+        let map = self.finished.correspondence();
+        let (source, target) = (map.source(), map.target());
         let values = Values::new(values, "values")?;
         let shape = values.shape();
         let Some((per, axes)) = Per::of(&shape, target, wanted) else {
-            let (n, m) = (target.vertices.len(), target.given.len());
+            let (n, m) = (target.n_vertices(), target.n_faces());
             let expected = format!("of shape ({n}, …) per vertex or ({m}, 3, …) per corner of the target");
             return Err(bad_array(py, "values", values.shape_words(), expected));
         };
         let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
         let finished = self.finished.clone();
         if nearest {
-            let rows = run(py, None, move |_| Ok(finished.nearest_rows(per)))?;
+            let rows = run(py, None, move |_| Ok(nearest_rows(finished.correspondence(), per)))?;
             return values.taken(axes, &rows, out);
         }
         let width = shape[axes..].iter().product();
         let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
-        let pulled = run(py, None, move |_| Ok(finished.interpolated(&numbers, width, per)))?;
+        let pulled = run(py, None, move |_| pulled(finished.correspondence(), numbers, width, per))?;
         from_values(py, pulled, out)
     }
 
@@ -281,20 +322,18 @@ impl Registration {
         source_values: &Bound<'_, PyAny>,
         target_values: &Bound<'_, PyAny>,
     ) -> PyResult<(f64, f64)> {
-        let ours = scalars(source_values, "source_values", self.finished.source.vertices.len())?;
-        let theirs = scalars(target_values, "target_values", self.finished.target.vertices.len())?;
         let finished = self.finished.clone();
-        run(py, None, move |_| {
-            let pulled = finished.interpolated(&theirs, 1, Per::Vertex);
-            Ok(registration::compare(&ours, &pulled, &finished.vertex_areas()))
-        })
+        let map = finished.correspondence();
+        let ours = scalars(source_values, "source_values", map.source().n_vertices())?;
+        let theirs = scalars(target_values, "target_values", map.target().n_vertices())?;
+        run(py, None, move |_| finished.correspondence().compare(aview1(&ours), aview1(&theirs)))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "Registration({} onto {} vertices, {} landmarks, {} missed, {} after {} iterations, {:.2} s, {})",
-            self.finished.source.vertices.len(),
-            self.finished.target.vertices.len(),
+            self.finished.correspondence().source().n_vertices(),
+            self.finished.correspondence().target().n_vertices(),
             self.landmark_error.bind(py).len()?,
             self.missed.bind(py).len()?,
             self.status,
@@ -303,6 +342,32 @@ impl Registration {
             self.distortion.bind(py).repr()?,
         ))
     }
+}
+
+/// The rows of the target's data that the vertices or the corners of the source take.
+fn nearest_rows(map: &Correspondence, per: Per) -> Vec<u32> {
+    match per {
+        Per::Vertex => map.nearest_vertices(),
+        Per::Corner => map.nearest_corners(),
+    }
+}
+
+/// Rows of `width` numbers of the target at the vertices or the corners of the source, interpolated.
+fn pulled(map: &Correspondence, numbers: Vec<f64>, width: usize, per: Per) -> Result<Vec<f64>, Error> {
+    let shaped = "the shape was checked";
+    let pulled = match per {
+        Per::Vertex => {
+            let rows = (map.target().n_vertices(), width);
+            map.pull_vertices(Array2::from_shape_vec(rows, numbers).expect(shaped).view())?
+                .into_raw_vec_and_offset()
+        }
+        Per::Corner => {
+            let rows = (map.target().n_faces(), 3, width);
+            map.pull_corners(Array3::from_shape_vec(rows, numbers).expect(shaped).view())?
+                .into_raw_vec_and_offset()
+        }
+    };
+    Ok(pulled.0)
 }
 
 /// One real number per vertex.

@@ -12,10 +12,10 @@ use crate::surface::Given;
 pub(super) const SOURCE: [&str; 3] = ["source", "source vertices", "source faces"];
 pub(super) const TARGET: [&str; 3] = ["target", "target vertices", "target faces"];
 
-/// A surface that is a mesh; errors say which surface is at fault.
+/// A surface that is a manifold; errors say which surface is at fault.
 pub(super) fn checked(given: Given, side: Side) -> Result<authalic::Surface, Error> {
     let surface = given.surface().map_err(|error| error.of_surface(side))?;
-    surface.mesh().map_err(|error| error.of_surface(side))?;
+    surface.topology().map_err(|error| error.of_surface(side))?;
     Ok(surface)
 }
 

@@ -26,6 +26,8 @@ mod sweep;
 mod system;
 mod within_disk;
 
+use ndarray::aview2;
+
 use super::options::DiskMapOptions;
 use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Phase, Status};
@@ -75,8 +77,9 @@ impl Free<'_> {
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let targets = by_order.of_faces(self.targets);
-        let initial = self.options.initial.map(|map| by_order.of_vertices(map));
-        let options = DiskMapOptions { initial: initial.as_deref(), density: None, ..*self.options };
+        let initial = self.options.initial_rows().map(|map| by_order.of_vertices(map));
+        let options =
+            DiskMapOptions { initial: initial.as_deref().map(aview2), density: None, ..*self.options };
         let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options };
         let (map, status) = free.in_order(history, observer)?;
         Ok((by_order.given(&map), status))

@@ -32,7 +32,7 @@ impl Free<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, bool), Error> {
         let outline = (!self.options.overlap).then_some(prepared.outline);
-        if let Some(initial) = self.options.initial {
+        if let Some(initial) = self.options.initial_rows() {
             let initial = of_area_one(prepared.energy, initial.to_vec());
             if let Some(map) = starts::allowed(prepared.energy, outline, initial) {
                 return Ok((map, false));

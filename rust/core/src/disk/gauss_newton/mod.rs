@@ -173,8 +173,9 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arrays::rows;
     use crate::control::Silent;
-    use crate::disk::disk_map;
+    use crate::disk::map_disk;
     use crate::mesh::TriangleMesh;
     use crate::sparse::processor::with_each_width;
 
@@ -209,10 +210,11 @@ mod tests {
             (Boundary::Rectangle, 1e-3),
         ] {
             let options = DiskMapOptions { boundary, angle_weight, ..Default::default() };
-            let mut maps = with_each_width(|| disk_map(&mesh, &options, &mut Silent).unwrap().uv);
-            maps.push(disk_map(&mesh, &options, &mut Silent).unwrap().uv);
+            let mut maps = with_each_width(|| map_disk(&mesh, &options, &mut Silent).unwrap().uv);
+            maps.push(map_disk(&mesh, &options, &mut Silent).unwrap().uv);
             for map in &maps[1..] {
-                let moved = map.iter().zip(&maps[0]).map(|(x, y)| (x[0] - y[0]).hypot(x[1] - y[1]));
+                let [map, first]: [&[[f64; 2]]; 2] = [map, &maps[0]].map(|map| rows(map.view()));
+                let moved = map.iter().zip(first).map(|(x, y)| (x[0] - y[0]).hypot(x[1] - y[1]));
                 let most = moved.fold(0.0, f64::max);
                 assert!(most < 1e-6, "{boundary:?} {angle_weight}: {most}");
             }

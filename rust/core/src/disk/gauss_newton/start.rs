@@ -85,7 +85,7 @@ impl Run<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        if let Some(initial) = self.options.initial {
+        if let Some(initial) = self.options.initial_rows() {
             return Ok((lifted(initial), Status::MaxIterations));
         }
         let mut objective = DiskObjective::new(self.mesh, problem.energy.targets(), self.options.boundary)?;

@@ -9,7 +9,7 @@ use super::objective::DiskObjective;
 use crate::codomain::planar::PlanarMap;
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::disk::boundary::arc_length;
-use crate::disk::options::Method;
+use crate::disk::options::DiskMethod;
 use crate::disk::run::Run;
 use crate::disk::{certificate, start, unfold};
 use crate::error::{Elements, Error, NumericsError};
@@ -87,18 +87,18 @@ impl Run<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, Status), Error> {
         // 1. The start map, fixed-point steps from it
-        let (map, status) = match (self.options.initial, self.options.method) {
-            (Some(initial), Method::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
+        let (map, status) = match (self.options.initial_rows(), self.options.method) {
+            (Some(initial), DiskMethod::ConjugateGradient) => (initial.to_vec(), Status::MaxIterations),
             (initial, method) => {
                 let watch = Watch::new(observer, 0.0, MESSAGE);
                 let begin = || start::start(self.mesh, objective, &watch);
                 let start = initial.map_or_else(begin, |map| Ok(map.to_vec()))?;
-                let to = if method == Method::FixedPoint { 0.8 } else { 0.2 };
+                let to = if method == DiskMethod::FixedPoint { 0.8 } else { 0.2 };
                 let mut phase = Phase { whole: observer, from: 0.0, to };
                 fixed_point(objective, start, &self.fixed_point_stopping(), history, &mut phase)
             }
         };
-        if self.options.method == Method::FixedPoint || status == Status::Cancelled {
+        if self.options.method == DiskMethod::FixedPoint || status == Status::Cancelled {
             return Ok((map, status));
         }
         // 2. Conjugate gradients
@@ -169,8 +169,8 @@ impl Run<'_> {
     fn fixed_point_stopping(&self) -> Stopping {
         let whole = self.stopping();
         match self.options.method {
-            Method::FixedPoint => whole,
-            Method::ConjugateGradient | Method::GaussNewton => {
+            DiskMethod::FixedPoint => whole,
+            DiskMethod::ConjugateGradient | DiskMethod::GaussNewton => {
                 Stopping { max_iterations: whole.max_iterations.min(FIXED_POINT_STEPS), ..whole }
             }
         }

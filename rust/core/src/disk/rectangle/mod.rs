@@ -64,7 +64,7 @@ pub(super) fn solve(
         let outline = Outline::new(run.mesh);
         let sides = sides(outline.vertices, &corners);
         let rectangle = Rectangle { run: *run, sides, aspect: run.options.aspect };
-        let of_initial = run.options.initial.map(|map| {
+        let of_initial = run.options.initial_rows().map(|map| {
             let [low, high] = bounds(outline.vertices, map);
             (high[0] - low[0]) / (high[1] - low[1])
         });
@@ -171,8 +171,9 @@ impl Rectangle<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arrays::rows;
     use crate::control::Silent;
-    use crate::disk::disk_map;
+    use crate::disk::map_disk;
     use crate::disk::options::Boundary;
     use crate::mesh::TriangleMesh;
 
@@ -196,7 +197,7 @@ mod tests {
     fn mapped(mesh: &TriangleMesh, corners: Option<[usize; 4]>, aspect: Option<f64>) -> crate::disk::DiskMap {
         let options =
             DiskMapOptions { boundary: Boundary::Rectangle, corners, aspect, ..DiskMapOptions::default() };
-        disk_map(mesh, &options, &mut Silent).unwrap()
+        map_disk(mesh, &options, &mut Silent).unwrap()
     }
 
     #[test]
@@ -204,8 +205,9 @@ mod tests {
         let mesh = grid(7, 12, [3.0, 2.0]);
         let map = mapped(&mesh, None, None);
         assert!(map.distortion.area_ratio_std < 1e-9 && map.distortion.angle_distortion_max < 1.0 + 1e-9);
-        assert_eq!([map.uv[0], map.uv[11][..].try_into().unwrap()], [[0.0, 0.0], [1.0, 0.0]]);
-        assert!((map.uv[83][1] - 2.0 / 3.0).abs() < 1e-9);
+        let uv: &[[f64; 2]] = rows(map.uv.view());
+        assert_eq!([uv[0], uv[11]], [[0.0, 0.0], [1.0, 0.0]]);
+        assert!((uv[83][1] - 2.0 / 3.0).abs() < 1e-9);
     }
 
     #[test]
@@ -213,9 +215,10 @@ mod tests {
         let mesh = grid(7, 7, [1.0, 1.0]);
         // a quarter turn, and half as high as wide
         let map = mapped(&mesh, Some([6, 48, 42, 0]), Some(2.0));
+        let uv: &[[f64; 2]] = rows(map.uv.view());
         let expected = [(6, [0.0, 0.0]), (48, [1.0, 0.0]), (42, [1.0, 0.5]), (0, [0.0, 0.5])];
-        expected.iter().for_each(|&(v, x): &(usize, [f64; 2])| assert_eq!(map.uv[v], x));
-        (0..7).for_each(|k| assert_eq!(map.uv[6 + 7 * k][1], 0.0));
+        expected.iter().for_each(|&(v, x): &(usize, [f64; 2])| assert_eq!(uv[v], x));
+        (0..7).for_each(|k| assert_eq!(uv[6 + 7 * k][1], 0.0));
         assert!(map.distortion.folded.is_empty());
     }
 
@@ -228,7 +231,7 @@ mod tests {
                 corners: Some(corners),
                 ..DiskMapOptions::default()
             };
-            disk_map(&mesh, &options, &mut Silent).unwrap_err().to_string()
+            map_disk(&mesh, &options, &mut Silent).unwrap_err().to_string()
         };
         // 3 and 12 are the only corners of a face each
         assert!(refused([0, 2, 15, 12]).contains("2 vertices (2, 7): an edge inside the surface joins them"));

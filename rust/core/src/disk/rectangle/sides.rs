@@ -9,7 +9,7 @@ use crate::mesh::TriangleMesh;
 /// The places of the corners along the boundary.
 pub(super) fn corners_of(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<[usize; 4], Error> {
     let outline = Outline::new(mesh);
-    match (options.corners, options.initial) {
+    match (options.corners, options.initial_rows()) {
         (Some(corners), _) => outline.given(corners),
         (None, None) => outline.found(options.aspect),
         (None, Some(initial)) => outline.given(corners_of_map(outline.vertices, initial)),

@@ -40,7 +40,7 @@ impl Rectangle<'_> {
     ) -> Result<(SpatialMap, Status), Error> {
         // 1. The given map, or some steps of the papers' fixed point from the harmonic map
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.3 };
-        let (near, mut status) = match (is_cancelled, self.run.options.initial) {
+        let (near, mut status) = match (is_cancelled, self.run.options.initial_rows()) {
             (_, Some(initial)) => (Some(self.given(initial, &boundary)), Status::MaxIterations),
             (true, None) => (None, Status::Cancelled),
             (false, None) => self.near(problem, boundary.clone(), history, &mut phase),

@@ -147,7 +147,7 @@ fn in_the_plane_the_energy_is_made_of_area_ratios_and_singular_values() {
     let energy = AuthalicEnergy::new(&mesh, targets.clone(), Codomain::Disk, 0.0);
     let flat: Vec<[f64; 2]> = map.iter().map(|x| [x[0], x[1]]).collect();
     let image = crate::distortion::Image::Plane(&flat);
-    let figures = crate::distortion::distortion(mesh.points(), mesh.faces(), image, &targets).unwrap();
+    let figures = crate::distortion::measure(mesh.points(), mesh.faces(), image, &targets).unwrap();
     let mut expected = 0.0;
     for (face, target) in targets.iter().enumerate() {
         let target = WEIGHTS.scale * target;

@@ -16,7 +16,7 @@ const LEAST_RING: usize = 16;
 
 /// Pairs of corresponding curves, one on the source and one on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Curves<'a> {
+pub struct LandmarkCurves<'a> {
     /// (k,): vertex paths along edges of the source, each of at least two edges.
     pub source: &'a [Vec<usize>],
     /// (k,): their partners on the target.
@@ -63,7 +63,7 @@ struct SurfaceCurves<'a> {
     curves: &'a [Vec<usize>],
 }
 
-impl Curves<'_> {
+impl LandmarkCurves<'_> {
     /// Refuses surfaces and curves that cannot be registered, before any work; returns the pairs.
     ///
     /// # Errors

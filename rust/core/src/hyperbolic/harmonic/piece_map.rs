@@ -15,7 +15,7 @@ use super::newton::{Descent, newton};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::{Error, Side};
 use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
-use crate::hyperbolic::options::{HyperbolicOptions, Solver};
+use crate::hyperbolic::options::{HarmonicSolver, HyperbolicOptions};
 use crate::hyperbolic::slice::sliced::{Sliced, SlicedPair};
 use crate::location::Location;
 
@@ -69,11 +69,11 @@ pub(crate) fn map_piece(
     let mut map = ChartMap::by_delaunay(&atlas, places, input, &ours.lengths, &none_kept);
     let mut phase = Phase { whole: observer, from: 0.75, to: 1.0 };
     let descent = match options.solver {
-        Solver::Newton => {
+        HarmonicSolver::Newton => {
             let descent = newton(&mut map, &mut phase)?;
             unfolded(&mut map, &ours.lengths, descent, &mut phase)?
         }
-        Solver::Heat => {
+        HarmonicSolver::Heat => {
             let areas = vertex_areas(source, &ours);
             diffuse(&mut map, &areas, options.heat_steps, options.heat_tolerance, &mut phase)
         }

@@ -17,6 +17,8 @@ mod trace;
 
 use std::f64::consts::PI;
 
+use ndarray::Array2;
+
 use super::features::curves::{CurvePair, check_alone};
 use super::features::piece::Piece;
 use super::features::pieces::pieces;
@@ -27,12 +29,11 @@ use super::metric::{Metric, MetricMethod, hyperbolic_metric};
 use super::moebius::{Complex, Moebius};
 use super::slice::slice_alone;
 use super::slice::sliced::{Side, Sliced};
+use crate::arrays::{from_rows, from_vectors, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
-use crate::location::Location;
-use crate::mesh::geometry::triangle;
-use crate::mesh::{Face, TriangleMesh};
-use crate::vector::Vector3;
+use crate::location::{Location, points_on};
+use crate::mesh::{Face, Surface, TriangleMesh};
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
 use trace::closed_geodesic;
@@ -44,15 +45,15 @@ use trace::closed_geodesic;
 #[derive(Debug, Clone)]
 pub struct HyperbolicStructure {
     /// (n,): the locations of the vertices of the sliced surface on the given surface.
-    pub vertices: Vec<Location>,
+    pub(crate) vertices: Vec<Location>,
     /// (m, 3): the faces of the sliced surface; some given faces are divided.
-    pub faces: Vec<[u32; 3]>,
+    pub(crate) faces: Vec<[u32; 3]>,
     /// (n,): the given vertex that each vertex is; `None` for midpoints of edges.
     pub vertex_of: Vec<Option<u32>>,
     /// (m, 3): the faces of the disk, the surface cut along the arcs too.
-    pub disk_faces: Vec<[u32; 3]>,
+    pub(crate) disk_faces: Vec<[u32; 3]>,
     /// The positions of the vertices of the disk in the Poincaré disk: the fundamental domain.
-    pub positions: Vec<Complex>,
+    pub(crate) positions: Vec<Complex>,
     /// The vertex of the sliced surface that each vertex of the disk copies.
     pub disk_vertex_of: Vec<u32>,
     /// (B,): the features in the order of the chain, each with whether it is reversed.
@@ -70,13 +71,14 @@ pub struct HyperbolicStructure {
     pub pants: Vec<Pants>,
     /// (B − 3,): the closed geodesics between the pants, as locations on the given surface, the first repeated at the
     /// end.
-    pub pants_curves: Vec<Vec<Location>>,
+    pub(crate) pants_curves: Vec<Vec<Location>>,
     /// (B − 3,): the lengths of the closed geodesics.
     pub lengths: Vec<f64>,
     /// The largest curvature left in the metric.
     pub curvature: f64,
     /// The hyperbolic area; 2π(B − 2) up to rounding.
     pub area: f64,
+    surface: Surface,
     surface_faces: Vec<[u32; 3]>,
 }
 
@@ -86,13 +88,35 @@ impl HyperbolicStructure {
         cover(&self.generators, count)
     }
 
-    /// The points in space of locations on the given surface with `vertices`.
-    ///
-    /// # Panics
-    /// If there are fewer `vertices` than the surface has.
-    pub fn in_space(&self, places: &[Location], vertices: &[Vector3]) -> Vec<Vector3> {
-        let point = |place: &Location| place.point(triangle(vertices, self.surface_faces[place.triangle]));
-        places.iter().map(point).collect()
+    /// The vertices of the sliced surface, (n, 3); those of slits stand on both banks.
+    pub fn vertices(&self) -> Array2<f64> {
+        self.in_space(&self.vertices)
+    }
+
+    /// The faces of the sliced surface, (m, 3); some given faces are divided.
+    pub fn faces(&self) -> Array2<u32> {
+        from_rows(self.faces.clone())
+    }
+
+    /// The faces of the disk, (m, 3): the surface cut along the arcs too.
+    pub fn disk_faces(&self) -> Array2<u32> {
+        from_rows(self.disk_faces.clone())
+    }
+
+    /// The positions of the vertices of the disk in the Poincaré disk, (n_disk, 2): the fundamental domain.
+    pub fn positions(&self) -> Array2<f64> {
+        from_rows(self.positions.iter().map(|z| [z.re, z.im]).collect())
+    }
+
+    /// The closed geodesics between the pants on the given surface, (B − 3) arrays (k, 3), the first point repeated at the
+    /// end.
+    pub fn pants_curves(&self) -> Vec<Array2<f64>> {
+        self.pants_curves.iter().map(|curve| self.in_space(curve)).collect()
+    }
+
+    /// The points in space of locations on the given surface.
+    fn in_space(&self, places: &[Location]) -> Array2<f64> {
+        from_vectors(points_on(places, &vectors(self.surface.vertices()), &self.surface_faces))
     }
 }
 
@@ -107,11 +131,12 @@ impl HyperbolicStructure {
 /// [`CurveError::Divides`] for closed curves inside and [`CurveError::TooFewFeatures`] for fewer than three features.
 /// [`NumericsError::NoHyperbolicMetric`] if double precision does not suffice; [`Error::CancelledEarly`].
 pub fn hyperbolic_structure(
-    mesh: &TriangleMesh,
+    surface: &Surface,
     curves: &[Vec<usize>],
     metric: MetricMethod,
     observer: &mut dyn Observer,
 ) -> Result<HyperbolicStructure, Error> {
+    let mesh = surface.mesh()?;
     // 1. The surface with its features
     let pairs = checked(mesh, curves)?;
     let piece = piece(mesh, pairs, &Watch::new(observer, 0.0, "Laying out the surface"))?;
@@ -151,6 +176,7 @@ pub fn hyperbolic_structure(
         lengths,
         curvature: metric.residual,
         area: metric.angles.iter().map(|angles| PI - angles.iter().sum::<f64>()).sum(),
+        surface: surface.clone(),
         surface_faces: mesh.faces().to_vec(),
     };
     observer.progress(1.0, "Done");

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 use crate::control::Silent;
-use crate::distortion::{Distortion, Image, distortion};
+use crate::distortion::{Distortion, Image, measure};
 use crate::mesh::geometry::{face_areas, triangle};
 
 type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
@@ -111,7 +111,7 @@ fn figures(domain: CanonicalDomain, (points, faces): &Mesh, map: &[Vector3]) -> 
     let areas = face_areas(points, faces);
     let plane: Vec<[f64; 2]> = map.iter().map(|&Vector3([u, v, _])| [u, v]).collect();
     let image = if domain == CanonicalDomain::Sphere { Image::Sphere(map) } else { Image::Plane(&plane) };
-    distortion(points, faces, image, &areas).unwrap()
+    measure(points, faces, image, &areas).unwrap()
 }
 
 /// A mesh that is quick to flow.

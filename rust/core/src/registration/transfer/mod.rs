@@ -27,14 +27,6 @@ const INWARD: f64 = 1e-2;
 ///
 /// # Panics
 /// If there are too few `values` for the indices in `faces`.
-///
-/// ```
-/// use authalic::mesh::Face;
-/// use authalic::registration::{Location, pull_vertices};
-///
-/// let middle = Location { triangle: Face(0), barycentric: [0.5, 0.25, 0.25] };
-/// assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2]], &[middle]), [2.5]);
-/// ```
 pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations: &[Location]) -> Vec<f64> {
     rows(locations.len(), width, |row, column| {
         let location = locations[row];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::location::tests::{Map, number, octasphere, rings};
+use crate::mesh::Face;
 
 fn located(target: &Map, points: &[Vector3]) -> Vec<Location> {
     let locator = Locator::new(&target.0, &target.1);
@@ -157,4 +158,10 @@ fn a_value_that_is_not_finite_stays_where_it_is() {
     values.extend([4.0, 5.0, 6.0, f64::NAN]);
     let locations = located(&target, &target.0[..6]);
     assert_eq!(pull_vertices(&values, 1, &target.1, &locations), [0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
+}
+
+#[test]
+fn a_vertex_takes_the_weighted_mean_of_its_triangle() {
+    let middle = Location { triangle: Face(0), barycentric: [0.5, 0.25, 0.25] };
+    assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2]], &[middle]), [2.5]);
 }

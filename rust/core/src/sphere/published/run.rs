@@ -215,7 +215,7 @@ impl Run<'_> {
 
     /// The given start map, or the conformal one.
     fn start(&self, observer: &mut dyn Observer) -> Result<SpatialMap, Error> {
-        match self.options.initial {
+        match self.options.initial_map() {
             Some(initial) => Ok(initial.iter().filter_map(|&x| onto_sphere(x)).collect()),
             None => self.conformal(observer),
         }

@@ -2,12 +2,11 @@
 //! Closed surfaces without handles, and what a one-to-one map of one onto the sphere is, by other formulas
 //! than the library's.
 
+use super::public::sphere_map;
+use authalic::testing::TriangleMesh;
+use authalic::{Error, LineSearch, Silent, SphereMap, SphereMapOptions, SphereMethod};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
-
-use authalic::mesh::TriangleMesh;
-use authalic::optimize::published::gradient_descent::LineSearch;
-use authalic::{Error, Silent, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 
 use super::{Coordinates, TestMesh, determinant, distance, ellipsoid, icosphere, known, lattice};
 

@@ -3,14 +3,12 @@
 
 pub mod closed;
 pub mod planar;
+pub mod public;
 pub mod random;
 
+use authalic::testing::TriangleMesh;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
-
-use authalic::mesh::TriangleMesh;
-use authalic::{Error, Patch, Surface};
-use ndarray::aview2;
 
 /// A mesh and what is known about it by construction.
 #[derive(Debug, Clone)]
@@ -37,21 +35,6 @@ impl TestMesh {
     pub fn is_sphere(&self) -> bool {
         self.components == 1 && self.n_loops == 0 && self.euler_characteristic == 2
     }
-}
-
-/// Cuts vertices and faces along seams.
-pub fn cut(vertices: &[[f64; 3]], faces: &[[u32; 3]], seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
-    Surface::new(aview2(vertices), aview2(faces))?.cut(aview2(seams))
-}
-
-/// The vertices of a patch.
-pub fn vertices_of(patch: &Patch) -> &[[f64; 3]] {
-    patch.surface.vertices().to_slice().expect("row-major").as_chunks().0
-}
-
-/// The faces of a patch.
-pub fn faces_of(patch: &Patch) -> &[[u32; 3]] {
-    patch.surface.faces().to_slice().expect("row-major").as_chunks().0
 }
 
 /// Every test mesh.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a one-to-one map of a disk into the plane is, and its energy, by other formulas than the library's.
 
+use authalic::Boundary;
+use authalic::testing::TriangleMesh;
 use std::f64::consts::TAU;
 
-use authalic::Boundary;
-use authalic::mesh::TriangleMesh;
 use robust::{Coord, orient2d};
 
 type Point = [f64; 2];

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Random surfaces of the kinds on which maps fold, each from a seed.
 
+use authalic::testing::TriangleMesh;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use authalic::mesh::TriangleMesh;
 use robust::{Coord, incircle};
 
 use super::closed::{dot, radial, round_tube};

@@ -20,7 +20,7 @@ fn check(
     source: &[Vec<usize>],
     target: &[Vec<usize>],
 ) -> Result<Vec<CurvePair>, Error> {
-    Curves { source, target }.check(meshes[0], meshes[1])
+    LandmarkCurves { source, target }.check(meshes[0], meshes[1])
 }
 
 /// The message about the same curves on the same surface.

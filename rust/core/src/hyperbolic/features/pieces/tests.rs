@@ -2,7 +2,7 @@
 use super::*;
 use crate::control::{Silent, Watch};
 use crate::error::Error;
-use crate::hyperbolic::features::curves::{Curves, face_on_left};
+use crate::hyperbolic::features::curves::{LandmarkCurves, face_on_left};
 use crate::hyperbolic::features::placement::placed;
 use crate::hyperbolic::features::regions::divided;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
@@ -19,7 +19,7 @@ fn cut(
     ours: &[Vec<usize>],
     theirs: &[Vec<usize>],
 ) -> Result<Vec<(Piece, Piece)>, Error> {
-    let pairs = Curves { source: ours, target: theirs }.check(surface, surface)?;
+    let pairs = LandmarkCurves { source: ours, target: theirs }.check(surface, surface)?;
     let divided = divided(surface, surface, pairs)?;
     let placement = placed([surface; 2], &divided, None, &Watch::new(&mut Silent, 0.0, ""))?;
     Ok(pieces(surface, surface, &divided, &placement))

@@ -2,7 +2,7 @@
 use super::*;
 use crate::alignment::rotation::rotation_of;
 use crate::control::Silent;
-use crate::hyperbolic::features::curves::Curves;
+use crate::hyperbolic::features::curves::LandmarkCurves;
 use crate::hyperbolic::features::regions::divided;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
 
@@ -16,7 +16,7 @@ fn place(
     ours: &[Vec<usize>],
     theirs: &[Vec<usize>],
 ) -> Placement {
-    let pairs = Curves { source: ours, target: theirs }.check(source, target).unwrap();
+    let pairs = LandmarkCurves { source: ours, target: theirs }.check(source, target).unwrap();
     let divided = divided(source, target, pairs).unwrap();
     placed([source, target], &divided, None, &Watch::new(&mut Silent, 0.0, "")).unwrap()
 }
@@ -77,7 +77,7 @@ fn boundary_loops_find_their_partners() {
 #[test]
 fn given_spheres_are_taken_and_checked() {
     let source = mesh(&sphere(3), ellipsoid);
-    let pairs = Curves { source: &arcs(), target: &arcs() }.check(&source, &source).unwrap();
+    let pairs = LandmarkCurves { source: &arcs(), target: &arcs() }.check(&source, &source).unwrap();
     let divided = divided(&source, &source, pairs).unwrap();
     let turn = rotation_of([0.6, 0.0, 0.0, 0.8]);
     let theirs = sphere(3).0;

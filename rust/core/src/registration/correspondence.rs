@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Where each vertex of one surface lies on another, and what follows from that: positions, data carried over, morphs.
+//!
+//! Both surfaces lie in a common domain, the unit sphere or the disk in the plane z = 1, so that data at corners of faces
+//! can be read on the right side of a seam. Data come and go in the order of the vertices and faces as given, whatever
+//! faces were flipped to orient a surface.
+
+use std::sync::Arc;
+
+use ndarray::{Array1, Array2, Array3, ArrayView1, ArrayView2, ArrayView3};
+
+use super::figures::{area_ratios, compare, vertex_areas};
+use super::given_faces::{GivenFaces, nearest_given_corners, pull_given_corners};
+use super::transfer::{nearest_vertices, pull_vertices};
+use crate::arrays::{from_rows, from_vectors, rows, vectors};
+use crate::control::{Observer, Watch};
+use crate::error::{Error, Side};
+use crate::location::{Location, Locator, points_on};
+use crate::mesh::{Surface, TriangleMesh};
+use crate::vector::Vector3;
+
+/// A one-to-one map g of a source surface onto a target.
+#[derive(Debug, Clone)]
+pub struct Correspondence {
+    source: Arc<Registered>,
+    target: Arc<Registered>,
+    locations: Vec<Location>,
+    positions: Vec<Vector3>,
+    area_ratio: Vec<f64>,
+}
+
+/// A surface and its place in the domain.
+#[derive(Debug)]
+pub(crate) struct Registered {
+    pub surface: Surface,
+    /// As oriented.
+    pub faces: Vec<[u32; 3]>,
+    /// The vertices in the domain.
+    pub in_domain: Vec<Vector3>,
+}
+
+impl Registered {
+    pub(crate) fn new(surface: &Surface, faces: &[[u32; 3]], in_domain: Vec<Vector3>) -> Arc<Self> {
+        Arc::new(Self { surface: surface.clone(), faces: faces.to_vec(), in_domain })
+    }
+
+    fn given_faces(&self) -> GivenFaces<'_> {
+        GivenFaces { given: rows(self.surface.faces()), oriented: &self.faces, registered: &self.in_domain }
+    }
+}
+
+impl Correspondence {
+    /// The map by which each vertex of the source comes to lie at its location among the target's faces as oriented.
+    pub(crate) fn new(source: Arc<Registered>, target: Arc<Registered>, locations: Vec<Location>) -> Self {
+        let positions = points_on(&locations, &vectors(target.surface.vertices()), &target.faces);
+        let area_ratio = area_ratios(rows(source.surface.vertices()), &source.faces, &positions);
+        Self { source, target, locations, positions, area_ratio }
+    }
+
+    /// g⁻¹, by looking up the target's vertices among the source's faces in the domain.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`] where the observer ends it.
+    pub(crate) fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
+        let watch = Watch::new(observer, 0.0, "Looking up places");
+        let locator = Locator::new(&self.source.in_domain, &self.source.faces);
+        let locations = locator.locate_all(&self.target.in_domain, &watch).ok_or(Error::CancelledEarly)?;
+        Ok(Self::new(self.target.clone(), self.source.clone(), locations))
+    }
+
+    /// The surface that is mapped.
+    pub fn source(&self) -> &Surface {
+        &self.source.surface
+    }
+
+    /// The surface that it is mapped onto.
+    pub fn target(&self) -> &Surface {
+        &self.target.surface
+    }
+
+    /// The source's faces as oriented, (m, 3).
+    pub fn faces(&self) -> Array2<u32> {
+        from_rows(self.source.faces.clone())
+    }
+
+    /// The target's faces as oriented, (m_t, 3).
+    pub fn target_faces(&self) -> Array2<u32> {
+        from_rows(self.target.faces.clone())
+    }
+
+    /// g(v) of each vertex v of the source, (n, 3), in the target's coordinates.
+    pub fn positions(&self) -> Array2<f64> {
+        from_vectors(self.positions.clone())
+    }
+
+    /// The face of the target in which each of them lies, (n,).
+    pub fn triangles(&self) -> Array1<usize> {
+        self.locations.iter().map(|location| location.triangle.index()).collect()
+    }
+
+    /// The weights of that face's corners as oriented, (n, 3): not negative, and 1 in sum.
+    pub fn barycentric(&self) -> Array2<f64> {
+        from_rows(self.locations.iter().map(|location| location.barycentric).collect())
+    }
+
+    /// The area of each source face's image over its own, (m,), with the source scaled to the area of its image: 1 where
+    /// g preserves areas. All are 0 where the image has no area.
+    pub fn area_ratio(&self) -> Array1<f64> {
+        self.area_ratio.clone().into()
+    }
+
+    /// Data of the target's vertices, (n_t, k), at those of the source, (n, k).
+    ///
+    /// # Errors
+    /// [`Error::InvalidArray`] where there is not one row per vertex of the target.
+    pub fn pull_vertices(&self, values: ArrayView2<'_, f64>) -> Result<Array2<f64>, Error> {
+        let (n, width) = values.dim();
+        if n != self.target().n_vertices() {
+            return Err(misfit(
+                values.shape(),
+                format!("({}, k), one row per vertex of the target", self.target().n_vertices()),
+            ));
+        }
+        let values = values.as_standard_layout();
+        let flat = values.as_slice().expect("in standard layout");
+        let pulled = pull_vertices(flat, width, &self.target.faces, &self.locations);
+        Ok(Array2::from_shape_vec((self.locations.len(), width), pulled).expect("one row per vertex"))
+    }
+
+    /// Data of the corners of the target's faces, (m_t, 3, k), at those of the source, (m, 3, k), both in the order of the
+    /// faces as given. Each corner takes the value on that side of a seam of the data on which its face lies.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArray`] where there is not one row per corner of the target.
+    pub fn pull_corners(&self, values: ArrayView3<'_, f64>) -> Result<Array3<f64>, Error> {
+        let (m, three, width) = values.dim();
+        if (m, three) != (self.target().n_faces(), 3) {
+            return Err(misfit(
+                values.shape(),
+                format!("({}, 3, k), one row per corner of the target", self.target().n_faces()),
+            ));
+        }
+        let values = values.as_standard_layout();
+        let flat = values.as_slice().expect("in standard layout");
+        let (source, target) = (self.source.given_faces(), self.target.given_faces());
+        let pulled = pull_given_corners(flat, width, &source, &target, &self.locations);
+        Ok(Array3::from_shape_vec((self.source.faces.len(), 3, width), pulled).expect("three rows per face"))
+    }
+
+    /// The vertex of the target nearest to each vertex of the source, (n,): where to take labels from.
+    pub fn nearest_vertices(&self) -> Vec<u32> {
+        nearest_vertices(&self.target.faces, &self.locations)
+    }
+
+    /// The corner of the target, 3 × face + corner as given, nearest to each corner of the source, (3 m,), on that side of
+    /// a seam on which its face lies.
+    pub fn nearest_corners(&self) -> Vec<u32> {
+        nearest_given_corners(&self.source.given_faces(), &self.target.given_faces(), &self.locations)
+    }
+
+    /// How well scalars at the vertices of both surfaces, (n,) and (n_t,), agree, weighted by area on the source:
+    /// Pearson's correlation, NaN where one side is constant, and the mean absolute difference.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArray`] where there is not one value per vertex.
+    pub fn compare(
+        &self,
+        source_values: ArrayView1<'_, f64>,
+        target_values: ArrayView1<'_, f64>,
+    ) -> Result<(f64, f64), Error> {
+        if source_values.len() != self.source().n_vertices() {
+            return Err(misfit(
+                source_values.shape(),
+                format!("({},), one value per vertex of the source", self.source().n_vertices()),
+            ));
+        }
+        let target_values = target_values.to_owned().insert_axis(ndarray::Axis(1));
+        let pulled = self.pull_vertices(target_values.view())?;
+        let pulled = pulled.as_slice().expect("in standard layout");
+        Ok(compare(&source_values.to_vec(), pulled, &self.vertex_areas()))
+    }
+
+    /// g(v) as rows.
+    pub(super) fn position_rows(&self) -> &[Vector3] {
+        &self.positions
+    }
+
+    /// A third of the area of the faces at each vertex of the source.
+    pub(super) fn vertex_areas(&self) -> Vec<f64> {
+        vertex_areas(rows(self.source.surface.vertices()), &self.source.faces)
+    }
+}
+
+/// Two surfaces as meshes; errors say which one is at fault.
+pub(crate) fn meshes<'a>(
+    source: &'a Surface,
+    target: &'a Surface,
+) -> Result<(&'a TriangleMesh, &'a TriangleMesh), Error> {
+    let mesh = |surface: &'a Surface, side| surface.mesh().map_err(|error| error.of_surface(side));
+    Ok((mesh(source, Side::Source)?, mesh(target, Side::Target)?))
+}
+
+fn misfit(shape: &[usize], expected: String) -> Error {
+    let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
+    let found = format!("of shape ({})", lengths.join(", "));
+    Error::InvalidArray { name: "values", found, expected: format!("of shape {expected}") }
+}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Types of the native module; the documentation stands in the docstrings of the module itself."""
+"""Types of the native module, whose own docstrings document it."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, Literal, Self, TypeAlias, final

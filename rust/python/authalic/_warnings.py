@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What a registration by curves warns of."""
+"""The warnings of a registration by curves."""
 
 from typing import Literal
 
 
 class RegistrationWarning(str):
-    """A sign that the curves of a registration do not say what was meant; as a string, its message.
+    """A sign that the curves of a registration do not say what was meant. As a string it is its message.
 
     Attributes
     ----------
     kind : str
-        One of `WARNING_KINDS`, which also says what the indices are of.
+        One of `WARNING_KINDS`, which says what the indices number.
     side : "source", "target" or None
-        The surface that is meant, where it is one of the two.
+        The surface concerned, if it is one of the two.
     curve : int or None
-        The curve that is meant, the first of two.
+        The curve concerned, or the first of two.
     second_curve : int or None
-        The second of two.
+        The second of two curves.
     indices : tuple of int
-        The first few elements that are meant.
+        The first few elements concerned.
     count : int
-        How many elements are meant.
+        The number of elements concerned.
     value : float or None
-        The figure that is too large: of "strained" the energy over that of the surface itself, of
+        The figure that is too large: for "strained" the energy over that of the surface itself, for
         "distorted" the share of the surface.
     message : str
         The message.

@@ -40,7 +40,7 @@ pub fn reals(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Array1<f64>> {
     })
 }
 
-/// Faces or seams: integers of shape (n, N) that fit a vertex index. Reals are taken where they are whole.
+/// Faces or seams: vertex indices of shape (n, N). Whole reals are accepted.
 pub fn index_table<const N: usize>(
     object: &Bound<'_, PyAny>,
     name: &str,
@@ -49,7 +49,7 @@ pub fn index_table<const N: usize>(
     narrow(object.py(), name, "row", &integers::<N>(object, name)?, n_vertices)
 }
 
-/// Vertices: integers of shape (k,) that fit a vertex index; `noun` names an entry.
+/// Vertex indices of shape (k,); `noun` names an entry in messages.
 pub fn index_list(
     object: &Bound<'_, PyAny>,
     name: &str,
@@ -85,15 +85,14 @@ impl<'py> Values<'py> {
         shape_words(self.array.shape())
     }
 
-    /// All values in C order as float64; `expected` says what they have to be.
+    /// All values in C order as float64; `expected` says in messages what they must be.
     pub fn reals(&self, expected: &str) -> PyResult<Vec<f64>> {
         let array: PyReadonlyArrayDyn<'_, f64> =
             converted(&self.array, self.name, "float64", "iufb", expected)?;
         Ok(array.as_slice()?.to_vec())
     }
 
-    /// Rows of the same dtype as an array of another shape; a row is what is left of the shape after `axes`
-    /// of them.
+    /// The given rows, in the same dtype, as an array of shape `shape`. The first `axes` axes number the rows.
     pub fn taken(&self, axes: usize, rows: &[u32], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
         let py = self.array.py();
         let (first, rest) = self.array.shape().split_at(axes);
@@ -107,7 +106,7 @@ impl<'py> Values<'py> {
     }
 }
 
-/// Numbers in C order to an array of any shape.
+/// Numbers in C order as an array of any shape.
 pub fn from_values(py: Python<'_>, values: Vec<f64>, shape: Vec<usize>) -> PyResult<Py<PyAny>> {
     Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any().unbind())
 }
@@ -117,12 +116,12 @@ pub fn from_array<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) 
     array.into_pyarray(py).unbind()
 }
 
-/// Indices to an int64 array.
+/// Indices as an int64 array.
 pub fn from_indices<D: Dimension>(py: Python<'_>, indices: ArrayView<'_, u32, D>) -> Py<PyArray<i64, D>> {
     from_array(py, indices.mapv(i64::from))
 }
 
-/// Indices to an (n,) int64 array.
+/// Indices as an (n,) int64 array.
 pub fn from_index_list(py: Python<'_>, list: impl ExactSizeIterator<Item = usize>) -> Py<PyArray1<i64>> {
     PyArray1::from_iter(py, list.map(|i| i as i64)).unbind()
 }
@@ -149,11 +148,11 @@ fn converted<'py, T: numpy::Element>(
     expected: &str,
 ) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
     let (py, array) = (object.py(), as_array(object, name)?);
-    // an empty list has dtype float64, whatever was meant
+    // an empty list has dtype float64 whatever its caller meant
     if array.len() > 0 && !kinds.contains(&kind(&array)?) {
         return Err(bad_array(py, name, format!("of dtype {}", array.dtype()), expected.into()));
     }
-    // C order and aligned, which a view into a packed record is not
+    // C order and aligned: a view into a packed record is not aligned
     let required =
         py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "require"), (array, dtype, "CA"))?;
     Ok(required.cast_into::<PyArrayDyn<T>>()?.readonly())
@@ -166,7 +165,7 @@ fn table<T: numpy::Element + Copy + Default, const N: usize>(
     kinds: &str,
     expected: &str,
 ) -> PyResult<Array2<T>> {
-    // the conversion makes a scalar an array of one, so the shape is judged before
+    // the shape is that before the conversion, which makes a scalar an array of one
     let given = as_array(object, name)?;
     let array: PyReadonlyArrayDyn<'_, T> = converted(object, name, dtype, kinds, expected)?;
     match given.shape() {
@@ -190,8 +189,7 @@ fn integers<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<A
     }
 }
 
-/// Indices of the `n_vertices` vertices, or an error that names the rows (the noun says what they are) with
-/// others.
+/// The table as vertex indices, or an error that names the rows with values out of range; `noun` names a row.
 fn narrow(
     py: Python<'_>,
     name: &str,

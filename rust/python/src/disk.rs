@@ -13,20 +13,20 @@ use crate::options::{history, parse_iterations};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
-/// A one-to-one map of a disk to the unit disk.
+/// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct DiskMap {
     /// (n, 2) float64: the image of each vertex in the unit disk, or on the rectangle asked for.
     uv: Reals,
-    /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
+    /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
     faces: Py<PyArray2<i64>>,
-    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says.
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case.
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds; the start
-    /// first. gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start
-    /// that "gauss_newton" keeps.
+    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds: one record per
+    /// iteration, the start first. gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's
+    /// metric; 0 for a start that "gauss_newton" keeps.
     history: Py<PyAny>,
     /// The figures of the map.
     distortion: Py<Distortion>,
@@ -62,13 +62,13 @@ impl DiskMap {
     }
 }
 
-/// Maps a disk to the unit disk, or onto a rectangle, so that areas are kept.
+/// Maps a disk to the unit disk, or onto a rectangle, so that areas are preserved.
 ///
-/// By default a guarded Gauss–Newton descent: from a map without folds, be it built up vertex by vertex where
-/// all else collapses, down to the least E_A, without ever folding a face. The papers' methods (Liu & Yueh
-/// 2023) stay for comparison: a harmonic start with an arc-length boundary, fixed-point steps (equation 2.5)
-/// and preconditioned nonlinear conjugate gradients (Algorithm 3.1); the folds that they leave are unfolded.
-/// No result has a folded face, decided by exact predicates.
+/// The default is a guarded Gauss–Newton descent: it starts from a map without folds, built up vertex by vertex if
+/// other starts collapse, and lowers E_A without ever folding a face. The papers' methods (Liu & Yueh 2023) remain
+/// for comparison: a harmonic start with an arc-length boundary, fixed-point steps (equation 2.5) and
+/// preconditioned nonlinear conjugate gradients (Algorithm 3.1); the folds that they leave are unfolded. No result
+/// has a folded face; exact predicates decide.
 ///
 /// Parameters
 /// ----------
@@ -77,66 +77,65 @@ impl DiskMap {
 /// faces : (m, 3) integer array
 ///     Triangles of an orientable manifold with one boundary loop and no handles.
 /// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
-///     The optimiser.
+///     The optimizer.
 /// boundary : {"sliding", "arc_length", "free", "rectangle"}
-///     Whether boundary vertices slide along the circle in their order (the default), stay at arcs proportional to the
-///     edge lengths as in the papers, take any outline that does not cross itself, the whole scaled into the unit disk,
-///     or go onto a rectangle: four at its corners, the others sliding along its sides. A rectangle has its lower left
-///     corner in (0, 0) and a longer side of 1. A free boundary and a rectangle are for "gauss_newton"; with an
-///     `angle_weight` a free boundary spares both angles and areas, and holes are as free as the longest loop.
+///     "sliding" (default): boundary vertices slide along the circle in their order. "arc_length": they stay at arcs
+///     proportional to the edge lengths, as in the papers. "free": they take any outline that does not cross itself,
+///     scaled into the unit disk; with an `angle_weight` it suits angles and areas, and holes are as free as the longest
+///     loop. "rectangle": four lie at the corners of a rectangle and the others slide along its sides; its lower left
+///     corner is (0, 0), its longer side 1. The last two are for "gauss_newton" only.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (the default) keeps areas alone,
-///     .03 is a balance, .3 keeps shapes and lets areas go. For "gauss_newton" only.
+///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
+///     balance, .3 preserves shapes at the expense of areas. For "gauss_newton" only.
 /// area_tolerance : float, optional
-///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), A the area of the image, is within
-///     this tolerance, say .01. The status is "stalled" where no map that even was reached; `max_iterations` limits the
-///     whole search. Excludes an `angle_weight`; for "gauss_newton" only. Default: none, `angle_weight` decides.
+///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), with A the area of the image, is
+///     within this tolerance, such as .01. The status is "stalled" if no map reached it; `max_iterations` limits the
+///     whole search. Excludes `angle_weight`; for "gauss_newton" only. Default: `angle_weight` decides.
 /// initial : (n, 2) real array, optional
-///     A start map whose boundary runs once around the unit circle, on a mesh with one boundary loop; for a rectangle
-///     along the sides of an upright one; with a free boundary any map without folds whose outline does not cross
-///     itself (another one is not used). Default: harmonic, then five fixed-point steps; with a free boundary the best
-///     of plan view, as-rigid-as-possible and conformal map.
+///     A start map of a mesh with one boundary loop, which runs once around the unit circle, or along the sides of an
+///     upright rectangle. With a free boundary: any map, used if it has no folds and its outline does not cross
+///     itself. Default: harmonic map and five fixed-point steps; with a free boundary the best of plan view,
+///     as-rigid-as-possible and conformal map.
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
-///     deviation of less than .5 % (.2 % below 10,000 vertices); for the papers' methods 50, as in the paper's tables.
-///     On top come up to five fixed-point steps, and where the start folds or the result is uneven steps that unfold it
-///     or a second descent.
+///     Iteration limit. Default for "gauss_newton": none, but with a weight of 0 and no tolerance it stops after 11
+///     iterations (33 below 10,000 vertices) once the area deviation is below .5 % (.2 %); for the papers' methods 50,
+///     as in the paper's tables. Not counted: up to five fixed-point steps at the start, steps that unfold it, and a
+///     descent after folds were mended.
 /// tolerance : float, optional
-///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/A), falls below it, default 2e-4
-///     (after the usual iterations .5 %, and .2 % below 10,000 vertices), or at a stationary point of the energy; with
-///     a free boundary and an `angle_weight` always there. The papers' methods have when √(gᵀM⁻¹g), the gradient_norm of
-///     the history, falls below it, default 1e-8.
+///     "gauss_newton" has converged when the area deviation √(E_A/A) is below this, default 2e-4, or at a stationary
+///     point of the energy; with a free boundary and an `angle_weight` only at such a point. The papers' methods have
+///     converged when √(gᵀM⁻¹g), the gradient_norm of the history, is below this, default 1e-8.
 /// fill_holes : bool
-///     Fill all boundary loops but the longest virtually instead of refusing them; with a free boundary they
-///     are accepted and stay open. Default False.
+///     Fill all boundary loops but the longest virtually instead of refusing them; with a free boundary they stay
+///     open. Default False.
 /// overlap : bool
-///     Let a free boundary cross itself, which spares more angles where limbs would meet in the plane. Default
-///     False: maps are one-to-one. ValueError with another boundary than "free".
+///     Let a free boundary cross itself, which distorts angles less where limbs would meet in the plane. Default
+///     False: maps are one-to-one. ValueError unless the boundary is "free".
 /// corners : (4,) integer array, optional
-///     For a rectangle: the boundary vertices at its corners, in their order along the boundary, counter-clockwise, the
-///     first at the lower left. Default: where the boundary turns most, or where there are fewer than four such places, the
-///     middles of the longest sides between them; laid out with z, or on flat surfaces y, up. An edge inside the surface
-///     between two vertices of one side would make faces flat: such corners are refused.
+///     For a rectangle: the boundary vertices at its corners, counter-clockwise from the lower left. Default: where the
+///     boundary turns most, and if there are fewer than four such places, the middles of the longest sides between
+///     them; laid out with z, or on flat surfaces y, up. Corners are refused if an inner edge joins two vertices of one
+///     side, since its faces would be flat.
 /// aspect : float, optional
-///     For a rectangle: width over height, from 1e-4 to 1e4. Default: the aspect that spares angles most, found along with
-///     the map.
+///     For a rectangle: width over height, from 1e-4 to 1e4. Default: the aspect of least angle distortion,
+///     found along with the map.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so far.
+///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
 /// Returns
 /// -------
 /// DiskMap
-///     Without `initial`, of all rotated copies of a map to the disk the one whose lowest-numbered vertex of the (longest)
-///     boundary lies at (1, 0); with a free boundary, to the right of the mean of all vertices.
+///     Without `initial`, the map is rotated: the lowest-numbered vertex of the (longest) boundary lies at (1, 0), or
+///     with a free boundary to the right of the mean of all vertices.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     The input is no disk, or an array, corners or a start map do not fit; nothing was computed.
+///     The input is no disk, or an array, the corners or the start map do not fit. Nothing is computed.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
 ///     Every start folds in double precision, or the call was cancelled before there was a map without folds.
 ///
@@ -207,8 +206,8 @@ fn parse_method(method: &str) -> PyResult<DiskMethod> {
         "fixed_point" => Ok(DiskMethod::FixedPoint),
         "conjugate_gradient" => Ok(DiskMethod::ConjugateGradient),
         "gauss_newton" => Ok(DiskMethod::GaussNewton),
-        other => Err(bad_option(format!(
-            "method must be \"gauss_newton\", \"conjugate_gradient\" or \"fixed_point\", but is {other:?}"
+        unknown => Err(bad_option(format!(
+            "method must be \"gauss_newton\", \"conjugate_gradient\" or \"fixed_point\", but is {unknown:?}"
         ))),
     }
 }
@@ -219,8 +218,8 @@ fn parse_boundary(boundary: &str) -> PyResult<Boundary> {
         "sliding" => Ok(Boundary::Sliding),
         "free" => Ok(Boundary::Free),
         "rectangle" => Ok(Boundary::Rectangle),
-        other => Err(bad_option(format!(
-            "boundary must be \"sliding\", \"arc_length\", \"free\" or \"rectangle\", but is {other:?}"
+        unknown => Err(bad_option(format!(
+            "boundary must be \"sliding\", \"arc_length\", \"free\" or \"rectangle\", but is {unknown:?}"
         ))),
     }
 }

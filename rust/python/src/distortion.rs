@@ -8,16 +8,16 @@ use crate::arrays::{self, from_array, from_index_list, reals};
 use crate::run::run;
 use crate::surface::Given;
 
-/// Quality figures of a map; all are signed, so a folded face never scores like a good one.
+/// The quality figures of a map. All are signed: a folded face never scores like a good one.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Distortion {
     /// E_A = Σ (a − |τ|)²/|τ| on targets rescaled to the image's area; 0 for an area-preserving map.
     authalic_energy: f64,
-    /// Mean over the faces of the signed image area over the rescaled target.
+    /// Mean of the area ratio, the signed image area of a face over its rescaled target.
     area_ratio_mean: f64,
-    /// Population standard deviation of the same ratio.
+    /// Population standard deviation of the area ratio.
     area_ratio_std: f64,
-    /// (m,) float64: log2 of the same ratio, -inf for a folded face.
+    /// (m,) float64: log2 of the area ratio of each face, -inf for a folded face.
     log2_area_ratio: Py<PyArray1<f64>>,
     /// (k,) int64: faces whose exact orientation in the image is not positive, ascending.
     folded: Py<PyArray1<i64>>,
@@ -25,9 +25,9 @@ pub struct Distortion {
     angle_distortion: Py<PyArray1<f64>>,
     /// Mean of angle_distortion over the faces.
     angle_distortion_mean: f64,
-    /// Its 99th percentile.
+    /// 99th percentile of angle_distortion.
     angle_distortion_p99: f64,
-    /// Its maximum.
+    /// Maximum of angle_distortion.
     angle_distortion_max: f64,
 }
 
@@ -62,18 +62,17 @@ impl Distortion {
 
 /// Measures a map: area ratios, authalic energy, folds, angle distortion.
 ///
-/// Target areas are rescaled so that they sum to the image's area. Which faces are folded is decided exactly.
+/// Target areas are rescaled so that they sum to the image's area. Exact predicates decide which faces are folded.
 ///
 /// Parameters
 /// ----------
 /// vertices : (n, 3) real array
 ///     Positions on the surface, any unit. Or a Surface, without `faces`: `distortion(surface, image)`.
 /// faces : (m, 3) integer array
-///     Triangles; they need not form a manifold. Faces turned against the rest of their component are
-///     turned back.
+///     Triangles; they need not form a manifold. Faces turned against the rest of their component are turned back.
 /// image : (n, 2) or (n, 3) real array
 ///     The map: into the plane (a face is positive counter-clockwise), or onto a sphere around the origin
-///     (positive counter-clockwise from outside). Single precision is measured, and certified, as it is.
+///     (positive counter-clockwise from outside). Arrays in single precision are measured and certified as they are.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 ///
@@ -84,7 +83,7 @@ impl Distortion {
 /// Raises
 /// ------
 /// MeshError
-///     Arrays of wrong shape, NaN, faces without area, an image without area.
+///     An array has a wrong shape or NaN, or faces or the image have no area.
 ///
 /// Examples
 /// --------

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The two exceptions of the package, what becomes which, and the facts that exceptions and warnings carry.
+//! The two exceptions of the package, the errors that become them, and the facts that exceptions and warnings carry.
 
 use authalic::{Elements, Error, ErrorKind, Side, Warning, WarningKind};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -12,26 +12,26 @@ create_exception!(
     authalic,
     MeshError,
     PyValueError,
-    "Bad input: says what is wrong, where and what to do.
+    "Bad input: the message says what is wrong, where, and what to do.
 
-The same as data, so that a program need not read the message, which may be reworded.
+The attributes hold the facts of the message, which may be reworded.
 
 Attributes
 ----------
 kind : str
-    One of the kinds below and in `ERROR_KINDS`, each with what the indices are of.
+    One of the kinds below, which are also in `ERROR_KINDS`; it says what the indices number.
 side : \"source\", \"target\" or None
-    The surface at fault, where it is one of two.
+    The surface at fault, if it is one of two.
 curve : int or None
-    The landmark curve at fault, the first of two.
+    The landmark curve at fault, or the first of two.
 second_curve : int or None
     The second of two curves at fault.
 indices : tuple of int, or of pairs of int
     The first few elements at fault, an edge as a pair of vertices.
 count : int
-    How many elements are at fault.
+    The number of elements at fault.
 
-A ValueError about an option carries the same, with the kind \"invalid_option\"."
+A ValueError about an option has these attributes too, with the kind \"invalid_option\"."
 );
 create_exception!(
     authalic,
@@ -75,7 +75,7 @@ fn dictionary<'py>(
     Ok(dictionary)
 }
 
-/// Bad meshes and arrays are `MeshError`, bad options plain `ValueError`, failed numerics `SolverError`.
+/// `MeshError` for bad meshes and arrays, plain `ValueError` for bad options, `SolverError` for failed numerics.
 pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
     let message = in_python_words(error);
     let raised = match error {
@@ -93,7 +93,7 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
     with_facts(py, raised, &facts)
 }
 
-/// The message of an error, with what only Python's arguments can do about it.
+/// The message of an error, with the argument of Python that avoids it.
 fn in_python_words(error: &Error) -> String {
     match error {
         Error::Mesh(authalic::MeshError::SeveralBoundaries { .. }) => {
@@ -108,7 +108,7 @@ pub fn bad_array(py: Python<'_>, name: &str, found: String, expected: String) ->
     about_argument(py, ErrorKind::InvalidArray, name, &found, &expected, None)
 }
 
-/// A `MeshError` about the rows of an argument that are no indices of vertices.
+/// A `MeshError` about the rows of an argument that hold no vertex indices.
 pub fn bad_indices(py: Python<'_>, name: &str, found: &str, expected: &str, rows: &Elements) -> PyErr {
     about_argument(py, ErrorKind::IndexOutOfRange, name, found, expected, Some(rows))
 }
@@ -139,7 +139,7 @@ pub fn internal(py: Python<'_>, text: &str) -> PyErr {
     with_facts(py, SolverError::new_err(message), &Facts::new(ErrorKind::Internal.as_str()))
 }
 
-/// A warning as a string with the facts.
+/// A warning as a string that carries its facts.
 pub fn warning(py: Python<'_>, warning: &Warning) -> PyResult<Py<PyAny>> {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let facts = Facts {
@@ -154,7 +154,7 @@ pub fn warning(py: Python<'_>, warning: &Warning) -> PyResult<Py<PyAny>> {
     Ok(class.call((warning.to_string(),), Some(&facts))?.unbind())
 }
 
-/// What an exception or a warning carries beside its message.
+/// The data that an exception or a warning carries beside its message.
 struct Facts<'a> {
     kind: &'static str,
     side: Option<Side>,
@@ -192,7 +192,7 @@ fn indices<'py>(py: Python<'py>, elements: Option<&Elements>) -> PyResult<Bound<
     }
 }
 
-/// The exception with the facts as attributes.
+/// The exception, with the facts as attributes.
 fn with_facts(py: Python<'_>, raised: PyErr, facts: &Facts<'_>) -> PyErr {
     let set = |dictionary: Bound<'_, PyDict>| {
         let value = raised.value(py);

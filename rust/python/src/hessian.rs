@@ -14,8 +14,8 @@ type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 
 /// Hessian of the stretch energy of a map into space, as a sparse matrix.
 ///
-/// Sutti & Yueh (2024), appendix B, by the 3n coordinates of the image: x of all vertices, then y, then z.
-/// Target areas are rescaled so that they sum to the image's area. Translations are in its kernel.
+/// Sutti & Yueh (2024), appendix B, with respect to the 3n coordinates of the image: x of all vertices, then y,
+/// then z. Target areas are rescaled so that they sum to the image's area. Translations are in its kernel.
 ///
 /// Parameters
 /// ----------
@@ -31,8 +31,8 @@ type Columns = (Py<PyArray1<f64>>, Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 /// Returns
 /// -------
 /// data, indices, indptr : (k,) float64, (k,) int64, (3n + 1,) int64
-///     The symmetric (3n, 3n) matrix in compressed columns, both triangles, as
-///     ``scipy.sparse.csc_array((data, indices, indptr))`` takes it.
+///     The symmetric (3n, 3n) matrix in compressed columns, both triangles, ready for
+///     ``scipy.sparse.csc_array((data, indices, indptr))``.
 ///
 /// Raises
 /// ------

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What several bindings share: options and the history.
+//! Options and the history, for several bindings.
 
 use authalic::{FlowOptions, MetricMethod, Record};
 use numpy::PyArray1;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::errors::bad_option;
 
-/// A number of iterations.
+/// An iteration limit.
 pub fn parse_iterations(max_iterations: i64) -> PyResult<usize> {
     usize::try_from(max_iterations)
         .map_err(|_| bad_option(format!("max_iterations must be ≥ 0, but is {max_iterations}")))
@@ -33,12 +33,12 @@ pub fn history(py: Python<'_>, records: &[Record]) -> PyResult<Py<PyAny>> {
     Ok(array.unbind())
 }
 
-/// The ways to a hyperbolic metric by their names.
+/// The methods for the hyperbolic metric, by name.
 pub fn metrics() -> [(&'static str, MetricMethod); 2] {
     [("newton", MetricMethod::Newton), ("ricci_flow", MetricMethod::RicciFlow(FlowOptions::default()))]
 }
 
-/// The value of an option that has a few names.
+/// The value that an option names, one of a few.
 pub fn choice<T: Copy>(name: &str, given: &str, choices: &[(&str, T)]) -> PyResult<T> {
     choices.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
         let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();

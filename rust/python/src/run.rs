@@ -2,7 +2,7 @@
 //! Long calls: on a thread of their own, without the GIL, with progress, Ctrl-C and panics contained.
 //!
 //! The calling thread only waits. Every 50 ms it looks for signals, so Ctrl-C raises at once even inside a
-//! factorisation; the worker is left behind, sees the flag at its next report and ends.
+//! factorization. The worker sees the flag at its next report and ends.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,20 +18,20 @@ use crate::errors::{internal, to_python};
 
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// What the worker tells the waiting thread.
+/// A message from the worker to the waiting thread.
 enum Message<T> {
     Progress(f64, String),
     Done(Result<T, Error>),
     Panicked(String),
 }
 
-/// The worker's end of the line.
+/// The observer on the worker thread.
 struct Remote<T> {
     cancelled: Arc<AtomicBool>,
-    /// Only where the caller gave a progress function: each report waits for its answer, so that where a
-    /// run is cancelled does not depend on timing.
+    /// Present if the caller gave a progress function. Each report waits for the answer, so that the step at which
+    /// a run is cancelled does not depend on timing.
     line: Option<(Sender<Message<T>>, Receiver<bool>)>,
-    /// The largest fraction so far: a second attempt at something does not take back what was reported.
+    /// The largest fraction so far, so that progress never falls when a step is tried again.
     reached: f64,
 }
 
@@ -46,7 +46,7 @@ impl<T: Send> Observer for Remote<T> {
         self.reached = self.reached.max(fraction);
         let sent = sender.send(Message::Progress(self.reached, message.to_owned()));
         let goes_on = sent.is_ok() && answers.recv().unwrap_or(false);
-        // one refusal counts for good: the caller is not asked again
+        // a refusal is final: the caller is not asked again
         self.cancelled.fetch_or(!goes_on, Ordering::Relaxed);
         goes_on
     }
@@ -68,11 +68,11 @@ pub fn run<T: Send + 'static>(
     let mut remote = Remote { cancelled: cancelled.clone(), line, reached: 0.0 };
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| work(&mut remote)));
-        // the caller may have gone on Ctrl-C: nobody is left to tell
+        // sending fails if the caller has gone on Ctrl-C
         let _ =
             sender.send(outcome.map_or_else(|panic| Message::Panicked(panic_text(&*panic)), Message::Done));
     });
-    // a receiver is not Sync; the lock lets it be waited on without the GIL
+    // a receiver is not Sync; the lock allows waiting without the GIL
     let outcome = wait(py, progress, &Mutex::new(messages), &answer);
     cancelled.store(true, Ordering::Relaxed);
     outcome
@@ -90,7 +90,7 @@ fn wait<T: Send>(
             Ok(Message::Done(result)) => return result.map_err(|error| to_python(py, &error)),
             Ok(Message::Panicked(text)) => return Err(internal(py, &text)),
             Ok(Message::Progress(fraction, text)) => {
-                // a worker that has gone meanwhile needs no answer
+                // sending fails if the worker has ended meanwhile
                 let _ = answer.send(go_on(progress, fraction, &text)?);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -102,7 +102,7 @@ fn wait<T: Send>(
     }
 }
 
-/// Asks the caller's progress function; any result but a false one goes on, and `None` counts as going on.
+/// Whether to go on: the truth of what the caller's progress function returns; `None` goes on.
 fn go_on(progress: Option<&Bound<'_, PyAny>>, fraction: f64, text: &str) -> PyResult<bool> {
     let Some(progress) = progress else {
         return Ok(true);

@@ -18,57 +18,55 @@ use crate::surface::{Given, oriented};
 pub struct SphereMap {
     /// (n, 3) float64: the image of each vertex, unit rows; faces are seen counter-clockwise from outside.
     positions: Py<PyArray2<f64>>,
-    /// (m, 3) int64: the faces as oriented; those turned against the rest were flipped.
+    /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
     faces: Py<PyArray2<i64>>,
-    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound whatever it says, and converged is not
-    /// even: with a weight of angles, or on long limbs, see `distortion.area_ratio_std`. What stalled on long limbs gets even
-    /// with `refine`.
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case. A converged map need not be
+    /// even, see `distortion.area_ratio_std`; on long limbs `refine` makes it even.
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     iterations: usize,
-    /// Structured array of all descents, with `refine` also of those of parts of faces that came to nothing; with the fields
-    /// iteration, authalic_energy (of unsigned areas), step, gradient_norm,
-    /// seconds; the start first, and a record of step 0 where a mended map took the place of a folded one.
-    /// gradient_norm is √(gᵀM⁻¹g), of the gradient in the metric of the preconditioner; 0 for a start that
-    /// "gauss_newton" keeps.
+    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds: one
+    /// record per iteration, the start first, and one of step 0 where a mended map replaced a folded one. gradient_norm is
+    /// √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's metric; 0 for a start that "gauss_newton" keeps. With
+    /// `refine`, the records of all descents, even discarded ones.
     history: Py<PyAny>,
-    /// The figures of the map. Where faces are split, the image of a face is that of its parts: its area is their sum, its
-    /// angle distortion their mean, and it is folded where one of them is.
+    /// The figures of the map. The image of a split face consists of those of its parts: its area is their sum, its angle
+    /// distortion their mean, and it is folded if one of them is.
     distortion: Py<Distortion>,
-    /// The parts of the faces where `refine` asked for them, else None.
+    /// The split faces, with `refine`; else None.
     refinement: Option<Py<Refinement>>,
     /// Wall time of the call.
     seconds: f64,
 }
 
-/// The faces of a surface, some of them split, and where the split points lie.
+/// The faces of a surface, some of them split, and the split points.
 ///
-/// Vertices and split points are numbered through: the first split point has the number of the vertices.
+/// Split points are numbered on from the vertices: the first has the number n.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Refinement {
-    /// (k, 2) int64: the ends of the edge that each split point halves, vertices or earlier split points.
+    /// (k, 2) int64: the ends of the edge that each split point halves: vertices, or earlier split points.
     parents: Py<PyArray2<i64>>,
     /// (k, 3) float64: the split points on the surface, in the unit of the vertices.
     vertices: Py<PyArray2<f64>>,
-    /// (k, 3) float64: their images, unit rows.
+    /// (k, 3) float64: the images of the split points, unit rows.
     positions: Py<PyArray2<f64>>,
-    /// (m', 3) int64: the faces between vertices and split points, oriented like the faces of the map.
+    /// (m', 3) int64: the faces between vertices and split points, oriented as the faces of the map.
     faces: Py<PyArray2<i64>>,
-    /// (m',) int64: the face that each of them is a part of, ascending.
+    /// (m',) int64: the given face that each of `faces` is a part of, ascending.
     face_of: Py<PyArray1<i64>>,
     /// The figures of these faces.
     distortion: Py<Distortion>,
 }
 
 impl Refinement {
-    fn new(py: Python<'_>, found: authalic::Refinement, surface: &authalic::Surface) -> PyResult<Self> {
+    fn new(py: Python<'_>, refinement: authalic::Refinement, surface: &authalic::Surface) -> PyResult<Self> {
         Ok(Self {
-            vertices: from_array(py, found.vertices(surface)),
-            parents: from_indices(py, found.parents.view()),
-            positions: from_array(py, found.positions),
-            faces: from_indices(py, found.faces.view()),
-            face_of: from_index_list(py, found.face_of.into_iter()),
-            distortion: Py::new(py, Distortion::new(py, found.distortion))?,
+            vertices: from_array(py, refinement.vertices(surface)),
+            parents: from_indices(py, refinement.parents.view()),
+            positions: from_array(py, refinement.positions),
+            faces: from_indices(py, refinement.faces.view()),
+            face_of: from_index_list(py, refinement.face_of.into_iter()),
+            distortion: Py::new(py, Distortion::new(py, refinement.distortion))?,
         })
     }
 }
@@ -115,13 +113,13 @@ impl SphereMap {
     }
 }
 
-/// Maps a closed surface of genus 0 onto the unit sphere so that areas are kept.
+/// Maps a closed surface of genus 0 onto the unit sphere so that areas are preserved.
 ///
-/// By default a guarded Gauss–Newton descent: from a map without folds, be it built up vertex by vertex where
-/// all else collapses, down to the least E_A, without ever folding a face. The papers' methods (Sutti & Yueh
-/// 2024) stay for comparison: a spherical conformal start, the fixed-point iteration of the stretch energy
-/// (Algorithm 2) and Riemannian gradient descent after it (Algorithm 1); the folds that they leave are
-/// unfolded. No result has a folded face, decided by exact predicates.
+/// The default is a guarded Gauss–Newton descent: it starts from a map without folds, built up vertex by vertex if
+/// other starts collapse, and lowers E_A without ever folding a face. The papers' methods (Sutti & Yueh 2024)
+/// remain for comparison: a spherical conformal start, the fixed-point iteration of the stretch energy
+/// (Algorithm 2) and Riemannian gradient descent after it (Algorithm 1); the folds that they leave are unfolded. No
+/// result has a folded face unless `unfold` is off; exact predicates decide.
 ///
 /// Parameters
 /// ----------
@@ -130,55 +128,54 @@ impl SphereMap {
 /// faces : (m, 3) integer array
 ///     Triangles of a connected orientable manifold without boundary and without handles.
 /// method : {"gauss_newton", "gradient_descent", "fixed_point"}
-///     The optimiser.
+///     The optimizer.
 /// line_search : {"interpolation", "bounded"}
-///     How gradient descent finds the length of its steps: sufficient decrease by safeguarded quadratic and
-///     cubic interpolation, or Brent's minimiser on a bounded interval, which takes longer and gives no more.
+///     The line search of the gradient descent: sufficient decrease by safeguarded quadratic and cubic interpolation,
+///     or Brent's minimizer on a bounded interval, which takes longer and is no more exact.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (the default) keeps areas alone,
-///     .03 is a balance, .3 keeps shapes and lets areas go. For "gauss_newton" only.
+///     λ ≥ 0, the weight of the angle distortion against that of areas: 0 (default) preserves areas alone, .03 is a
+///     balance, .3 preserves shapes at the expense of areas. For "gauss_newton" only.
 /// area_tolerance : float, optional
-///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), A the area of the image, is within
-///     this tolerance, say .01. The status is "stalled" where no map that even was reached; `max_iterations` limits the
-///     whole search. Excludes an `angle_weight`; for "gauss_newton" only. Default: none, `angle_weight` decides.
+///     Instead of a weight: the map of least shear whose area deviation √(E_A/A), with A the area of the image, is
+///     within this tolerance, such as .01. The status is "stalled" if no map reached it; `max_iterations` limits the
+///     whole search. Excludes `angle_weight`; for "gauss_newton" only. Default: `angle_weight` decides.
 /// initial : (n, 3) real array, optional
-///     A start map, outward oriented, no row zero; rows are normalised. Default: the spherical conformal map,
-///     and but for "fixed_point" itself fixed-point steps from it, up to five for "gauss_newton" and ten else.
+///     A start map, outward oriented, no row zero; rows are normalized. Default: the spherical conformal map, followed
+///     by up to five fixed-point steps for "gauss_newton" and ten for "gradient_descent".
 /// max_iterations : int, optional
-///     Default for "gauss_newton": as many as it takes; with a weight of 0 a few where those leave area ratios a
-///     deviation of less than .5 % (.2 % below 10,000 vertices); for the papers' methods 100, as in the paper's tables.
-///     On top come the fixed-point steps before a descent, and where folds were mended or the result is uneven a second
-///     descent. 0 with "fixed_point" returns the start map.
+///     Iteration limit. Default for "gauss_newton": none, but with a weight of 0 and no tolerance it stops after 17
+///     iterations (20 below 20,000 vertices, 40 below 10,000) once the area deviation is below .5 % (.2 % below 10,000
+///     vertices); for the papers' methods 100, as in the paper's tables. Not counted: the fixed-point steps before the
+///     descent, and a descent after folds were mended. 0 with "fixed_point" returns the start map.
 /// tolerance : float, optional
-///     "gauss_newton" has converged when the deviation of the area ratio, √(E_A/A), falls below it, default 2e-4
-///     (after the usual iterations .5 %, and .2 % below 10,000 vertices), or at a stationary point of the energy;
-///     gradient descent when the norm of the Riemannian gradient, gradient_norm of the history, falls below it, default
-///     1e-8. For "fixed_point" it is the ε of Algorithm 2, which ends when the stretch energy falls by no more; default
-///     1e-6. -inf lets it run through rises to max_iterations and returns the last map instead of the best.
+///     "gauss_newton" has converged when the area deviation √(E_A/A) is below this, default 2e-4, or at a stationary
+///     point of the energy; "gradient_descent" when the norm of the Riemannian gradient, the gradient_norm of the
+///     history, is below this, default 1e-8. For "fixed_point" it is ε of Algorithm 2: the iteration ends when the
+///     stretch energy falls by no more than this, default 1e-6; -inf makes it take all iterations, even if the energy
+///     rises, and return the last map instead of the best.
 /// refine : bool
-///     Split faces whose images are too long for their areas, as on the limbs of a body, and map again from there until
-///     areas are even: √(E_A/A) of .002, or the tolerance given, in three rounds at the most. The map is given at the
-///     vertices as ever, split points and parts of faces beside them in `refinement`; the images of the vertices alone
-///     may fold where a face is split, those of the parts never do. Nothing is split where that does not halve E_A, or where
-///     `max_iterations`, which counts for each descent, was reached. For "gauss_newton" only. Default False.
+///     Split faces that keep areas uneven, as those of long limbs do, and continue the map until √(E_A/A) is below .002, or
+///     the tolerance given, in at most three rounds. `refinement` has the split points and the parts of faces. The parts
+///     never fold; the images of the vertices alone may, where a face is split. Nothing is split if that does not halve
+///     E_A, or if `max_iterations`, which applies to each descent, was reached. For "gauss_newton" only. Default False.
 /// unfold : bool
-///     Unfold what the papers' methods fold. Default True; False shows what they do by themselves.
+///     Unfold the faces that the papers' methods fold. Default True.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so far.
+///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
 /// Returns
 /// -------
 /// SphereMap
-///     Without `initial`, of all rotated copies the one that lies over the surface best.
+///     Without `initial`, the map is rotated to align with the surface.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     The input is no sphere or an array does not fit; nothing was computed.
+///     The input is no sphere, or an array does not fit. Nothing is computed.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
 ///     Every start folds in double precision, or the call was cancelled before there was a map without folds.
 ///
@@ -237,8 +234,8 @@ pub fn sphere_map(
         Ok((authalic::sphere_map(&surface, &options, observer)?, surface))
     })?;
     // 3. The result
-    let refinement = map.refinement.take().map(|found| Refinement::new(py, *found, &surface)).transpose()?;
-    let refinement = refinement.map(|found| Py::new(py, found)).transpose()?;
+    let refinement = map.refinement.take().map(|refinement| Refinement::new(py, *refinement, &surface));
+    let refinement = refinement.transpose()?.map(|refinement| Py::new(py, refinement)).transpose()?;
     Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface))? })
 }
 
@@ -247,8 +244,8 @@ fn parse_method(method: &str) -> PyResult<SphereMethod> {
         "fixed_point" => Ok(SphereMethod::FixedPoint),
         "gradient_descent" => Ok(SphereMethod::GradientDescent),
         "gauss_newton" => Ok(SphereMethod::GaussNewton),
-        other => Err(bad_option(format!(
-            "method must be \"gauss_newton\", \"gradient_descent\" or \"fixed_point\", but is {other:?}"
+        unknown => Err(bad_option(format!(
+            "method must be \"gauss_newton\", \"gradient_descent\" or \"fixed_point\", but is {unknown:?}"
         ))),
     }
 }
@@ -257,8 +254,8 @@ fn parse_line_search(line_search: &str) -> PyResult<LineSearch> {
     match line_search {
         "interpolation" => Ok(LineSearch::Interpolation),
         "bounded" => Ok(LineSearch::Bounded),
-        other => {
-            Err(bad_option(format!("line_search must be \"interpolation\" or \"bounded\", but is {other:?}")))
-        }
+        unknown => Err(bad_option(format!(
+            "line_search must be \"interpolation\" or \"bounded\", but is {unknown:?}"
+        ))),
     }
 }

@@ -13,11 +13,11 @@ use crate::arrays::{from_array, from_index_list, from_indices, index_table, real
 use crate::errors::bad_array;
 use crate::run::run;
 
-/// A triangle mesh that is checked once, and taken wherever vertices and faces are.
+/// A triangle mesh that is checked once, and accepted in the place of vertices and faces.
 ///
-/// Maps, figures and cuts of a surface neither copy nor check its arrays again, and what follows from them, such as
-/// areas and topology, is computed once. The arrays are checked here; that they form an oriented manifold is checked by
-/// the first function that needs one. Surfaces never change, and threads may share them.
+/// Maps, figures and cuts of a surface neither copy nor check its arrays again, and its areas and topology are computed
+/// once. The arrays are checked here; the first function that needs an oriented manifold checks that the surface is one.
+/// Surfaces never change, and threads may share them.
 ///
 /// Parameters
 /// ----------
@@ -29,7 +29,7 @@ use crate::run::run;
 /// Raises
 /// ------
 /// MeshError
-///     Empty arrays or arrays of another shape, NaN, indices out of range, faces that repeat a vertex.
+///     An array is empty or has another shape or NaN, an index is out of range, or a face repeats a vertex.
 ///
 /// Examples
 /// --------
@@ -59,7 +59,7 @@ impl From<authalic::Surface> for Surface {
 }
 
 impl Surface {
-    /// What a property reads off the topology; the first one may take a while on a large mesh.
+    /// A property of the topology; the first may take a while on a large mesh.
     fn of_topology<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -87,7 +87,7 @@ impl Surface {
         Ok(made.clone_ref(py))
     }
 
-    /// (m, 3) int64, read-only: the faces as given; results have them as oriented.
+    /// (m, 3) int64, read-only: the faces as given; results have the faces as oriented.
     #[getter]
     fn faces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i64>>> {
         let made = self.faces.get_or_try_init(py, || {
@@ -108,8 +108,8 @@ impl Surface {
         self.handle.n_faces()
     }
 
-    /// The number of connected components. This and the properties below raise MeshError where the surface is no
-    /// oriented manifold.
+    /// The number of connected components. This and the properties below raise MeshError if the surface is no oriented
+    /// manifold.
     #[getter]
     fn n_components(&self, py: Python<'_>) -> PyResult<usize> {
         self.of_topology(py, Topology::n_components)
@@ -146,7 +146,7 @@ impl Surface {
         self.of_topology(py, Topology::is_closed)
     }
 
-    /// Cuts the surface along seams into its patches (islands), as the function `cut` does.
+    /// Cuts the surface along seams into patches (islands), as the function `cut` does.
     ///
     /// Parameters
     /// ----------
@@ -156,12 +156,12 @@ impl Surface {
     /// Returns
     /// -------
     /// list of Patch
-    ///     In the order of their lowest faces.
+    ///     The patches in the order of their lowest faces.
     ///
     /// Raises
     /// ------
     /// MeshError
-    ///     Seams that are no edges.
+    ///     A seam is no edge.
     #[pyo3(signature = (*, seams=None))]
     fn cut(&self, py: Python<'_>, seams: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Patch>> {
         patches(py, Given::Handle(self.handle.clone()), seams)
@@ -187,7 +187,7 @@ fn index_lists(py: Python<'_>, lists: &[Vec<u32>]) -> Vec<Py<PyArray1<i64>>> {
 /// One piece of a cut mesh (an island), with maps back to the input. Taken wherever a Surface is.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Patch {
-    /// The patch by itself: what to map and to measure.
+    /// The patch as a surface of its own.
     surface: Py<Surface>,
     /// (n, 3) float64: the vertices, copies of input vertices.
     vertices: Py<PyArray2<f64>>,
@@ -201,7 +201,7 @@ pub struct Patch {
     face_of: Py<PyArray1<i64>>,
     /// Vertices − edges + faces.
     euler_characteristic: i64,
-    /// The number of handles; None where the patch is not orientable.
+    /// The number of handles; None if the patch is not orientable.
     genus: Option<usize>,
     /// List of (k,) int64: the boundary loops as patch vertices, the longest first, the surface on the left.
     boundary_loops: Vec<Py<PyArray1<i64>>>,
@@ -243,12 +243,11 @@ impl Patch {
     }
 }
 
-/// Cuts a mesh along seams into its patches (islands).
+/// Cuts a mesh along seams into patches (islands).
 ///
-/// Corners of neighbouring faces become one vertex wherever the faces meet in an edge that is no seam.
-/// Edges of three or more faces act as seams, parts that only touch in a vertex come apart. A seam that
-/// does not separate still opens the surface; a single edge inside the surface opens nothing, because both
-/// sides keep both of its ends.
+/// Corners of adjacent faces become one vertex wherever the faces meet in an edge that is no seam. Edges of three or
+/// more faces act as seams, and parts that only touch in a vertex come apart. A seam opens the surface even if it does
+/// not separate it; a single edge inside the surface opens nothing, because both sides keep both of its ends.
 ///
 /// Parameters
 /// ----------
@@ -262,12 +261,12 @@ impl Patch {
 /// Returns
 /// -------
 /// list of Patch
-///     In the order of their lowest faces.
+///     The patches in the order of their lowest faces.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     Empty arrays, NaN, indices out of range, faces that repeat a vertex, seams that are no edges.
+///     An array is empty or has NaN, an index is out of range, a face repeats a vertex, or a seam is no edge.
 ///
 /// Examples
 /// --------
@@ -301,7 +300,7 @@ fn patches(py: Python<'_>, given: Given, seams: Option<&Bound<'_, PyAny>>) -> Py
 /// A surface as an argument.
 pub enum Given {
     Handle(authalic::Surface),
-    /// Vertices and faces that nobody has checked but for their dtype and shape.
+    /// Vertices and faces of which only the dtype and shape are checked.
     Arrays(Array2<f64>, Array2<u32>),
 }
 
@@ -330,7 +329,7 @@ impl Given {
             let given = Self::new(vertices, faces)?;
             return Ok((given, image.ok_or_else(no_image)?));
         }
-        // a surface stands for two arguments, so that its image is the second
+        // a surface takes the place of two arguments, so its image may be the second
         match (faces, image) {
             (Some(image), None) | (None, Some(image)) => Ok((Self::new(vertices, None)?, image)),
             (None, None) => Err(no_image()),
@@ -372,7 +371,7 @@ impl Given {
         }
     }
 
-    /// The surface; arrays are checked and taken over.
+    /// The surface; arrays are checked, not copied.
     pub fn surface(self) -> Result<authalic::Surface, Error> {
         match self {
             Self::Handle(surface) => Ok(surface),
@@ -389,9 +388,9 @@ fn too_many() -> PyErr {
     PyTypeError::new_err("faces go with vertices; a Surface has its own")
 }
 
-/// The faces of a surface that has been mapped.
+/// The oriented faces of a surface that has been mapped.
 pub fn oriented(surface: &authalic::Surface) -> ArrayView2<'_, u32> {
-    surface.oriented_faces().expect("a map needs them")
+    surface.oriented_faces().expect("a surface that was mapped is orientable")
 }
 
 /// The surface behind a Surface or a Patch.

@@ -17,16 +17,16 @@ use crate::surface::Given;
 /// A map without folds, made from one with folds.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Untangled {
-    /// (n, 2) or (n, 3) float64: the map, of the shape given; rows of vertices that did not move are the same bits.
+    /// (n, 2) or (n, 3) float64: the map; rows of vertices that did not move keep their bits.
     image: Reals,
     /// (k,) int64: the vertices that moved, ascending.
     moved: Py<PyArray1<i64>>,
     /// (k,) int64: the faces that were folded, ascending.
     folded_before: Py<PyArray1<i64>>,
-    /// "converged"; "stalled" where a face stays below the tolerance, though not folded; "cancelled" where vertices did
-    /// not return as far as they could. The map has no folds whatever it says.
+    /// "converged"; "stalled" if a face stays below the tolerance, though not folded; "cancelled" if vertices did not
+    /// return as far as they could. The map has no folds in any case.
     status: &'static str,
-    /// The figures of the map; parts that are mirrored as a whole count as turned back.
+    /// The figures of the map, with mirrored components turned back.
     distortion: Py<Distortion>,
     /// Wall time of the call.
     seconds: f64,
@@ -47,29 +47,29 @@ impl Untangled {
     }
 }
 
-/// Removes the folds of a given map, and changes as little as can be.
+/// Removes the folds of a given map, and changes as little as possible.
 ///
-/// Only vertices near folded faces move: as few as suffice, and from a map without folds (Garanzha et al. 2021) back
-/// towards their old places as far as open faces let them. The outline and the fixed vertices stay. A map without
-/// folds comes back as it is. Which faces are folded is decided by exact predicates.
+/// Only vertices near folded faces move, as few as suffice: to a map without folds (Garanzha et al. 2021), and then
+/// back toward their old places as far as open faces let them. The outline and the fixed vertices stay. A map without
+/// folds comes back as it is. Exact predicates decide which faces are folded.
 ///
-/// Each connected part keeps the orientation that most of its area has, so a part that is mirrored as a whole stays
-/// mirrored. Parts may overlap each other, and the outline may overlap itself, as it did before.
+/// Each component keeps the orientation of most of its area, so a component that is mirrored as a whole stays
+/// mirrored. Components may overlap each other, and the outline may overlap itself, as before.
 ///
 /// Parameters
 /// ----------
 /// surface : Surface, or (vertices, faces)
-///     (n, 3) real and (m, 3) integer array: an orientable manifold, of any number of parts and boundary loops.
+///     (n, 3) real and (m, 3) integer array: an orientable manifold of any number of components and boundary loops.
 /// image : (n, 2) or (n, 3) real array
-///     The map of its vertices into the plane, or onto a sphere around the origin. A closed part needs the sphere; there
-///     each tangle must lie within a hemisphere.
+///     The map of its vertices into the plane, or onto a sphere around the origin. A closed component needs the sphere,
+///     and each tangle there must lie within a hemisphere.
 /// fixed : (k,) integer or (n,) bool array, optional
-///     Vertices that stay in their places, beside those of the boundary, which always do.
+///     Vertices that stay in place, in addition to those of the boundary.
 /// tolerance : float
-///     The least area of a face that was folded, or gave way to one: in units of its fair share, the area of the region
-///     that moves divided in proportion to the areas on the surface. Below 1, default .01.
+///     Least area, in [0, 1), of a face that was folded or lost area to a folded one, in units of its fair share: the area
+///     of the region that moves, divided in proportion to the areas on the surface. Default .01.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between and within steps; False cancels. A map is returned where nothing is folded any more.
+///     Called between and within steps; False cancels, and the map is returned if it has no folds any more.
 ///
 /// Returns
 /// -------
@@ -78,12 +78,13 @@ impl Untangled {
 /// Raises
 /// ------
 /// MeshError
-///     The mesh is broken, an array does not fit, or the outline or the fixed vertices make folds inevitable: `indices`
-///     has the folded faces.
+///     The mesh is broken, an array does not fit, or the outline or the fixed vertices make folds inevitable; then
+///     `indices` has the folded faces.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
-///     No map without folds was found: `indices` has the faces left over. Or the call was cancelled before there was one.
+///     No map without folds was found; then `indices` has the faces that stay folded. Or the call was cancelled before
+///     there was one.
 ///
 /// Examples
 /// --------
@@ -125,7 +126,7 @@ pub fn untangle(
     })
 }
 
-/// Vertices as a list of indices, or as one truth value for each of them.
+/// The indices of vertices that are given as indices, or as one truth value per vertex.
 fn vertex_set(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<usize>> {
     let (py, name) = (object.py(), "fixed");
     let numpy = py.import(intern!(py, "numpy"))?;
@@ -138,7 +139,7 @@ fn vertex_set(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<usiz
     }
     let shape: Vec<usize> = array.getattr(intern!(py, "shape"))?.extract()?;
     if shape != [n_vertices] {
-        let expected = format!("of shape ({n_vertices},) where it is of truth values, one for each vertex");
+        let expected = format!("of shape ({n_vertices},), one truth value per vertex, or of indices");
         return Err(bad_array(py, name, format!("of shape {shape:?}"), expected));
     }
     let indices = numpy.call_method1(intern!(py, "flatnonzero"), (array,))?;

@@ -1,36 +1,34 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The certificates of a registration by curves as Python sees them.
+//! The certificates of a registration by curves, for Python.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::from_index_list;
 
-/// What proves that a registration by curves is one-to-one, with the curves in place.
+/// The proof that a registration by curves is one-to-one and takes curve to curve.
 ///
-/// A map is a homeomorphism whose faces are all positively oriented, whose area is the whole, and whose banks
-/// agree.
+/// A map is a homeomorphism if all its faces are positively oriented, its area is the whole, and its banks agree.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Certificates {
-    /// (j,) int64: source faces with an image that is not positively oriented in the target's metric; none in
-    /// a homeomorphism.
+    /// (j,) int64: source faces whose image is not positively oriented in the target's metric; none in a homeomorphism.
     folded: Py<PyArray1<i64>>,
-    /// The signed areas of all images in the target's hyperbolic metric.
+    /// The sum of the signed areas of all images in the target's hyperbolic metric.
     area: f64,
-    /// What they must sum to: 2π(B − 2) for a surface with B curves and boundary loops.
+    /// The area of the target: 2π(B − 2) for a surface with B curves and boundary loops.
     expected_area: f64,
     /// |area − expected_area| / expected_area.
     area_error: f64,
-    /// The largest distance of a curve's image from its partner, in parts of the target's size.
+    /// The largest distance of a curve's image from its partner, as a fraction of the target's size.
     curve_error: f64,
-    /// The largest distance between the images of the two banks of a curve, in parts of the target's size.
+    /// The largest distance between the images of the two banks of a curve, as a fraction of the target's size.
     bank_error: f64,
     /// The largest deviation from the identity of the changes of chart around a face.
     cocycle_error: f64,
-    /// Vertices that rounding has put beyond the boundary.
+    /// The number of vertices that rounding has put beyond the boundary.
     outside: usize,
-    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map;
-    /// NaN without a hyperbolic metric.
+    /// The harmonic energy over the target's area: near 1 for curves that fit, above 2 for a strained map; NaN
+    /// without a hyperbolic metric.
     energy_ratio: f64,
     /// (float, float): the largest curvature that the hyperbolic metrics of source and target have left.
     curvature: (f64, f64),

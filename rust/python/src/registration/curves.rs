@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Bindings of `authalic::hyperbolic`'s registration.
+//! Bindings of the registration by curves.
 
 use authalic::{HarmonicSolver, HyperbolicOptions, LandmarkCurves, Side};
 use pyo3::prelude::*;
@@ -13,61 +13,57 @@ use crate::options::{choice, metrics, parse_iterations};
 use crate::run::run;
 use crate::surface::Given;
 
-/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that
-/// takes curve to curve.
+/// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that takes
+/// curve to curve.
 ///
-/// Both surfaces are sliced along the curves, given the hyperbolic metric in which all slits and boundary
-/// loops are geodesics, and mapped by the hyperbolic harmonic map between them (Shi et al. 2013, by Newton's
-/// method), which is a homeomorphism whatever the curves are. `certificates` prove it.
+/// Both surfaces are sliced along the curves and given the hyperbolic metric in which all slits and boundary loops are
+/// geodesics. The hyperbolic harmonic map between them (Shi et al. 2013, by Newton's method) is a homeomorphism
+/// whatever the curves are; `certificates` prove it.
 ///
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: one component without handles, closed or with boundary loops.
 /// target : Surface, or (vertices, faces)
-///     Another, with (n_t, 3) and (m_t, 3) and as many boundary loops.
+///     (n_t, 3) real and (m_t, 3) integer array: a surface with as many boundary loops.
 /// source_curves : list of (k,) integer arrays
-///     Paths of vertices along edges of the source, each of at least two edges, without a vertex in common.
-///     Open ones are matched from start to end by shares of their length. Closed ones, whose first vertex
-///     stands again at the end or whose last vertex (of at least 16) has an edge to the first, have neither
-///     start nor direction. Loops of the boundary need not be named.
+///     Disjoint paths of vertices along edges of the source, each of at least two edges. Open curves are matched from
+///     start to end by shares of their length. Curves are closed if the first vertex is repeated at the end, or if an
+///     edge joins the last vertex (of at least 16) to the first; they have neither start nor direction. Boundary loops
+///     need not be given.
 /// target_curves : list of (k,) integer arrays
 ///     Their partners on the target, in the same order.
 /// metric : "newton" or "ricci_flow"
-///     How the hyperbolic metrics are found: by Newton's method, or by the paper's Ricci flow (slow, then
-///     finished by Newton).
+///     The method for the hyperbolic metrics: Newton's, or the paper's Ricci flow (slow, then finished by Newton's).
 /// solver : "newton" or "heat"
-///     How the harmonic energy is minimised: by Newton's method, or by the paper's heat diffusion (slow; on
-///     all but small meshes it ends with "max_iterations").
+///     The method that minimizes the harmonic energy: Newton's, or the paper's heat diffusion (slow; on all but small
+///     meshes it ends with "max_iterations").
 /// max_iterations : int, optional
-///     Steps of the heat diffusion, 2000 by default.
+///     Most steps of the heat diffusion. Default 2000.
 /// tolerance : float, optional
-///     The heat diffusion ends where no component of the gradient is larger; 1e-6 by default.
+///     Largest component of the gradient at which the heat diffusion ends. Default 1e-6.
 /// source_sphere : (n, 3) real array, optional
-///     The source on a sphere around the origin, to tell how the surfaces lie over each other; a conformal
-///     map by default.
+///     The source on a sphere around the origin, which lays the surfaces over each other. Default: a conformal map.
 /// target_sphere : (n_t, 3) real array, optional
-///     The target likewise; both or neither. They need not be aligned.
+///     The target on such a sphere; give both or neither. They need not be aligned.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between steps and in long ones from within; False cancels.
+///     Called between steps and within long ones; False cancels.
 ///
 /// Returns
 /// -------
 /// Registration
-///     With `certificates`, `warnings` and `energies`. Its domain, for `registered` and `target_registered`,
-///     is a rough map of the target to the unit sphere.
+///     With `certificates`, `warnings` and `energies`. The domain of `registered` and `target_registered` is a rough
+///     map of the target to the unit sphere.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface of another topology, an array that does not fit, curves that are no simple edge paths, too
-///     short, touch each other or the boundary, or do not pair up: the message names the curve; nothing was
-///     computed.
+///     A surface has another topology, an array does not fit, or curves are no simple edge paths, are too short, touch
+///     each other or the boundary, or do not pair up. Nothing is computed.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
-///     Double precision did not suffice, or the call was cancelled: no map before the last step is free of
-///     folds.
+///     Double precision did not suffice, or the call was cancelled: only the last step yields a map without folds.
 ///
 /// Examples
 /// --------
@@ -79,8 +75,8 @@ use crate::surface::Given;
 /// ...          for f in ((a, b, b + 24), (a, b + 24, a + 24))]
 /// >>> band = rings, faces
 /// >>> curves = [[76, 100, 124, 148], [88, 112, 136, 160, 184]]
-/// >>> found = authalic.register_hyperbolic(band, band, source_curves=curves, target_curves=curves)
-/// >>> len(found.certificates.folded), bool(abs(found.positions - rings).max() < 0.05)
+/// >>> result = authalic.register_hyperbolic(band, band, source_curves=curves, target_curves=curves)
+/// >>> len(result.certificates.folded), bool(abs(result.positions - rings).max() < 0.05)
 /// (0, True)
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_curves, target_curves, metric="newton", solver="newton",
@@ -113,8 +109,8 @@ pub fn register_hyperbolic(
     let target_curves = vertex_paths(target_curves, "target_curves", target.n_vertices())?;
     let spheres = match (source_sphere, target_sphere) {
         (None, None) => None,
-        (Some(ours), Some(theirs)) => {
-            Some([real_table::<3>(ours, "source_sphere")?, real_table::<3>(theirs, "target_sphere")?])
+        (Some(source), Some(target)) => {
+            Some([real_table::<3>(source, "source_sphere")?, real_table::<3>(target, "target_sphere")?])
         }
         _ => {
             return Err(bad_option(
@@ -125,7 +121,7 @@ pub fn register_hyperbolic(
     let finished = run(py, progress, move |observer| {
         let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
         let curves = LandmarkCurves { source: &source_curves, target: &target_curves };
-        let spheres = spheres.as_ref().map(|[ours, theirs]| [ours.view(), theirs.view()]);
+        let spheres = spheres.as_ref().map(|[source, target]| [source.view(), target.view()]);
         let options = HyperbolicOptions { spheres, ..options };
         let registration = authalic::register_hyperbolic(&source, &target, &curves, &options, observer)?;
         Ok(Finished::Curves(registration.into()))
@@ -133,6 +129,6 @@ pub fn register_hyperbolic(
     Registration::new(py, finished)
 }
 
-/// The ways to the harmonic map by their names.
+/// The methods for the harmonic map, by name.
 const SOLVERS: [(&str, HarmonicSolver); 2] =
     [("newton", HarmonicSolver::Newton), ("heat", HarmonicSolver::Heat)];

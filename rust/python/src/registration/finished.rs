@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A finished registration of any kind, on which the methods of its Python class call the core.
+//! A finished registration of any kind, on which the methods of the Python class call the core.
 
 use authalic::{Correspondence, CurveRegistration, DiskRegistration, Error, Observer, SphereRegistration};
 
@@ -10,7 +10,7 @@ pub enum Finished {
 }
 
 impl Finished {
-    /// Where each vertex of the source lies on the target.
+    /// The locations of the source's vertices on the target.
     pub fn correspondence(&self) -> &Correspondence {
         match self {
             Self::Disk(registration) => &registration.correspondence,
@@ -28,7 +28,7 @@ impl Finished {
     }
 }
 
-/// What there is one row of data for.
+/// The elements of a surface that data have one row for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Per {
     Vertex,
@@ -36,9 +36,9 @@ pub enum Per {
 }
 
 impl Per {
-    /// What data of this shape belong to on a surface, with the number of axes that say so.
-    pub fn of(shape: &[usize], surface: &authalic::Surface, wanted: Option<Self>) -> Option<(Self, usize)> {
-        let may_be = |per| wanted.is_none_or(|wanted| wanted == per);
+    /// The elements that data of this shape belong to on a surface, and the number of axes that number them.
+    pub fn of(shape: &[usize], surface: &authalic::Surface, asked: Option<Self>) -> Option<(Self, usize)> {
+        let may_be = |per| asked.is_none_or(|asked| asked == per);
         match shape {
             [n, ..] if *n == surface.n_vertices() && may_be(Self::Vertex) => Some((Self::Vertex, 1)),
             [m, 3, ..] if *m == surface.n_faces() && may_be(Self::Corner) => Some((Self::Corner, 2)),
@@ -46,7 +46,7 @@ impl Per {
         }
     }
 
-    /// The axes of the same data on another surface.
+    /// The lengths of the axes that number the elements of a surface.
     pub fn axes(self, surface: &authalic::Surface) -> Vec<usize> {
         match self {
             Self::Vertex => vec![surface.n_vertices()],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Bindings of `authalic::registration`, and of `authalic::hyperbolic`'s registration.
+//! Bindings of the registrations by points and by curves.
 
 mod certificates;
 mod curves;

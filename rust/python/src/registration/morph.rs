@@ -15,24 +15,24 @@ use crate::surface::handle;
 /// vertices : (n, 3) real array
 ///     The source's vertices. Or the source as a Surface.
 /// registration : Registration
-///     Where they go.
+///     The registration of the source onto the target.
 /// t : float
-///     Any finite number; beyond 0 and 1 the morph goes on along the same lines.
+///     Any finite number; below 0 and above 1 the vertices continue along their straight lines.
 /// align : bool
-///     Move, turn and scale the image onto the source first (the best similarity by area), so that the shape
-///     changes but does not travel.
+///     Move, rotate and scale the image onto the source first (the best similarity by area), so that the shape changes
+///     but does not travel.
 ///
 /// Returns
 /// -------
 /// (n, 3) float64 array
-///     (1 − t) v + t g(v).
+///     (1 − t) v + t g(v), with g the registration.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     An array that is not of shape (n, 3).
+///     The array is not of shape (n, 3).
 /// ValueError
-///     A t that is not finite.
+///     t is not finite.
 ///
 /// Examples
 /// --------
@@ -40,10 +40,10 @@ use crate::surface::handle;
 /// >>> corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
 /// >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]
 /// >>> large = [[3 * x for x in corner] for corner in corners]
-/// >>> found = authalic.register_spheres(
+/// >>> registration = authalic.register_spheres(
 /// ...     (corners, faces), (large, faces), source_landmarks=[0, 1], target_landmarks=[0, 1]
 /// ... )
-/// >>> authalic.homotopy(corners, found, 0.5).max().round(6).item()
+/// >>> authalic.homotopy(corners, registration, 0.5).max().round(6).item()
 /// 2.0
 #[pyfunction]
 #[pyo3(signature = (vertices, registration, t, *, align=false))]

@@ -11,44 +11,40 @@ use crate::arrays::index_list;
 use crate::run::run;
 use crate::surface::Given;
 
-/// Registers two disks: a map of the source onto the target that keeps areas and takes landmarks to
-/// landmarks.
+/// Registers two disks: a map of the source onto the target that preserves areas and takes landmarks to landmarks.
 ///
-/// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without
-/// folding a face (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is looked up on the
-/// target.
+/// Both surfaces are mapped to the unit disk, the source's landmarks are carried onto the target's without folding a
+/// face (Liu & Yueh 2023, section 6, by a descent of our own), and each vertex is located on the target.
 ///
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: a surface with one boundary loop and no handles.
 /// target : Surface, or (vertices, faces)
-///     Another, with (n_t, 3) and (m_t, 3).
+///     (n_t, 3) real and (m_t, 3) integer array: such a surface.
 /// source_landmarks : (k,) integer array
 ///     Vertices of the source, at least 1, none on the boundary.
 /// target_landmarks : (k,) integer array
 ///     Their partners on the target, in the same order.
 /// weight : float
-///     λ > 0, the weight of the landmark penalty at the beginning; it grows tenfold until the landmarks meet.
+///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `disk_map`.
+///     λ ≥ 0, the weight of the angle distortion against that of the areas in all maps, as in `disk_map`.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so
-///     far.
+///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
 /// Returns
 /// -------
 /// Registration
-///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
-///     says which.
+///     Its status is "landmarks_missed" if some landmarks cannot meet without folding a face; `missed` has these.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface is no disk, an array does not fit, or landmarks are no pairs: unequal counts, repeated, out
-///     of range, too few, on the boundary; nothing was computed.
+///     A surface is no disk, an array does not fit, or the landmarks are unequal in number, too few, repeated, out of
+///     range or on the boundary. Nothing is computed.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
 ///     A surface has no map without folds in double precision, or the call was cancelled before both had one.
 ///
@@ -85,44 +81,41 @@ pub fn register_disks(
     Registration::new(py, finished)
 }
 
-/// Registers two closed surfaces: a map of the source onto the target that keeps areas and takes landmarks to
+/// Registers two closed surfaces: a map of the source onto the target that preserves areas and takes landmarks to
 /// landmarks.
 ///
-/// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair
-/// without folding a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is
-/// looked up on the target.
+/// Both surfaces are mapped to the unit sphere, the landmarks of both are carried to the middle of each pair without
+/// folding a face (Sutti & Yueh 2024, section 6.6, by a descent of our own), and each vertex is located on the target.
 ///
 /// Parameters
 /// ----------
 /// source : Surface, or (vertices, faces)
 ///     (n, 3) real and (m, 3) integer array: a closed surface without handles.
 /// target : Surface, or (vertices, faces)
-///     Another, with (n_t, 3) and (m_t, 3). One that is turned inside out beside the source is turned back.
+///     (n_t, 3) real and (m_t, 3) integer array: such a surface. If it is inside out beside the source, it is turned.
 /// source_landmarks : (k,) integer array
 ///     Vertices of the source, at least 2.
 /// target_landmarks : (k,) integer array
 ///     Their partners on the target, in the same order.
 /// weight : float
-///     λ > 0, the weight of the landmark penalty at the beginning; it grows tenfold until the landmarks meet.
+///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
 /// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of areas in all maps, as in `sphere_map`.
+///     λ ≥ 0, the weight of the angle distortion against that of the areas in all maps, as in `sphere_map`.
 /// progress : callable(fraction, message) -> bool, optional
-///     Called between iterations and in long steps from within; False cancels and returns the best map so
-///     far.
+///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
 /// Returns
 /// -------
 /// Registration
-///     Its status is "landmarks_missed" where landmarks cannot be met without folding a face, and `missed`
-///     says which.
+///     Its status is "landmarks_missed" if some landmarks cannot meet without folding a face; `missed` has these.
 ///
 /// Raises
 /// ------
 /// MeshError
-///     A surface is no sphere, an array does not fit, or landmarks are no pairs: unequal counts, repeated,
-///     out of range, too few; nothing was computed.
+///     A surface is no sphere, an array does not fit, or the landmarks are unequal in number, too few, repeated or out
+///     of range. Nothing is computed.
 /// ValueError
-///     An option out of its range.
+///     An option is out of its range.
 /// SolverError
 ///     A surface has no map without folds in double precision, or the call was cancelled before both had one.
 ///
@@ -188,6 +181,6 @@ impl Arguments {
     }
 }
 
-/// A registration by points of the core.
+/// A function of the core that registers by points.
 type Register<T> =
     fn(&Surface, &Surface, &Landmarks<'_>, &RegistrationOptions, &mut dyn Observer) -> Result<T, Error>;

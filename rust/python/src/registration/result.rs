@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The result of a registration as Python sees it.
+//! The result of a registration, for Python.
 
 use std::sync::Arc;
 
@@ -16,27 +16,26 @@ use crate::errors::{bad_array, bad_option, warning};
 use crate::run::run;
 use crate::{disk, sphere};
 
-/// A one-to-one map of a source surface onto a target, with landmarks on landmarks.
+/// A one-to-one map of a source surface onto a target that takes landmarks to landmarks.
 #[pyclass(frozen, module = "authalic")]
 pub struct Registration {
-    /// (n, 3) float64: g(v), where each source vertex comes to lie on the target, in the target's
-    /// coordinates.
+    /// (n, 3) float64: g(v), the place of each source vertex on the target, in the target's coordinates.
     #[pyo3(get)]
     positions: Py<PyArray2<f64>>,
-    /// (n,) int64: the target face in which it lies there.
+    /// (n,) int64: the target face in which each source vertex lies.
     #[pyo3(get)]
     triangles: Py<PyArray1<i64>>,
-    /// (n, 3) float64: the weights of that face's corners, not negative, each row 1 in sum.
+    /// (n, 3) float64: the weights of that face's corners, nonnegative, with sum 1.
     #[pyo3(get)]
     barycentric: Py<PyArray2<f64>>,
-    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with
-    /// their landmarks in place.
+    /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with the
+    /// landmarks in place.
     #[pyo3(get)]
     registered: Reals,
-    /// (n_t, 2) or (n_t, 3) float64: the target vertices there.
+    /// (n_t, 2) or (n_t, 3) float64: the target vertices in the parameter domain.
     #[pyo3(get)]
     target_registered: Reals,
-    /// (m, 3) int64: the source faces as oriented; those turned against the rest were flipped.
+    /// (m, 3) int64: the source faces as oriented; faces turned against the rest are flipped.
     #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
     /// (m_t, 3) int64: the target faces as oriented.
@@ -48,46 +47,45 @@ pub struct Registration {
     /// DiskMap or SphereMap: the map of the target alone.
     #[pyo3(get)]
     target_map: Py<PyAny>,
-    /// (k,) float64: how far each landmark ends from its partner, in the parameter domain of radius 1. By
-    /// curves the largest distance of each curve's vertices from its partner, in parts of the target's size.
+    /// (k,) float64: the final distance of each landmark from its partner, in the parameter domain of radius 1. By
+    /// curves: the largest distance of each curve's vertices from its partner, as a fraction of the target's size.
     #[pyo3(get)]
     landmark_error: Py<PyArray1<f64>>,
-    /// (j,) int64: the pairs that did not meet: more than 1e-3 apart there, or more than .5 % of the target's
-    /// size on the target; by curves those more than 1e-9 of the target's size off.
+    /// (j,) int64: the pairs that did not meet: farther apart than 1e-3 in the domain, or than .5 % of the target's
+    /// size on the target. By curves: farther than 1e-9 of the target's size.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
-    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded
-    /// whatever it says, but for curves by the heat diffusion, where `certificates` tell.
+    /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded in
+    /// any case, except with the solver "heat", where `certificates` tell.
     #[pyo3(get)]
     status: &'static str,
-    /// The figures of `registered` against the source's areas; its authalic_energy is that of h. By curves
-    /// the figures of the map in space, `positions` against the source.
+    /// The figures of `registered` against the source's areas. By curves: the figures of `positions` against the
+    /// source, in space.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// The figures of `target_registered` against the target's areas: those of h₁ on the sphere, by curves of
-    /// the way back in space. On the disk those of the target's own map, but where landmarks could be met
-    /// only by carrying the target's.
+    /// The figures of `target_registered` against the target's areas. By curves: the figures of the inverse map, in
+    /// space.
     #[pyo3(get)]
     target_distortion: Py<Distortion>,
-    /// (m,) float64: the area of each source face's image on the target over its own, with the source scaled
-    /// to the area of its image; 1 where g keeps shares of area.
+    /// (m,) float64: J, the area of each source face's image on the target over the face's own, with the source
+    /// scaled to the area of its image; 1 where g preserves areas.
     #[pyo3(get)]
     area_ratio: Py<PyArray1<f64>>,
-    /// (m,) float64: max(J, 1/J) of that ratio J, at least 1; infinite where the image has no area.
+    /// (m,) float64: max(J, 1/J) of `area_ratio` J, at least 1; infinite where the image has no area.
     #[pyo3(get)]
     area_distortion: Py<PyArray1<f64>>,
-    /// Certificates or None: what proves that a map by curves is one-to-one; None of a map by points.
+    /// Certificates or None: the proof that a map by curves is one-to-one; None for a map by points.
     #[pyo3(get)]
     certificates: Option<Py<Certificates>>,
-    /// list of RegistrationWarning: what should be looked at in a map by curves; empty of one by points.
+    /// list of RegistrationWarning: signs that the curves are wrong; empty for a map by points.
     #[pyo3(get)]
     warnings: Vec<Py<PyAny>>,
-    /// list of (k,) float64: the harmonic energy before and after each step, for each piece with a hyperbolic
-    /// metric; empty of a map by points.
+    /// list of (k,) float64: the harmonic energy at the start and after each step, for each piece with a hyperbolic
+    /// metric; empty for a map by points.
     #[pyo3(get)]
     energies: Vec<Py<PyArray1<f64>>>,
-    /// Iterations of carrying the landmarks, those of the maps alone are theirs; by curves the steps of the
-    /// harmonic map.
+    /// Iterations of carrying the landmarks, without those of `source_map` and `target_map`. By curves: the steps of
+    /// the harmonic map.
     #[pyo3(get)]
     iterations: usize,
     /// Wall time of the call.
@@ -106,8 +104,12 @@ impl Registration {
         let (certificates, warnings, energies) = match &finished {
             Finished::Curves(curves) => (
                 Some(Py::new(py, Certificates::new(py, &curves.certificates))?),
-                curves.warnings.iter().map(|doubt| warning(py, doubt)).collect::<PyResult<_>>()?,
-                curves.descents.iter().map(|d| PyArray1::from_slice(py, &d.energies).unbind()).collect(),
+                curves.warnings.iter().map(|sign| warning(py, sign)).collect::<PyResult<_>>()?,
+                curves
+                    .descents
+                    .iter()
+                    .map(|descent| PyArray1::from_slice(py, &descent.energies).unbind())
+                    .collect(),
             ),
             _ => (None, Vec::new(), Vec::new()),
         };
@@ -139,7 +141,7 @@ impl Registration {
     }
 }
 
-/// What all kinds of registrations have.
+/// The figures that registrations of all kinds have.
 struct Figures<'a> {
     landmark_error: &'a Array1<f64>,
     missed: &'a [usize],
@@ -183,9 +185,9 @@ impl<'a> Figures<'a> {
 /// The vertices of source and target in the domain.
 fn in_domain(finished: &Finished) -> [Array2<f64>; 2] {
     match finished {
-        Finished::Disk(found) => [found.registered.clone(), found.target_registered.clone()],
-        Finished::Sphere(found) => [found.registered.clone(), found.target_registered.clone()],
-        Finished::Curves(found) => [found.map.registered.clone(), found.spheres[1].positions.clone()],
+        Finished::Disk(disks) => [disks.registered.clone(), disks.target_registered.clone()],
+        Finished::Sphere(spheres) => [spheres.registered.clone(), spheres.target_registered.clone()],
+        Finished::Curves(curves) => [curves.map.registered.clone(), curves.spheres[1].positions.clone()],
     }
 }
 
@@ -202,13 +204,13 @@ fn maps(
         Ok::<_, PyErr>(Py::new(py, sphere::SphereMap::new(py, map.clone(), faces)?)?.into_any())
     };
     Ok(match finished {
-        Finished::Disk(found) => [disk(&found.source_map, faces)?, disk(&found.target_map, target_faces)?],
-        Finished::Sphere(found) => {
-            [sphere(&found.source_map, faces)?, sphere(&found.target_map, target_faces)?]
+        Finished::Disk(disks) => [disk(&disks.source_map, faces)?, disk(&disks.target_map, target_faces)?],
+        Finished::Sphere(spheres) => {
+            [sphere(&spheres.source_map, faces)?, sphere(&spheres.target_map, target_faces)?]
         }
-        Finished::Curves(found) => [
-            sphere(&without_iterations(&found.spheres[0]), faces)?,
-            sphere(&without_iterations(&found.spheres[1]), target_faces)?,
+        Finished::Curves(curves) => [
+            sphere(&without_iterations(&curves.spheres[0]), faces)?,
+            sphere(&without_iterations(&curves.spheres[1]), target_faces)?,
         ],
     })
 }
@@ -232,23 +234,22 @@ impl Registration {
     /// Parameters
     /// ----------
     /// values : (n_t, ...) or (m_t, 3, ...) array
-    ///     One row per target vertex, or one per corner of the target faces as they were given. Each corner
-    ///     of a source face takes the value on that side of a seam of the data on which its face lies.
+    ///     One row per target vertex, or one per corner of the given target faces. At a seam of the data, each corner
+    ///     of a source face takes the value of the side on which its face lies.
     /// per : "vertex" or "corner", optional
-    ///     What `values` has a row for. Default: what its shape says, a vertex where both would fit.
+    ///     The elements that `values` has a row for. Default: as its shape says, vertices if both fit.
     /// nearest : bool
-    ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating. For
-    ///     labels.
+    ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating: for labels.
     ///
     /// Returns
     /// -------
     /// (n, ...) or (m, 3, ...) array
-    ///     float64, with `nearest` of the dtype of `values`.
+    ///     float64; with `nearest`, the dtype of `values`.
     ///
     /// Raises
     /// ------
     /// MeshError
-    ///     Values of another shape; without `nearest` also values that are no real numbers.
+    ///     The values have another shape, or without `nearest` are no real numbers.
     #[pyo3(signature = (values, *, per=None, nearest=false))]
     fn pull(
         &self,
@@ -257,7 +258,7 @@ impl Registration {
         per: Option<&str>,
         nearest: bool,
     ) -> PyResult<Py<PyAny>> {
-        let wanted = match per {
+        let asked = match per {
             None => None,
             Some("vertex") => Some(Per::Vertex),
             Some("corner") => Some(Per::Corner),
@@ -270,7 +271,7 @@ impl Registration {
         let (source, target) = (map.source(), map.target());
         let values = Values::new(values, "values")?;
         let shape = values.shape();
-        let Some((per, axes)) = Per::of(&shape, target, wanted) else {
+        let Some((per, axes)) = Per::of(&shape, target, asked) else {
             let (n, m) = (target.n_vertices(), target.n_faces());
             let expected = format!("of shape ({n}, …) per vertex or ({m}, 3, …) per corner of the target");
             return Err(bad_array(py, "values", values.shape_words(), expected));
@@ -287,8 +288,7 @@ impl Registration {
         from_values(py, pulled, out)
     }
 
-    /// The registration of the target onto the source, by the same maps; its `pull` carries source data to
-    /// the target.
+    /// The registration of the target onto the source by the same maps. Its `pull` carries source data to the target.
     ///
     /// Returns
     /// -------
@@ -298,7 +298,7 @@ impl Registration {
         Self::new(py, run(py, None, move |observer| finished.inverse(observer))?)
     }
 
-    /// How well scalars of both surfaces agree through the map, weighted by area on the source.
+    /// The agreement of scalars of both surfaces through the map, weighted by area on the source.
     ///
     /// Parameters
     /// ----------
@@ -310,12 +310,12 @@ impl Registration {
     /// Returns
     /// -------
     /// (float, float)
-    ///     Pearson's correlation, NaN where one side is constant, and the mean absolute difference.
+    ///     Pearson's correlation, NaN if one side is constant, and the mean absolute difference.
     ///
     /// Raises
     /// ------
     /// MeshError
-    ///     Values of another shape or no real numbers.
+    ///     The values have another shape or are no real numbers.
     fn compare(
         &self,
         py: Python<'_>,
@@ -324,9 +324,9 @@ impl Registration {
     ) -> PyResult<(f64, f64)> {
         let finished = self.finished.clone();
         let map = finished.correspondence();
-        let ours = scalars(source_values, "source_values", map.source().n_vertices())?;
-        let theirs = scalars(target_values, "target_values", map.target().n_vertices())?;
-        run(py, None, move |_| finished.correspondence().compare(aview1(&ours), aview1(&theirs)))
+        let source = scalars(source_values, "source_values", map.source().n_vertices())?;
+        let target = scalars(target_values, "target_values", map.target().n_vertices())?;
+        run(py, None, move |_| finished.correspondence().compare(aview1(&source), aview1(&target)))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -344,7 +344,7 @@ impl Registration {
     }
 }
 
-/// The rows of the target's data that the vertices or the corners of the source take.
+/// The row of the target's data that each vertex or corner of the source takes.
 fn nearest_rows(map: &Correspondence, per: Per) -> Vec<u32> {
     match per {
         Per::Vertex => map.nearest_vertices(),
@@ -352,7 +352,7 @@ fn nearest_rows(map: &Correspondence, per: Per) -> Vec<u32> {
     }
 }
 
-/// Rows of `width` numbers of the target at the vertices or the corners of the source, interpolated.
+/// Rows of `width` numbers of the target, interpolated at the vertices or corners of the source.
 fn pulled(map: &Correspondence, numbers: Vec<f64>, width: usize, per: Per) -> Result<Vec<f64>, Error> {
     let shaped = "the shape was checked";
     let pulled = match per {

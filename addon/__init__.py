@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Authalic: UVs in which every face has its fair share of the texture, and morphs between meshes."""
+"""Authalic: UVs that preserve areas, and morphs between meshes."""
 
 from .blender import scene_changes
 from .landmarks import curves as landmark_curves
@@ -20,7 +20,7 @@ from .ui import curves as ui_curves
 from .ui import landmarks as ui_landmarks
 from .ui import unwrap as ui_unwrap
 
-# All modules that register something with Blender, in this order; unregistered in the reverse one.
+# All modules that register something with Blender, in this order; they unregister in reverse.
 _MODULES = (
     scene_changes,
     landmark_curves,

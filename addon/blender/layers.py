@@ -13,7 +13,7 @@ from ..surfaces.arrays import Floats, Integers, Reals
 from . import shape_keys, uv_maps
 from .types import MeshObject
 
-UV_MAP, GROUP, COLOR, KEY = "UV map", "vertex group", "colour attribute", "shape key"
+UV_MAP, GROUP, COLOR, KEY = "UV map", "vertex group", "color attribute", "shape key"
 _NO_WEIGHT = 1e-6
 _ASIDE = "authalic replaced"  # what a color attribute is called while another takes its name
 

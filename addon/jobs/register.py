@@ -127,8 +127,8 @@ def _remarks(couple: Couple, key: str) -> list[str]:
     notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
     for obj in (couple.source, couple.target):
         if ignored := deformers(obj, but=key if obj == couple.source else None):
+            verb, them = ("was", "it") if len(ignored) == 1 else ("were", "them")
             notes.append(
-                f"{obj.name} was registered without {messages.listed(ignored)}, which it is seen with; apply "
-                "what is to count first"
+                f"{obj.name}: {messages.listed(ignored)} {verb} ignored; apply {them} first to include {them}"
             )
     return notes

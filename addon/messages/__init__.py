@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 Integers = NDArray[np.integer[Any]]
 
-ENDED_EARLY = "ended early, more time makes areas more even"
-ENDED_EARLY_BY_CURVES = "ended early, more time keeps the shapes of faces better"
-ENDED_EARLY_FIXING = "ended early, more time may fix more"
+ENDED_EARLY = "stopped early; a longer run gives more even areas"
+ENDED_EARLY_BY_CURVES = "stopped early; a longer run preserves the shapes of faces better"
+ENDED_EARLY_FIXING = "stopped early; a longer run may fix more"
 _NAMED = 3
 _PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
 

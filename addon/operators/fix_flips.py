@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.fix_flips: turns flipped faces of the active UV map over."""
+"""authalic.fix_flips: turns the flipped faces of the active UV map over."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operators on the landmarks of the active object have in common."""
+"""The base of the operators on the landmarks of the active object."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -9,11 +9,11 @@ from bpy.props import IntProperty
 from ..blender.types import MeshObject, OperatorMixin, Status
 from ..landmarks.objects import NONE, CannotPair, active_source
 
-GIVEN: Any = {"SKIP_SAVE"}  # of this use alone, not remembered for the next
+GIVEN: Any = {"SKIP_SAVE"}  # for this call alone, not remembered for the next
 
 
 class LandmarkOperator(OperatorMixin):
-    """A mixin for operators with `run(context, source)`; where that raises `CannotPair`, it tells the reason.
+    """A mixin for operators with `run(context, source)`; it reports the reason if that raises `CannotPair`.
 
     `pairs` and `active` name the list of the source that it works on and the index of its active entry.
     """
@@ -38,7 +38,7 @@ class LandmarkOperator(OperatorMixin):
         return problem
 
     def chosen(self, source: MeshObject) -> int:
-        """The index of the pair that is meant."""
+        """The index of the pair to work on."""
         index, count = self.index, len(getattr(source, self.pairs))
         index = getattr(source, self.active) if index == NONE else index
         if not 0 <= index < count:
@@ -48,10 +48,10 @@ class LandmarkOperator(OperatorMixin):
 
 
 def index_property(what: str = "the pair", meaning: str = "-1 for the active one") -> Any:
-    """The place of a pair in its list."""
+    """A property for the index of a pair in its list."""
     return IntProperty(
         name="Index",
-        description=f"The place of {what} in the list, from 0. {meaning}",
+        description=f"The index of {what} in the list, from 0. {meaning}",
         min=NONE,
         default=NONE,
         options=GIVEN,

@@ -45,8 +45,8 @@ def _side(meaning: str, default: str) -> Any:
 def _path(name: str, where: str) -> Any:
     return StringProperty(
         name=name,
-        description=f"The numbers of the vertices {where} from start to end, of a loop the first one again "
-        "at the end. Empty for the selected edges",
+        description=f"Vertex indices {where} from start to end; a loop repeats the first one at the end. "
+        "Empty for the selected edges",
         default="",
         options=GIVEN,
     )
@@ -56,13 +56,13 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
     """Make the selected edges a landmark curve: an open path or a closed loop, on this object or its target.
 
     Edges on one object alone complete the active curve if it lacks a path there. Open curves are matched
-    start to start: a path starts at its end that is nearer to the active vertex or edge"""
+    start to start: a path starts at the end nearer to the active vertex or edge"""
 
     bl_idname = "authalic.landmark_curve_add"
     bl_label = "Add Landmark Curve"
 
     name: StringProperty(
-        name="Name", description="Empty for the one there is, or a number", default="", options=GIVEN
+        name="Name", description="Empty to keep the name, or for a number", default="", options=GIVEN
     )
     index: _index("-1 for a new pair, or for one that lacks the path")
     source_vertices: _path("Source Vertices", "on this object")
@@ -121,7 +121,7 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
     bl_idname = "authalic.landmark_curve_select"
     bl_label = "Select Landmark Curve"
     index: _index()
-    side: _side("Whose edges to select", "SOURCE")
+    side: _side("The object whose edges to select", "SOURCE")
 
     def run(self, context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
@@ -131,7 +131,7 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
         if not path.edges:
             raise CannotPair(f"{pair.name}: {pair.problem}")
         source.authalic_landmark_curve_index = index
-        # With vertices, edges between any two of the path would be selected too.
+        # In vertex mode, any edge between two vertices of the path would be selected too.
         context.tool_settings.mesh_select_mode = False, True, False  # type: ignore[assignment]
         selection.select_edges(obj, path.edges)
         views.show(context, obj, _middle(path))
@@ -145,7 +145,7 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
     bl_idname = "authalic.landmark_curve_reverse"
     bl_label = "Reverse Landmark Curve"
     index: _index()
-    side: _side("Whose path to reverse", "TARGET")
+    side: _side("The object whose path to reverse", "TARGET")
 
     def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index, side = self.chosen(source), self.side.lower()
@@ -159,7 +159,7 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
 
 
 def _numbers(text: str) -> Path:
-    """The vertices in a text."""
+    """The vertex indices in a text."""
     words = [word for word in re.split(r"[\s,]+", text) if word]
     bad = next((word for word in words if not word.isdecimal()), None)
     if bad is not None:

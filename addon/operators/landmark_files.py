@@ -76,10 +76,10 @@ class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):  # t
 
 
 class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # type: ignore[misc]
-    """Read landmarks and landmark curves from a JSON file, in place of those there are.
+    """Replace the landmarks and landmark curves by those of a JSON file.
 
-    A file without curves leaves these alone. Where there is no target yet, the mesh object that the file
-    names becomes it"""
+    A file without curves leaves the curves alone. If there is no target yet, the mesh object that the file
+    names becomes the target"""
 
     bl_idname = "authalic.landmark_import"
     bl_label = "Import Landmarks"

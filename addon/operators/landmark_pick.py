@@ -22,7 +22,7 @@ from . import poll
 Seen = tuple[bpy.types.Area, bpy.types.Region, tuple[int, int]]
 """A 3D view, its region, and a pixel there."""
 
-# Looking around; mouse buttons and keys that do something else are held back.
+# Events that move the view; other mouse buttons and keys are held back.
 _NAVIGATION = {
     *("MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "WHEELINMOUSE", "WHEELOUTMOUSE", "TRACKPADPAN"),
     *("TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "HOME"),
@@ -30,18 +30,18 @@ _NAVIGATION = {
 }
 _DONE = {"ESC", "RET", "NUMPAD_ENTER"}
 _SIDES = ("source", "target")
-_SKIPPED = 16  # wires before the surface
+_SKIPPED = 16  # wire objects in front of a surface that clicks go through, at most
 
 
 class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
-    """Pick pairs of landmarks: click a point on the object and the same one on its target, either first"""
+    """Pick pairs of landmarks: click a point on the object and its partner on the target, in either order"""
 
     bl_idname = "authalic.landmark_pick"
     bl_label = "Pick Landmarks"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
     running = False
-    # While it runs: the names of both objects, the vertex chosen on either side, the pairs added, those of
-    # them that have a step of undo, what the surfaces were read from, and the surfaces.
+    # While it runs: the names of both objects, the vertex chosen on either side, the pairs added, the pairs
+    # with a step of undo, the states from which the surfaces were read, and the surfaces.
     _names: tuple[str, str]
     _chosen: dict[str, int]
     _steps: list[tuple[str, int, int]]
@@ -67,12 +67,12 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if AUTHALIC_OT_landmark_pick.running:
-            cls.poll_message_set("Landmarks are being picked already")
+            cls.poll_message_set("Landmarks are already being picked")
             return False
         return poll.has_target(cls, context)
 
     def execute(self, context: bpy.types.Context) -> Status:
-        """The last pair again, with other numbers; or a pair for scripts."""
+        """Adds a pair by vertex numbers: for scripts, and for changes in the redo panel."""
         if NONE in (self.source_vertex, self.target_vertex):
             self.report({"ERROR"}, "Picking needs a window, or the numbers of two vertices")
             return {"CANCELLED"}
@@ -123,7 +123,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         self._end(context)
 
     def _objects(self, context: bpy.types.Context) -> list[MeshObject] | None:
-        """The source and its target, or None if one is gone or is another one now."""
+        """The source and its target, or None if either is gone or the target has changed."""
         objects: list[Any] = [context.view_layer.objects.get(name) for name in self._names]
         return objects if None not in objects and objects[0].authalic_target == objects[1] else None
 
@@ -177,7 +177,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         vertices = self._chosen["source"], self._chosen["target"]
         self._chosen.clear()
         try:
-            if self._steps != self._pushed:  # a step of undo for each pair; the last one Blender itself makes
+            if self._steps != self._pushed:  # a step of undo for each pair; Blender makes the last itself
                 bpy.ops.ed.undo_push(message=self.bl_label)
                 self._pushed = list(self._steps)
             added = landmark_points.add(source, *vertices)
@@ -189,7 +189,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._say(context, f"Added {added.name}")
 
     def _take_back(self, context: bpy.types.Context, objects: Sequence[MeshObject]) -> None:
-        """Undoes the last click that has not made a pair yet, else the last pair of this run."""
+        """Undoes the last click if it has not made a pair yet, else the last pair of this run."""
         if self._chosen:
             self._chosen.popitem()
             self._say(context, "")
@@ -210,7 +210,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             layout = header.layout
             layout.label(text=f"Pick on {where}{named}", icon="MOUSE_LMB")
-            layout.label(text="Take Back", icon=_backspace())
+            layout.label(text="Undo", icon=_backspace())
             layout.label(text="Done", icon="EVENT_ESC")
             layout.label(text=text, translate=False)
 
@@ -237,7 +237,7 @@ def _takes_back(event: bpy.types.Event) -> bool:
 
 
 def _backspace() -> Any:
-    """The icon of the key, which 4.2 has not."""
+    """The icon of the key, which Blender 4.2 lacks."""
     layout: Any = bpy.types.UILayout
     icons = layout.bl_rna.functions["label"].parameters["icon"].enum_items
     return "EVENT_BACKSPACE" if "EVENT_BACKSPACE" in icons else "LOOP_BACK"
@@ -273,7 +273,7 @@ def _state(obj: MeshObject) -> tuple[object, ...]:
 def _blocked(
     context: bpy.types.Context, objects: Sequence[MeshObject], view: picking.View, pixel: ArrayLike
 ) -> float:
-    """The distance of another object that hides what is behind it."""
+    """The distance at which another object hides everything behind it, else infinity."""
     origin, direction = view.ray(pixel)
     start = origin
     for _ in range(_SKIPPED):

@@ -21,9 +21,9 @@ class _PointOperator(LandmarkOperator):
 
 
 class AUTHALIC_OT_landmark_add(_PointOperator, bpy.types.Operator):
-    """Pair the vertex that is selected on this object with the one that is selected on its target.
+    """Pair the selected vertex of this object with the selected vertex of its target.
 
-    Both objects have to be in Edit Mode, with one vertex selected on each"""
+    Both objects must be in Edit Mode, with one vertex selected on each"""
 
     bl_idname = "authalic.landmark_add"
     bl_label = "Add Landmark"
@@ -97,7 +97,7 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
     index: index_property()
     side: EnumProperty(
         name="Side",
-        description="Whose vertex to go to",
+        description="The object whose vertex to go to",
         items=(
             ("SOURCE", "Source", "The vertex on this object"),
             ("TARGET", "Target", "The vertex on the target"),
@@ -121,7 +121,7 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
 
 
 def _or_selected(vertex: int, obj: MeshObject) -> int:
-    """The vertex, or for -1 the one that is selected on the object."""
+    """The vertex, or for -1 the selected vertex of the object."""
     if vertex != NONE:
         return vertex
     if not obj.data.is_editmode:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.measure: how far the active UV map is from equal areas."""
+"""authalic.measure: the area distortion of the active UV map."""
 
 from typing import Any
 
@@ -12,9 +12,9 @@ from . import poll
 
 
 class AUTHALIC_OT_measure(bpy.types.Operator):
-    """Measure how evenly the active UV map shares the texture out, as figures and as a face attribute.
+    """Measure the area distortion of the active UV map, as figures and as a face attribute.
 
-    The attribute has 0 for a fair share, 1 for double, -1 for half, -20 for a face that is folded over"""
+    The attribute is 0 for a fair share, 1 for double, -1 for half, -20 for a flipped face"""
 
     bl_idname = "authalic.measure"
     bl_label = "Measure Area Distortion"
@@ -43,7 +43,7 @@ _PROPERTIES: Any = bpy.types.WindowManager
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_measure)
     _PROPERTIES.authalic_figures = StringProperty(
-        name="Figures", description="What was measured last", options={"SKIP_SAVE"}
+        name="Figures", description="The last measurement", options={"SKIP_SAVE"}
     )
 
 

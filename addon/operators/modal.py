@@ -11,7 +11,7 @@ from ..jobs import targets
 from ..jobs.job import Cancelled, Job
 
 _INTERVAL = 0.1
-# What may go on meanwhile: looking around. Anything else could change what is being worked on.
+# Events that only move the view. Any other could change the meshes of the job.
 _PASSED_ON = {
     *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"),
     *("TRACKPADZOOM", "MOUSEROTATE", "NDOF_MOTION", "WINDOW_DEACTIVATE"),
@@ -19,7 +19,7 @@ _PASSED_ON = {
 
 
 class Modal(OperatorMixin):
-    """A mixin for operators with `job(context)`, `refused`, the exceptions of that, and `line(report)`."""
+    """A mixin for operators with `job(context)`, its exceptions `refused`, and `line(report)`."""
 
     if TYPE_CHECKING:
         refused: tuple[type[Exception], ...]
@@ -84,7 +84,7 @@ class Modal(OperatorMixin):
             context.workspace.status_text_set(None)
 
     def _attempt(self, step: Callable[[], Status]) -> Status:
-        """The result of a step; where the job was refused, reports the reason, and nothing has changed."""
+        """Runs a step; if the job is refused, reports the reason. Nothing has changed then."""
         try:
             return step()
         except targets.NothingToDo as problem:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When commands can be used."""
+"""Whether an operator can be used now; else a poll tells the user why not."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from ..landmarks.objects import active_source, target_problem
 
 
 def has_meshes(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object or edit mode with a mesh to work on; else tells the user what is missing."""
+    """Object or edit mode with a mesh to work on."""
     if context.mode not in {"OBJECT", "EDIT_MESH"}:
         operator.poll_message_set("Only in Object Mode and in Edit Mode of a mesh")
         return False
@@ -20,7 +20,7 @@ def has_meshes(operator: "type[bpy.types.Operator]", context: bpy.types.Context)
 
 
 def has_meshes_in_object_mode(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object mode with a mesh to work on; else tells the user what is missing."""
+    """Object mode with a mesh to work on."""
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")
         return False
@@ -28,7 +28,7 @@ def has_meshes_in_object_mode(operator: "type[bpy.types.Operator]", context: bpy
 
 
 def has_uv_maps(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object or edit mode with a mesh that has a UV map; else tells the user what is missing."""
+    """Object or edit mode with a mesh that has a UV map."""
     if not has_meshes(operator, context):
         return False
     objects = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
@@ -39,7 +39,7 @@ def has_uv_maps(operator: "type[bpy.types.Operator]", context: bpy.types.Context
 
 
 def has_source(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object or edit mode with an active mesh, whose landmarks are meant."""
+    """Object or edit mode with an active mesh."""
     if context.mode not in {"OBJECT", "EDIT_MESH"}:
         operator.poll_message_set("Only in Object Mode and in Edit Mode of a mesh")
         return False

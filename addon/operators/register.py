@@ -17,7 +17,7 @@ from .modal import Modal
 
 
 class Registering(OperatorMixin):
-    """Properties of registrations and their part of a panel."""
+    """The properties of operators that register."""
 
     method: EnumProperty(
         name="Method",
@@ -26,31 +26,30 @@ class Registering(OperatorMixin):
             (
                 "POINTS",
                 "Landmark Points",
-                "The landmarks, as nearly as faces can follow. Faces keep their shares of the area",
+                "Landmark points, as closely as faces can follow. Areas are preserved",
             ),
             (
                 "CURVES",
                 "Landmark Curves",
-                "The landmark curves all along, exactly, and boundaries. Faces keep their shapes as well as "
-                "can be",
+                "Landmark curves and boundaries, exactly along their whole length. Shapes of faces are "
+                "preserved as well as possible",
             ),
         ),
         default="POINTS",
     )
     domain: EnumProperty(
         name="Domain",
-        description="The shape by way of which the two surfaces are registered",
+        description="The shape that both surfaces are mapped to",
         items=(
             ("AUTO", "Automatic", "A disk for surfaces with a boundary, a sphere for closed ones"),
-            ("DISK", "Disk", "Both surfaces must have one boundary, and normals to the same side"),
+            ("DISK", "Disk", "Both surfaces must have one boundary, and normals on the same side"),
             ("SPHERE", "Sphere", "Both surfaces must be closed"),
         ),
         default="AUTO",
     )
     angle_weight: FloatProperty(
         name="Angle Weight",
-        description="How much angles count against areas. 0 keeps shares of the area as well as can be, "
-        "higher values skew less",
+        description="Trade-off: 0 preserves areas, higher values shear less",
         min=0.0,
         max=1.0,
         precision=3,
@@ -58,7 +57,7 @@ class Registering(OperatorMixin):
     )
     weight: FloatProperty(
         name="Landmark Weight",
-        description="How hard landmarks are pulled at first; it grows until they meet",
+        description="Initial pull on the landmarks; it grows until they meet",
         min=1e-6,
         soft_max=100.0,
         default=1.0,
@@ -71,9 +70,9 @@ class Registering(OperatorMixin):
 class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
-    By points, faces keep their shares of the area as well as these allow; by curves, their shapes. The map
-    folds none of them over. Normals of both must face the same way, by curves those of open surfaces alone,
-    or the map is mirrored: recalculate or flip those of one"""
+    Points preserve areas, curves preserve the shapes of faces; no face folds over. The normals of both meshes
+    must face the same way (with curves only if the meshes are open), or the map is mirrored: recalculate or
+    flip the normals of one mesh"""
 
     bl_idname = "authalic.register"
     bl_label = "Register and Morph"
@@ -82,18 +81,20 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
 
     align: BoolProperty(
         name="Align",
-        description="Move, turn and scale the target onto the object, so that the shape does not travel "
-        "while it morphs. Off, it ends where the target is",
+        description="Move, rotate and scale the target onto the object, so that the shape does not travel "
+        "while it morphs. If off, the morph ends where the target is",
         default=False,
     )
     target_uv: BoolProperty(
         name="UV Map on Target",
-        description="Open surfaces: write the map under which both coincide as a UV map of the target too",
+        description="For open meshes: write the map under which both coincide as a UV map of the target too",
         default=False,
     )
     animate: BoolProperty(name="Animate", description="Key-frame the shape key from 0 to 1", default=False)
-    frame_start: IntProperty(name="Start Frame", description="Where the shape key is 0", default=1)
-    frame_end: IntProperty(name="End Frame", description="Where the shape key is 1", default=100)
+    frame_start: IntProperty(
+        name="Start Frame", description="The frame at which the shape key is 0", default=1
+    )
+    frame_end: IntProperty(name="End Frame", description="The frame at which the shape key is 1", default=100)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -114,7 +115,7 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
 
 
 def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object mode, an active mesh and a target for it; else tells the user what is missing."""
+    """Object mode, an active mesh and a target for it; else tells the user why not."""
     obj = active_source(context)
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")

@@ -10,7 +10,7 @@ from .. import bridge
 from ..blender.types import OperatorMixin
 from ..bridge import solver
 
-# Numbered, because key maps keep numbers: AUTHALIC is what CIRCLE was called before there were others.
+# Numbered, because key maps keep numbers. AUTHALIC is the former name of CIRCLE.
 _PRESETS = (
     ("EVEN", "Even", "Areas even to about a percent, shapes as good as that allows", "NONE", 4),
     ("BALANCED", "Balanced", "Better shapes, areas nearly as even", "NONE", 1),
@@ -29,7 +29,7 @@ _SHOWN = _PRESETS[:4]
 
 
 def _values(properties: Any) -> tuple[float, str | None, float]:
-    """What a preset is made of; only islands have an outline."""
+    """The values that a preset sets; only islands have an outline."""
     return properties.angle_weight, getattr(properties, "outline", None), properties.area_tolerance
 
 
@@ -57,13 +57,13 @@ def _assign(properties: Any, name: str, value: object) -> None:
 
 
 class Solving(OperatorMixin):
-    """Properties and their part of a panel."""
+    """The properties of operators that map surfaces."""
 
     method: EnumProperty(
         name="Method",
-        description="How areas are made even",
+        description="The algorithm that makes areas even",
         items=(
-            ("GAUSS_NEWTON", "Gauss-Newton", "The most even, in few iterations; never folds a face"),
+            ("GAUSS_NEWTON", "Gauss-Newton", "The most even areas, in few iterations; never folds a face"),
             (
                 "GRADIENT_DESCENT",
                 "Gradient Descent",
@@ -75,7 +75,7 @@ class Solving(OperatorMixin):
     )
     angle_preset: EnumProperty(
         name="Preset",
-        description="How to trade areas for shapes",
+        description="Trade-off between areas and shapes",
         items=_PRESETS,
         update=_set_values,
         default="EVEN",
@@ -141,7 +141,7 @@ class Outlining(Solving):
         items=(
             ("FREE", "Free", "Every island gets the outline that suits its shape"),
             ("CIRCLE", "Circle", "Every island fills a circle"),
-            ("RECTANGLE", "Rectangle", "Every island fills a rectangle, whose corners are found"),
+            ("RECTANGLE", "Rectangle", "Every island fills a rectangle, with corners chosen automatically"),
         ),
         update=_set_preset,
         default="FREE",
@@ -176,7 +176,7 @@ def draw_options(column: bpy.types.UILayout, properties: Any) -> None:
 
 
 def _draw_presets(column: bpy.types.UILayout, properties: Any) -> None:
-    """Two rows of buttons; none is pressed where the values are those of no preset."""
+    """Two rows of buttons; none is pressed if the values belong to no preset."""
     grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     grid.use_property_split = False
     for name, text, *_ in _SHOWN:

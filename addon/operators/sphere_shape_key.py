@@ -15,7 +15,7 @@ from .solving import Solving
 class AUTHALIC_OT_sphere_shape_key(Modal, Solving, bpy.types.Operator):
     """Add the shape key "Authalic Sphere", whose slider morphs a closed mesh into a sphere of the same area.
 
-    Every face gets the share of the sphere that its area is of the mesh; none is folded over"""
+    Each face's area on the sphere is proportional to its area on the mesh; no face folds over"""
 
     bl_idname = "authalic.sphere_shape_key"
     bl_label = "Authalic Sphere Shape Key"

@@ -19,30 +19,30 @@ _KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "sh
 class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
     """Copy UV maps, vertex groups, colors and shape keys from the target to the active object.
 
-    Through their registration, landmarks onto landmarks. Layers of the same names are replaced"""
+    The registration of both meshes says where they go. Layers of the same names are replaced"""
 
     bl_idname = "authalic.transfer"
     bl_label = "Transfer from Target"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
     refused = (CannotRegister,)
 
-    uv_maps: BoolProperty(name="UV Maps", description="By face corner, seams stay seams", default=True)
+    uv_maps: BoolProperty(name="UV Maps", description="By face corner; seams stay seams", default=True)
     active_uv_only: BoolProperty(
-        name="Active UV Map Only", description="Of the UV maps only the target's active one", default=False
+        name="Active UV Map Only", description="Copy only the active UV map of the target", default=False
     )
     vertex_groups: BoolProperty(name="Vertex Groups", description="With their weights", default=True)
     colour_attributes: BoolProperty(
-        name="Color Attributes", description="Those of vertices and of face corners", default=True
+        name="Color Attributes", description="Of vertices and of face corners", default=True
     )
     shape_keys: BoolProperty(
         name="Shape Keys",
-        description="As displacements from what they are relative to. Morphs between the two are left out",
+        description="As displacements from the keys they are relative to. Morphs between both are left out",
         default=True,
     )
     align: BoolProperty(
         name="Align Shape Keys",
-        description="Turn and scale displacements as the target has to be to lie over the object. Off, they "
-        "keep their directions and lengths in the world",
+        description="Rotate and scale displacements as the target must be to lie over the object. If off, "
+        "they keep their directions and lengths in the world",
         default=False,
     )
 
@@ -51,7 +51,7 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
         return has_target(cls, context)
 
     def job(self, context: bpy.types.Context) -> Job[Any, transfer.Report]:
-        # Without any of these set, the registration that there is serves.
+        # If none of these is set, the last registration is used.
         is_set = any(self.properties.is_property_set(name) for name in _OF_REGISTRATION)
         return transfer.job(
             context,

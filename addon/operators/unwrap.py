@@ -55,26 +55,26 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     )
     sphere_layout: EnumProperty(
         name="Layout",
-        description="How the sphere of a closed island is laid flat, by a projection that keeps areas",
+        description="The equal-area projection that lays the sphere of a closed island flat",
         items=(
             (
                 "LAMBERT",
                 "Lambert Cylindrical",
-                "A rectangle as long as the equator. The poles are its upper and lower side, faces at the "
-                "seam stand out to the right",
+                "A rectangle as long as the equator. The poles are its upper and lower sides; faces at the "
+                "seam extend beyond the right side",
             ),
             (
                 "OCTAHEDRAL",
                 "Octahedral",
                 "A square with the upper pole in the middle and the lower pole in its corners. Faces at the "
-                "seam stand out a little",
+                "seam extend a little beyond its sides",
             ),
         ),
         default="LAMBERT",
     )
     pole_axis: EnumProperty(
         name="Pole Axis",
-        description="The object's own axis that the poles of a closed island lie on",
+        description="The local axis on which the poles of a closed island lie",
         items=(
             ("X", "X", "Poles at the left and the right, seam at the back"),
             ("Y", "Y", "Poles at the front and the back, seam below"),
@@ -84,8 +84,8 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     )
     seam_direction: FloatProperty(
         name="Seam Direction",
-        description="How far the seam of a closed island is turned about the pole axis. 0 is at the back "
-        "(+Y), or below (-Z) with the poles on Y",
+        description="The angle of the seam of a closed island about the pole axis. 0 is at the back (+Y), "
+        "or below (-Z) with the poles on Y",
         subtype="ANGLE",
         soft_min=-math.pi,
         soft_max=math.pi,
@@ -93,14 +93,14 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     )
     uv_layer: StringProperty(
         name="UV Map",
-        description="The UV map to write, added if there is none of this name. Empty for the active one",
+        description="The UV map to write; it is added if it is missing. Empty for the active one",
         default="",
         search=_layer_names,
         search_options={"SUGGESTION"},
     )
     margin_method: EnumProperty(
         name="Margin Method",
-        description="What the margin is measured in",
+        description="The unit of the margin",
         items=(
             ("SCALED", "Scaled", "Use scale of existing UVs to multiply margin"),
             ("ADD", "Add", "Just add the margin, ignoring any UV scale"),

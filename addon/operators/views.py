@@ -22,7 +22,7 @@ def _look_at(context: bpy.types.Context, point: Vector, normal: Vector) -> None:
         return
     if view.view_perspective == "CAMERA":
         view.view_perspective = "PERSP"
-    towards = view.view_rotation @ vertex_positions.Z
-    if normal.dot(towards) < 0.2 and normal.length > 0:
+    to_viewer = view.view_rotation @ vertex_positions.Z
+    if normal.dot(to_viewer) < 0.2 and normal.length > 0:
         view.view_rotation = normal.to_track_quat("Z", "Y")
     view.view_location = point

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of the registration panel with the list of landmark curves, and what is done with them."""
+"""The part of the registration panel with the list of landmark curves and its buttons."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ _shown: list[landmark_curves.Curve] = []  # the pairs of the list that is being 
 
 
 class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
-    """Number and color, name, last error and edges of each pair, and a warning where a path is missing."""
+    """Number, color, name, last error and edge counts of each pair, and a warning if a path is missing."""
 
     def draw_item(  # type: ignore[override]
         self,
@@ -65,7 +65,7 @@ class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
 
 
 def draw_curves(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
-    """A panel within the panel, closed until it is wanted."""
+    """A panel within the panel, closed by default."""
     header, body = layout.panel("AUTHALIC_PT_landmark_curves", default_closed=True)
     count = len(source.authalic_landmark_curves)
     header.label(text=f"Landmark Curves ({count})" if count else "Landmark Curves")
@@ -100,11 +100,13 @@ def draw_curves(layout: bpy.types.UILayout, source: MeshObject, context: bpy.typ
 
 
 def draw_hint(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
-    """Why a registration by curves would not do what is wanted."""
+    """Warns that curves are missing or cannot be used."""
     pairs = landmark_curves.pairs(source, drawing=True)
     bad = sum(pair.problem is not None for pair in pairs)
     if not pairs:
-        text.draw_problems(layout, ["No landmark curves yet, boundaries alone"], context, icon="INFO")
+        text.draw_problems(
+            layout, ["No landmark curves yet; only boundaries are matched"], context, icon="INFO"
+        )
     elif bad:
         text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registration panel of the 3D view: the target, the list of landmarks, and what is done with them."""
+"""The registration panel of the 3D view: the target, and the list of landmarks with its buttons."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ _shown: list[landmark_points.Pair] = []  # the pairs of the list that is being d
 
 
 class AUTHALIC_UL_landmarks(bpy.types.UIList):
-    """Number, name, last error and the two vertices of each pair, and a warning where one was lost."""
+    """Number, name, last error and the two vertices of each pair, and a warning if a vertex was lost."""
 
     def draw_item(  # type: ignore[override]
         self,
@@ -111,7 +111,7 @@ def _draw_landmarks(layout: bpy.types.UILayout, source: MeshObject, context: bpy
 
 
 def _lines(source: MeshObject) -> list[str]:
-    """What is wrong with the target, or with the pairs."""
+    """The problems of the target, or of the pairs."""
     if target := target_problem(source):
         return [target] if source.authalic_target is not None or _shown else []
     return _problems(source.authalic_landmark_index)

@@ -11,7 +11,7 @@ from . import curves
 
 
 def draw_register(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
-    """What the buttons were used with last, and will be used with next, is below either."""
+    """Below each button stand the options that it was last used with, and will use next."""
     last = context.window_manager.operator_properties_last
     buttons: Any = ("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")
     for operator, module, icon in buttons:

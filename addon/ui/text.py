@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures and problems of landmarks in words, as panels show them."""
+"""Figures and problems of landmarks in panels."""
 
 import textwrap
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ def draw_aside(row: bpy.types.UILayout, text: str) -> None:
 
 
 def draw_error(layout: bpy.types.UILayout, pairs: Any, index: int) -> None:
-    """How far the last registration missed the active one of some pairs, if there was one."""
+    """The error of the active pair in the last registration, if there was one."""
     error = pairs[index].error if index < len(pairs) else -1.0
     if error >= 0:
         row = layout.row()

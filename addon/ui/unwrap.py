@@ -24,7 +24,7 @@ class _UnwrapPanel(_Panel):
         row.operator("authalic.unwrap", icon="UV")
         layout.use_property_split = True
         layout.use_property_decorate = False
-        # What the button was used with last, and will be used with next.
+        # The options that the button was last used with, and will use next.
         unwrap.draw_options(layout, context.window_manager.operator_properties_last("authalic.unwrap"))
 
 
@@ -38,7 +38,7 @@ class _MeasurePanel(_Panel):
         column.operator("authalic.fix_flips")
         column = layout.column(align=True)
         manager: Any = context.window_manager
-        # One figure a line: a sidebar is narrow.
+        # one figure per line: a sidebar is narrow
         for figure in filter(None, manager.authalic_figures.split(", ")):
             column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
@@ -103,7 +103,7 @@ _CLASSES = (
 def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
-    # Serves the UV editor's menu and the 3D view's.
+    # This menu serves the UV editor and the 3D view.
     _MENUS.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
     for menu in _FLIPS_MENUS:
         getattr(_MENUS, menu).append(_draw_flips_menu)

@@ -112,7 +112,7 @@ def test_enter_keeps_the_best_so_far(key: str) -> None:
     made._running._thread.join(10)
     assert made.modal(context, event("TIMER")) == {"FINISHED"}
     ((kind, line),) = made.said
-    assert kind == "WARNING" and "ended early" in line
+    assert kind == "WARNING" and "stopped early" in line
     assert (meshes.area_ratios(obj, "New")[_written(obj)] > 0).all()
 
 
@@ -153,7 +153,7 @@ def test_the_last_island_kept_early_is_said_too() -> None:
     job.start()
     time.sleep(1.0)
     job.end_early()
-    assert "ended early, more time makes areas more even" in str(job.apply())
+    assert "stopped early; a longer run gives more even areas" in str(job.apply())
 
 
 def test_a_shape_key_can_be_kept_early() -> None:
@@ -162,7 +162,7 @@ def test_a_shape_key_can_be_kept_early() -> None:
     job = key.job(bpy.context, key.Settings(bridge.Solver(**LONG))).start()
     time.sleep(1.0)
     job.end_early()
-    assert "ended early" in str(job.apply())
+    assert "stopped early" in str(job.apply())
     assert obj.data.shape_keys.key_blocks["Authalic Sphere"].value == 0
 
 

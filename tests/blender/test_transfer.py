@@ -48,17 +48,17 @@ def random_uv(obj: MeshObject, name: str, seed: int = 1) -> Array:
     return values
 
 
-def colours(obj: MeshObject, name: str) -> Array:
+def colors(obj: MeshObject, name: str) -> Array:
     values = np.empty(4 * len(obj.data.color_attributes[name].data), np.float32)
     obj.data.color_attributes[name].data.foreach_get("color", values)
     return values.reshape(-1, 4)
 
 
-def add_colours(obj: MeshObject, name: str, kind: str, domain: str) -> Array:
+def add_colors(obj: MeshObject, name: str, kind: str, domain: str) -> Array:
     attribute = obj.data.color_attributes.new(name, kind, domain)
     values = np.random.default_rng(2).random((len(attribute.data), 4), np.float32)
     attribute.data.foreach_set("color", values.ravel())
-    return colours(obj, name)
+    return colors(obj, name)
 
 
 def weights(obj: MeshObject, name: str) -> Array:
@@ -189,21 +189,21 @@ def test_vertex_groups(matrix: Matrix | None) -> None:
 
 @pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
 @pytest.mark.parametrize("domain", ["POINT", "CORNER"])
-def test_colours(kind: str, domain: str) -> None:
+def test_colors(kind: str, domain: str) -> None:
     source, target = copies()
-    wanted = add_colours(target, "Paint", kind, domain)
+    wanted = add_colors(target, "Paint", kind, domain)
     assert only("colour_attributes") == {"FINISHED"}
     found = source.data.color_attributes["Paint"]
     assert (found.data_type, found.domain) == (kind, domain)
-    np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5 if kind == "FLOAT_COLOR" else 0.01)
+    np.testing.assert_allclose(colors(source, "Paint"), wanted, atol=1e-5 if kind == "FLOAT_COLOR" else 0.01)
 
 
-def test_colours_of_another_kind_are_replaced() -> None:
+def test_colors_of_another_kind_are_replaced() -> None:
     source, target = copies()
-    wanted = add_colours(target, "Paint", "FLOAT_COLOR", "CORNER")
-    add_colours(source, "Paint", "BYTE_COLOR", "POINT")
+    wanted = add_colors(target, "Paint", "FLOAT_COLOR", "CORNER")
+    add_colors(source, "Paint", "BYTE_COLOR", "POINT")
     only("colour_attributes")
-    np.testing.assert_allclose(colours(source, "Paint"), wanted, atol=1e-5)
+    np.testing.assert_allclose(colors(source, "Paint"), wanted, atol=1e-5)
 
 
 def test_shape_keys_turn_with_the_spaces() -> None:
@@ -262,13 +262,13 @@ def test_everything_at_once_and_closed(capfd: pytest.CaptureFixture[str]) -> Non
     pairs.pair(source, target, pairs.nearest(source, [(1, 1, 1), (-1, 1, 0), (0, -1, 0), (1, 0, -1)]))
     wanted = random_uv(target, "Map")
     add_group(target, "Group", np.full(len(target.data.vertices), 0.5))
-    paint = add_colours(target, "Paint", "FLOAT_COLOR", "POINT")
+    paint = add_colors(target, "Paint", "FLOAT_COLOR", "POINT")
     add_key(target, "Key", np.ones(3))
     assert transfer() == {"FINISHED"}
     np.testing.assert_allclose(meshes.uv(source, "Map"), wanted, atol=1e-4)
     np.testing.assert_allclose(weights(source, "Group"), 0.5, atol=1e-6)
-    np.testing.assert_allclose(colours(source, "Paint"), paint, atol=1e-4)
-    assert "1 UV map (Map), 1 vertex group (Group), 1 colour attribute (Paint), 1 shape key (Key)" in (
+    np.testing.assert_allclose(colors(source, "Paint"), paint, atol=1e-4)
+    assert "1 UV map (Map), 1 vertex group (Group), 1 color attribute (Paint), 1 shape key (Key)" in (
         capfd.readouterr().out
     )
 
@@ -311,36 +311,36 @@ def layers(obj: MeshObject) -> list[list[str]]:
     return [[one.name for one in kind] for kind in (data.uv_layers, obj.vertex_groups, data.color_attributes)]
 
 
-def test_colour_and_group_of_one_name_on_the_target(capfd: pytest.CaptureFixture[str]) -> None:
-    """A group may take a colour's name, but not the other way round: the second is refused by name."""
+def test_color_and_group_of_one_name_on_the_target(capfd: pytest.CaptureFixture[str]) -> None:
+    """A group may take a color attribute's name, but not the reverse: the second is refused by name."""
     source, target = copies()
     random_uv(target, "Map")
-    add_colours(target, "Col", "FLOAT_COLOR", "POINT")
+    add_colors(target, "Col", "FLOAT_COLOR", "POINT")
     add_group(target, "Col", [1.0])
     assert layers(target) == [["Map"], ["Col"], ["Col"]]
     assert transfer() == {"FINISHED"}
     assert layers(source) == [["Map"], ["Col"], []]
     said = capfd.readouterr().out
     assert "1 UV map (Map), 1 vertex group (Col) from" in said
-    assert "colour attribute Col: Sheet gets a vertex group of this name; rename one of them on" in said
+    assert "color attribute Col: Sheet gets a vertex group of this name; rename one of them on" in said
 
 
 @pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
-def test_colour_and_group_of_one_name_on_both(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
+def test_color_and_group_of_one_name_on_both(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
     """What is there already is written in place, but no other type can take its place."""
     source, target = copies()
-    wanted = add_colours(target, "Col", "FLOAT_COLOR", "POINT")
-    before = add_colours(source, "Col", kind, "POINT")
+    wanted = add_colors(target, "Col", "FLOAT_COLOR", "POINT")
+    before = add_colors(source, "Col", kind, "POINT")
     for obj in (source, target):
         add_group(obj, "Col", [1.0])
     assert transfer() == {"FINISHED"}
     assert layers(source) == [[], ["Col"], ["Col"]]
     is_alike = kind == "FLOAT_COLOR"
-    np.testing.assert_allclose(colours(source, "Col"), wanted if is_alike else before, atol=1e-5)
-    assert ("colour attribute Col: Sheet has another attribute" in capfd.readouterr().out) != is_alike
+    np.testing.assert_allclose(colors(source, "Col"), wanted if is_alike else before, atol=1e-5)
+    assert ("color attribute Col: Sheet has another attribute" in capfd.readouterr().out) != is_alike
 
 
-@pytest.mark.parametrize("kind", ["UV map", "vertex group", "colour attribute"])
+@pytest.mark.parametrize("kind", ["UV map", "vertex group", "color attribute"])
 def test_what_blender_names_otherwise_is_left_out_whole(
     kind: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -351,9 +351,9 @@ def test_what_blender_names_otherwise_is_left_out_whole(
         random_uv(target, "Col")
     if kind == "vertex group":
         add_group(target, "Col", [1.0])
-    if kind == "colour attribute":
-        add_colours(target, "Col", "FLOAT_COLOR", "POINT")
-        before = add_colours(source, "Col", "BYTE_COLOR", "CORNER")
+    if kind == "color attribute":
+        add_colors(target, "Col", "FLOAT_COLOR", "POINT")
+        before = add_colors(source, "Col", "BYTE_COLOR", "CORNER")
     module = part("blender.layers")
     really = module._added
 
@@ -371,8 +371,8 @@ def test_what_blender_names_otherwise_is_left_out_whole(
     assert transfer() == {"FINISHED"}
     assert layers(source) == expected
     assert f"{kind} Col: Blender adds no layer of this name to Sheet" in capfd.readouterr().out
-    if kind == "colour attribute":
-        assert (colours(source, "Col") == before).all()
+    if kind == "color attribute":
+        assert (colors(source, "Col") == before).all()
 
 
 def test_nothing_to_transfer(capfd: pytest.CaptureFixture[str]) -> None:

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The only folder that talks to the native library: plain data in, plain data out, no bpy.
-
-Its functions are ordinary functions on numpy arrays.
-"""
+"""The only folder that imports the native library: functions on numpy arrays and plain data, no bpy."""
 
 from ..surfaces.suitability import Unsuitable
 from .figures import folds, measure, measure_islands

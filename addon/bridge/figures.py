@@ -16,7 +16,7 @@ from .results import Figures, Island, Measurement
 
 
 def folds(island: Island) -> bool:
-    """Whether a face of an island is folded over, exactly, in UVs of single precision as Blender has them."""
+    """Whether a face of an island is folded in single precision, as Blender has UVs; the answer is exact."""
     try:
         island.figures = None
         return len(_in_uvs(island).folded) > 0
@@ -34,7 +34,7 @@ def _in_uvs(island: Island) -> authalic.Distortion:
 def measure_islands(islands: Sequence[Island]) -> Figures | None:
     """Figures of islands without folds, in UVs of single precision, all on one scale.
 
-    None where no triangle has an area.
+    None if no triangle has an area.
     """
     points = np.concatenate([island.points[island.faces] for island in islands])
     image = np.concatenate([island.uv.astype(np.float32)[island.faces] for island in islands])
@@ -49,7 +49,7 @@ def measure_islands(islands: Sequence[Island]) -> Figures | None:
 
 
 def measure(surfaces: Sequence[Surface]) -> Measurement | None:
-    """Figures of the UVs of `surfaces`, all on one scale; None where no triangle has an area."""
+    """Figures of the UVs of `surfaces`, all on one scale; None if no triangle has an area."""
     points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
     image = np.concatenate([surface.uvs[surface.corners] for surface in surfaces])
     good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
@@ -57,14 +57,14 @@ def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     areas, image_areas = _areas(points, image)
     if not image_areas.any():
         return None
-    # With the UV islands in one piece the library turns faces of inconsistent normals by itself.
+    # Corners are welded, so that the library itself can turn faces with inconsistent normals.
     first, faces = triangulation.welded(_vertices(surfaces)[good], image)
     corner_points, corner_image = points.reshape(-1, 3)[first], image.reshape(-1, 2)[first]
-    found = authalic.distortion(corner_points, faces, corner_image)
+    native = authalic.distortion(corner_points, faces, corner_image)
     folded = np.zeros(len(areas), bool)
-    folded[found.folded] = True
+    folded[native.folded] = True
     ratios = _ratios(areas, np.where(folded, -image_areas, image_areas))
-    figures = _figures(ratios, folded, np.asarray(found.angle_distortion), int(np.count_nonzero(~good)))
+    figures = _figures(ratios, folded, np.asarray(native.angle_distortion), int(np.count_nonzero(~good)))
     spread = [_spread(good, values) for values in (_log2(ratios, folded), areas, folded)]
     return Measurement(**vars(figures), log2=polygons.log2_area_ratios(surfaces, *spread))
 
@@ -75,12 +75,12 @@ def _areas(points: Floats, image: Singles) -> tuple[Floats, Floats]:
 
 
 def _ratios(areas: Floats, image_areas: Floats) -> Floats:
-    """Signed image areas (t,) over areas (t,), with a mean of 1 where the whole counts."""
+    """Signed image areas (t,) over areas (t,), scaled so that all areas together have the ratio 1."""
     return image_areas / areas * (areas.sum() / np.abs(image_areas).sum())
 
 
 def _log2(ratios: Floats, folded: Booleans) -> Floats:
-    """log2 of area ratios (t,), within the limits of what is shown."""
+    """log2 of area ratios (t,), clipped to the limits."""
     log2 = np.full(len(ratios), -polygons.LOG2_LIMIT)
     log2[~folded] = np.clip(np.log2(ratios[~folded]), -polygons.LOG2_LIMIT, polygons.LOG2_LIMIT)
     return log2
@@ -104,7 +104,8 @@ def _figures(ratios: Floats, folded: Booleans, angles: Floats, without_area: int
 def _vertices(surfaces: Sequence[Surface]) -> Integers:
     """The vertices of the triangles of all surfaces, (t, 3), numbered on from one surface to the next."""
     starts = np.cumsum([0, *(len(surface.positions) for surface in surfaces)])
-    return np.concatenate([s.triangles + start for s, start in zip(surfaces, starts[:-1], strict=True)])
+    numbered = zip(surfaces, starts[:-1], strict=True)
+    return np.concatenate([surface.triangles + start for surface, start in numbered])
 
 
 def _spread(good: Booleans, values: NDArray[Any]) -> NDArray[Any]:

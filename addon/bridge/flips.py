@@ -20,9 +20,9 @@ from .results import Refusal, Unflipped
 
 
 def fix_flips(surfaces: Sequence[Surface], progress: Progress = keep_going) -> Unflipped:
-    """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as it can.
+    """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as possible.
 
-    Outlines, pinned UVs and UVs that other faces share stay. Islands that this leaves no way out are refused,
+    Outlines, pinned UVs and UVs that other faces share stay. Islands that cannot be unfolded so are refused,
     not raised, as are all that come after `progress` has returned False.
     """
     result = Unflipped()
@@ -33,7 +33,7 @@ def fix_flips(surfaces: Sequence[Surface], progress: Progress = keep_going) -> U
 
 @dataclass
 class _Tangle:
-    """An island of a UV map in which faces may be flipped; arrays as those of `uv_map.UvMap`."""
+    """An island of a UV map in which faces may be flipped, with arrays as in `uv_map.UvMap`."""
 
     name: str
     index: int
@@ -81,16 +81,16 @@ def _tangles(surfaces: Sequence[Surface], index: int, result: Unflipped) -> Iter
 
 
 def _unflip(tangle: _Tangle, result: Unflipped, progress: Progress) -> None:
-    """Adds what an island needs to have no flipped faces to an `Unflipped`."""
+    """Adds the UVs with which an island has no flipped faces to an `Unflipped`."""
     faces = np.asarray(tangle.patch.faces)
     suitability.check_flat(tangle.patch)
     native = checked(tangle.patch, tangle.points)
-    authalic.distortion(native, tangle.uv)  # raises where the mesh is at fault
-    found = _untangled(tangle, native, result, progress)
-    folded = np.asarray(found.folded_before)
-    if len(folded) == 0:  # only normals that are inconsistent
+    authalic.distortion(native, tangle.uv)  # raises if the mesh is at fault
+    untangled = _untangled(tangle, native, result, progress)
+    folded = np.asarray(untangled.folded_before)
+    if len(folded) == 0:  # only normals were inconsistent
         return
-    uv = np.asarray(found.image).astype(np.float32)
+    uv = np.asarray(untangled.image).astype(np.float32)
     if not _is_unfolded(native, uv):
         raise Unsuitable("its faces would flip again in UV precision; scale the island up or unwrap it anew")
     moved = (uv != tangle.uv).any(axis=1)
@@ -114,12 +114,12 @@ def _untangled(
         raise Unsuitable(_why_not(flipped, bool(tangle.pinned.any()), bool(tangle.shared.any()))) from problem
 
 
-def _why_not(polygons: Integers, has_pins: bool, is_part: bool) -> str:
-    """Why polygons (k,) stay flipped, and what to do; `is_part`: of the island only a part is selected."""
+def _why_not(polygons: Integers, has_pins: bool, is_partial: bool) -> str:
+    """Why polygons (k,) stay flipped, and what to do. `is_partial`: the island is only partly selected."""
     faces = f"{messages.count(len(polygons), 'face')} ({messages.numbers(polygons)})"
     pins = " and pinned UVs" if has_pins else ""
     remedies = [
-        *(["select the faces around as well"] if is_part else []),
+        *(["select the faces around as well"] if is_partial else []),
         *(["unpin UVs"] if has_pins else []),
         "smooth the outline there or unwrap the island again",
     ]
@@ -130,6 +130,6 @@ def _why_not(polygons: Integers, has_pins: bool, is_part: bool) -> str:
 
 
 def _is_unfolded(native: authalic.Surface, uv: Singles) -> bool:
-    """Whether no face is folded over, exactly, in an image or in its mirror image."""
+    """Whether no face of an image, or of its mirror image, is folded; the answer is exact."""
     images = [uv * np.array([side, 1], np.float32) for side in (1, -1)]
     return any(not len(authalic.distortion(native, image).folded) for image in images)

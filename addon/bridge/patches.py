@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes cut into patches: the one time that their arrays go to the native library."""
+"""Meshes cut into patches: the only time that their arrays go to the native library."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..surfaces.arrays import Floats, Integers
 def cut(points: Floats, faces: Integers, seams: Integers | None = None) -> list[authalic.Patch]:
     """The patches of triangles `faces` (m, 3) between `points` (n, 3).
 
-    A coordinate that is not finite counts as 0 here; `checked` refuses its patch when that has its turn.
+    Coordinates that are not finite count as 0 here; `checked` refuses their patches later.
     """
     return authalic.cut(np.nan_to_num(points, posinf=0, neginf=0), faces, seams=seams)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Registrations of two surfaces by landmark points or by landmark curves, and what follows from them."""
+"""Registrations of two surfaces by landmark points or by landmark curves, with morphs and transfers."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
@@ -35,23 +35,23 @@ def register(
 ) -> Registered:
     """The `Registered` of two `Side`s by pairs (name, source vertex, target vertex).
 
-    By curves the pairs are (name, source vertices, target vertices). One that was made before is not made
-    again. When `progress` returns False, as it is by then. Raises `Unsuitable`, in the words of an artist,
-    where there is none.
+    By curves the pairs are (name, source vertices, target vertices). A registration that is kept is not
+    computed again. When `progress` returns False, the result is the best so far. Raises `Unsuitable`, in the
+    words of an artist, if there is none.
     """
     key, settings = fingerprint(source, target, pairs), settings.that_count
-    found = _registrations.get(key, settings)
-    if found is None:
+    registered = _registrations.get(key, settings)
+    if registered is None:
         make: Callable[..., Registered] = (
-            _registered if settings.method == "POINTS" else _registered_by_curves
+            _registered_by_points if settings.method == "POINTS" else _registered_by_curves
         )
         try:
-            found = make(source, target, pairs, settings, progress)
+            registered = make(source, target, pairs, settings, progress)
         except (authalic.MeshError, authalic.SolverError) as error:
             raise Unsuitable(in_words(error, (source, target), pairs)) from error
-        _registrations.put(key, settings, found)
+        _registrations.put(key, settings, registered)
     _registrations.touch(key, settings)
-    return found
+    return registered
 
 
 def kept(
@@ -61,9 +61,9 @@ def kept(
     curves: Sequence[CurvePair] = (),
     method: str | None = None,
 ) -> Registered | None:
-    """The latest registration of these meshes by these pairs or by these curves in this session, or None.
+    """The latest registration of these meshes by these pairs or curves in this session, or None.
 
-    With a method, one of that alone.
+    With a method, only a registration by that method.
     """
     landmarks: dict[str, Sequence[PointPair] | Sequence[CurvePair]] = {"POINTS": pairs, "CURVES": curves}
     methods = [method] if method else [*landmarks]
@@ -72,9 +72,9 @@ def kept(
 
 
 def morphed(registered: Registered, source: Side, target: Side, align: bool) -> Floats:
-    """Where the source's points (u, 3) go in the world: onto the target, with `align` laid over the source.
+    """The places of the source's points (u, 3) in the world: on the target, or with `align` over the source.
 
-    The sides are those of today, which may have moved since they were registered.
+    The sides are as they stand now; they may have moved since they were registered.
     """
     if not align:
         return moved(np.asarray(registered.native.positions), target.matrix)
@@ -83,7 +83,7 @@ def morphed(registered: Registered, source: Side, target: Side, align: bool) -> 
 
 
 def pull(registered: Registered, values: Reals, per: Literal["vertex", "corner"]) -> Floats:
-    """The target's values as those of the source, `per` "vertex" (u, ...) or per "corner" (m, 3, ...)."""
+    """The target's values at the source, `per` "vertex" (u, ...) or "corner" (m, 3, ...)."""
     return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
 
 
@@ -91,10 +91,10 @@ def _registered_by_curves(
     source: Side, target: Side, curves: Sequence[CurvePair], _settings: Settings, progress: Progress
 ) -> Registered:
     sides = source, target
-    surfaces, patches = zip(*(_in_library(one) for one in sides), strict=True)
-    for one, part in zip(sides, patches, strict=True):
-        check_piece(one, part)
-    paths = check_curves(sides, curves, [boundaries(part) for part in patches])
+    surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
+    for side, pieces in zip(sides, patches, strict=True):
+        check_piece(side, pieces)
+    paths = check_curves(sides, curves, [boundaries(pieces) for pieces in patches])
     native = authalic.register_hyperbolic(
         *surfaces,
         source_curves=paths[0],
@@ -105,7 +105,7 @@ def _registered_by_curves(
 
 
 def _in_library(side: Side) -> tuple[Any, list[authalic.Patch]]:
-    """A side as the library takes it, and its pieces; a bad coordinate is for the registration to name."""
+    """A side for the library, and its pieces. The registration refuses coordinates that are not finite."""
     try:
         if not np.isfinite(side.points).all():
             return (side.points, side.faces), cut(side.points, side.faces)
@@ -116,13 +116,13 @@ def _in_library(side: Side) -> tuple[Any, list[authalic.Patch]]:
         raise Unsuitable(f"{side.name}: {reason}") from error
 
 
-def _registered(
+def _registered_by_points(
     source: Side, target: Side, pairs: Sequence[PointPair], settings: Settings, progress: Progress
 ) -> Registered:
     sides = source, target
-    surfaces, patches = zip(*(_in_library(one) for one in sides), strict=True)
+    surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
     shape = domain(sides, patches, settings.domain)
-    borders = [np.concatenate([np.empty(0, int), *boundaries(part)]) for part in patches]
+    borders = [np.concatenate([np.empty(0, int), *boundaries(pieces)]) for pieces in patches]
     landmarks = check_landmarks(sides, pairs, shape, borders)
     make = authalic.register_disks if shape == "DISK" else authalic.register_spheres
     native = make(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What comes out of the bridge. Plain data, no bpy."""
+"""The results of the bridge. Plain data, no bpy."""
 
 from dataclasses import dataclass, field
 
@@ -16,9 +16,9 @@ class Island(PlanarIsland):
 
     A point of the surface occurs once for each of its UVs. The mesh corners `corners` (k,) have the UVs of
     the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the rest;
-    they are mirrored in the map. `native` are points and faces as the native library holds them; `figures`
-    those of the UVs in single precision, None until asked for. `shortfall` says where the map is not as good
-    as it should be, else it is None. `may_turn` says that the outline has no upper side.
+    they are mirrored in the map. `native` holds points and faces in the native library. `figures` are those
+    of the UVs in single precision, None until asked for. `shortfall` is None if the map is as good as it
+    should be. `may_turn` says that the outline has no upper side.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Island(PlanarIsland):
 
     @property
     def has_divided_polygons(self) -> bool:
-        """Whether triangles are other than Blender's, as around the centers of divided polygons."""
+        """Whether triangles differ from Blender's, as around the centers of divided polygons."""
         return len(self.corners) < self.faces.size
 
 
@@ -53,7 +53,7 @@ class Refusal:
 
 @dataclass
 class Mapping:
-    """What `unwrap` found; `ended_early` where it was asked to make do with what it had."""
+    """The result of `unwrap`; `ended_early` says that it was asked to end before it was done."""
 
     islands: list[Island] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
@@ -83,7 +83,7 @@ class Measurement(Figures):
 
 @dataclass
 class SphereShape:
-    """A closed mesh's vertices (n, 3) on the sphere with its area, in single precision, and figures of that.
+    """A closed mesh's vertices (n, 3) on the sphere of its area, in single precision, with figures.
 
     `angle` is the mean angle distortion, `shortfall` as for islands, `ended_early` as for a mapping.
     """
@@ -99,10 +99,10 @@ class SphereShape:
 
 @dataclass
 class Unflipped:
-    """What `fix_flips` found: `writes` are (surface, mesh corners (k,), UVs (k, 2) in single precision).
+    """The result of `fix_flips`: `writes` are (surface, mesh corners (k,), UVs (k, 2) in single precision).
 
-    `faces` polygons were flipped, in `islands` islands; `moved` UV vertices are elsewhere now. Islands whose
-    flips stay are refused. `ended_early` as for a mapping.
+    `faces` polygons were flipped, in `islands` islands; `moved` UV vertices have moved. Islands whose flips
+    stay are refused. `ended_early` as for a mapping.
     """
 
     writes: list[tuple[int, Integers, Singles]] = field(default_factory=list)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How islands are mapped. Plain data, no bpy."""
+"""The settings of an unwrap. Plain data, no bpy."""
 
 from dataclasses import dataclass, field
 
@@ -8,10 +8,10 @@ from .solver import Solver
 
 @dataclass
 class UnwrapSettings:
-    """How islands are mapped.
+    """The settings of an unwrap.
 
-    `domain` is "AUTO", "DISK" or "SPHERE". The others after it are of spheres: the layout "LAMBERT" or
-    "OCTAHEDRAL", the axis "X", "Y" or "Z" of the poles, and the angle of the seam about it.
+    `domain` is "AUTO", "DISK" or "SPHERE". Closed islands have a layout, "LAMBERT" or "OCTAHEDRAL", the axis
+    "X", "Y" or "Z" of the poles, and the angle of the seam about it.
     """
 
     fill_holes: bool = True

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a map is as good as it should be. Plain data, no bpy."""
+"""Maps that are not as good as they should be. Plain data, no bpy."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,11 @@ import authalic
 
 from .solver import Solver
 
-# Standard deviations of area ratios that are bad: on a disk where areas count, on a sphere, where large
-# polygons leave more, and with any weight of angles. A mean angle distortion that is bad.
-UNEVEN_DISK, UNEVEN_SPHERE, _UNEVEN = 0.1, 0.5, 1.0
+UNEVEN_DISK, UNEVEN_SPHERE = 0.1, 0.5
+"""Standard deviations of area ratios that are bad if areas count; large polygons are less even on spheres."""
+# A standard deviation that is bad with any weight of angles.
+_UNEVEN = 1.0
+# A mean angle distortion that is bad.
 _SHEARED = 20.0
 _GOES_ON = "raise Iterations to go on"
 _ENDS = {"stalled": "stopped before it converged", "max_iterations": "stopped at the iteration limit"}
@@ -19,10 +21,9 @@ _ENDS = {"stalled": "stopped before it converged", "max_iterations": "stopped at
 
 @dataclass
 class Shortfall:
-    """Figures of a map that has not converged, or that is bad for what it was asked for.
+    """The figures of a map that has not converged, or that is bad for its settings.
 
-    `status` is the solver's. `is_uneven` and `is_sheared` say which of the figures is bad, `remedy` what to
-    do about these.
+    `status` is the solver's. `is_uneven` and `is_sheared` say which figures are bad, `remedy` what to do.
     """
 
     status: str
@@ -34,7 +35,7 @@ class Shortfall:
 
     def __str__(self) -> str:
         faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
-        named = [fault for fault, is_there in faults.items() if is_there]
+        named = [fault for fault, applies in faults.items() if applies]
         ended = [_ENDS[self.status]] if self.status in _ENDS else []
         figures = f"area ratio SD {self.deviation:.3g}, angle distortion {self.angle:.2f}"
         remedy = self.remedy if named else _GOES_ON if self.status == "max_iterations" else ""
@@ -44,7 +45,7 @@ class Shortfall:
 def shortfall(
     status: str, figures: authalic.Distortion, solver: Solver, uneven: float, remedy: str
 ) -> Shortfall | None:
-    """The `Shortfall` of a map by its figures; None where it has converged to what its weight leaves.
+    """The `Shortfall` of a map by its figures; None if it has converged and is good enough for its weight.
 
     `uneven` is a deviation of area ratios that is bad where areas count.
     """

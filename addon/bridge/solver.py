@@ -1,34 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The solver's options in Blender's words, and what the library calls them. Plain logic, no bpy."""
+"""The solver's options, in Blender's words and in the library's. Plain logic, no bpy."""
 
 from dataclasses import dataclass
 from typing import Any
 
-# For disks and for spheres. The papers have a descent of their own for either.
+# The names for disks and for spheres, for each of which the papers have their own descent.
 _METHODS = {
     "GAUSS_NEWTON": ("gauss_newton", "gauss_newton"),
     "GRADIENT_DESCENT": ("conjugate_gradient", "gradient_descent"),
     "FIXED_POINT": ("fixed_point", "fixed_point"),
 }
 _BOUNDARIES = {"FREE": "free", "CIRCLE": "sliding", "RECTANGLE": "rectangle"}
-# The weight at a slider of almost 0, and what the whole slider multiplies it by, as powers of ten.
-_LEAST, _DECADES = -5.0, 5.5
-# Up to this weight a map is about areas before all else.
+# The weight at a slider of almost 0, as a power of ten.
+_LEAST = -5.0
+# The powers of ten that the slider spans.
+_DECADES = 5.5
+# Up to this weight a map puts areas first.
 _AREAS_FIRST = 0.01
 
 PRESETS = {"EVEN": 2 / 5.5, "BALANCED": 0.632, "SOFT": 0.814, "CIRCLE": 0.0}
-"""Where the slider stands: for weights of .001, .03, .3 and 0."""
+"""The slider of each preset: weights of .001, .03, .3 and 0."""
 FORMER_NAMES = {"AUTHALIC": "CIRCLE"}
-"""Presets under the names that scripts and key maps of earlier versions have for them."""
+"""The names of presets in scripts and key maps of earlier versions."""
 
 
 @dataclass
 class Solver:
-    """The method, the iteration limit (0: none of the user's), and what the map trades for what.
+    """The method, the iteration limit (0: the default), and the trade-off between areas and angles.
 
     `angle_weight` is the slider from areas, 0, to angles, 1. `area_tolerance` above 0 replaces it: the least
-    shear with area errors within it. `outline` of open islands is "FREE", "CIRCLE" or "RECTANGLE"; a free one
-    may overlap itself with `overlap`. The papers' methods know areas and the circle only.
+    shear with area errors within it. The `outline` of open islands is "FREE", "CIRCLE" or "RECTANGLE"; a free
+    one may overlap itself with `overlap`. The papers' methods know areas and the circle only.
     """
 
     method: str = "GAUSS_NEWTON"
@@ -77,9 +79,9 @@ class Solver:
 
 
 def weight(slider: float) -> float:
-    """The library's weight of angles against areas at a slider from 0 to 1.
+    """The library's weight of angles at a slider from 0 to 1.
 
-    Rounded, so that Blender's single precision makes no difference.
+    It is rounded, so that Blender's single precision makes no difference.
     """
     return float(f"{10 ** (_LEAST + _DECADES * slider):.6g}") if slider > 0 else 0.0
 
@@ -90,12 +92,12 @@ def outline(name: str) -> str:
 
 
 def slider(name: str) -> float:
-    """Where the slider stands in a preset."""
+    """The slider of a preset."""
     return PRESETS[FORMER_NAMES.get(name, name)]
 
 
 def is_preset(name: str) -> bool:
-    """Whether it names a preset, by its name of today or a former one."""
+    """Whether a preset has this name, today or formerly."""
     return FORMER_NAMES.get(name, name) in PRESETS
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What a change can touch: the files that differ from the main branch, and the steps that look at them."""
+"""The files that differ from the main branch, and the steps that they can touch."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Dict, Iterable, Tuple
 from shell import ROOT, Unavailable
 
 Selection = Dict[str, Tuple[str, ...]]
-"""{step: what pytest is to run of it}; an empty tuple is the whole step."""
+"""{step: the places that pytest runs}; an empty tuple is the whole step."""
 
 BLENDER = ("blender-4.2", "blender-5")
 BUILT = ("wheel", "types", "python", "extension", *BLENDER)
@@ -53,7 +53,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
 
 
 def touched(files: Iterable[str]) -> Selection:
-    """The steps that look at any of the files, each with all that pytest is to run of it."""
+    """The steps that any of the files can touch, each with the places that pytest runs."""
     selection: Selection = {}
     for file in files:
         for step, places in _rule(file).items():
@@ -64,7 +64,7 @@ def touched(files: Iterable[str]) -> Selection:
 
 
 def changed_files() -> list[str]:
-    """The files that differ from the main branch where HEAD left it, committed or not, and the new ones."""
+    """The files that differ from the main branch where HEAD left it, committed or not, and new files."""
     differing = _git("diff", "--name-only", "--no-renames", "-z", base(), "--")
     new = _git("ls-files", "--others", "--exclude-standard", "-z")
     if differing is None or new is None:
@@ -73,7 +73,7 @@ def changed_files() -> list[str]:
 
 
 def base() -> str:
-    """Where HEAD left the main branch: that of origin, or the local `main`; HEAD itself where neither is."""
+    """The commit at which HEAD left the main branch, origin's or the local `main`; HEAD if neither exists."""
     for branch in ("origin/HEAD", "main"):
         commit = _git("merge-base", branch, "HEAD")
         if commit is not None:
@@ -82,15 +82,19 @@ def base() -> str:
 
 
 def _rule(file: str) -> Selection:
-    """What looks at one file. A test that was deleted cannot run."""
+    """The steps that one file can touch. Deleted tests are left out."""
     steps = next(steps for pattern, steps in _RULES if fnmatch(file, pattern))
     places = {step: tuple(place.format(file=file) for place in names) for step, names in steps.items()}
-    there = {step: tuple(name for name in names if (ROOT / name).exists()) for step, names in places.items()}
-    return {step: there[step] for step in steps if there[step] or not places[step]}
+    existing = {step: tuple(filter(_exists, names)) for step, names in places.items()}
+    return {step: existing[step] for step in steps if existing[step] or not places[step]}
+
+
+def _exists(place: str) -> bool:
+    return (ROOT / place).exists()
 
 
 def _git(*words: str) -> str | None:
-    """What git says, or None where it fails or there is none."""
+    """The output of git, or None if it fails or is missing."""
     try:
         done = subprocess.run(["git", *words], cwd=str(ROOT), capture_output=True, text=True)
     except OSError:

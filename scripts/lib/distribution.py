@@ -15,7 +15,7 @@ from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, 
 
 WHEEL_SOURCES = ("Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", "rust")
 PORTABLE = ("--zig", "--compatibility", "manylinux_2_28")
-# Tags of wheels -> Blender's names of platforms.
+# Blender's names of platforms by the tags of wheels.
 _PLATFORMS = {
     "linux-x86_64": "linux-x64",
     "linux-aarch64": "linux-arm64",
@@ -33,20 +33,20 @@ def platform() -> str:
 
 
 def build_wheel(dev: Environment, portable: bool = False, log: Path | None = None) -> Path:
-    """The release wheel in dist/, built anew only when a source has changed."""
+    """The release wheel in dist/, built only if a source has changed."""
     folder = DIST / "portable" if portable else DIST
     if portable:
         environment.add(dev, "portable")
     stamp = folder / "wheel.stamp"
     wanted = content_hash(files_below(*WHEEL_SOURCES), *(PORTABLE if portable else ()))
-    found = _keep_newest_wheel(folder)
-    if found is None or not stamp.exists() or stamp.read_text() != wanted:
+    wheel = _keep_newest_wheel(folder)
+    if wheel is None or not stamp.exists() or stamp.read_text() != wanted:
         _maturin(dev, folder, PORTABLE if portable else (), log)
-        found = _keep_newest_wheel(folder)
+        wheel = _keep_newest_wheel(folder)
         stamp.write_text(wanted)
-    if found is None:
+    if wheel is None:
         raise Unavailable(f"maturin wrote no wheel into {folder}")
-    return found
+    return wheel
 
 
 def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Path:
@@ -63,7 +63,7 @@ def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Pat
 
 
 def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> None:
-    """Installs the wheel into an environment unless this very wheel is there already."""
+    """Installs the wheel into an environment unless it is installed there already."""
     stamp = target.folder / "authalic.stamp"
     wanted = content_hash([wheel])
     if not stamp.exists() or stamp.read_text() != wanted:
@@ -75,8 +75,8 @@ def install_wheel(wheel: Path, target: Environment, log: Path | None = None) -> 
 def fresh_profile(archive: Path, profile: Path) -> dict[str, str]:
     """Empties a folder for Blender's profile; returns the variables that select it and name the zip.
 
-    The extension's zip is installed into it from within Blender. The package `authalic` that Blender then
-    imports is the one out of the zip: the environments of Blender never have it installed otherwise.
+    Blender itself installs the extension's zip into it. The package `authalic` that Blender then imports is
+    that of the zip, because Blender's environments never have another.
     """
     shutil.rmtree(profile, ignore_errors=True)
     profile.mkdir(parents=True)
@@ -117,7 +117,7 @@ def _lay_out_extension(folder: Path, wheel: Path) -> None:
 
 
 def _blender_ext(blender: Environment) -> Path:
-    found = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
-    if not found:
+    tools = sorted(blender.folder.rglob("bl_pkg/cli/blender_ext.py"))
+    if not tools:
         raise Unavailable(f"the bpy package in {blender.folder} has no blender_ext.py")
-    return found[0]
+    return tools[0]

@@ -15,7 +15,7 @@ import system_libraries
 from shell import ROOT, VENVS, CommandFailed, Unavailable, content_hash, run, say, tail, warn
 
 REQUIREMENTS = ROOT / "scripts" / "requirements"
-_SCHEME = "1"  # raise it to have every environment made anew
+_SCHEME = "1"  # a new value makes every environment anew
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Environment:
 
     @property
     def label(self) -> str:
-        """What a person calls it: "Blender 5.2" rather than "bpy-5"."""
+        """Its name in messages: "Blender 5.2" rather than "bpy-5"."""
         return self.requirements.replace("bpy-", "Blender ")
 
 
@@ -61,7 +61,7 @@ def blender_newest() -> Environment:
 
 
 def any_blender() -> Environment:
-    """The newest Blender, or the oldest supported one when that is all there is."""
+    """The newest Blender, or the oldest supported one if there is no other."""
     try:
         return blender_newest()
     except Unavailable as reason:
@@ -130,7 +130,7 @@ def _lock(name: str) -> Iterator[None]:
     """Keeps two commands that run at the same time from making the same environment."""
     VENVS.mkdir(exist_ok=True)
     with open(VENVS / f"{name}.lock", "w") as file:
-        with contextlib.suppress(ImportError):  # Windows has no fcntl; nor does it matter there
+        with contextlib.suppress(ImportError):  # Windows has no fcntl, and goes without a lock
             import fcntl
 
             fcntl.flock(file, fcntl.LOCK_EX)

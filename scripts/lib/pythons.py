@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Finds Python interpreters that work: on PATH, of pyenv, of uv, and in the usual folders."""
+"""Finds Python interpreters that work: on PATH, from pyenv, from uv, and in the usual folders."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def candidates(version: str) -> Iterator[Path]:
 
 
 def works(python: Path, version: str) -> bool:
-    """Whether a file runs, is of that version, and can make environments (a pyenv shim may not run)."""
+    """Whether a file runs, has this version, and can make environments (a pyenv shim may not run)."""
     if not os.access(str(python), os.X_OK):
         return False
     try:

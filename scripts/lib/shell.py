@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Paths of the project, plain messages, and running commands."""
+"""Paths of the project, messages, and commands."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ VENVS = ROOT / ".venv"
 DIST = ROOT / "dist"
 OUT = ROOT / "out"
 DATA = Path(os.environ.get("AUTHALIC_DATA") or ROOT.parent / "shared" / "data")
-"""Real meshes, where there are any."""
+"""The folder of real meshes; it need not exist."""
 PYTHONPATH = {
     "PYTHONPATH": os.pathsep.join(str(ROOT / place) for place in ("scripts/lib", "scripts/examples", "tests"))
 }
 """The variable with which `python -m` finds the packages `bench` and `demo` and what they import."""
 EXIT_SECONDS = 60
-"""Blender as a module has been seen to hang when its interpreter ends: how long to wait for that."""
+"""How long to wait for the interpreter to end: Blender as a module has been seen to hang there."""
 
 
 class Unavailable(Exception):
@@ -47,7 +47,7 @@ def say(message: str) -> None:
 
 
 def warn(message: str) -> None:
-    """Prints one line about something that will not be done."""
+    """Prints one line about something that is left out."""
     say(f"note: {message}")
 
 
@@ -59,9 +59,8 @@ def run(
 ) -> str:
     """Runs a command in the project's root and returns its output (stdout and stderr together).
 
-    With `log` the output also goes to that file while it runs. With `report`, a file that the command
-    writes when its work is done, a command that does not end soon after it is killed. Raises
-    CommandFailed, with the output.
+    With `log` the output also goes to that file as it comes. `report` is a file that the command writes when
+    its work is done; a command that does not end soon after is killed. Raises CommandFailed with the output.
     """
     words = [str(word) for word in command]
     process = subprocess.Popen(
@@ -83,7 +82,7 @@ def run(
 
 
 def show(command: Sequence[object], env: Mapping[str, str] | None = None) -> None:
-    """Runs a command in the project's root whose output is for the person to read as it comes."""
+    """Runs a command in the project's root and lets its output through."""
     words = [str(word) for word in command]
     code = subprocess.run(words, cwd=str(ROOT), env={**os.environ, **(env or {})}).returncode
     if code != 0:
@@ -106,20 +105,20 @@ def tail(text: str, count: int) -> str:
 
 
 def version() -> str:
-    """The project's version, from the Cargo workspace: the one place where it stands."""
-    found = re.search(r'(?m)^version = "([^"]+)"', (ROOT / "Cargo.toml").read_text(encoding="utf-8"))
-    if found is None:
+    """The project's version, which stands in the Cargo workspace only."""
+    line = re.search(r'(?m)^version = "([^"]+)"', (ROOT / "Cargo.toml").read_text(encoding="utf-8"))
+    if line is None:
         raise SystemExit("Cargo.toml has no workspace version")
-    return found.group(1)
+    return line.group(1)
 
 
 def files_below(*places: str) -> list[Path]:
     """Every file at or below the given places of the project, sorted, without caches."""
-    found: list[Path] = []
+    files: list[Path] = []
     for place in places:
         path = ROOT / place
-        found += [path] if path.is_file() else [p for p in path.rglob("*") if p.is_file()]
-    return sorted(path for path in found if "__pycache__" not in path.parts)
+        files += [path] if path.is_file() else [p for p in path.rglob("*") if p.is_file()]
+    return sorted(path for path in files if "__pycache__" not in path.parts)
 
 
 def content_hash(paths: Iterable[Path], *extra: str) -> str:
@@ -139,7 +138,7 @@ def options_parser(doc: str | None) -> argparse.ArgumentParser:
 
 
 def main(command: object) -> None:
-    """Runs a command's main function and turns what went wrong into a message and an exit code."""
+    """Runs a command's main function and turns its exceptions into a message and an exit code."""
     try:
         code = command()  # type: ignore[operator]
     except KeyboardInterrupt:

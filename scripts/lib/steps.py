@@ -21,7 +21,7 @@ _PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui")
 _BLENDER_TESTS = ("tests/blender",)
 _PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
 
-# Of what Blender's types refuse, tests do much: they pass any sequence, and use what the extension adds.
+# Tests do much that Blender's types refuse: they pass any sequence, and use properties of the extension.
 _LAX_ABOUT_BLENDER = (
     *("--no-strict-optional", "--no-warn-return-any", "--disable-error-code=arg-type"),
     *("--disable-error-code=attr-defined", "--disable-error-code=union-attr"),
@@ -39,11 +39,11 @@ class Count:
 
     def __add__(self, other: Count) -> Count:
         pairs = zip((self.passed, self.failed, self.skipped), (other.passed, other.failed, other.skipped))
-        return Count(*(mine + theirs for mine, theirs in pairs))
+        return Count(*map(sum, pairs))
 
 
 class TestsFailed(Exception):
-    """A run of tests of which some failed, or which did not end well."""
+    """Tests failed, or their run did not end well."""
 
     def __init__(self, count: Count, message: str, output: str) -> None:
         super().__init__(message)
@@ -55,7 +55,7 @@ class TestsFailed(Exception):
 class Step:
     """A named step; `run` takes the file for its log and returns the tests it counted.
 
-    Where it runs pytest, it also takes `places`: the files and folders to run instead of all.
+    If it runs pytest, it also takes `places`, the files and folders to run instead of all.
     """
 
     name: str
@@ -151,7 +151,7 @@ def count_cargo(output: str) -> Count:
 
 
 def count_junit(report: Path) -> Count:
-    """The sums over the test suites of a JUnit report; none when there is no readable report."""
+    """The sums over the test suites of a JUnit report; zeros without a readable report."""
     try:
         suites = list(xml.parse(str(report)).getroot().iter("testsuite"))
     except (OSError, xml.ParseError):
@@ -175,7 +175,7 @@ def _test_in_blender(blender: Environment, places: tuple[str, ...], log: Path) -
 
 
 def _pytest(where: Environment, places: tuple[str, ...], variables: dict[str, str], log: Path) -> Count:
-    """Runs pytest; a run that has written its report but does not end is killed and fails."""
+    """Runs pytest; a run that does not end after it has written its report is killed and fails."""
     report = log.with_suffix(".xml")
     report.unlink(missing_ok=True)
     command = [where.python, "-m", "pytest", f"--junitxml={report}", *places]

@@ -17,7 +17,7 @@ DEBIAN_PACKAGES = (
 
 
 def make_bpy_import(python: Path) -> None:
-    """Sees to it that `import bpy` works; installs Debian packages where it may, or says what to type."""
+    """Makes `import bpy` work: installs Debian packages as root, else says what to type."""
     problem = _import_problem(python)
     if problem is not None and "cannot open shared object file" in problem:
         _install(problem)
@@ -27,7 +27,7 @@ def make_bpy_import(python: Path) -> None:
 
 
 def _import_problem(python: Path) -> str | None:
-    # os._exit: some versions hang when the interpreter ends, and this is only about the import.
+    # os._exit, because some versions hang when the interpreter ends
     code = "import bpy, os; os._exit(0)"
     answer = subprocess.run([str(python), "-c", code], capture_output=True, text=True, timeout=300)
     return None if answer.returncode == 0 else answer.stderr or f"exit code {answer.returncode}"

@@ -259,7 +259,7 @@ def test_the_registration_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     source, target = balls()
     register()
     registrations, made = part("bridge.registrations"), []
-    monkeypatch.setattr(registrations, "_registered", lambda *_: made.append(1))
+    monkeypatch.setattr(registrations, "_registered_by_points", lambda *_: made.append(1))
     register(align=True)
     register(animate=True)
     target.location = (3, 4, 5)

@@ -159,7 +159,7 @@ def test_the_registration_is_kept_and_transfers_use_it(monkeypatch: pytest.Monke
     group.add([v.index for v in target.data.vertices if v.co.z > 0], 1.0, "REPLACE")
     registrations, made = part("bridge.registrations"), []
     monkeypatch.setattr(registrations, "_registered_by_curves", lambda *_: made.append(1))
-    monkeypatch.setattr(registrations, "_registered", lambda *_: made.append(1))
+    monkeypatch.setattr(registrations, "_registered_by_points", lambda *_: made.append(1))
     register(align=True)
     meshes.select(source)
     assert bpy.ops.authalic.transfer() == {"FINISHED"}

@@ -387,8 +387,9 @@ def test_the_registration_is_used_again(monkeypatch: pytest.MonkeyPatch) -> None
     random_uv(target, "Map")
     bpy.ops.authalic.register(angle_weight=0.8)
     registrations, made = part("bridge.registrations"), []
-    really = registrations._registered
-    monkeypatch.setattr(registrations, "_registered", lambda *given: made.append(given[3]) or really(*given))
+    register = registrations._registered_by_points
+    noted = lambda *given: made.append(given[3]) or register(*given)  # noqa: E731
+    monkeypatch.setattr(registrations, "_registered_by_points", noted)
     only("uv_maps")
     only("uv_maps", angle_weight=0.8)
     assert not made

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Runs inside Blender (bpy): its own unwrapping of a mesh, as one operator call.
 
-Imported where bpy is; see `bench.peers.worker` and `bench.angle.suzanne`.
+`bench.peers.worker` and `bench.angle.suzanne` use it.
 """
 
 import time
@@ -22,7 +22,7 @@ def unwrapped(vertices, faces, method, **options):
 
 
 def object_of(vertices, faces):
-    """A new selected, active object."""
+    """A new object of these triangles."""
     mesh = bpy.data.meshes.new("mesh")
     mesh.from_pydata(vertices.tolist(), [], faces.tolist())
     shape = bpy.data.objects.new("mesh", mesh)
@@ -32,7 +32,7 @@ def object_of(vertices, faces):
 
 
 def operated(shape, method, **options):
-    """Runs `uv.unwrap` on all of an object: the UVs of its corners and the seconds of the call."""
+    """The UVs of the corners of an object after `uv.unwrap`, and the seconds of the call."""
     known = bpy.ops.uv.unwrap.get_rna_type().properties["method"].enum_items.keys()
     if method not in known:
         raise RuntimeError(f"Blender {bpy.app.version_string} has no unwrap method {method}")
@@ -50,6 +50,6 @@ def operated(shape, method, **options):
 
 def corner_uvs(mesh):
     """The active UV map, (corners, 2) float64."""
-    found = np.empty(2 * len(mesh.loops), np.float32)
-    mesh.uv_layers.active.uv.foreach_get("vector", found)
-    return found.reshape(-1, 2).astype(float)
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", uv)
+    return uv.reshape(-1, 2).astype(float)

@@ -20,7 +20,7 @@ COLUMNS = (
 DISK_PAPER = {"method": "conjugate_gradient", "boundary": "arc_length", "max_iterations": 50}
 SPHERE_PAPER = {"method": "gradient_descent", "max_iterations": 100}
 NOISE = 1e-12
-"""Of the size of the surface."""
+"""The noise of the vertices, as a fraction of the surface's size."""
 
 
 def main(words=None):
@@ -39,7 +39,7 @@ def main(words=None):
 
 
 def chosen(names):
-    """The meshes, those of the names or all, each with its map and the papers' method."""
+    """The meshes with these names, or all, each with its function and the papers' method."""
     disks, spheres = meshes.disks(), meshes.spheres()
     meshes.check_names(names, {**disks, **spheres})
     for kind, call, paper in (
@@ -65,7 +65,7 @@ def measured(name, mesh, call, paper):
 
 
 def moved(call, mesh, result):
-    """The largest move of a vertex of the image when the vertices of the surface move by noise."""
+    """The farthest that a vertex of the image moves when noise moves the vertices of the surface."""
     vertices, faces = mesh
     size = np.linalg.norm(np.ptp(vertices, axis=0))
     noise = NOISE * size * np.random.default_rng(1).standard_normal(vertices.shape)

@@ -22,7 +22,7 @@ METHODS = {
     "default": {},
 }
 PUBLISHED_METHODS = {PAPER: "conjugate_gradient", "fixed_point, arc_length, 50": "fixed_point"}
-"""Those of Table 1."""
+"""The names of the methods in Table 1."""
 COLUMNS = (
     "mesh", "V", "folds of the harmonic start", "method", "E_A", "published", "SD", "folds",
     "iterations", "status", "s", "E_A / paper's", "s / paper's",

@@ -15,9 +15,9 @@ def data_folder(kind):
 
 def disks(names=()):
     """{name: (vertices, faces)}, smallest first; only the given names if there are any."""
-    found = stored("disk") or built_disks()
-    check_names(names, found)
-    return only(names, found)
+    known = stored("disk") or built_disks()
+    check_names(names, known)
+    return only(names, known)
 
 
 def spheres():
@@ -33,20 +33,20 @@ def brains():
 
 
 def stored(kind):
-    """The meshes of one folder of real ones; empty without it."""
+    """The real meshes of one kind; empty without their folder."""
     folder = data_folder(kind)
     loaded = {path.stem: _arrays(path) for path in sorted(folder.glob("*.npz"))} if folder else {}
     return {name: (arrays["V"], arrays["F"]) for name, arrays in loaded.items()}
 
 
-def only(names, found):
-    """The meshes with these names, or all for no names, smallest first."""
-    chosen = {name: mesh for name, mesh in found.items() if not names or name in names}
+def only(names, known):
+    """The known meshes with these names, or all for no names, smallest first."""
+    chosen = {name: mesh for name, mesh in known.items() if not names or name in names}
     return dict(sorted(chosen.items(), key=lambda item: len(item[1][0])))
 
 
 def check_names(names, known):
-    """Ends the program where a name is not known."""
+    """Ends the program if a name is not known."""
     unknown = set(names) - set(known)
     if unknown:
         raise SystemExit(f"no mesh {', '.join(sorted(unknown))}; there are: {', '.join(sorted(known))}")
@@ -100,8 +100,8 @@ def _icosahedron():
 
 
 def _arrays(path):
-    with np.load(path) as found:
-        return dict(found)
+    with np.load(path) as arrays:
+        return dict(arrays)
 
 
 def _graph(side, height):

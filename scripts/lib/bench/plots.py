@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-COLOURS = {
+COLORS = {
     "harmonic start": "0.55",
     "conformal start": "0.55",
     "fixed point": "#2b5f8f",
@@ -21,7 +21,7 @@ COLOURS = {
     "bounded": "#d1883a",
 }
 WIDTHS = {"bounded": 3.0}
-"""Of the lines that others cover."""
+"""Lines that others cover are drawn wide."""
 RANGE = 3.0
 """Histograms go from 2^-3 to 2^3."""
 
@@ -38,7 +38,7 @@ def histories(outcomes):
 def area_ratios(outcomes):
     """{label: (log2 of the area ratio per face, SD of the area ratio)} of the outcomes that are maps."""
     figures = {label: outcome.result.distortion for label, outcome in outcomes.items() if not outcome.error}
-    return {label: (found.log2_area_ratio, found.area_ratio_std) for label, found in figures.items()}
+    return {label: (figure.log2_area_ratio, figure.area_ratio_std) for label, figure in figures.items()}
 
 
 def draw_convergence(path, title, curves, published):
@@ -47,7 +47,7 @@ def draw_convergence(path, title, curves, published):
     for axis, (mesh, by_label) in zip(axes, curves.items()):
         for label, (iterations, energies) in by_label.items():
             axis.plot(
-                iterations, energies, label=label, color=COLOURS.get(label), linewidth=WIDTHS.get(label, 1.4)
+                iterations, energies, label=label, color=COLORS.get(label), linewidth=WIDTHS.get(label, 1.4)
             )
         for index, dot in enumerate(published.get(mesh, ())):
             axis.plot(*dot, "k+", markersize=9, label=None if index else "published", zorder=3)
@@ -61,15 +61,15 @@ def draw_convergence(path, title, curves, published):
 
 
 def draw_histograms(path, title, ratios):
-    """How the faces spread over the area ratios; an area-preserving map is a spike at 1."""
+    """The distribution of the faces over the area ratios; an area-preserving map is a spike at 1."""
     figure, axes = panels(title, ratios)
     bins = np.linspace(-RANGE, RANGE, 92)  # an odd number of bins: 1 is the middle of one
     for axis, by_label in zip(axes, ratios.values()):
         for label, (log2_ratio, deviation) in by_label.items():
             values = np.clip(np.nan_to_num(log2_ratio, nan=-RANGE), -RANGE, RANGE)
-            text, colour = f"{label}: SD {deviation:.3f}", COLOURS.get(label)
+            text, color = f"{label}: SD {deviation:.3f}", COLORS.get(label)
             weights = np.full(len(values), 1 / len(values))
-            axis.hist(values, bins, weights=weights, histtype="step", label=text, color=colour, linewidth=1.3)
+            axis.hist(values, bins, weights=weights, histtype="step", label=text, color=color, linewidth=1.3)
         axis.set_xticks([-3, -2, -1, 0, 1, 2, 3], ["1/8", "1/4", "1/2", "1", "2", "4", "8"])
         axis.set_xlabel("image area / fair share (end bins: and beyond)", fontsize=9)
         axis.set_yscale("log")

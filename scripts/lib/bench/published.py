@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The figures published for the models that the data folder has, with their tables' numbers.
+"""The published figures of the models in the data folder, by the papers' tables.
 
 Disks: S.-Y. Liu, M.-H. Yueh, Preconditioned nonlinear conjugate gradient method of stretch energy
 minimization for area-preserving parameterizations (2023); seconds on a MacBook Pro M1, in MATLAB.
@@ -11,7 +11,7 @@ from typing import NamedTuple, Optional
 
 
 class Figures(NamedTuple):
-    """A row of a published table; None where the table has no such column, or there is no such row."""
+    """A row of a published table; None where there is no such column or row."""
 
     deviation: Optional[float] = None
     """Disks: the SD of the area ratios (their means are 1.00). Spheres: SD/mean."""
@@ -76,4 +76,4 @@ SMALLEST_EIGENVALUES = {
     ("david_10671", "fixed point"): -1.8481,
     ("david_10671", 10_000): -2.8445e-6,
 }
-"""Spheres, Table 4: after the fixed-point iteration, and after 10,000 of gradient descent."""
+"""Spheres, Table 4: after the fixed-point iteration, and after 10,000 iterations of gradient descent."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What all benches share: tables in Markdown that grow on the screen and in a file, and timed calls."""
+"""Tables in Markdown that grow on the screen and in a file, and timed calls, for all benches."""
 
 import os
 import platform
@@ -19,13 +19,13 @@ class Report:
         target.write_text("", encoding="utf-8")
 
     def line(self, text=""):
-        """Adds a line; at once also to the file, so that an interrupted run leaves what it measured."""
+        """Prints a line and writes it at once, so that an interrupted run leaves its measurements."""
         print(text, flush=True)
         with self.target.open("a", encoding="utf-8") as file:
             file.write(text + "\n")
 
     def section(self, title, note):
-        """A heading and what has to be known to read the table."""
+        """A heading, and a note that explains the table."""
         self.line(f"\n## {title}\n\n{note}\n")
 
     def columns(self, names):
@@ -34,17 +34,17 @@ class Report:
         self.line(row("---" for _ in names))
 
     def row(self, cells):
-        """A row of the table whose head came last."""
+        """A row of the current table."""
         self.line(row(cells))
 
     def figure(self, path, caption):
-        """A picture that lies beside the file."""
+        """A picture in the folder of the file."""
         self.line(f"\n![{caption}]({path.name})\n")
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a call: its result, or why there is none, and the seconds it took."""
+    """The result of a call, or the error that it raised, and the seconds that it took."""
 
     result: object
     error: str
@@ -59,7 +59,7 @@ class Runs:
         self._known = {}
 
     def __call__(self, function, name, mesh, **options):
-        """The outcome of function(*mesh, **options); `name` must be another for another mesh."""
+        """The outcome of function(*mesh, **options); each mesh has a `name` of its own."""
         key = (function, name, tuple(sorted(options.items())))
         if key not in self._known:
             self._known[key] = attempt(function, mesh, options, self.repeats)
@@ -76,7 +76,7 @@ def attempt(function, mesh, options, repeats):
 
 
 def timed(function, mesh, options, repeats):
-    """The result, and the median of the seconds that the whole call takes."""
+    """The result of a call, and the median of its seconds."""
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
@@ -86,7 +86,7 @@ def timed(function, mesh, options, repeats):
 
 
 def machine():
-    """What the seconds were measured on."""
+    """The machine on which the seconds were measured."""
     return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
 
 

@@ -17,13 +17,13 @@ COLUMNS = (
 )  # fmt: skip
 NOTE = """\
 fsaverage5, 10,242 vertices a hemisphere, the white and the pial surface. FreeSurfer's map is the sphere
-that comes with the surfaces (`V_sphere`, scaled to radius 1; one for both surfaces); it keeps distances
-and angles in view as well as areas. Angle distortion is σ₁/σ₂ of the faces. All maps are measured by the
+that comes with the surfaces (`V_sphere`, scaled to radius 1; one for both surfaces); it respects distances
+and angles as well as areas. Angle distortion is σ₁/σ₂ of the faces. All maps are measured by the
 same call, `authalic.distortion`."""
 
 
 def write(bench):
-    """The table; without the data a sentence."""
+    """The table, or a sentence if there are no data."""
     bench.report.section("fsaverage5 beside FreeSurfer's sphere", NOTE)
     if not bench.brains:
         bench.report.line("Left out: not in the data folder, or not among the chosen meshes.")
@@ -39,16 +39,16 @@ def write(bench):
 def _maps(bench, name, mesh, sphere):
     """{method: outcome whose result is an image (n, 3)}."""
     reference = sphere / np.linalg.norm(sphere, axis=1, keepdims=True)
-    found = {"FreeSurfer": Outcome(reference, "", None)}
+    maps = {"FreeSurfer": Outcome(reference, "", None)}
     for method, options in DESCENTS.items():
         outcome = bench.run(authalic.sphere_map, name, mesh, **options)
         image = None if outcome.error else outcome.result.positions
-        found[method] = Outcome(image, outcome.error, outcome.seconds)
-    return found
+        maps[method] = Outcome(image, outcome.error, outcome.seconds)
+    return maps
 
 
 def _cells(mesh, outcome):
-    """Every map is measured by the same call, whoever made it."""
+    """The figures of a map; maps of all methods are measured by one call."""
     if outcome.error:
         return (outcome.error, "", "", "", "", "", "")
     figures = authalic.distortion(*mesh, outcome.result)

@@ -17,8 +17,8 @@ COLUMNS = (
 NOTE = f"""\
 Liu & Yueh, Table 1: {ITERATIONS} iterations, boundary by arc length; conjugate gradients begin with 5
 steps of the fixed point, which are counted. Mean and SD are of the area ratios (published mean: 1.00).
-Where faces fold after that, or nearly, they are mended and the descent goes on for up to {ITERATIONS}
-iterations of conjugate gradients more: such rows show more iterations, their figures are those of the
+If faces fold or nearly fold then, they are mended, and the descent continues for up to {ITERATIONS}
+more iterations of conjugate gradients: such rows show more iterations, their figures are those of the
 mended map, and "E_A before mending" is the energy of the method alone."""
 
 
@@ -60,7 +60,7 @@ def _figures(outcome, method):
 
 
 def _before_mending(result, method):
-    """The energy after the published iterations where more followed."""
+    """The energy after the published iterations, if more followed."""
     published = ITERATIONS + FIRST_STEPS[method]
     if result.iterations <= published:
         return None
@@ -68,7 +68,7 @@ def _before_mending(result, method):
 
 
 def label(name):
-    """A mesh's name, with the papers' name of the model where it is one of theirs."""
+    """A mesh's name, with the model's name in the papers if it is one of theirs."""
     return f"{name}: {MODELS[name]}" if name in MODELS else name
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The papers' tables, run again on the shared models that are theirs and on the others, in Markdown.
+"""The papers' tables, repeated on their models and on others, in Markdown.
 
 Usage: python -m bench.tables.main TARGET_FILE [--parts PART ...] [--meshes NAME ...] [--repeat N] [--long]
 
@@ -28,7 +28,7 @@ PARTS = {
 
 @dataclass(frozen=True)
 class Bench:
-    """What every part needs."""
+    """The report, runs and meshes of all parts."""
 
     report: Report
     run: Runs
@@ -39,7 +39,7 @@ class Bench:
 
     @property
     def folder(self):
-        """Where the plots go."""
+        """The folder of the plots."""
         return self.report.target.parent
 
 
@@ -49,7 +49,7 @@ def main(arguments=None):
     began = time.perf_counter()
     bench = prepared(options)
     runs = "single runs" if options.repeat == 1 else f"medians of {options.repeat} runs"
-    bench.report.line(f"# The papers' tables, run again\n\nauthalic {authalic.__version__}, {machine()}.")
+    bench.report.line(f"# The papers' tables, repeated\n\nauthalic {authalic.__version__}, {machine()}.")
     bench.report.line(
         f"Seconds are wall seconds of the whole call, {runs}. E_A is the authalic energy with the areas of "
         "the surface scaled to those of the image. Published figures are the papers', from their machines; "
@@ -73,12 +73,12 @@ def parsed(arguments=None):
 
 
 def prepared(options):
-    """The meshes that are asked for, and an empty report."""
-    found = [meshes.disks(), meshes.spheres(), meshes.brains()]
-    meshes.check_names(options.meshes, [name for kind in found for name in kind])
+    """The chosen meshes, and an empty report."""
+    kinds = [meshes.disks(), meshes.spheres(), meshes.brains()]
+    meshes.check_names(options.meshes, [name for kind in kinds for name in kind])
     disks, spheres, brains = (
         {name: mesh for name, mesh in kind.items() if not options.meshes or name in options.meshes}
-        for kind in found
+        for kind in kinds
     )
     return Bench(Report(options.target), Runs(options.repeat), disks, spheres, brains, options.long)
 

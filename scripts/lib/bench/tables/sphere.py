@@ -25,7 +25,7 @@ Sutti & Yueh, Tables 1 (`bounded`: fminbnd) and 2 (`interpolation`: quadratic/cu
 Riemannian gradient descent, after up to ten steps of the fixed-point iteration, which are not counted
 here. SD/mean is of the area ratios; as in the paper it and E_A take the areas of folded faces as
 positive. "s" and the figures up to "folds" are those of the call without the correction for bijectivity;
-where it leaves folds, the same call with the correction was made as well, for "folds, corrected" and
+if it leaves folds, the call is repeated with the correction, for "folds, corrected" and
 "E_A, corrected"."""
 RULES = {
     "energy rises": {"tolerance": 0.0, "max_iterations": 1000},
@@ -47,7 +47,7 @@ def descended(bench, name, mesh, search, iterations, unfold=False):
 
 
 def corrected(bench, name, mesh, outcome, search, iterations):
-    """The outcome with the correction for bijectivity: the outcome itself where nothing folds."""
+    """The outcome with the correction for bijectivity; unchanged if nothing folds."""
     if outcome.error or not len(outcome.result.distortion.folded):
         return outcome
     return descended(bench, name, mesh, search, iterations, unfold=True)
@@ -60,7 +60,7 @@ def fixed_point(bench, name, mesh, rule):
 
 
 def evenness(mesh, outcome):
-    """(SD/mean of the area ratios, E_A) as in the papers: the areas of folded faces count as positive."""
+    """(SD/mean of the area ratios, E_A) as in the papers, which count areas of folded faces as positive."""
     surface, image = areas(*mesh), areas(outcome.result.positions, mesh[1])
     ratio = image / (surface * (image.sum() / surface.sum()))
     return ratio.std() / ratio.mean(), (image * (ratio - 1)).sum()

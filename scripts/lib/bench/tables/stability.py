@@ -36,7 +36,7 @@ v|² is the same for both σ (David Head .36, Bulldog 800), so it is not that of
 SMALL = 13_000
 """Vertices up to which the eigenvalues are computed."""
 START = {"method": "fixed_point", "max_iterations": 10, "unfold": False}
-"""What gradient descent starts from."""
+"""The options of the map from which gradient descent starts."""
 COARSE = 1e-3
 """The relative tolerance of the Lanczos method."""
 DESCENTS = {False: 1000, True: 10_000}
@@ -56,7 +56,7 @@ def write_noise(bench):
 
 
 def with_noise(vertices, faces, deviation):
-    """The mesh scaled to the unit sphere's area, and that with Gaussian noise along its vertex normals."""
+    """The vertices scaled to the unit sphere's area, and these with Gaussian noise along their normals."""
     normals = sphere.face_normals(vertices, faces)
     vertices = vertices * np.sqrt(4 * np.pi / np.linalg.norm(normals, axis=1).sum())
     at_vertices = np.zeros_like(vertices)
@@ -165,8 +165,8 @@ def hessian(vertices, faces, image):
 def smallest_eigenvalue(matrix):
     """The algebraically smallest eigenvalue of a symmetric sparse matrix, to 1e-9 of the largest magnitude.
 
-    Many eigenvalues may lie close together there, at 0 above all. So a coarse one comes first, of the matrix
-    moved until the end of its spectrum is far from 0; then those nearest to shifts that close in from below.
+    Many eigenvalues may lie close together there, above all at 0. So the first estimate is coarse, of the
+    matrix shifted until the end of its spectrum is far from 0; the next are nearest to shifts from below.
     """
     largest = abs(_extreme(matrix, COARSE))
     smallest = _extreme(matrix - largest * eye_array(matrix.shape[0]), COARSE) + largest
@@ -187,6 +187,6 @@ def _nearest(matrix, shift):
 
 def _extreme(matrix, tolerance):
     """The eigenvalue of largest magnitude."""
-    # a fixed start: the same figure in every run
+    # a fixed start gives the same figure in every run
     start = np.random.default_rng(SEED).standard_normal(matrix.shape[0])
     return float(eigsh(matrix, k=1, v0=start, tol=tolerance, return_eigenvectors=False)[0])

@@ -385,7 +385,7 @@ def test_a_closed_curve_is_begun_where_its_partner_begins():
     ring = np.argsort(np.arctan2(sphere[:, 1], sphere[:, 0]))[::9]
     ours, moved = np.append(ring, ring[0]), np.roll(ring, 4)[::-1]
     assert np.array_equal(
-        bench.hyperbolic.pairs.partner(ours, np.append(moved, moved[0]), sphere, sphere), ours
+        bench.hyperbolic.pairs.turned_to(np.append(moved, moved[0]), ours, sphere, sphere), ours
     )
 
 
@@ -472,10 +472,10 @@ def test_the_demo_and_the_package_agree_on_a_map_onto_a_sphere():
     assert np.isclose(ours["angle_distortion_mean"], figures.angle_distortion_mean)
 
 
-def test_the_demo_finds_the_centre_of_a_sphere():
+def test_the_demo_finds_the_center_of_a_sphere():
     vertices, _ = bench.meshes.icosphere(1)
     cap = vertices[vertices[:, 2] > 0.3]
-    assert np.allclose(demo.measure._centre_of_sphere(2 * cap + (5, -3, 1)), (5, -3, 1))
+    assert np.allclose(demo.measure._center_of_sphere(2 * cap + (5, -3, 1)), (5, -3, 1))
 
 
 def test_the_demo_draws_sphere_layouts_when_one_is_missing(tmp_path):

@@ -4,17 +4,17 @@
     .venv/bpy-5/bin/python scripts/examples/morph.py --extension dist/authalic-<version>-<platform>.zip
     .venv/bpy-5/bin/python scripts/examples/morph.py a.obj b.ply landmarks.json --output out/heads --frames 48
 
-Without files it makes two heads of its own. Files of meshes may be .obj, .ply, .stl, or .npz with the arrays
-V and F; landmarks are a file as the extension exports it (panel Registration, authalic.landmark_export):
+Without files it makes two heads. Files of meshes may be .obj, .ply, .stl, or .npz with the arrays V and F.
+The file of landmarks is one that the extension exports (panel Registration, authalic.landmark_export):
 
     {"format": "authalic-landmarks", "version": 1, "pairs": [{"name": "Nose", "source": 12, "target": 345}],
      "curves": [{"name": "Mouth", "source": [3, 4, 9], "target": [7, 8, 12]}]}
 
-With --method curves the landmark curves, paths along edges, come to lie over each other, not the points.
+With --method curves the landmark curves, paths along edges, are matched instead of the points.
 
 The script needs Blender as the Python package `bpy` (`scripts/build` makes .venv/bpy-5; in an application run
 `blender --background --python morph.py -- OPTIONS`) and the extension, either in the profile that Blender
-uses or as a zip, which --extension installs into a profile that is thrown away. It installs nothing else.
+uses or as a zip, which --extension installs into a temporary profile. It installs nothing else.
 """
 
 import argparse
@@ -49,7 +49,7 @@ CURVES = {  # from landmark to landmark, along the shortest way
 
 
 def main(options):
-    """The whole of it."""
+    """Makes or reads the meshes, registers them, and renders the morph."""
     start_blender(options)
     if options.meshes:
         source, target = (read_mesh(path) for path in options.meshes)
@@ -66,7 +66,7 @@ def main(options):
 
 
 def start_blender(options):
-    """An empty file and the extension, or an explanation of what is missing."""
+    """Opens an empty file and enables the extension, or explains what is missing."""
     bpy.ops.wm.read_homefile(use_empty=True)
     if options.extension:
         bpy.ops.extensions.package_install_files(
@@ -85,7 +85,7 @@ def start_blender(options):
 
 
 def read_mesh(path):
-    """The object in a file of a mesh."""
+    """The object of a mesh file."""
     if path.suffix == ".npz":
         with np.load(path) as arrays:
             return add_mesh(path.stem, arrays["V"], arrays["F"])
@@ -119,7 +119,7 @@ def make_heads():
 
 
 def shaped(shape, name, radii, nose, ears, chin):
-    """Gives a sphere the form of a head; its features are as large as the numbers say."""
+    """Gives a sphere the form of a head, with features of these sizes."""
     mesh = shape.data
     shape.name, mesh.name = name, name
     points = positions(mesh)
@@ -141,7 +141,7 @@ def shaped(shape, name, radii, nose, ears, chin):
 
 
 def choose(source, target, landmarks):
-    """Makes the source active, gives it its target, and pairs of landmarks from a file or of made heads."""
+    """Makes the source active, and gives it its target and its landmarks, from a file or of made heads."""
     bpy.ops.object.select_all(action="DESELECT")
     source.select_set(True)
     bpy.context.view_layer.objects.active = source
@@ -154,7 +154,7 @@ def choose(source, target, landmarks):
 
 
 def add_curves(source, target):
-    """Pairs of landmark curves between the landmarks of made heads, selected as in Edit Mode by hand."""
+    """Adds landmark curves between the landmarks of made heads, selected as by hand in Edit Mode."""
     source.select_set(True)
     target.select_set(True)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -168,7 +168,7 @@ def add_curves(source, target):
 
 
 def select_vertices(shape, chosen):
-    """Selects vertices in edit mode, the first of which becomes the active one: there a curve starts."""
+    """Selects vertices in edit mode; the first becomes the active one, at which a curve starts."""
     edit = bmesh.from_edit_mesh(shape.data)
     edit.verts.ensure_lookup_table()
     edit.select_history.clear()
@@ -179,7 +179,7 @@ def select_vertices(shape, chosen):
 
 
 def morph(source, target, options):
-    """Registers, which prints the figures, and key-frames; returns the name of the shape key."""
+    """Registers and key-frames; returns the name of the shape key."""
     bpy.ops.authalic.register(
         method=options.method.upper(),
         align=options.align,
@@ -200,12 +200,12 @@ def set_stage(shape, key, options):
         Vector((ends.min(axis=0) + ends.max(axis=0)) / 2),
         float(np.linalg.norm(np.ptp(ends, axis=0))),
     )
-    towards = Vector(options.view).normalized()
-    turn = (-towards).to_track_quat("-Z", "Y")
+    to_camera = Vector(options.view).normalized()
+    turn = (-to_camera).to_track_quat("-Z", "Y")
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", 0.75 * size
     camera.data.clip_end = 10 * size
-    camera.location, camera.rotation_euler = middle + 3 * size * towards, turn.to_euler()
+    camera.location, camera.rotation_euler = middle + 3 * size * to_camera, turn.to_euler()
     scene.collection.objects.link(camera)
     scene.camera = camera
     for sideways, strength in ((-40, 3.0), (50, 0.9)):
@@ -256,7 +256,7 @@ def _bump(sphere, direction, width):
 
 
 def chosen_options():
-    """What stands behind the name of the script, or behind "--" where Blender has options of its own."""
+    """The options after the name of the script, or after "--" if Blender has options of its own."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -273,14 +273,18 @@ def chosen_options():
     parser.add_argument("--method", choices=("points", "curves"), default="points", help="%(default)s")
     parser.add_argument("--no-align", dest="align", action="store_false", help="end where the target is")
     parser.add_argument(
-        "--view", type=float, nargs=3, default=(-0.45, -1, 0.15), help="where the camera is, from the middle"
+        "--view",
+        type=float,
+        nargs=3,
+        default=(-0.45, -1, 0.15),
+        help="direction from the middle to the camera",
     )
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     options = parser.parse_args(words)
     if len(options.files) not in (0, 3):
         parser.error("name a source, a target and a file of landmarks, or nothing")
     if options.frames < 2:
-        parser.error("a morph has 2 frames at the least")
+        parser.error("a morph has at least 2 frames")
     for path in [*options.files, *([options.extension] if options.extension else [])]:
         if not Path(path).is_file():
             parser.error(f"{path}: there is no such file")
@@ -302,7 +306,7 @@ if __name__ == "__main__":
     try:
         main(chosen)
         status = 0
-    except (SystemExit, RuntimeError) as problem:  # how bpy passes on what an operator reports
+    except (SystemExit, RuntimeError) as problem:  # bpy passes on an operator's report so
         print(problem)
     sys.stdout.flush()
     sys.stderr.flush()

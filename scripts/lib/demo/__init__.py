@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What scripts/demo runs: the scenes and pictures in Blender, the figures outside it."""
+"""The work of scripts/demo: scenes and pictures in Blender, figures outside it."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The demo's figures: the UV layouts, those by way of the sphere too, and the histograms of area ratios.
+"""The demo's figures: the UV layouts, also those by way of the sphere, and the histograms of area ratios.
 
 Usage: python -m demo.figures OUT_FOLDER (after demo.scene has written OUT_FOLDER/data)
 """
@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-COLOURS = {
+COLORS = {
     "Blender ABF": "#d1883a",
     "Minimum Stretch, 10": "#6f9fc8",
     "Minimum Stretch, 200": "#2b5f8f",
@@ -23,60 +23,60 @@ COLOURS = {
 }
 MOST_TRIANGLES_WITH_EDGES = 60_000
 RANGE = 3.0
-"""Histograms and colours go from 2^-3 to 2^3."""
+"""Histograms and colors go from 2^-3 to 2^3."""
 
 
 def results(data):
     """The unwrapped meshes: {mesh: {method: arrays}}, in the order of the report."""
-    found = {}
+    maps = {}
     for path in sorted(data.glob("*.npz")):
         with np.load(path) as stored:
             arrays = dict(stored)
-        found.setdefault(str(arrays["mesh"]), {})[str(arrays["method"])] = arrays
-    return found
+        maps.setdefault(str(arrays["mesh"]), {})[str(arrays["method"])] = arrays
+    return maps
 
 
-def draw_layouts(found, path):
-    """The UV triangles of every mesh and method, coloured by their area ratio."""
-    methods = list(dict.fromkeys(name for row in found.values() for name in row))
-    size = (3.1 * len(methods), 3.3 * len(found))
-    figure, axes = plt.subplots(len(found), len(methods), figsize=size, squeeze=False, layout="constrained")
+def draw_layouts(maps, path):
+    """The UV triangles of every mesh and method, colored by their area ratio."""
+    methods = list(dict.fromkeys(name for row in maps.values() for name in row))
+    size = (3.1 * len(methods), 3.3 * len(maps))
+    figure, axes = plt.subplots(len(maps), len(methods), figsize=size, squeeze=False, layout="constrained")
     for axis, method in zip(axes[0], methods, strict=True):
         axis.set_title(method, fontsize=12)
-    for row, (mesh, by_method) in zip(axes, found.items(), strict=True):
+    for row, (mesh, by_method) in zip(axes, maps.items(), strict=True):
         row[0].set_ylabel(mesh, fontsize=12)
         for axis, method in zip(row, methods, strict=True):
             drawn = _draw_layout(axis, by_method.get(method))
-    _colour_bar(figure, axes, drawn)
+    _color_bar(figure, axes, drawn)
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
 
-def draw_sphere_layouts(found, path):
+def draw_sphere_layouts(maps, path):
     """The UVs of closed meshes, all layouts at one height, with their figures below."""
-    methods = list(dict.fromkeys(name for row in found.values() for name in row))
-    widths = [max(_aspect(row.get(name)) for row in found.values()) for name in methods]
-    size = (2.9 * sum(widths) + 0.5, 3.6 * len(found) + 0.8)
+    methods = list(dict.fromkeys(name for row in maps.values() for name in row))
+    widths = [max(_aspect(row.get(name)) for row in maps.values()) for name in methods]
+    size = (2.9 * sum(widths) + 0.5, 3.6 * len(maps) + 0.8)
     figure, axes = plt.subplots(
-        len(found), len(methods), figsize=size, squeeze=False, layout="constrained", width_ratios=widths
+        len(maps), len(methods), figsize=size, squeeze=False, layout="constrained", width_ratios=widths
     )
-    for row, (mesh, by_method) in zip(axes, found.items(), strict=True):
+    for row, (mesh, by_method) in zip(axes, maps.items(), strict=True):
         row[0].set_ylabel(mesh, fontsize=12)
         for axis, method in zip(row, methods, strict=True):
             drawn = _draw_layout(axis, by_method.get(method))
             axis.set_title(method, fontsize=12)
             axis.set_xlabel(_figures(by_method.get(method)), fontsize=10.5)
-    _colour_bar(figure, axes, drawn)
+    _color_bar(figure, axes, drawn)
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
 
-def draw_histograms(found, path):
-    """How the surface spreads over the area ratios; an even map is a spike at 1."""
-    size = (5.2 * len(found), 4.2)
-    figure, axes = plt.subplots(1, len(found), figsize=size, squeeze=False, layout="constrained")
+def draw_histograms(maps, path):
+    """The distribution of the triangles over the area ratios; an even map is a spike at 1."""
+    size = (5.2 * len(maps), 4.2)
+    figure, axes = plt.subplots(1, len(maps), figsize=size, squeeze=False, layout="constrained")
     bins = np.linspace(-RANGE, RANGE, 91)
-    for axis, (mesh, by_method) in zip(axes[0], found.items(), strict=True):
+    for axis, (mesh, by_method) in zip(axes[0], maps.items(), strict=True):
         for method, arrays in by_method.items():
             _draw_histogram(axis, method, arrays["area_ratio"], bins)
         axis.set_title(mesh, fontsize=11)
@@ -105,7 +105,7 @@ def _figures(arrays):
     return f"area ratio SD {ratio.std():.3g}, {flipped} flipped"
 
 
-def _colour_bar(figure, axes, drawn):
+def _color_bar(figure, axes, drawn):
     bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.35, aspect=30, ticks=[-2, -1, 0, 1, 2])
     bar.ax.set_xticklabels(["1/4", "1/2", "1", "2", "4"])
     bar.set_label("texture area / fair share")
@@ -136,8 +136,8 @@ def _draw_histogram(axis, method, ratio, bins):
     values = np.clip(np.log2(np.maximum(ratio, 1e-12)), bins[0], bins[-1])
     weights = np.full(len(values), 1 / len(values))
     label = f"{method}: SD {ratio.std():.3f}"
-    colour = COLOURS.get(method, "0.3")
-    axis.hist(values, bins, weights=weights, histtype="step", label=label, color=colour, linewidth=1.4)
+    color = COLORS.get(method, "0.3")
+    axis.hist(values, bins, weights=weights, histtype="step", label=label, color=color, linewidth=1.4)
 
 
 if __name__ == "__main__":

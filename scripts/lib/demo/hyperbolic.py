@@ -3,7 +3,7 @@
 
 Usage: python -m demo.hyperbolic OUT_FOLDER (in an environment with the package authalic)
 
-The surface is a brain where the folder AUTHALIC_DATA (or ../shared/data) has one, else a bumpy ball.
+The surface is a brain if the folder AUTHALIC_DATA (or ../shared/data) has one, else a bumpy ball.
 """
 
 import json
@@ -69,52 +69,54 @@ def flat(z):
     return np.stack([z.real, z.imag], axis=-1)
 
 
-def draw_cover(axis, found):
+def draw_cover(axis, structure):
     """The fundamental domain and its copies in the Poincaré disk."""
-    z = found.positions @ [1, 1j]
-    outline = z[np.concatenate(_around(found))]
-    words, motions = found.cover(COPIES)
+    z = structure.positions @ [1, 1j]
+    outline = z[np.concatenate(_around(structure))]
+    words, motions = structure.cover(COPIES)
     copies = [moved(motion, outline) for motion in motions]
     shown = [k for k, copy in enumerate(copies) if np.ptp(copy.real) + np.ptp(copy.imag) > SMALLEST]
-    letters = 2 * len(found.generators)
-    colours = [_colour(words[k], letters) for k in shown]
+    letters = 2 * len(structure.generators)
+    colors = [_color(words[k], letters) for k in shown]
     axis.add_collection(
-        PolyCollection([flat(copies[k]) for k in shown], facecolors=colours, edgecolors="none")
+        PolyCollection([flat(copies[k]) for k in shown], facecolors=colors, edgecolors="none")
     )
-    for sides, colour, width in ((found.arcs, ARC, 0.5), (found.banks, BOUNDARY, 0.8)):
+    for sides, color, width in ((structure.arcs, ARC, 0.5), (structure.banks, BOUNDARY, 0.8)):
         lines = [flat(moved(motions[k], z[side])) for k in shown for pair in sides for side in pair]
-        axis.add_collection(LineCollection(lines, colors=colour, linewidths=width))
+        axis.add_collection(LineCollection(lines, colors=color, linewidths=width))
     axis.add_collection(
         LineCollection(
-            [flat(moved(motions[0], z[s])) for p in found.banks for s in p], colors=BOUNDARY, linewidths=2
+            [flat(moved(motions[0], z[side])) for banks in structure.banks for side in banks],
+            colors=BOUNDARY,
+            linewidths=2,
         )
     )
-    for k, (a, b) in enumerate(found.generators[1:-1]):
+    for k, (a, b) in enumerate(structure.generators[1:-1]):
         axis.plot(*flat(_axis(a, b)).T, color=PANTS(k), linewidth=1.6, linestyle="--")
     _unit_disk(axis, "fundamental domain and its copies, Poincaré disk")
 
 
-def _around(found):
-    """The vertices of the disk's boundary in order, part by part."""
+def _around(structure):
+    """The vertices of the disk's boundary in order: a list of banks and arcs."""
     left, right = (
         [
             pair[side]
-            for pairs in zip(found.banks, [*found.arcs, None], strict=True)
+            for pairs in zip(structure.banks, [*structure.arcs, None], strict=True)
             for pair in pairs
             if pair is not None
         ]
         for side in (0, 1)
     )
-    return [*left, *(part[::-1] for part in right[::-1])]
+    return [*left, *(side[::-1] for side in right[::-1])]
 
 
-def _colour(word, letters):
+def _color(word, letters):
     if not word:
         return "#f3d9a4"
     first, depth = word[0], len(word)
     place = (2 * abs(first) - (first > 0) - 0.5) / letters
-    colour = np.array(HUES(0.12 + 0.76 * place)[:3])
-    return tuple(colour + (1 - colour) * (0.25 + 0.2 * (depth % 3)))
+    color = np.array(HUES(0.12 + 0.76 * place)[:3])
+    return tuple(color + (1 - color) * (0.25 + 0.2 * (depth % 3)))
 
 
 def _axis(a, b):
@@ -132,49 +134,49 @@ def _unit_disk(axis, title):
     axis.axis("off")
 
 
-def draw_hexagons(axis, found):
+def draw_hexagons(axis, structure):
     """Every pair of pants as its two hexagons in Klein's model."""
-    columns = int(np.ceil(np.sqrt(len(found.pants))))
-    for k, pants in enumerate(found.pants):
-        centre = np.array([2.2 * (k % columns), -2.35 * (k // columns)])
-        axis.add_patch(plt.Circle(centre, 1, facecolor="0.97", edgecolor="0.4", linewidth=0.8))
-        for corners, shade in zip(pants.hexagons + centre, (0.75, 0.4), strict=True):
+    columns = int(np.ceil(np.sqrt(len(structure.pants))))
+    for k, pants in enumerate(structure.pants):
+        center = np.array([2.2 * (k % columns), -2.35 * (k // columns)])
+        axis.add_patch(plt.Circle(center, 1, facecolor="0.97", edgecolor="0.4", linewidth=0.8))
+        for corners, shade in zip(pants.hexagons + center, (0.75, 0.4), strict=True):
             axis.add_patch(plt.Polygon(corners, facecolor="0.6", alpha=shade, edgecolor="0.3", linewidth=0.6))
-            for side, colour in enumerate(_side_colours(k, len(found.pants))):
-                axis.plot(*corners[2 * side : 2 * side + 2].T, color=colour, linewidth=2.4)
+            for side, color in enumerate(_side_colors(k, len(structure.pants))):
+                axis.plot(*corners[2 * side : 2 * side + 2].T, color=color, linewidth=2.4)
         lengths = ", ".join(f"{length:.2f}" for length in pants.boundary_lengths)
-        axis.text(*(centre - [0, 1.06]), f"lengths {lengths}", ha="center", va="top", fontsize=7.5)
+        axis.text(*(center - [0, 1.06]), f"lengths {lengths}", ha="center", va="top", fontsize=7.5)
     axis.autoscale_view()
     axis.set(aspect="equal", title="pants as two right-angled hexagons, Klein's model")
     axis.axis("off")
 
 
-def _side_colours(k, count):
-    """Colours of the boundaries of a pair of pants: pants curves have their own, landmark curves one."""
+def _side_colors(k, count):
+    """The colors of the boundaries of a pair of pants: one per pants curve, one for all landmark curves."""
     before = BOUNDARY if k == 0 else PANTS(k - 1)
     after = BOUNDARY if k == count - 1 else PANTS(k)
     return before, BOUNDARY, after
 
 
-def draw_surface(axis, found, curves, vertices, directions):
+def draw_surface(axis, structure, curves, vertices, directions):
     """The surface from two sides, stacked, with landmark curves and pants curves."""
     lines = [(vertices[np.asarray(curve)], BOUNDARY) for curve in curves]
-    lines += [(curve, PANTS(k)) for k, curve in enumerate(found.pants_curves)]
+    lines += [(curve, PANTS(k)) for k, curve in enumerate(structure.pants_curves)]
     below = 0.0
     for direction in directions:
         frame = _frame(np.array(direction, float))
-        polygons, colours, depths = _shaded(found.vertices @ frame.T, found.faces)
+        polygons, colors, depths = _shaded(structure.vertices @ frame.T, structure.faces)
         width = 0.006 * np.ptp(vertices, axis=0).max()
-        for points, colour in lines:
+        for points, color in lines:
             ribbon, depth = _ribbon(points @ frame.T, width)
             polygons, depths = [*polygons, *ribbon], np.append(depths, depth)
-            colours = np.vstack([colours, np.tile(matplotlib.colors.to_rgb(colour), (len(ribbon), 1))])
+            colors = np.vstack([colors, np.tile(matplotlib.colors.to_rgb(color), (len(ribbon), 1))])
         order = np.argsort(depths)
         high = max(polygon[:, 1].max() for polygon in polygons)
         shift = [0, below - high]
         shown = [polygons[k] + shift for k in order]
         axis.add_collection(
-            PolyCollection(shown, facecolors=colours[order], edgecolors="face", linewidths=0.15)
+            PolyCollection(shown, facecolors=colors[order], edgecolors="face", linewidths=0.15)
         )
         below = min(polygon[:, 1].min() for polygon in shown) - 0.05 * np.ptp(vertices, axis=0).max()
     axis.autoscale_view()
@@ -182,29 +184,29 @@ def draw_surface(axis, found, curves, vertices, directions):
     axis.axis("off")
 
 
-def _frame(towards_eye):
-    """Rows: right, up and towards the eye; the z axis points upward."""
-    towards_eye /= np.linalg.norm(towards_eye)
-    right = np.cross([0, 0, 1], towards_eye)
+def _frame(to_eye):
+    """Rows: right, up and to the eye; the z axis points up."""
+    to_eye /= np.linalg.norm(to_eye)
+    right = np.cross([0, 0, 1], to_eye)
     right /= np.linalg.norm(right)
-    return np.stack([right, np.cross(towards_eye, right), towards_eye])
+    return np.stack([right, np.cross(to_eye, right), to_eye])
 
 
 def _shaded(points, faces):
-    """Triangles on the screen that face the eye, their grey, and how near they are."""
+    """Triangles on the screen that face the eye, their colors, and how near they are."""
     a, b, c = np.moveaxis(points[faces], 1, 0)
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     light = np.array([-0.35, 0.5, 0.8]) / np.linalg.norm([-0.35, 0.5, 0.8])
-    grey = 0.38 + 0.55 * np.clip(normal @ light, 0, 1)
+    gray = 0.38 + 0.55 * np.clip(normal @ light, 0, 1)
     facing = normal[:, 2] > 0
-    colours = grey[facing, None] * [1.0, 0.97, 0.93]
+    colors = gray[facing, None] * [1.0, 0.97, 0.93]
     triangles = points[faces[facing]]
-    return list(triangles[:, :, :2]), colours, triangles[:, :, 2].mean(axis=1)
+    return list(triangles[:, :, :2]), colors, triangles[:, :, 2].mean(axis=1)
 
 
 def _ribbon(points, width):
-    """A line as quadrilaterals on the screen, and how near each is, a little nearer than it is."""
+    """A line as quadrilaterals on the screen, and how near each is drawn, a little nearer than it is."""
     a, b = points[:-1], points[1:]
     step = (b - a)[:, :2]
     along = step / np.maximum(np.linalg.norm(step, axis=1), 1e-300)[:, None]
@@ -218,11 +220,11 @@ def _ribbon(points, width):
 def draw(path):
     """The whole picture."""
     name, vertices, faces, curves, directions = surface()
-    found = authalic.hyperbolic_structure(vertices, faces, curves=curves)
+    structure = authalic.hyperbolic_structure(vertices, faces, curves=curves)
     figure, axes = plt.subplots(1, 3, figsize=(19, 7), layout="constrained", width_ratios=(1, 0.9, 0.8))
-    draw_cover(axes[0], found)
-    draw_hexagons(axes[1], found)
-    draw_surface(axes[2], found, curves, vertices, directions)
+    draw_cover(axes[0], structure)
+    draw_hexagons(axes[1], structure)
+    draw_surface(axes[2], structure, curves, vertices, directions)
     figure.suptitle(f"The hyperbolic structure of {name} with {len(curves)} landmark curves")
     figure.savefig(path, dpi=120)
     plt.close(figure)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Figures of a UV layout or of a map onto a sphere, from the coordinates in the mesh and nothing else.
+"""Figures of a UV layout or of a map onto a sphere, from the coordinates in the mesh alone.
 
-They are computed here in plain numpy, independently of the native module that made the maps.
+They are computed in plain numpy, independently of the native module that made the maps.
 """
 
 from dataclasses import dataclass
@@ -33,28 +33,28 @@ def sphere_of(mesh, key):
     """Reads the triangles of a Blender mesh and their images by a shape key whose points lie on a sphere."""
     _, vertices, polygon = _triangles(mesh)
     image = points_of(mesh, key)
-    image -= _centre_of_sphere(image)
+    image -= _center_of_sphere(image)
     return Layout(positions(mesh)[vertices], image[vertices], polygon)
 
 
 def positions(mesh):
     """The coordinates (n, 3) of a Blender mesh, those of its first shape key if it has any."""
-    found = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", found)
-    return found.reshape(-1, 3).astype(float)
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", points)
+    return points.reshape(-1, 3).astype(float)
 
 
 def points_of(mesh, key):
     """The coordinates (n, 3) of a Blender mesh's shape key."""
-    found = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.shape_keys.key_blocks[key].points.foreach_get("co", found)
-    return found.reshape(-1, 3).astype(float)
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.shape_keys.key_blocks[key].points.foreach_get("co", points)
+    return points.reshape(-1, 3).astype(float)
 
 
 def areas(layout):
     """The area of each triangle in space and the signed area of its image.
 
-    On the sphere the sign is positive where a face is seen counter-clockwise from outside.
+    On the sphere the sign is positive if a face is seen counter-clockwise from outside.
     """
     surface = np.linalg.norm(np.cross(*_sides(layout.corners)), axis=1) / 2
     u, v = _sides(layout.uv)
@@ -66,7 +66,7 @@ def areas(layout):
 
 
 def area_ratio(layout):
-    """Share of the UV area over share of the surface, per triangle; one scale for the whole mesh."""
+    """Share of the UV area over share of the surface area, per triangle."""
     surface, signed = areas(layout)
     image = np.abs(signed)
     return (image / max(image.sum(), 1e-300)) / np.maximum(surface / surface.sum(), 1e-300)
@@ -81,7 +81,7 @@ def polygon_log2_ratio(layout, polygons):
 
 
 def stretch(layout):
-    """sigma1 / sigma2 of each triangle's map from the surface to its image: 1 keeps angles."""
+    """sigma1 / sigma2 of each triangle's map from the surface to its image: 1 preserves angles."""
     a, b = _sides(layout.corners)
     length = np.maximum(np.linalg.norm(a, axis=1), 1e-300)
     along = np.einsum("ij,ij->i", a, b) / length
@@ -123,7 +123,7 @@ def _triangles(mesh):
     return loops, vertex[loops], polygon
 
 
-def _centre_of_sphere(points):
+def _center_of_sphere(points):
     """Least squares: |p|² = 2 c·p + r² − |c|² for all points p of a sphere about c."""
     matrix = np.column_stack([2 * points, np.ones(len(points))])
     return np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0][:3]

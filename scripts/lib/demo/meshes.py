@@ -16,11 +16,11 @@ READERS = {
     ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
 }
 EXTENT, HEIGHT, DIAGONAL = 2.35, 2.1, 3.46
-"""The most that a mesh may measure in the scene: along an axis, upwards, and across its bounding box."""
+"""The limits of a mesh in the scene: along any axis, in height, and across its bounding box."""
 
 
 def suzanne():
-    """Blender's monkey, subdivided twice, with seams where the UV map that it comes with has them."""
+    """Blender's monkey, subdivided twice, with the seams of its own UV map."""
     bpy.ops.mesh.primitive_monkey_add()
     shape = bpy.context.object
     shape.modifiers.new("Subdivision", "SUBSURF").levels = 2
@@ -59,7 +59,7 @@ def closed_suzanne():
 
 
 def without_seams(shape):
-    """Takes the seams off an object that is to become a sphere, and makes that fit into a cell."""
+    """Removes the seams of an object that is to become a sphere, and fits that sphere into a cell."""
     mesh = shape.data
     for edge in mesh.edges:
         edge.use_seam = False
@@ -74,15 +74,15 @@ def is_sphere(mesh):
     work = bmesh.new()
     work.from_mesh(mesh)
     loose = any(not vertex.link_faces for vertex in work.verts)
-    manifold = all(part.is_manifold for part in (*work.edges, *work.verts))
+    manifold = all(element.is_manifold for element in (*work.edges, *work.verts))
     euler = len(work.verts) - len(work.edges) + len(work.faces)
-    found = not loose and manifold and len(_pieces(work)) == 1 and euler == 2
+    is_one = not loose and manifold and len(_pieces(work)) == 1 and euler == 2
     work.free()
-    return found
+    return is_one
 
 
 def from_file(name):
-    """The objects of a mesh file, joined; closed pieces without seams are cut (see `open_up`)."""
+    """The joined objects of a mesh file; closed pieces without seams are cut (see `open_up`)."""
     path = Path(name)
     if path.suffix.lower() not in READERS:
         raise SystemExit(f"{name}: the demo reads {', '.join(READERS)} files")
@@ -90,11 +90,11 @@ def from_file(name):
         raise SystemExit(f"{name}: there is no such file")
     bpy.ops.object.select_all(action="DESELECT")
     READERS[path.suffix.lower()](str(path))
-    found = [shape for shape in bpy.context.selected_objects if shape.type == "MESH" and shape.data.polygons]
-    if not found:
+    shapes = [shape for shape in bpy.context.selected_objects if shape.type == "MESH" and shape.data.polygons]
+    if not shapes:
         raise SystemExit(f"{name}: Blender's importer found no faces in it")
-    bpy.context.view_layer.objects.active = found[0]
-    if len(found) > 1:
+    bpy.context.view_layer.objects.active = shapes[0]
+    if len(shapes) > 1:
         bpy.ops.object.join()
     return _opened(_prepared(bpy.context.object, path.stem))
 
@@ -109,9 +109,9 @@ def copy_of(source, name):
 
 
 def open_up(mesh):
-    """Marks a seam on each closed piece that has none: a shortest path between two far ends of it.
+    """Marks a seam on each closed piece that has none: a shortest path between two far ends.
 
-    Returns how many pieces were cut. No method makes sense of a closed surface without a cut.
+    Returns the number of pieces that were cut. Blender's methods need a cut.
     """
     work = bmesh.new()
     work.from_mesh(mesh)
@@ -142,7 +142,7 @@ def _prepared(shape, name):
     mesh.uv_layers.new(name="UVMap")
     mesh.materials.clear()
     mesh.shade_smooth()
-    _centre(mesh)
+    _center(mesh)
     return shape
 
 
@@ -156,7 +156,7 @@ def _opened(shape):
     return shape
 
 
-def _centre(mesh):
+def _center(mesh):
     corners = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.attributes["position"].data.foreach_get("vector", corners)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
@@ -178,7 +178,8 @@ def _pieces(work):
         seen.add(first)
         piece = [first]
         for vertex in piece:  # grows while it is walked
-            fresh = [other for edge in vertex.link_edges if (other := edge.other_vert(vertex)) not in seen]
+            neighbors = [edge.other_vert(vertex) for edge in vertex.link_edges]
+            fresh = [neighbor for neighbor in neighbors if neighbor not in seen]
             seen.update(fresh)
             piece += fresh
         pieces.append(piece)
@@ -186,7 +187,7 @@ def _pieces(work):
 
 
 def _paths_from(start):
-    """Dijkstra: the length of the shortest path to each vertex, and the edge by which it arrives."""
+    """Dijkstra: the length of the shortest path to each vertex, and the path's last edge."""
     lengths, arrived_by = {start: 0.0}, {}
     queue = [(0.0, start.index, start)]
     while queue:
@@ -194,8 +195,8 @@ def _paths_from(start):
         if length > lengths[vertex]:
             continue
         for edge in vertex.link_edges:
-            other, further = edge.other_vert(vertex), length + edge.calc_length()
-            if further < lengths.get(other, math.inf):
-                lengths[other], arrived_by[other] = further, edge
-                heapq.heappush(queue, (further, other.index, other))
+            neighbor, further = edge.other_vert(vertex), length + edge.calc_length()
+            if further < lengths.get(neighbor, math.inf):
+                lengths[neighbor], arrived_by[neighbor] = further, edge
+                heapq.heappush(queue, (further, neighbor.index, neighbor))
     return lengths, arrived_by

@@ -20,7 +20,7 @@ PIXELS_PER_CELL, SAMPLES = 330, 24
 LAYOUT = "Checker"
 STEP = 0.95
 
-# Upwards and to the front in the files; vertices picked by hand on either head.
+# Names, files, and the directions up and to the front in them; vertices picked by hand on either head.
 DAVID = ("David", "david_10671", (0, 0, 1), (-0.55, 0.83, 0))
 MAX_PLANCK = ("Max Planck", "maxplanck_9002", (0, 1, 0), (0, 0, -1))
 PICKED = {
@@ -42,8 +42,8 @@ PICKED = {
     "Nape": (4111, 1036),
     "Base": (8319, 8579),
 }
-# Where Suzanne has what a made head has: to her left and upwards, as parts of half her width and height, and
-# whether that is seen from the front, from behind, from above or from below.
+# The places on Suzanne of a made head's landmarks: to her left and up, as parts of half her width and height,
+# and the side from which they are seen.
 SUZANNE = {
     "Nose": (0, -0.12, "front"),
     "Brow": (0, 0.45, "front"),
@@ -61,7 +61,7 @@ SUZANNE = {
 
 
 def show():
-    """Registers, and puts five frames on a wall of their own, twice; returns the entry of the report."""
+    """Registers, and puts five frames on a wall, twice; returns the entry of the report."""
     stage.new_scene("Registration")
     source, target, landmarks = _real_heads() or _made_heads()
     shape, name = source, f"{source.name} into {target.name}"
@@ -88,7 +88,7 @@ def show():
 
 
 def _real_heads():
-    """David, Max Planck and the landmarks on both; None without the files."""
+    """David, Max Planck and the landmarks of both; None without the files."""
     folder = DATA / "sphere"
     if not all((folder / f"{file}.npz").is_file() for _, file, _, _ in (DAVID, MAX_PLANCK)):
         return None
@@ -96,7 +96,7 @@ def _real_heads():
 
 
 def _from_arrays(folder, name, file, up, front):
-    """A mesh turned so that it looks at the camera, as large as a cell allows."""
+    """A mesh that looks at the camera, as large as a cell allows."""
     with np.load(folder / f"{file}.npz") as arrays:
         vertices, faces = arrays["V"], arrays["F"]
     up, front = (np.array(axis, float) / np.linalg.norm(axis) for axis in (up, front))
@@ -105,19 +105,19 @@ def _from_arrays(folder, name, file, up, front):
 
 
 def _made_heads():
-    """A closed Suzanne, a head made of a sphere, and the landmarks on both."""
+    """A closed Suzanne, a head made of a sphere, and the landmarks of both."""
     source = meshes.closed_suzanne()
     source.name = "Suzanne"
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6)
     target = example.shaped(bpy.context.object, "a made head", (0.8, 0.9, 1.1), nose=0.3, ears=0.3, chin=0.2)
     points = measure.positions(source.data)
-    found = {name: _seen(points, *place) for name, place in SUZANNE.items()}
+    vertices = {name: _seen(points, *place) for name, place in SUZANNE.items()}
     goals = dict(zip(example.LANDMARKS, target["landmarks"], strict=True))
-    return source, _fitted(target), {name: (vertex, goals[name]) for name, vertex in found.items()}
+    return source, _fitted(target), {name: (vertex, goals[name]) for name, vertex in vertices.items()}
 
 
 def _seen(points, right, up, side):
-    """The vertex that is seen first at a place from a side, see SUZANNE."""
+    """The vertex that is seen first at a place from a side; see SUZANNE."""
     points = points / (np.ptp(points, axis=0) / 2)
     across = points[:, [0, 1 if side in ("above", "below") else 2]]
     depth = {"front": -points[:, 1], "behind": points[:, 1], "above": points[:, 2], "below": -points[:, 2]}
@@ -152,13 +152,13 @@ def _register(source, target, landmarks):
             bpy.ops.authalic.landmark_add(name=name, source_vertex=first, target_vertex=second)
         began = time.perf_counter()
         bpy.ops.authalic.register(angle_weight=ANGLE_WEIGHT)
-    except RuntimeError as error:  # how bpy passes on an error report
+    except RuntimeError as error:  # bpy passes on an error report so
         return time.perf_counter() - began, str(error).strip()
     return time.perf_counter() - began, None
 
 
 def _figures(source, target, key):
-    """How far the landmarks end from each other, from the coordinates alone; percent of the target's size."""
+    """The final distances of the landmarks, from the coordinates alone, in percent of the target's size."""
     ends, goals = measure.points_of(source.data, key), measure.positions(target.data)
     size = np.linalg.norm(np.ptp(goals, axis=0))
     apart = [
@@ -179,7 +179,7 @@ def _caption(entry):
 
 
 def _wall(shape, key):
-    """Five frames in clay, below them the same with the checker."""
+    """Five frames in clay, and below them with the checker."""
     clay, checker = _clay(), stage.checker_material(LAYOUT, "checker_scale morph")
     layout = measure.layout_of(shape.data)
     for column, value in enumerate(FRAMES):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What the demo says about its maps: report.json, captions, lines in the terminal, arrays for the figures."""
+"""The demo's reports of its maps: report.json, captions, lines in the terminal, arrays for the figures."""
 
 import json
 
@@ -10,21 +10,21 @@ from demo import measure
 
 
 def write(out, results):
-    """report.json: what the figures mean, and one entry for each mesh and method."""
+    """Writes report.json: the meaning of the figures, and one entry for each mesh and method."""
     report = {
         "blender": bpy.app.version_string,
         "seconds": "one operator call, single run (in edit mode; the shape key in object mode)",
         "area_ratio": "share of the UV area over share of the surface, per triangle; one scale per object",
         "flipped_triangles": "triangles of non-positive signed area in the UV plane",
         "shape_key": 'the method "Authalic Sphere": areas and signs are those on the sphere',
-        "angle_distortion": "sigma1 / sigma2 per triangle; 1 keeps angles",
+        "angle_distortion": "sigma1 / sigma2 per triangle; 1 preserves angles",
         "results": results,
     }
     (out / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
 
 
 def keep(folder, entry, layout):
-    """Writes what the figures need, in the order of the report."""
+    """Writes the arrays for the figures, numbered in the order of the report."""
     folder.mkdir(exist_ok=True)
     number = len(list(folder.glob("*.npz")))
     names = {key: entry[key] for key in ("mesh", "method")}
@@ -33,7 +33,7 @@ def keep(folder, entry, layout):
 
 
 def caption(entry):
-    """The line below a mesh, or a pair of them."""
+    """The line below a mesh or a pair of meshes."""
     parts = [
         f"SD {entry['area_ratio_std']:.3g}",
         f"{entry['flipped_triangles']} flipped",

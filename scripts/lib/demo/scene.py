@@ -18,7 +18,7 @@ SAMPLES = 24
 
 
 def main(out, files):
-    """Makes everything the demo leaves, except for the figures that need matplotlib."""
+    """Makes everything that the demo leaves but the figures that need matplotlib."""
     bpy.ops.wm.read_homefile(use_empty=True)
     install_extension()
     bpy.context.scene.name = "Comparison"
@@ -36,16 +36,16 @@ def main(out, files):
 
 
 def closed_meshes(sources):
-    """The meshes of the second picture, {name: mesh}: a closed Suzanne and the closed ones of those given."""
+    """The meshes of the second picture, {name: mesh}: a closed Suzanne and the closed given meshes."""
     chosen = [meshes.closed_suzanne()]
     for source in sources:
         if meshes.is_sphere(source.data):
             shape = meshes.copy_of(source, f"{source.name}, closed")
             chosen.append(meshes.without_seams(shape))
-    found = {shape.name: shape.data for shape in chosen}
+    closed = {shape.name: shape.data for shape in chosen}
     for shape in chosen:
         bpy.data.objects.remove(shape)
-    return found
+    return closed
 
 
 def compare(out, sources, methods, heat):
@@ -63,7 +63,7 @@ def compare(out, sources, methods, heat):
 
 
 def install_extension():
-    """Installs the zip that scripts/demo names into the current profile, as a person would."""
+    """Installs the zip that scripts/demo names into the current profile."""
     archive = os.environ.get("AUTHALIC_EXTENSION_ZIP")
     if archive:
         bpy.ops.extensions.package_install_files(
@@ -72,7 +72,7 @@ def install_extension():
 
 
 def one_cell(out, source, method, place, materials):
-    """Unwraps a copy of a mesh, measures it, puts it on the wall twice; returns its entry in the report."""
+    """Unwraps a copy of a mesh, measures it and shows it; returns its entry in the report."""
     entry = {"mesh": source.name, "method": method.name}
     triangles = len(measure.layout_of(source.data).uv)
     if method.limit is not None and triangles > method.limit:
@@ -91,7 +91,7 @@ def one_cell(out, source, method, place, materials):
 
 
 def show(shape, layout, place, materials):
-    """The same mesh twice: with the checker, and below it with the heat map."""
+    """Puts a mesh on the wall twice: with the checker, and below it with the heat map."""
     column, row = place
     surface, signed = measure.areas(layout)
     shape["checker_scale"] = stage.checker_scale(surface, signed)

@@ -13,15 +13,15 @@ FRAMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 LAYOUTS = (unwrap.LAMBERT, unwrap.OCTAHEDRAL)
 KEY = unwrap.SHAPE_KEY.name
 STEP, HEAT_ROW, ROWS = 0.88, 1.94, 3.06
-"""On the wall, in rows: from one row of frames to the next, down to the heat maps, down to the next mesh."""
+"""Distances down the wall in rows: to the next row of frames, to the heat maps, to the next mesh."""
 COARSER = 1.4
-"""The squares are larger than those of the comparison, for the morph's form to show."""
+"""The squares are larger by this than in the comparison, so that the morph's form shows."""
 LAST_FRAME = 96
 PIXELS_PER_CELL, SAMPLES = 270, 16
 
 
 def show(out, closed, heat):
-    """Maps closed meshes, {name: mesh}, and puts them on a wall of their own; returns report entries."""
+    """Maps closed meshes, {name: mesh}, and puts them on a wall; returns the entries of the report."""
     stage.new_scene("Sphere")
     checkers = {name: stage.checker_material(name, f"checker_scale {name}") for name in LAYOUTS}
     entries, morphs = [], []
@@ -44,7 +44,7 @@ def _methods():
 
 
 def _mapped(out, shape, method):
-    """Runs one method; returns its entry in the report and the measured map (None where it failed)."""
+    """Runs one method; returns its entry in the report and the map, None if it failed."""
     of_uv = method is not unwrap.SHAPE_KEY
     if of_uv:
         shape.data.uv_layers.active = shape.data.uv_layers.new(name=method.name)
@@ -75,20 +75,20 @@ def _wall(shape, results, top, checkers):
                 frame[f"checker_scale {name}"] = stage.checker_scale(*measure.areas(layout)) / COARSER
             twin = frame if row == 0 else _twin(frame, f"{frame.name}, {name}")
             stage.place(twin, checkers[name], column, place)
-            _centre(twin, FRAMES[column])
+            _center(twin, FRAMES[column])
     return frames
 
 
 def _frames(shape):
-    """Copies of an object at the values of the shape key, each with its own mesh; one without key."""
-    found = []
+    """Copies of an object at the values of the shape key; without a key, one copy."""
+    frames = []
     for value in FRAMES if shape.data.shape_keys else FRAMES[:1]:
         frame = meshes.copy_of(shape, f"{shape.name} - {value:g}")
         frame.data.uv_layers.remove(frame.data.uv_layers[unwrap.PROJECTION])
         if frame.data.shape_keys:
             frame.data.shape_keys.key_blocks[KEY].value = value
-        found.append(frame)
-    return found
+        frames.append(frame)
+    return frames
 
 
 def _twin(shape, name):
@@ -98,8 +98,8 @@ def _twin(shape, name):
     return twin
 
 
-def _centre(shape, value):
-    """Moves an object in its cell so that the middle of its bounding box at this value is the cell's."""
+def _center(shape, value):
+    """Moves an object so that the middle of its bounding box at this value is the middle of its cell."""
     points = measure.positions(shape.data)
     if value:
         points = (1 - value) * points + value * measure.points_of(shape.data, KEY)
@@ -108,7 +108,7 @@ def _centre(shape, value):
 
 
 def _heat_maps(shape, frames, results, row, heat):
-    """The area ratios of every way: on the mesh, or on the sphere for the shape key; figures below."""
+    """The area ratios of every method, on the mesh or for the shape key on the sphere, with figures."""
     stage.label("area ratio", -0.56, row, 0.15, "RIGHT", 0.1)
     for index, (name, (entry, layout)) in enumerate(results.items()):
         column = index * (len(FRAMES) - 1) / (len(results) - 1)
@@ -122,12 +122,12 @@ def _heat_maps(shape, frames, results, row, heat):
         copy = _twin(frames[-1], title) if on_sphere else _bare(shape, title)
         stage.write_ratio(copy.data, measure.polygon_log2_ratio(layout, len(copy.data.polygons)))
         stage.place(copy, heat, column, row)
-        _centre(copy, float(on_sphere))
+        _center(copy, float(on_sphere))
         stage.label(report.caption(entry), column, row + 0.5, 0.125)
 
 
 def _bare(shape, name):
-    """A copy without what a heat map does not need: UV maps and shape keys."""
+    """A copy without UV maps and shape keys."""
     copy = meshes.copy_of(shape, name)
     copy.shape_key_clear()
     while copy.data.uv_layers:

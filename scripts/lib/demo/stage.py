@@ -26,12 +26,12 @@ HEAT_STOPS = (
 
 
 def new_scene(name):
-    """Adds an empty scene and makes it the one that is worked in."""
+    """Adds an empty scene and makes it the current one."""
     bpy.context.window.scene = bpy.data.scenes.new(name)
 
 
 def checker_material(uv_map="", scale_name="checker_scale"):
-    """A checker whose squares have one size on the surface when the map is even.
+    """A checker whose squares have one size on the surface if the map is even.
 
     uv_map: the UV map's name, or the active one; scale_name: the object's property that sets the size.
     """
@@ -54,7 +54,7 @@ def checker_material(uv_map="", scale_name="checker_scale"):
 
 
 def heat_material():
-    """Blue where a face has too little of the texture, red where it has too much."""
+    """A material that is blue where faces have too little of the texture, red where they have too much."""
     material, nodes, link = _material("Area ratio (log2)")
     ratio = nodes.new("ShaderNodeAttribute")
     ratio.attribute_name = "log2_area_ratio"
@@ -70,7 +70,7 @@ def heat_material():
 
 
 def checker_scale(surface, image):
-    """What UVs are to be multiplied by, given the areas of the triangles in space and in the UV plane."""
+    """The scale of UVs in the checker, from the areas of the triangles in space and in the UV plane."""
     density = float(np.sqrt(surface.sum() / max(np.abs(image).sum(), 1e-300)))
     return density / CHECKER_SIZE
 
@@ -94,12 +94,12 @@ def place(shape, material, column, row):
 
 
 def spot(column, row):
-    """The centre of a cell; rows count downwards and may be fractions."""
+    """The center of a cell; rows count downward and may be fractions."""
     return (column * COLUMN, 0.0, -row * ROW)
 
 
 def label(text, column, row, size=0.2, align="CENTER", shade=0.02):
-    """A line of text that faces the camera, in one colour and unlit."""
+    """A line of text that faces the camera, in one color and unlit."""
     curve = bpy.data.curves.new(text[:60], "FONT")
     curve.body, curve.size = text, size
     curve.align_x, curve.align_y = align, "CENTER"
@@ -111,7 +111,7 @@ def label(text, column, row, size=0.2, align="CENTER", shade=0.02):
 
 
 def heat_legend(material, column, row):
-    """A bar of the heat map's colours with its meaning above and its scale below."""
+    """A bar of the heat map's colors with its meaning above and its scale below."""
     bar = bpy.data.objects.new("Legend", _legend_mesh(LEGEND_WIDTH, 0.16, 60))
     bar.data.materials.append(material)
     bar.location = spot(column, row)
@@ -122,16 +122,16 @@ def heat_legend(material, column, row):
 
 
 def light_and_camera(columns, rows, pixels_per_cell):
-    """Soft light from the upper left, a neutral grey ground, and a camera that frames the whole wall.
+    """Soft light from the upper left, a neutral gray ground, and a camera that frames the whole wall.
 
     columns, rows: (first, last) edges of the wall in cells.
     """
     scene = bpy.context.scene
     width, height = (columns[1] - columns[0]) * COLUMN, (rows[1] - rows[0]) * ROW
-    centre = ((columns[0] + columns[1]) / 2, (rows[0] + rows[1]) / 2)
+    center = ((columns[0] + columns[1]) / 2, (rows[0] + rows[1]) / 2)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", max(width, height)
-    x, _, z = spot(*centre)
+    x, _, z = spot(*center)
     camera.location, camera.rotation_euler = (x, -30, z), (math.pi / 2, 0, 0)
     scene.collection.objects.link(camera)
     scene.camera = camera
@@ -177,8 +177,8 @@ def _material(name):
 def _set_stops(ramp):
     while len(ramp.elements) < len(HEAT_STOPS):
         ramp.elements.new(0.5)
-    for element, (position, colour) in zip(ramp.elements, HEAT_STOPS, strict=True):
-        element.position, element.color = position, (*colour, 1)
+    for element, (position, color) in zip(ramp.elements, HEAT_STOPS, strict=True):
+        element.position, element.color = position, (*color, 1)
 
 
 def _ink(shade):
@@ -202,7 +202,7 @@ def _sun(name, rotation, strength, softness):
 
 
 def _ground(scene, background, ambient):
-    """What the camera sees behind the meshes and what lights them may differ."""
+    """A world whose background, as the camera sees it, differs from its light."""
     scene.world = bpy.data.worlds.get("Ground")
     if scene.world is not None:
         return

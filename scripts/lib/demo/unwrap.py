@@ -14,12 +14,12 @@ LONG_RUN_LIMIT = 20_000
 
 @dataclass(frozen=True)
 class Method:
-    """A way of unwrapping: `call` runs the operator on what is selected in edit mode."""
+    """A way of unwrapping: `call` runs the operator on the selection in edit mode."""
 
     name: str
     call: Callable
     limit: int | None = None
-    """The largest number of triangles for which the demo waits."""
+    """The number of triangles above which the demo leaves it out."""
 
 
 def _blender(method, **options):
@@ -29,25 +29,25 @@ def _blender(method, **options):
 def available():
     """The methods that this Blender has, Authalic last."""
     known = bpy.ops.uv.unwrap.get_rna_type().properties["method"].enum_items.keys()
-    found = [Method("Blender ABF", _blender("ANGLE_BASED"))]
+    methods = [Method("Blender ABF", _blender("ANGLE_BASED"))]
     if "MINIMUM_STRETCH" in known:
         stretch = {"method": "MINIMUM_STRETCH", "no_flip": True}
-        found.append(Method("Minimum Stretch, 10", _blender(**stretch, iterations=10)))
-        found.append(Method("Minimum Stretch, 200", _blender(**stretch, iterations=200), LONG_RUN_LIMIT))
+        methods.append(Method("Minimum Stretch, 10", _blender(**stretch, iterations=10)))
+        methods.append(Method("Minimum Stretch, 200", _blender(**stretch, iterations=200), LONG_RUN_LIMIT))
     else:
         print("  this Blender has no Minimum Stretch (it came with 4.3)")
     if hasattr(bpy.types, "AUTHALIC_OT_unwrap"):
-        found.append(Method("Authalic", lambda: bpy.ops.authalic.unwrap()))
+        methods.append(Method("Authalic", lambda: bpy.ops.authalic.unwrap()))
     else:
         print("  Authalic is left out: its extension is not installed in this profile")
-    return found
+    return methods
 
 
 PROJECTION, LAMBERT, OCTAHEDRAL = "Blender sphere projection", "Lambert", "Octahedral"
 
 
 def of_closed_meshes():
-    """The ways of giving UVs to a closed mesh without seams, each into a UV map of its name."""
+    """The methods for closed meshes without seams, each with a UV map of its name."""
     return [
         Method(PROJECTION, lambda: bpy.ops.uv.sphere_project(direction="ALIGN_TO_OBJECT")),
         Method(LAMBERT, lambda: bpy.ops.authalic.unwrap(domain="AUTO", sphere_layout="LAMBERT")),
@@ -56,7 +56,7 @@ def of_closed_meshes():
 
 
 SHAPE_KEY = Method("Authalic Sphere", lambda: bpy.ops.authalic.sphere_shape_key())
-"""Works in object mode; the shape key has the name of the method."""
+"""The method that adds a shape key of its own name, in object mode."""
 
 
 def timed(shape, method, mode="EDIT"):
@@ -72,7 +72,7 @@ def timed(shape, method, mode="EDIT"):
     try:
         outcome = method.call()
         problem = None if "FINISHED" in outcome else f"the operator ended with {outcome}"
-    except RuntimeError as error:  # how bpy passes on an error report
+    except RuntimeError as error:  # bpy passes on an error report so
         problem = str(error).strip()
     seconds = time.perf_counter() - began
     bpy.ops.object.mode_set(mode="OBJECT")

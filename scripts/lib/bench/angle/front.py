@@ -11,11 +11,11 @@ MODELS = (
     "cowboyhat_2327", "lionhead_8356", "chineselion_17334", "camelhead_11381", "face_17157",
     "spot_2930", "david_10671", "maxplanck_9002", "brain_12502", "fsavg5_pialL_10242",
 )  # fmt: skip
-"""Those that are looked at where none are named."""
+"""The meshes that are measured if none are named."""
 NOTE = """\
 SD of the area ratio and mean of σ₁/σ₂ over the faces, both `authalic.distortion`'s, at each `angle_weight`
 for each boundary of a disk, and for spheres. A star: the map has not converged. Further left angles count
-more, further right areas; what lies below and left of another map in the plot is better in both."""
+more, further right areas; a map below and left of another one in the plot is better in both."""
 
 
 def write(report, models):
@@ -34,34 +34,34 @@ def write(report, models):
 
 
 def kinds(call):
-    """The boundaries to look at."""
+    """The boundaries to measure."""
     return BOUNDARIES if call is authalic.disk_map else (SPHERE,)
 
 
 def _row(report, name, kind, mesh, call):
     """One row of the table; returns the (weight, SD, σ₁/σ₂) of its maps."""
     options = {"boundary": kind} if kind in BOUNDARIES else {}
-    found = [_map(mesh, call, weight, options) for weight in WEIGHTS]
-    report.row((name, kind, *(cell(each) for each in found)))
-    pairs = zip(WEIGHTS, found, strict=True)
-    return [(weight, *_figures(each)) for weight, each in pairs if not isinstance(each, str)]
+    maps = [_map(mesh, call, weight, options) for weight in WEIGHTS]
+    report.row((name, kind, *map(cell, maps)))
+    pairs = zip(WEIGHTS, maps, strict=True)
+    return [(weight, *_figures(map_)) for weight, map_ in pairs if not isinstance(map_, str)]
 
 
 def _map(mesh, call, weight, options):
-    """A map, or the name of the error where there is none."""
+    """A map, or the name of the error that there was."""
     try:
         return call(*mesh, angle_weight=float(weight), **options)
     except (authalic.SolverError, ValueError) as problem:
         return type(problem).__name__
 
 
-def cell(found):
-    """SD and σ₁/σ₂ of a map, or what is said instead."""
-    if isinstance(found, str):
-        return found
-    deviation, angle = _figures(found)
-    return f"{deviation:.4f} {angle:.2f}{'' if found.status == 'converged' else '*'}"
+def cell(map_):
+    """SD and σ₁/σ₂ of a map, or the name of an error."""
+    if isinstance(map_, str):
+        return map_
+    deviation, angle = _figures(map_)
+    return f"{deviation:.4f} {angle:.2f}{'' if map_.status == 'converged' else '*'}"
 
 
-def _figures(found):
-    return found.distortion.area_ratio_std, found.distortion.angle_distortion_mean
+def _figures(map_):
+    return map_.distortion.area_ratio_std, map_.distortion.angle_distortion_mean

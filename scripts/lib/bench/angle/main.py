@@ -28,7 +28,7 @@ STIFFER = (1000, 300, 100, 30, 10)
 MODELS = ("spot_2930", "david_10671", "chineselion_17334")
 SUZANNE = "suzanne"
 ISLANDS = {"fill_holes": True, "boundary": "free"}
-"""How the islands are mapped, apart from the weight."""
+"""The options of the islands' maps, without the weight."""
 COLUMNS = ("mesh", "V", "angle_weight", "SD", "E_A", "folds", "σ₁/σ₂", "σ₁/σ₂ p99", "s", "remark")
 BESIDE_COLUMNS = (
     "island", "faces", "Blender", "SD", "σ₁/σ₂", "folds", "authalic's SD at that σ₁/σ₂", "angle_weight",
@@ -46,14 +46,14 @@ the curve is interpolated: log SD over σ₁/σ₂. The boundary is free in both
 
 @dataclass(frozen=True)
 class Point:
-    """A map: how unevenly it keeps areas and angles."""
+    """A map, by how it distorts areas and angles."""
 
     label: str
     weight: float
     deviation: float
     energy: float
     angle: float
-    """The mean of σ₁/σ₂, weighted by area; infinite where a face is folded."""
+    """The mean of σ₁/σ₂, weighted by area; infinite if a face is folded."""
     angle_p99: float
     folds: int
     seconds: float
@@ -84,13 +84,13 @@ def parsed(arguments=None):
 
 
 def chosen_models(names, usual):
-    """{name: (mesh, function)}: those asked for; else the usual ones, or all that were built on the spot."""
+    """{name: (mesh, function)}: the named meshes, else the usual ones, else all."""
     disks, spheres = meshes.disks(), meshes.spheres()
-    found = {name: (mesh, authalic.sphere_map) for name, mesh in spheres.items()}
-    found |= {name: (mesh, authalic.disk_map) for name, mesh in disks.items()}
-    meshes.check_names(names, [*found, SUZANNE])
-    wanted = names or [name for name in usual if name in found] or list(found)
-    return {name: found[name] for name in wanted if name != SUZANNE}
+    known = {name: (mesh, authalic.sphere_map) for name, mesh in spheres.items()}
+    known |= {name: (mesh, authalic.disk_map) for name, mesh in disks.items()}
+    meshes.check_names(names, [*known, SUZANNE])
+    chosen = names or [name for name in usual if name in known] or list(known)
+    return {name: known[name] for name in chosen if name != SUZANNE}
 
 
 def write_models(report, models):
@@ -113,7 +113,7 @@ def write_curve(report, name, mesh, call, weights, **options):
 
 
 def mapped(mesh, call, weight, **options):
-    """The point of one weight; where there is no map, the reason."""
+    """The point of one weight; without a map, its remark says why."""
     began = time.perf_counter()
     try:
         result = call(*mesh, angle_weight=float(weight), **options)
@@ -131,16 +131,16 @@ def measured(label, weight, mesh, image, seconds, remark=""):
     """The point of a map."""
     vertices, faces = mesh
     image = run.scaled(run.upright(image, faces), faces)
-    found = authalic.distortion(vertices, faces, image)
+    figures = authalic.distortion(vertices, faces, image)
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    angle = np.average(found.angle_distortion, weights=areas)
-    quality = found.area_ratio_std, found.authalic_energy, angle, found.angle_distortion_p99
-    return Point(label, weight, *quality, len(found.folded), seconds, remark)
+    angle = np.average(figures.angle_distortion, weights=areas)
+    quality = figures.area_ratio_std, figures.authalic_energy, angle, figures.angle_distortion_p99
+    return Point(label, weight, *quality, len(figures.folded), seconds, remark)
 
 
 def cells(point):
-    """Of the table of the curve, from the weight on."""
+    """The cells of the table of the curve, from the weight on."""
     if not np.isfinite(point.deviation):
         return (f"{point.weight:g}", *("–",) * 6, point.remark)
     return (
@@ -156,19 +156,19 @@ def beside_blender(report, options):
     if problem:
         report.section("Beside Blender", f"Not measured: {problem}")
         return
-    with np.load(target) as arrays:
-        found = dict(arrays)
-    seconds = {name[8:]: float(found[name]) for name in found if name.startswith("seconds ")}
+    with np.load(target) as file:
+        arrays = dict(file)
+    seconds = {name[8:]: float(arrays[name]) for name in arrays if name.startswith("seconds ")}
     text = ", ".join(f"{name} {value:.1f}" for name, value in seconds.items())
     report.section("Beside Blender", BESIDE_NOTE.format(seconds=text))
     report.columns(COLUMNS)
     curves, others, sizes = {}, {}, {}
-    for name, (mesh, images) in islands(found).items():
+    for name, (mesh, images) in islands(arrays).items():
         weights = (*STIFFER, *WEIGHTS)
         curves[name] = write_curve(report, name, mesh, authalic.disk_map, weights, **ISLANDS)
         others[name] = [measured(label, np.nan, mesh, image, np.nan) for label, image in images.items()]
         sizes[name] = len(mesh[1])
-    report.line("\nAt equal angle distortion (below 1: ours keeps areas better):\n")
+    report.line("\nAt equal angle distortion (below 1: ours preserves areas better):\n")
     report.columns(BESIDE_COLUMNS)
     for name, points in others.items():
         for point in points:
@@ -177,7 +177,7 @@ def beside_blender(report, options):
 
 
 def unwrapped_in_blender(python, target):
-    """Has Blender unwrap Suzanne; what went wrong, or nothing."""
+    """Has Blender unwrap Suzanne; returns the problem, or an empty string."""
     if not python:
         return "there is no Blender (--blender)"
     target.unlink(missing_ok=True)
@@ -188,20 +188,20 @@ def unwrapped_in_blender(python, target):
     return ""
 
 
-def islands(found):
+def islands(arrays):
     """{name: (mesh, {Blender's method: image})}, largest first."""
-    patches = authalic.cut(found["vertices"], found["faces"], seams=found["seams"])
+    patches = authalic.cut(arrays["vertices"], arrays["faces"], seams=arrays["seams"])
     patches.sort(key=lambda patch: -len(patch.faces))
     named = {}
     for patch in patches:
-        images = {name[3:]: image_of(patch, found, name) for name in found if name.startswith("uv ")}
+        images = {name[3:]: image_of(patch, arrays, name) for name in arrays if name.startswith("uv ")}
         named[f"{SUZANNE}, island {len(named) + 1}"] = (patch.vertices, patch.faces), images
     return named
 
 
-def image_of(patch, found, name):
+def image_of(patch, arrays, name):
     """Blender's UVs of an island, (n, 2)."""
-    corners = found[name][found["loops"].ravel()[patch.corner_of]]
+    corners = arrays[name][arrays["loops"].ravel()[patch.corner_of]]
     image = np.zeros((len(patch.vertices), 2))
     image[patch.faces] = corners
     if not np.allclose(image[patch.faces], corners, atol=1e-5):
@@ -210,9 +210,9 @@ def image_of(patch, found, name):
 
 
 def beside_cells(name, faces, point, curve):
-    """Of the table at equal angles."""
+    """The cells of the table at equal angles."""
     head = (name, faces, point.label, f"{point.deviation:.4f}", f"{point.angle:.3f}", point.folds)
-    angles = sorted(each.angle for each in curve if not each.folds)
+    angles = sorted(ours.angle for ours in curve if not ours.folds)
     if not angles:
         return (*head, "no map", "", "")
     if not angles[0] <= point.angle <= angles[-1]:
@@ -222,7 +222,7 @@ def beside_cells(name, faces, point, curve):
 
 
 def at_angle(curve, angle):
-    """The SD and the weight at which the curve has an angle distortion: log SD and log weight over σ₁/σ₂."""
+    """The SD and the weight of a curve at an angle distortion, by log SD and log weight over σ₁/σ₂."""
     points = sorted((point for point in curve if not point.folds), key=lambda point: point.angle)
     angles = [point.angle for point in points]
     smallest = min((point.weight for point in points if point.weight > 0), default=1.0)

@@ -25,7 +25,7 @@ def draw(path, title, curves, others):
 
 
 def draw_curve(axis, points):
-    """Every weight with its figure."""
+    """A line through all points, each with its weight."""
     angles, deviations = [point.angle for point in points], [point.deviation for point in points]
     axis.plot(angles, deviations, "o-", color=OURS, markersize=4, label="authalic, by angle_weight")
     for point in points:

@@ -3,7 +3,7 @@
 
 Usage: python -m bench.angle.suzanne RESULT.npz
 
-RESULT.npz has `vertices` (n, 3), `faces` (m, 3), `loops` (m, 3): the polygon's corner at each corner of a
+RESULT.npz has `vertices` (n, 3), `faces` (m, 3), `loops` (m, 3), the polygon's corner at each corner of a
 triangle, `seams` (k, 2), and for each way of unwrapping `uv NAME` (corners, 2) and `seconds NAME`.
 """
 
@@ -24,20 +24,20 @@ WAYS = {"ABF": ("ANGLE_BASED", {})} | {
 
 
 def main(target):
-    """Unwraps one after the other, each from the same start: the operator does not look at older UVs."""
+    """Unwraps in every way; the operator does not look at older UVs."""
     bpy.ops.wm.read_homefile(use_empty=True)
     shape = meshes.suzanne()
-    found = triangles(shape.data)
+    arrays = triangles(shape.data)
     for name, (method, options) in WAYS.items():
         try:
-            found[f"uv {name}"], found[f"seconds {name}"] = blender.operated(shape, method, **options)
+            arrays[f"uv {name}"], arrays[f"seconds {name}"] = blender.operated(shape, method, **options)
         except RuntimeError as problem:
             print(f"{name}: {problem}")
-    np.savez(target, **found)
+    np.savez(target, **arrays)
 
 
 def triangles(mesh):
-    """The arrays of the mesh itself."""
+    """The arrays of the mesh, without UVs."""
     mesh.calc_loop_triangles()
     vertices = np.array([vertex.co for vertex in mesh.vertices], float)
     loops = np.array([triangle.loops for triangle in mesh.loop_triangles], np.int64)

@@ -10,12 +10,12 @@ import numpy as np
 from api import random_checks, random_meshes
 
 SIZES, SHARES = (60, 300, 1500, 5000), (0.4, 0.4, 0.17, 0.03)
-"""Of the meshes, in vertices, and how often they are taken."""
+"""The sizes of the meshes in vertices, and the shares of the cases that have them."""
 
 
 @dataclass(frozen=True)
 class Done:
-    """A case that was made; `failure` is empty where all is as it must be."""
+    """A case that has run; `failure` is empty if all is as it must be."""
 
     number: int
     kind: str
@@ -28,7 +28,7 @@ class Done:
 
 
 def kind_of(number):
-    """Of three cases in a row one is of each kind."""
+    """The kind of a case: the three kinds take turns."""
     return ("sound", "options", "hostile")[number % 3]
 
 
@@ -44,14 +44,14 @@ def case_of(number):
 
 
 def judged(case, options):
-    """The outcome of a case; raises where something is wrong with it."""
+    """The outcome of a case; raises if something is wrong with it."""
     if case.kind == "hostile":
         return random_checks.assert_hostile_case(case, **options)
     return random_checks.assert_sound_case(case, **options)
 
 
-def made(number):
-    """A case with what came of it; an exception is a failure."""
+def run(number):
+    """The outcome of a case; an exception is a failure."""
     began = time.perf_counter()
     name, status, deviation, failure = "", "", np.nan, ""
     try:
@@ -65,7 +65,7 @@ def made(number):
 
 
 class Worker:
-    """Judges cases in one process after the other: a new one where the last has crashed or hung."""
+    """Judges cases in a process of its own; a new one follows if it crashes or hangs."""
 
     def __init__(self, limit):
         self.limit = limit
@@ -73,7 +73,7 @@ class Worker:
         self._process = None
 
     def __call__(self, number):
-        """The case, made within the limit."""
+        """The case, run within the limit."""
         if self._process is None:
             self._start()
         began = time.perf_counter()
@@ -96,17 +96,17 @@ class Worker:
             self._process = None
 
     def _start(self):
-        self._line, theirs = self._context.Pipe()
-        self._process = self._context.Process(target=answer, args=(theirs,), daemon=True)
+        self._line, far_end = self._context.Pipe()
+        self._process = self._context.Process(target=answer, args=(far_end,), daemon=True)
         self._process.start()
-        theirs.close()
+        far_end.close()
 
 
 def answer(line):
-    """The worker's side: a case for each number that comes, until the line is closed."""
+    """Runs in the process: answers each number with its case, until the line is closed."""
     while True:
         try:
             number = line.recv()
         except EOFError:
             return
-        line.send(made(number))
+        line.send(run(number))

@@ -4,10 +4,10 @@
 Usage: python -m bench.fuzz.main TARGET_FILE [--seconds N | --cases N | --seed N] [--limit SECONDS]
 
 With --seconds, the property tests of the crates take half of the time, a loop over numbered cases the other
-half. A case follows from its number: of three one is a sound mesh with the default options, one a sound mesh
-with any options, one a mesh that may be spoilt. --cases makes the first kind only. Each must be mapped onto
+half. A case follows from its number: of three, one is a sound mesh with the default options, one a sound mesh
+with any options, one a mesh that may be spoiled. --cases makes the first kind only. Each must be mapped onto
 an embedding, judged by exact arithmetic outside the library, or be refused with a named error; a crash, a
-hang or anything else fails. --seed makes one case again, in this process.
+hang or anything else fails. --seed repeats one case, in this process.
 """
 
 import argparse
@@ -28,7 +28,7 @@ COLUMNS = ("surface", "cases", "folds", "statuses", "refused", "SD median", "SD 
 
 
 def main(arguments=None):
-    """Returns 0 when nothing failed."""
+    """Searches and reports; returns 0 if nothing failed."""
     options = parsed(arguments)
     if options.seed is not None:
         return replay(options.seed)
@@ -57,7 +57,7 @@ def parsed(arguments=None):
 
 
 def search(options):
-    """The cases that were made: so many, or until the time is over."""
+    """The outcomes of the cases: as many as asked for, or until the time is over."""
     ends = time.monotonic() + options.seconds / 2
     numbers = count() if options.cases is None else range(0, 3 * options.cases, 3)
     done, worker = [], Worker(options.limit)
@@ -74,7 +74,7 @@ def search(options):
 
 
 def write_table(report, cases):
-    """What came of the sound meshes with the default options, by kind of surface."""
+    """The outcomes of the sound meshes with the default options, by kind of surface."""
     report.section("Sound meshes, default options", "Folds by exact arithmetic, outside the library.")
     report.columns(COLUMNS)
     for name in sorted({case.name for case in cases}):
@@ -118,7 +118,7 @@ def write_failures(report, cases):
 
 
 def replay(number):
-    """Makes one case again with all there is to see."""
+    """Repeats one case and prints everything about it."""
     case, options = case_of(number)
     vertices, faces = case.mesh
     print(f"case {number}: {case.name} ({case.kind}), {len(vertices)} vertices, {len(faces)} faces")

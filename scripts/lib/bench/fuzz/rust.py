@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The property tests of the crates, again and again with new cases."""
+"""The property tests of the crates, repeated with new cases."""
 
 import os
 import re
@@ -11,24 +11,24 @@ from steps import CARGO_OPTIONS
 
 CARGO = ("cargo", "test", *CARGO_OPTIONS)
 CASES = "2000"
-"""Of each property and round, where the property does not fix its number."""
+"""The cases of each property and round, unless the property fixes their number."""
 
 
 def search(report, seconds, limit):
-    """Runs every property at least once, and on until the time is over; returns the failures."""
+    """Runs every property at least once, and again until the time is over; returns the failures."""
     report.section("Property tests of the crates", "Each round makes new cases; a failure prints its own.")
-    found = properties()
+    targets = properties()
     print("building the property tests ...", flush=True)
     subprocess.run([*CARGO, "--no-run", "--quiet"], cwd=str(ROOT), check=True)
-    failures, rounds, ends = [], dict.fromkeys(found, 0), time.monotonic() + seconds
-    while found and (time.monotonic() < ends or not all(rounds.values())):
-        name = min(found, key=lambda each: rounds[each])
-        problem = run_once(name, found[name], seconds + limit)
+    failures, rounds, ends = [], dict.fromkeys(targets, 0), time.monotonic() + seconds
+    while targets and (time.monotonic() < ends or not all(rounds.values())):
+        name = min(targets, key=rounds.get)
+        problem = run_once(name, targets[name], seconds + limit)
         rounds[name] += 1
         if problem:
             failures.append(f"{name}: {problem}")
             report.line(f"FAILED {name}:\n\n```\n{problem}\n```\n")
-            del found[name]
+            del targets[name]
     for name, number in rounds.items():
         report.line(f"- {name}: {number} rounds")
     return failures
@@ -36,21 +36,21 @@ def search(report, seconds, limit):
 
 def properties(root=ROOT / "rust"):
     """{test: the cargo options that select its binary} for every test within a `proptest!` block."""
-    found = {}
+    targets = {}
     for path in sorted(root.rglob("*.rs")):
         for block in re.findall(r"(?ms)^([ \t]*)proptest! \{\n(.*?)^\1\}", path.read_text(encoding="utf-8")):
             for name in re.findall(r"#\[test\]\s*(?:#\[[^\n]*\]\s*)*fn (\w+)", block[1]):
-                found[name] = target_of(path)
-    return found
+                targets[name] = target_of(path)
+    return targets
 
 
 def target_of(path):
-    """How cargo selects the tests of a file; `--lib` would build tests of the bindings, which have none."""
+    """The options by which cargo selects the tests of a file; `--lib` would build tests of the bindings."""
     return ("--test", "it") if "tests" in path.parts else ("--tests",)
 
 
 def run_once(name, target, limit):
-    """One round of a property; what went wrong, or nothing."""
+    """Runs one round of a property; returns the problem, or an empty string."""
     command = [*CARGO, "--quiet", *target, "--", name]
     variables = {**os.environ, "PROPTEST_CASES": CASES}
     try:

@@ -3,8 +3,8 @@
 
 Both surfaces are opened along their first curve. The target is flattened onto the round disk by a harmonic
 map, its boundary by arc length; the source is mapped into that disk by a Euclidean harmonic map that takes
-its boundary, and every vertex of its other curves, to the points of equal arc length. Nothing keeps faces
-from folding. The cost is two sparse solves and the look-up.
+its boundary, and every vertex of its other curves, to the points of equal arc length. Faces may fold. The
+cost is two sparse solves and the point location.
 """
 
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from scipy.spatial import cKDTree
 import authalic
 from bench.hyperbolic.pairs import at_shares, shares
 
-NEIGHBOURS = 24
-"""Triangles with the nearest middles that the look-up tries first."""
+NEIGHBORS = 24
+"""The number of triangles with the nearest middles that point location tries first."""
 
 
 @dataclass(frozen=True)
@@ -27,23 +27,23 @@ class Disk:
 
     patch: object
     loop: np.ndarray
-    """Its boundary from the curve's start around, patch vertices."""
+    """The boundary as patch vertices, from the start of the curve."""
     shares: np.ndarray
-    """Of the way around, for each vertex of the loop."""
+    """The share of the way around at each vertex of the loop."""
     plane: np.ndarray = None
-    """(n, 2), once mapped."""
+    """(n, 2), the places of the vertices once mapped."""
 
 
 @dataclass(frozen=True)
 class Location:
-    """Where each source vertex lies on the target."""
+    """The places of the source's vertices on the target."""
 
     triangles: np.ndarray
     barycentric: np.ndarray
     folded: np.ndarray
     """Source faces that lie the wrong way round in the disk."""
     target_folded: int
-    """Target faces that do so in its own flattening."""
+    """The number of target faces that do so in the target's own flattening."""
 
 
 def register(pair):
@@ -65,8 +65,8 @@ def opened(surface):
     (patch,) = authalic.cut(*surface.mesh, seams=np.stack([curve[:-1], curve[1:]], axis=1))
     (loop,) = patch.boundary_loops
     loop = np.roll(loop, -int(np.flatnonzero(patch.vertex_of[loop] == curve[0])[0]))
-    part = shares(surface.vertices[curve]) / 2  # one bank there, the other one back
-    return Disk(patch, loop, np.append(part, 1 - part[-2:0:-1]))
+    there = shares(surface.vertices[curve]) / 2  # along one bank, and back along the other
+    return Disk(patch, loop, np.append(there, 1 - there[-2:0:-1]))
 
 
 def flattened(disk):
@@ -81,11 +81,11 @@ def pinned(disk, target, pair):
     around = np.append(target.loop, target.loop[0])
     places = [at_shares(target.plane[around], np.append(target.shares, 1), disk.shares)]
     fixed, copy_of, target_copy_of = [disk.loop], copies(disk.patch), copies(target.patch)
-    for ours, theirs in zip(pair.source.curves[1:], pair.target.curves[1:], strict=True):
-        path = target.plane[target_copy_of[theirs]]
-        wanted = shares(pair.source.vertices[ours])
-        fixed.append(copy_of[ours])
-        places.append(at_shares(path, shares(pair.target.vertices[theirs]), wanted))
+    for curve, partner in zip(pair.source.curves[1:], pair.target.curves[1:], strict=True):
+        path = target.plane[target_copy_of[partner]]
+        wanted = shares(pair.source.vertices[curve])
+        fixed.append(copy_of[curve])
+        places.append(at_shares(path, shares(pair.target.vertices[partner]), wanted))
     fixed, places = np.concatenate(fixed), np.concatenate(places)
     once = np.unique(fixed, return_index=True)[1]  # a closed curve has its first vertex twice
     return mapped(disk, fixed[once], places[once])
@@ -136,7 +136,7 @@ def cross(u, v):
 def located(points, plane, faces):
     """The triangle of each point and its barycentric coordinates there, clipped for points outside."""
     tree = cKDTree(plane[faces].mean(axis=1))
-    near = tree.query(points, k=min(NEIGHBOURS, len(faces)))[1]
+    near = tree.query(points, k=min(NEIGHBORS, len(faces)))[1]
     chosen, inside = best(points, plane, faces, near)
     for k in np.flatnonzero(inside < -1e-9):  # not among the nearest: long thin triangles
         chosen[k] = best(points[k : k + 1], plane, faces, np.arange(len(faces))[None])[0][0]
@@ -145,12 +145,12 @@ def located(points, plane, faces):
 
 
 def best(points, plane, faces, candidates):
-    """Of the candidates the triangle that a point lies deepest in, and its least coordinate there."""
+    """The candidate triangle in which each point lies deepest, and its least coordinate there."""
     weights = coordinates(points[:, None], plane[faces[candidates]])
     least = np.nan_to_num(weights.min(axis=2), nan=-np.inf)
     order = least.argmax(axis=1)
-    each = np.arange(len(points))
-    return candidates[each, order], least[each, order]
+    rows = np.arange(len(points))
+    return candidates[rows, order], least[rows, order]
 
 
 def coordinates(points, triangles):
@@ -164,6 +164,6 @@ def coordinates(points, triangles):
 def corners(target, triangles, barycentric, pair):
     """The coordinates in the order of the target's own faces."""
     patch = target.patch
-    ours, theirs = patch.vertex_of[patch.faces[triangles]], pair.target.faces[patch.face_of[triangles]]
-    order = (theirs[:, :, None] == ours[:, None, :]).argmax(axis=2)
+    of_patch, of_target = patch.vertex_of[patch.faces[triangles]], pair.target.faces[patch.face_of[triangles]]
+    order = (of_target[:, :, None] == of_patch[:, None, :]).argmax(axis=2)
     return np.take_along_axis(barycentric, order, axis=1)

@@ -26,7 +26,7 @@ from shell import PYTHONPATH
 
 COUNTS = (4, 6, 10, 12)
 TIMES = 2
-"""How often the pair of the part "large" is subdivided: 163,842 vertices."""
+"""The subdivisions of the pair of the part "large", which gives it 163,842 vertices."""
 WORKER = ("-m", "bench.hyperbolic.worker")
 MISSING = """\
 Not measured: neither ../shared/data nor the folder AUTHALIC_DATA has brain/ with the hemispheres and curves
@@ -41,13 +41,13 @@ Three registrations of the same pairs. "{HYPERBOLIC}" is `authalic.register_hype
 conventional method of the paper: both surfaces opened along the first curve, the target flattened by a
 harmonic map onto the round disk, the source by a Euclidean harmonic map into it, with every vertex of every
 curve pinned to its place (numpy and scipy, in scripts/lib). "{SPHERES}" is `authalic.register_spheres`,
-which keeps areas, with up to five points on each curve. Right hemispheres are mirrored.
+which preserves areas, with up to five points on each curve. Right hemispheres are mirrored.
 
 *Flipped* are faces that the method's own domain shows the wrong way round: the hyperbolic metric, the disk,
 the sphere. *Turned over* are those whose images, as straight triangles, are turned over on the sphere that
 comes with the target; a few are no folds but faces whose images are curved. *Curve variation* is the paper's
-equation 3 between image and partner, points against polylines; with curves exactly in place what remains
-are the chords of the image's polyline. *Differences* are between the source's values and the target's where
+equation 3 between image and partner, points against polylines; with curves exactly in place, the chords of
+the image's polyline remain. *Differences* are between the source's values and the target's where
 they are mapped, weighted by area. *Area distortion* is max(J, 1/J) of the faces, at most 10: mean and
 percentiles."""
 RATIO_COLUMNS = ("pair", "method", "sulc difference", "area distortion − 1", "seconds")
@@ -66,7 +66,7 @@ LARGE_COLUMNS = (
 
 
 def main(arguments=None):
-    """Writes the parts that are asked for, all by default."""
+    """Writes the chosen parts, all by default."""
     options = parsed(arguments)
     report = Report(options.target)
     report.line(f"# Registration by landmark curves\n\nauthalic {authalic.__version__}, {machine()}.")
@@ -90,20 +90,20 @@ def write_pairs(report, options):
     """The main table, the ratios and the pictures."""
     report.section("The paper's measures", NOTE)
     report.columns(COLUMNS)
-    found = {}
+    results = {}
     for pair in pairs.standard():
         measures = {}
         for name, figures, row in compared(pair):
             report.row((pair.name, *row))
             if figures:
                 measures[name] = figures
-        found[pair.name] = pair, measures
-    write_ratios(report, {name: measures for name, (_, measures) in found.items()})
-    draw(report, found)
+        results[pair.name] = pair, measures
+    write_ratios(report, {name: measures for name, (_, measures) in results.items()})
+    draw(report, results)
 
 
 def compared(pair):
-    """For each method its name, its measures (None where it found no map) and the cells of its row."""
+    """For each method its name, its measures (None without a map) and the cells of its row."""
     for name, method in METHODS.items():
         head = len(pair.source.vertices), name
         try:
@@ -116,7 +116,7 @@ def compared(pair):
 
 
 def cells(figures):
-    """Of the main table, from the flipped area on."""
+    """The cells of the main table, from the flipped area on."""
     curv = figures.difference.get("curv")
     return (
         f"{figures.flipped:.4f}", f"{figures.turned:.4f}", f"{figures.variation:.3f}",
@@ -126,15 +126,15 @@ def cells(figures):
     )  # fmt: skip
 
 
-def write_ratios(report, found):
-    """What the other methods reach in parts of what the curves reach."""
+def write_ratios(report, results):
+    """The figures of the other methods over those of the registration by curves."""
     report.section("Ratios", RATIO_NOTE)
     report.columns(RATIO_COLUMNS)
-    for pair, measures in found.items():
+    for pair, measures in results.items():
         ours = measures.get(HYPERBOLIC)
-        for name, other in measures.items():
+        for name, figures in measures.items():
             if ours and name != HYPERBOLIC:
-                report.row((pair, name, *(f"{ratio:.2f}" for ratio in ratios(other, ours))))
+                report.row((pair, name, *(f"{ratio:.2f}" for ratio in ratios(figures, ours))))
 
 
 def write_cuts(report, options):
@@ -142,13 +142,13 @@ def write_cuts(report, options):
     report.section("The conventional method by the curve that is opened", CUT_NOTE)
     report.columns(CUT_COLUMNS)
     for pair in pairs.standard():
-        found = []
+        cuts = []
         for first in pairs.open_curves(pair):
             opened = pairs.begun_with(pair, first)
-            found.append(measured(opened, METHODS[HARMONIC](opened)))
-        figures = [[each.flipped for each in found], [each.correlation for each in found]]
-        figures += [[each.difference["sulc"] for each in found], [each.areas.mean() for each in found]]
-        report.row((pair.name, len(found), *(spread(values) for values in figures)))
+            cuts.append(measured(opened, METHODS[HARMONIC](opened)))
+        figures = [[cut.flipped for cut in cuts], [cut.correlation for cut in cuts]]
+        figures += [[cut.difference["sulc"] for cut in cuts], [cut.areas.mean() for cut in cuts]]
+        report.row((pair.name, len(cuts), *map(spread, figures)))
 
 
 def spread(values):
@@ -156,18 +156,18 @@ def spread(values):
     return " / ".join(f"{value:.3f}" for value in np.quantile(values, (0, 0.5, 1)))
 
 
-def ratios(other, ours):
+def ratios(figures, ours):
     return (
-        other.difference["sulc"] / ours.difference["sulc"],
-        (other.areas.mean() - 1) / (ours.areas.mean() - 1),
-        other.seconds / ours.seconds,
+        figures.difference["sulc"] / ours.difference["sulc"],
+        (figures.areas.mean() - 1) / (ours.areas.mean() - 1),
+        figures.seconds / ours.seconds,
     )
 
 
-def draw(report, found):
-    """The paper's histograms, and the first fsaverage5 pair of pial surfaces in colours."""
-    measures = {pair: by_method for pair, (_, by_method) in found.items()}
-    pair, by_method = list(found.values())[min(1, len(found) - 1)]
+def draw(report, results):
+    """The paper's histograms, and the fsaverage5 pair of pial surfaces in colors."""
+    measures = {pair: by_method for pair, (_, by_method) in results.items()}
+    pair, by_method = list(results.values())[min(1, len(results) - 1)]
     pictures = {
         "flipped": ("Flipped area", plots.draw_flipped, (measures,)),
         "curvature": ("Differences of sulc", plots.draw_differences, (measures,)),
@@ -186,12 +186,12 @@ def draw(report, found):
 
 
 def picture(report, name):
-    """Where a picture goes."""
+    """The path of a picture."""
     return report.target.parent / f"{report.target.stem}-{name}.png"
 
 
 def write_counts(report, options):
-    """The same measures over the number of curves."""
+    """The measures by the number of curves."""
     report.section("More and fewer curves", "fsaverage5, pial, left → mirrored right.")
     report.columns(("curves", *COUNT_COLUMNS))
     for count in COUNTS:
@@ -205,9 +205,9 @@ def write_solvers(report, options):
     pair = pairs.across("pial", 10)
     report.section(f"The paper's solvers, {pair.name}", solvers.NOTE)
     report.columns(solvers.COLUMNS)
-    found = solvers.compared(pair, report.row)
+    solved = solvers.compared(pair, report.row)
     path = picture(report, "energy")
-    same = {name: found[name] for name in solvers.SAME_METRIC if name in found}
+    same = {name: solved[name] for name in solvers.SAME_METRIC if name in solved}
     plots.draw_energies(path, "The harmonic energy above its minimum", same)
     report.figure(path, "Harmonic energy")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The three registrations that are compared, each a function of a pair."""
+"""The three registrations of the comparison, each a function of a pair."""
 
 import time
 
@@ -7,12 +7,12 @@ import numpy as np
 
 import authalic
 from bench.hyperbolic.harmonic import register
-from bench.hyperbolic.measures import Found
+from bench.hyperbolic.measures import Registration
 from bench.hyperbolic.pairs import shares
 
 HYPERBOLIC, HARMONIC, SPHERES = "hyperbolic", "harmonic, point landmarks", "spheres, point landmarks"
 STATIONS = (0, 0.25, 0.5, 0.75, 1)
-"""Where on a curve the points of `register_spheres` lie, by shares of its length."""
+"""The points of `register_spheres` on a curve, by shares of its length."""
 
 
 def hyperbolic(pair, **options):
@@ -20,11 +20,11 @@ def hyperbolic(pair, **options):
     began = time.perf_counter()
     result = curves_result(pair, **options)
     seconds = time.perf_counter() - began
-    return found_of(result, result.certificates.folded, seconds, hyperbolic_remark(result))
+    return registration_of(result, result.certificates.folded, seconds, hyperbolic_remark(result))
 
 
 def curves_result(pair, **options):
-    """What `authalic.register_hyperbolic` returns for a pair."""
+    """The result of `authalic.register_hyperbolic` for a pair."""
     return authalic.register_hyperbolic(
         pair.source.mesh,
         pair.target.mesh,
@@ -34,9 +34,9 @@ def curves_result(pair, **options):
     )
 
 
-def found_of(result, folded, seconds, remark):
-    """What is measured of a result of the package."""
-    return Found(result.triangles, result.barycentric, folded, seconds, remark)
+def registration_of(result, folded, seconds, remark):
+    """A result of the package, to be measured."""
+    return Registration(result.triangles, result.barycentric, folded, seconds, remark)
 
 
 def hyperbolic_remark(result):
@@ -53,19 +53,19 @@ def harmonic(pair):
     remark = f"faces folded: {len(place.folded)}"
     if place.target_folded:
         remark += f"; in the flattening of the target: {place.target_folded}"
-    return Found(place.triangles, place.barycentric, place.folded, seconds, remark)
+    return Registration(place.triangles, place.barycentric, place.folded, seconds, remark)
 
 
 def spheres(pair):
     """`authalic.register_spheres` with points on the curves."""
-    ours, theirs = landmarks(pair)
+    source, target = landmarks(pair)
     began = time.perf_counter()
     result = authalic.register_spheres(
-        pair.source.mesh, pair.target.mesh, source_landmarks=ours, target_landmarks=theirs
+        pair.source.mesh, pair.target.mesh, source_landmarks=source, target_landmarks=target
     )
     seconds = time.perf_counter() - began
-    remark = f"{result.status}, {len(ours)} points" + missed(result)
-    return found_of(result, result.distortion.folded, seconds, remark)
+    remark = f"{result.status}, {len(source)} points" + missed(result)
+    return registration_of(result, result.distortion.folded, seconds, remark)
 
 
 def missed(result):
@@ -74,15 +74,17 @@ def missed(result):
 
 def landmarks(pair):
     """The vertices of both sides nearest to equal shares of the curves, each pair once."""
-    found = {}
-    for ours, theirs in zip(pair.source.curves, pair.target.curves, strict=True):
+    partner_of = {}
+    for curves in zip(pair.source.curves, pair.target.curves, strict=True):
         for share in STATIONS:
-            sides = (pair.source.vertices, ours), (pair.target.vertices, theirs)
-            place = [int(curve[np.abs(shares(at[curve]) - share).argmin()]) for at, curve in sides]
+            sides = zip((pair.source.vertices, pair.target.vertices), curves, strict=True)
+            source, target = (
+                int(curve[np.abs(shares(vertices[curve]) - share).argmin()]) for vertices, curve in sides
+            )
             # a closed curve begins where it ends
-            if place[0] not in found and place[1] not in found.values():
-                found[place[0]] = place[1]
-    return np.array(list(found)), np.array(list(found.values()))
+            if source not in partner_of and target not in partner_of.values():
+                partner_of[source] = target
+    return np.array(list(partner_of)), np.array(list(partner_of.values()))
 
 
 METHODS = {HYPERBOLIC: hyperbolic, HARMONIC: harmonic, SPHERES: spheres}

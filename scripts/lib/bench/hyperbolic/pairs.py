@@ -11,7 +11,7 @@ from bench import meshes
 MIRROR = np.array([-1.0, 1.0, 1.0])
 CURVES = "fsaverage5_curves.json"
 HCP = ("hcp_s1200_L_32492", "hcp_s1200_R_32492")
-BACKWARDS = ("lm_central_sulcus_4|3a", "lm_insula_Ig+PoI1..|OP")
+BACKWARD = ("lm_central_sulcus_4|3a", "lm_insula_Ig+PoI1..|OP")
 """Curves of the HCP average that run the other way on the right hemisphere."""
 
 
@@ -23,9 +23,9 @@ class Surface:
     faces: np.ndarray
     curves: list
     sphere: np.ndarray
-    """The sphere that comes with the surface, (n, 3); only to see folds on."""
+    """The sphere that comes with the surface, (n, 3), only for seeing folds."""
     inflated: np.ndarray
-    """For pictures, (n, 3)."""
+    """The inflated vertices for pictures, (n, 3)."""
     fields: dict
     """{name: one value per vertex}."""
 
@@ -36,7 +36,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Pair:
-    """The source is mapped onto the target, curve k onto curve k."""
+    """A source to be mapped onto a target, curve k onto curve k."""
 
     name: str
     source: Surface
@@ -51,9 +51,9 @@ def available():
 
 def standard():
     """The pairs of the main table, fsaverage5 with ten curves."""
-    found = [across("white", 10), across("pial", 10), white_to_pial(10)]
+    pairs = [across("white", 10), across("pial", 10), white_to_pial(10)]
     folder = meshes.data_folder("brain")
-    return [*found, hcp()] if all((folder / f"{name}.npz").exists() for name in HCP) else found
+    return [*pairs, hcp()] if all((folder / f"{name}.npz").exists() for name in HCP) else pairs
 
 
 def across(kind, count):
@@ -63,13 +63,13 @@ def across(kind, count):
 
 
 def white_to_pial(count):
-    """Two surfaces of the same hemisphere, with the same curves."""
+    """The white surface of the left hemisphere onto the pial one, with the same curves."""
     name = f"fsaverage5 left, white → pial, {count} curves"
     return Pair(name, fsaverage5("left", "white", count), fsaverage5("left", "pial", count))
 
 
 def fsaverage5(side, kind, count):
-    """A hemisphere with the first so many curves; the right one mirrored."""
+    """A hemisphere with the first `count` curves; the right one is mirrored."""
     arrays = meshes.brains()[f"fsaverage5_{side}_10242"]
     stored = json.loads((meshes.data_folder("brain") / CURVES).read_text(encoding="utf-8"))
     curves = stored["left" if side == "left" else "mirrored_right"][:count]
@@ -84,15 +84,15 @@ def hcp():
     """The left hemisphere of the HCP average onto the mirrored right one: three open curves, two closed."""
     left, right = (_hcp_surface(name) for name in HCP)
     right = mirrored(right)
-    theirs = [
-        partner(ours, theirs, left.sphere, right.sphere)
-        for ours, theirs in zip(left.curves, right.curves, strict=True)
+    partners = [
+        turned_to(curve, goal, right.sphere, left.sphere)
+        for goal, curve in zip(left.curves, right.curves, strict=True)
     ]
-    return Pair("HCP left → right, midthickness, 5 curves", left, replaced(right, theirs))
+    return Pair("HCP left → right, midthickness, 5 curves", left, replaced(right, partners))
 
 
 def begun_with(pair, first):
-    """The pair with another curve as its first."""
+    """The pair with curve `first` before the others."""
 
     def moved(surface):
         curves = surface.curves
@@ -102,12 +102,12 @@ def begun_with(pair, first):
 
 
 def open_curves(pair):
-    """The numbers of the curves that are not closed."""
+    """The numbers of the open curves."""
     return [k for k, curve in enumerate(pair.source.curves) if curve[0] != curve[-1]]
 
 
 def subdivided(pair, times):
-    """The pair with every face split into four, so many times."""
+    """The pair with every face split into four, `times` times."""
     source, target = pair.source, pair.target
     for _ in range(times):
         source, target = split(source), split(target)
@@ -115,7 +115,7 @@ def subdivided(pair, times):
 
 
 def mirrored(surface):
-    """The mirror image, faces turned so that they are seen from outside again."""
+    """The mirror image, with faces turned outward again."""
     return Surface(
         surface.vertices * MIRROR, np.ascontiguousarray(surface.faces[:, ::-1]), surface.curves,
         surface.sphere * MIRROR, surface.inflated * MIRROR, surface.fields,
@@ -127,32 +127,32 @@ def replaced(surface, curves):
     return Surface(surface.vertices, surface.faces, curves, surface.sphere, surface.inflated, surface.fields)
 
 
-def partner(ours, theirs, sphere, their_sphere):
-    """A closed curve begun and turned to lie nearest to its partner on the spheres; open ones as they are."""
-    if theirs[0] != theirs[-1]:
-        return theirs
-    ring, stations = theirs[:-1], np.linspace(0, 1, 64)
-    goal = at_shares(sphere[ours], shares(sphere[ours]), stations)
+def turned_to(curve, partner, sphere, partner_sphere):
+    """A curve; if closed, with the start and direction that fit its partner best on the spheres."""
+    if curve[0] != curve[-1]:
+        return curve
+    ring, stations = curve[:-1], np.linspace(0, 1, 64)
+    goal = at_shares(partner_sphere[partner], shares(partner_sphere[partner]), stations)
     begun = [
         np.append(np.roll(way, -start), way[start])
         for way in (ring, ring[::-1])
         for start in range(len(ring))
     ]
     gaps = []
-    for curve in begun:
-        path = their_sphere[curve]
+    for candidate in begun:
+        path = sphere[candidate]
         gaps.append(((at_shares(path, shares(path), stations) - goal) ** 2).sum())
     return begun[int(np.argmin(gaps))]
 
 
 def shares(path):
-    """How much of a polyline lies before each of its points, from 0 to 1."""
+    """The share of a polyline's length before each of its points, from 0 to 1."""
     lengths = np.linalg.norm(np.diff(path, axis=0), axis=1)
     return np.append(0, np.cumsum(lengths)) / lengths.sum()
 
 
 def at_shares(path, where, wanted):
-    """The points at some shares of a polyline whose points lie at the shares `where`."""
+    """The points at the shares `wanted` of a polyline whose points have the shares `where`."""
     return np.stack([np.interp(wanted, where, column) for column in path.T], axis=1)
 
 
@@ -186,14 +186,14 @@ def _with_middles(curve, middle):
 
 
 def _hcp_surface(name):
-    with np.load(meshes.data_folder("brain") / f"{name}.npz") as found:
-        arrays = dict(found)
+    with np.load(meshes.data_folder("brain") / f"{name}.npz") as file:
+        arrays = dict(file)
     curves = []
     for key in (key for key in arrays if key.startswith("lm_")):
         curve = arrays[key]
         if key.endswith("_loop"):
             curve = np.append(curve, curve[0])
-        turned = key in BACKWARDS and name == HCP[1]
+        turned = key in BACKWARD and name == HCP[1]
         curves.append(curve[::-1].copy() if turned else curve)
     return Surface(
         arrays["V_midthickness"], arrays["F"].astype(np.int64), curves, arrays["V_sphere"],

@@ -37,13 +37,13 @@ class Solved:
 
     @property
     def energies(self):
-        """Before and after each step; of the largest piece, where closed curves part a surface."""
+        """The energies before and after each step, of the piece with the most steps."""
         return max(self.result.energies, key=len)
 
 
 def compared(pair, write):
     """{solver: Solved}; `write` gets the rows."""
-    found = {}
+    solved = {}
     for name, options in SOLVERS.items():
         began = time.perf_counter()
         try:
@@ -51,13 +51,13 @@ def compared(pair, write):
         except authalic.SolverError as problem:
             write((name, *("–",) * 9, message(problem).replace("|", "/")))
             continue
-        found[name] = Solved(result, time.perf_counter() - began)
-        write((name, *cells(found[name], found.get(NEWTON))))
-    return found
+        solved[name] = Solved(result, time.perf_counter() - began)
+        write((name, *cells(solved[name], solved.get(NEWTON))))
+    return solved
 
 
 def cells(solved, newton):
-    """Of a row, from the steps on."""
+    """The cells of a row, from the steps on."""
     result, energies = solved.result, solved.energies
     best = (newton or solved).energies[-1]
     away = np.linalg.norm(result.positions - (newton or solved).result.positions, axis=1)

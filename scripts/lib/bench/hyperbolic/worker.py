@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""One method on the large pair, in a process of its own, so that its memory is its own.
+"""One method on the large pair, in a process of its own, so that its memory can be measured.
 
 Usage: python -m bench.hyperbolic.worker METHOD TIMES RESULT.json
 
@@ -21,12 +21,13 @@ def main(name, times, target):
     pair = pairs.subdivided(pairs.across("pial", 10), int(times))
     before = peak_memory()
     try:
-        found = METHODS[name](pair)
+        registration = METHODS[name](pair)
     except Exception as problem:
         Path(target).write_text(json.dumps({"error": message(problem)}))
         return
-    figures = {"seconds": found.seconds, "before": before, "peak": peak_memory(), "remark": found.remark}
-    measures = measured(pair, found)
+    figures = {"seconds": registration.seconds, "remark": registration.remark}
+    figures |= {"before": before, "peak": peak_memory()}
+    measures = measured(pair, registration)
     figures |= {"flipped": measures.flipped, "areas": float(measures.areas.mean())}
     figures |= {"vertices": len(pair.source.vertices), "variation": measures.variation}
     Path(target).write_text(json.dumps(figures | {"difference": measures.difference["sulc"]}))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What the comparison with other tools needs on this machine; what cannot be had becomes a message."""
+"""Installs the tools of the comparison; a tool that cannot be installed becomes a message."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PACKAGES = ("libigl", "xatlas", "lapy")
 
 
 def packages(dev: Environment) -> dict[str, str]:
-    """Installs each peer into the environment; returns {package: why it is not there}."""
+    """Installs each peer into the environment; returns {package: why it is missing}."""
     absent = {}
     for package in PACKAGES:
         try:
@@ -25,9 +25,9 @@ def packages(dev: Environment) -> dict[str, str]:
 def blender() -> tuple[str, str]:
     """(The interpreter that has the newest Blender as a module, ""), or ("", why there is none)."""
     try:
-        found = environment.any_blender()
+        newest = environment.any_blender()
     except Unavailable as reason:
         warn(f"Blender is left out: {reason}")
         return "", str(reason)
-    say(f"{found.label} is one of the peers")
-    return str(found.python), ""
+    say(f"{newest.label} is one of the peers")
+    return str(newest.python), ""

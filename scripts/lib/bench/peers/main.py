@@ -28,11 +28,11 @@ BEST_COLUMNS = (
 )  # fmt: skip
 NOTE = """\
 Every figure is `authalic.distortion`'s, whichever tool made the map. SD and E_A are of the areas, with the
-image scaled to the area of the unit disk or sphere; folds are exact, a chart that is mirrored as a whole is
-none; σ₁/σ₂ is the angle distortion per face (1 keeps angles), over the faces that are not folded. "s" is
+image scaled to the area of the unit disk or sphere; folds are exact, a chart that is mirrored as a whole has
+none; σ₁/σ₂ is the angle distortion per face (1 preserves angles), over the faces that are not folded. "s" is
 the call with its start map, without imports and reading the mesh, with as many threads as the tool takes.
-"MiB" is the peak of resident memory of the process, which has nothing else to do; the interpreter with the
-tool's code is part of it (just before the call: {before}).
+"MiB" is the peak of resident memory of the process, which does nothing else; the interpreter with the tool's
+code is part of it (just before the call: {before}).
 
 `authalic` is the default, {defaults}. The papers' methods are this package's: on disks on a fixed arc-
 length boundary with 50 iterations, and with its repair of folded faces. SLIM, ARAP and Blender's methods
@@ -75,10 +75,10 @@ def parsed(arguments=None):
 
 
 def chosen_meshes(options):
-    """{part: {name: mesh}}, without the parts that have none of the meshes asked for."""
-    found = {"disk": meshes.disks(), "sphere": meshes.spheres()}
-    meshes.check_names(options.meshes, [name for kind in options.parts for name in found[kind]])
-    chosen = {kind: meshes.only(options.meshes, found[kind]) for kind in options.parts}
+    """{part: {name: mesh}}, without the parts that have none of the chosen meshes."""
+    known = {"disk": meshes.disks(), "sphere": meshes.spheres()}
+    meshes.check_names(options.meshes, [name for kind in options.parts for name in known[kind]])
+    chosen = {kind: meshes.only(options.meshes, known[kind]) for kind in options.parts}
     return {kind: named for kind, named in chosen.items() if named}
 
 
@@ -100,25 +100,26 @@ def write_part(report, start, kind, named_meshes, chosen_methods):
 
 
 def cells(row):
-    """Of the big table."""
+    """The cells of a row of the big table."""
     head, remark = (row.mesh, row.vertices, row.method.name), in_a_cell(row.remark)
-    found = row.figures
-    if found is None:
+    figures = row.figures
+    if figures is None:
         return (*head, *("–",) * 7, remark)
     return (
-        *head, f"{found.deviation:.4f}", scientific(found.energy), found.folds, f"{found.angle_mean:.3f}",
-        f"{found.angle_p99:.2f}", f"{row.seconds:.2f}", f"{row.peak:.0f}", remark,
+        *head, f"{figures.deviation:.4f}", scientific(figures.energy), figures.folds,
+        f"{figures.angle_mean:.3f}", f"{figures.angle_p99:.2f}", f"{row.seconds:.2f}", f"{row.peak:.0f}",
+        remark,
     )  # fmt: skip
 
 
 def in_a_cell(text, longest=200):
-    """A text without what would break the table."""
+    """A text as one line that does not break the table."""
     text = " ".join(text.replace("|", "/").split())
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
 def write_best(report, rows):
-    """For each mesh the smallest SD without a fold of ours, of the papers' methods and of the others."""
+    """For each mesh the smallest SD without a fold: ours, the papers' methods' and the other tools'."""
     report.line("\nThe smallest SD among the maps of the whole mesh, in one piece, without a fold:\n")
     report.columns(BEST_COLUMNS)
     for mesh in dict.fromkeys(row.mesh for row in rows):
@@ -148,11 +149,13 @@ def name_of(row):
 def defaults():
     """The names of the default methods."""
     signatures = [inspect.signature(function) for function in (authalic.disk_map, authalic.sphere_map)]
-    return " and ".join(dict.fromkeys(f"`{found.parameters['method'].default}`" for found in signatures))
+    return " and ".join(
+        dict.fromkeys(f"`{signature.parameters['method'].default}`" for signature in signatures)
+    )
 
 
 def before(rows):
-    """What the processes took before the call, by package."""
+    """The memory of the processes before the call, by package."""
     by_package = {row.method.package: row.before for row in rows if row.figures}
     return ", ".join(f"{package} {size:.0f}" for package, size in by_package.items()) or "nothing ran"
 

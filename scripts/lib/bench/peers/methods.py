@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The methods that are compared: which tool, on which kind of mesh, and the call.
+"""The methods of the comparison: which tool, on which kind of mesh, and the call.
 
-A call takes vertices (n, 3) and faces (m, 3) and returns a `Map`. It gets what it needs by the tool's own
-documentation; the tool is imported by `prepare`, outside the time that is measured.
+A call takes vertices (n, 3) and faces (m, 3) and returns a `Map`. It uses the tool as the tool's own
+documentation says; `prepare` imports the tool, outside the measured time.
 """
 
 import importlib
@@ -14,19 +14,19 @@ import numpy as np
 
 @dataclass
 class Map:
-    """An image (n, 2) or (n, 3), the cut mesh where the tool cuts it, and what is worth knowing."""
+    """An image (n, 2) or (n, 3), the cut mesh if the tool cuts it, and a remark."""
 
     image: np.ndarray
     remark: str = ""
     vertices: Optional[np.ndarray] = None
     faces: Optional[np.ndarray] = None
     seconds: Optional[float] = None
-    """Where they are not those of the whole call."""
+    """The seconds, if not those of the whole call."""
 
 
 @dataclass(frozen=True)
 class Method:
-    """A row of the table; `package` names what must be there to run it ("bpy": runs in Blender)."""
+    """A row of the table; `package` names the package that it needs ("bpy": it runs in Blender)."""
 
     name: str
     kinds: tuple
@@ -36,7 +36,7 @@ class Method:
     family: str
 
     def prepare(self):
-        """Imports what the call needs."""
+        """Imports the modules that the call needs."""
         for module in self.modules:
             importlib.import_module(module)
 
@@ -87,7 +87,7 @@ def libigl_arap(iterations):
 
 
 def disk_start(vertices, faces):
-    """The mesh scaled to the disk's area, its harmonic map to the circle, uniform weights if that folds."""
+    """The mesh scaled to the disk's area, and its harmonic map to the circle, or Tutte's if that folds."""
     import igl
 
     scaled = vertices * np.sqrt(2 * np.pi / igl.doublearea(vertices, faces).sum())
@@ -100,7 +100,7 @@ def disk_start(vertices, faces):
 
 
 def tutte(faces, loop, circle, count):
-    """Every inner vertex in the mean of its neighbours, the loop on the circle: (count, 2)."""
+    """Every inner vertex at the mean of its neighbors, the loop on the circle: (count, 2)."""
     from scipy.sparse import coo_matrix, diags
     from scipy.sparse.linalg import spsolve
 
@@ -116,7 +116,7 @@ def tutte(faces, loop, circle, count):
 
 
 def signed_areas(uv, faces):
-    """Of the faces of a plane map, (m,)."""
+    """The signed areas of the faces of a plane map, (m,)."""
     a, b = uv[faces[:, 1]] - uv[faces[:, 0]], uv[faces[:, 2]] - uv[faces[:, 0]]
     return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
@@ -154,13 +154,13 @@ def lapy_corrected(vertices, faces):
 
 
 def lapy_spectral(vertices, faces):
-    """The first three eigenfunctions, projected; the mesh lies as lapy wants it, long from front to back."""
+    """The first three eigenfunctions, projected; lapy wants the mesh long from front to back."""
     from lapy import TriaMesh, diffgeo
 
     axes = np.linalg.svd(vertices - vertices.mean(axis=0), full_matrices=False)[2][[2, 0, 1]]
     axes[0] *= np.linalg.det(axes)
-    found = diffgeo.tria_spherical_project(TriaMesh(vertices @ axes.T, faces))
-    return Map(np.asarray(found.v))
+    projected = diffgeo.tria_spherical_project(TriaMesh(vertices @ axes.T, faces))
+    return Map(np.asarray(projected.v))
 
 
 def blender_unwrap(method, **options):
@@ -217,21 +217,21 @@ METHODS = (
     _lapy("lapy tria_spherical_project", "lapy.diffgeo", lapy_spectral),
     Method("xatlas", ("disk", "sphere"), "xatlas", ("xatlas",), xatlas_atlas, "xatlas"),
 )
-"""In the order of the tables."""
+"""All methods, in the order of the tables."""
 
 
 def of_kind(kind, words=()):
-    """The methods for "disk" or "sphere"; only those that one of the words names, if there are any."""
+    """The methods for "disk" or "sphere"; with words, only methods that one of them names."""
     wanted = [method for word in words for method in METHODS if method.name in called(word)]
     return [method for method in METHODS if kind in method.kinds and (not words or method in wanted)]
 
 
 def called(word):
-    """The names that a word stands for: itself if it is one, otherwise those that contain it."""
+    """The names that a word stands for: itself if it is a name, else all names that contain it."""
     names = list(dict.fromkeys(method.name for method in METHODS))
     return [word] if word in names else [name for name in names if word.casefold() in name.casefold()]
 
 
 def named(name, kind):
-    """The method of this very name."""
+    """The method with exactly this name."""
     return next(method for method in METHODS if method.name == name and kind in method.kinds)

@@ -3,7 +3,7 @@
 
 from bench import plots
 
-COLOURS = {
+COLORS = {
     "ours": "#b3263e",
     "the papers' methods": "#d1883a",
     "libigl": "#2b5f8f",
@@ -12,19 +12,19 @@ COLOURS = {
     "xatlas": "0.45",
 }
 MARKERS = "oDsv^<>P*X"
-"""Of the methods of one family, in their order."""
+"""The markers of the methods of one family, in their order."""
 
 
 def draw(path, title, rows):
-    """Every map of every mesh; hollow where faces are folded."""
+    """Every map of every mesh; maps with folded faces are hollow."""
     maps = [row for row in rows if row.figures]
     by_mesh = {
         mesh: [row for row in maps if row.mesh == mesh] for mesh in dict.fromkeys(r.mesh for r in maps)
     }
     figure, axes = plots.panels(title, by_mesh)
     styles = styles_of(maps)
-    for axis, found in zip(axes, by_mesh.values()):
-        for row in found:
+    for axis, of_mesh in zip(axes, by_mesh.values()):
+        for row in of_mesh:
             draw_point(axis, row, *styles[row.method.name])
         axis.set(xscale="log", yscale="log", xlabel="seconds")
         axis.grid(alpha=0.25, which="major")
@@ -35,28 +35,28 @@ def draw(path, title, rows):
 
 
 def styles_of(rows):
-    """{method: (colour, marker)}."""
+    """{method: (color, marker)}."""
     styles, used = {}, {}
     for method in dict.fromkeys(row.method for row in rows):
         used[method.family] = used.get(method.family, -1) + 1
         marker = MARKERS[used[method.family] % len(MARKERS)]
-        styles[method.name] = COLOURS[method.family], marker
+        styles[method.name] = COLORS[method.family], marker
     return styles
 
 
-def draw_point(axis, row, colour, marker):
+def draw_point(axis, row, color, marker):
     """One map."""
-    inside = "none" if row.figures.folds else colour
+    inside = "none" if row.figures.folds else color
     place = max(row.seconds, 1e-3), max(row.figures.deviation, 1e-9)
     size = 80 if row.method.family == "ours" else 42
-    axis.scatter(*place, size, marker=marker, facecolors=inside, edgecolors=colour, linewidths=1.4, zorder=3)
+    axis.scatter(*place, size, marker=marker, facecolors=inside, edgecolors=color, linewidths=1.4, zorder=3)
 
 
 def add_legend(figure, styles):
     """All methods, below the panels."""
     handles = [
-        plots.plt.Line2D([], [], linestyle="", marker=marker, color=colour, label=name)
-        for name, (colour, marker) in styles.items()
+        plots.plt.Line2D([], [], linestyle="", marker=marker, color=color, label=name)
+        for name, (color, marker) in styles.items()
     ]
     note = "hollow: with folded faces"
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=8, title=note)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Starts the processes of the comparison and measures what comes back, always by `authalic.distortion`."""
+"""Starts the processes of the comparison and measures their maps, always by `authalic.distortion`."""
 
 import json
 import os
@@ -20,19 +20,19 @@ WORKER = ("-m", "bench.peers.worker")
 
 @dataclass(frozen=True)
 class Figures:
-    """A map's quality; areas by those of the surface, the whole image scaled to the disk or the sphere."""
+    """A map's quality, with the whole image scaled to the disk or the sphere."""
 
     deviation: float
     energy: float
     folds: int
     angle_mean: float
-    """Of σ₁/σ₂ over the faces that are not folded, like its 99th percentile."""
+    """The mean of σ₁/σ₂ over the faces that are not folded; the percentile is over these too."""
     angle_p99: float
 
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one method on one mesh; without figures the remark says why."""
+    """The outcome of one method on one mesh; without figures the remark says why."""
 
     mesh: str
     vertices: int
@@ -41,9 +41,9 @@ class Row:
     figures: Figures = None
     seconds: float = 0.0
     peak: float = 0.0
-    """Resident memory in MiB, the interpreter and the tool's own code included."""
+    """Peak of resident memory in MiB, including the interpreter and the tool's code."""
     before: float = 0.0
-    """The same before the call."""
+    """Peak of resident memory before the call, in MiB."""
     cut: bool = False
     """Whether the map is of the mesh cut into charts."""
 
@@ -69,7 +69,7 @@ class Starter:
         return Row(*head, problem) if problem else read(target, head, mesh)
 
     def _run(self, command):
-        """Waits for a process; what went wrong, or nothing."""
+        """Waits for a process; returns its problem, or an empty string."""
         words = [str(word) for word in command]
         with open(self.folder / "log.txt", "ab") as log:
             process = subprocess.Popen(
@@ -89,31 +89,31 @@ class Starter:
 def read(path, head, mesh):
     """The row of a result that a worker left."""
     with np.load(path) as arrays:
-        found = dict(arrays)
-    facts = json.loads(str(found.pop("facts")))
+        stored = dict(arrays)
+    facts = json.loads(str(stored.pop("facts")))
     if "error" in facts:
         return Row(*head, facts["error"])
-    vertices, faces = found.get("vertices", mesh[0]), found.get("faces", mesh[1])
+    vertices, faces = stored.get("vertices", mesh[0]), stored.get("faces", mesh[1])
     try:
-        figures = measured(vertices, faces, found["image"])
+        figures = measured(vertices, faces, stored["image"])
     except authalic.MeshError as problem:
         return Row(*head, f"the map cannot be measured: {problem}")
     return Row(
-        *head, facts["remark"], figures, facts["seconds"], facts["peak"], facts["before"], "faces" in found
+        *head, facts["remark"], figures, facts["seconds"], facts["peak"], facts["before"], "faces" in stored
     )
 
 
 def measured(vertices, faces, image):
-    """The figures of a map into the plane or onto a sphere, turned and scaled so that maps compare."""
+    """The figures of a map into the plane or onto a sphere, with its image turned and scaled."""
     image = scaled(upright(np.asarray(image, float), faces), faces)
-    found = authalic.distortion(vertices, faces, image)
-    angles = np.delete(found.angle_distortion, found.folded)
+    quality = authalic.distortion(vertices, faces, image)
+    angles = np.delete(quality.angle_distortion, quality.folded)
     mean, p99 = (angles.mean(), np.percentile(angles, 99)) if len(angles) else (np.inf, np.inf)
-    return Figures(found.area_ratio_std, found.authalic_energy, len(found.folded), mean, p99)
+    return Figures(quality.area_ratio_std, quality.authalic_energy, len(quality.folded), mean, p99)
 
 
 def upright(image, faces):
-    """Mirrors every chart most of whose area is negative: a mirrored chart is no fold."""
+    """Mirrors every chart whose area is mostly negative: a mirrored chart is no fold."""
     chart = charts(faces, len(image))
     negative = np.bincount(chart[faces[:, 0]], orientation(image, faces), chart.max() + 1) < 0
     image = image.copy()
@@ -122,7 +122,7 @@ def upright(image, faces):
 
 
 def charts(faces, count):
-    """The number of the connected piece that each vertex belongs to, (count,)."""
+    """The number of the component that each vertex belongs to, (count,)."""
     i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
     graph = coo_matrix((np.ones(len(i)), (i, j)), (count, count))
     return connected_components(graph, directed=False)[1]

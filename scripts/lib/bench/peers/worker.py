@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""One method on one mesh, in a process of its own, so that its memory and its crashes are its own.
+"""One method on one mesh, in a process of its own, so that its memory and crashes are told apart.
 
 Usage: python -m bench.peers.worker KIND METHOD MESH.npz RESULT.npz
 
-RESULT.npz has the map (`image`, and `vertices`, `faces` where the method cut the mesh) and `facts`, JSON with
+RESULT.npz has the map (`image`, and `vertices`, `faces` if the method cut the mesh) and `facts`, JSON with
 seconds, peak memory and a remark; or only `facts` with an error.
 """
 
@@ -28,27 +28,26 @@ def main(kind, name, mesh, target):
         method.prepare()
         before = peak_memory()
         began = time.perf_counter()
-        found = method.call(vertices, faces)
-        seconds = found.seconds or time.perf_counter() - began
+        result = method.call(vertices, faces)
+        seconds = result.seconds or time.perf_counter() - began
     except Exception as problem:
         np.savez(target, facts=json.dumps({"error": message(problem)}))
         return
-    facts = {"seconds": seconds, "before": before, "peak": peak_memory(), "remark": found.remark}
-    arrays = {"image": found.image, "vertices": found.vertices, "faces": found.faces}
-    there = {key: array for key, array in arrays.items() if array is not None}
-    np.savez(target, facts=json.dumps(facts), **there)
+    facts = {"seconds": seconds, "before": before, "peak": peak_memory(), "remark": result.remark}
+    arrays = {"image": result.image, "vertices": result.vertices, "faces": result.faces}
+    existing = {key: array for key, array in arrays.items() if array is not None}
+    np.savez(target, facts=json.dumps(facts), **existing)
 
 
 def message(problem):
-    """What an exception says, in one line."""
+    """An exception in one line."""
     return " ".join(f"{type(problem).__name__}: {problem}".split())
 
 
 def peak_memory():
-    """The most memory that this process has had resident so far, in MiB.
+    """The peak of this process's resident memory so far, in MiB.
 
-    Linux hands the figure of `getrusage` down from the process that started this one; that of /proc is new
-    with every program.
+    On Linux a process inherits the figure of `getrusage` from its parent; that of /proc starts anew.
     """
     try:
         status = Path("/proc/self/status").read_text()

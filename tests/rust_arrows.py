@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Which file of a Rust crate uses which: an arrow A → B where the code of A names an item that B defines.
+"""The files of a Rust crate as a graph: an arrow A → B if the code of A names an item that B defines.
 
-Names are followed through re-exports to the file that defines them. Code that is compiled only for tests
-draws no arrow, nor does the declaration or the re-export of a child module.
+Names are followed through re-exports to the file that defines them. Code for tests only draws no arrow, nor
+does the declaration or the re-export of a child module.
 """
 
 import re
@@ -58,7 +58,7 @@ def _branches(group: str) -> list[str]:
 
 
 def _without_tests(code: str) -> tuple[str, set[str]]:
-    """Code without what is compiled for tests only, and the names of such modules in files of their own."""
+    """Code without the parts for tests only, and the names of such modules in files of their own."""
     files = set(re.findall(r"^#\[cfg\(test\)\]\n(?:pub(?:\([^)]*\))? )?mod (\w+);\n", code, re.MULTILINE))
     code = re.sub(r"^#\[cfg\(test\)\]\n[^\n{]*;\n", "", code, flags=re.MULTILINE)
     return re.sub(r"^( *)#\[cfg\(test\)\]\n.*?^\1\}", "", code, flags=re.MULTILINE | re.DOTALL), files
@@ -69,14 +69,14 @@ class _File:
     module: Module
     # Items defined in the file itself.
     items: set[str]
-    # What it imports or re-exports: the name here → its path from the root of the crate.
+    # Imports and re-exports: the name here → its path from the root of the crate.
     imports: dict[str, Module] = field(default_factory=dict)
     # Paths from the root that its code names, re-exports of children aside.
     named: list[Module] = field(default_factory=list)
 
 
 class Crate:
-    """The files of a crate and what they name."""
+    """The files of a crate, and the items that they name."""
 
     def __init__(self, folder: Path) -> None:
         sources = {

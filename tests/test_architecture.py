@@ -90,7 +90,7 @@ def absolute_imports(file: Path) -> set[str]:
 
 
 def attributes_named(file: Path) -> set[str]:
-    """All x in `something.x` of a file."""
+    """All x that occur in a file as `something.x`."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     return {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
 
@@ -121,7 +121,9 @@ def files_imported(file: Path, house: Path) -> set[Path]:
     for dots, name in python_imports(file):
         places = [file.parents[dots - 1]] if dots else [house, house.parent]
         files |= {imported_file(place, name) for place in places}
-    return {other for other in files if other and other != file and other.is_relative_to(house)}
+    return {
+        imported for imported in files if imported and imported != file and imported.is_relative_to(house)
+    }
 
 
 def circles(arrows: dict[str, set[str]]) -> list[str]:
@@ -154,8 +156,8 @@ def upward_arrows(
         others = {target: room_of(target, inside) for target in targets} if room else {}
         upward += [
             f"{module} -> {target}"
-            for target, other in others.items()
-            if other and other != room and ranks[other] >= ranks[room]
+            for target, used_room in others.items()
+            if used_room and used_room != room and ranks[used_room] >= ranks[room]
         ]
     return sorted(upward)
 
@@ -214,8 +216,8 @@ def test_only_the_bridge_imports_authalic() -> None:
 def test_addon_uses_lower_rooms_only(file: Path) -> None:
     room = addon_room(file)
     assert room in ADDON_RANK, f"the new room {room} needs its place in ADDON_ROOMS"
-    used = {addon_room(other) for other in files_imported(file, ADDON)} - {room}
-    upward = {other for other in used if ADDON_RANK[other] >= ADDON_RANK[room]}
+    used = {addon_room(used_room) for used_room in files_imported(file, ADDON)} - {room}
+    upward = {used_room for used_room in used if ADDON_RANK[used_room] >= ADDON_RANK[room]}
     assert not upward, f"{room} must not use {sorted(upward)}"
 
 
@@ -241,7 +243,7 @@ def test_ui_touches_no_arrays() -> None:
 @pytest.mark.parametrize("house", PYTHON_HOUSES, ids=lambda house: str(house.relative_to(ROOT)))
 def test_no_circle_of_python_files(house: Path) -> None:
     files = python_files(house)
-    arrows = {str(file): {str(other) for other in files_imported(file, house)} for file in files}
+    arrows = {str(file): {str(imported) for imported in files_imported(file, house)} for file in files}
     assert any(arrows.values()) or len(files) == 1
     assert circles(arrows) == []
 
@@ -261,7 +263,7 @@ def test_circles_are_seen(tmp_path: Path) -> None:
     files = python_files(tmp_path)
     arrows = {
         str(file.relative_to(tmp_path)): {
-            str(other.relative_to(tmp_path)) for other in files_imported(file, tmp_path)
+            str(imported.relative_to(tmp_path)) for imported in files_imported(file, tmp_path)
         }
         for file in files
     }

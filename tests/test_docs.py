@@ -14,7 +14,7 @@ GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 DOCUMENTS = [*GUIDES, ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md", ROOT / "tests" / "gui" / "README.md"]
 TOP = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
 MADE = (".venv/", "dist/", "out/")
-"""What commands leave behind; it need not be there."""
+"""Folders that commands make; they need not exist."""
 
 
 def relative(path: Path) -> str:
@@ -34,19 +34,19 @@ def without_blocks(document: Path) -> str:
 
 
 def quoted(document: Path) -> list[str]:
-    """What stands between backticks, outside of blocks."""
+    """The words between backticks, outside blocks."""
     return re.findall(r"`([^`\n]+)`", without_blocks(document))
 
 
 def paths(words: list[str]) -> set[str]:
-    """Those of some words that are paths of the repository."""
-    found = {word.split()[0] for word in words if word.strip()}
+    """The words that are paths of the repository."""
+    first = {word.split()[0] for word in words if word.strip()}
     is_path = re.compile(rf"(?:{'|'.join(map(re.escape, TOP))})/[\w./-]*")
-    return {word for word in found if is_path.fullmatch(word) and not word.startswith(MADE)}
+    return {word for word in first if is_path.fullmatch(word) and not word.startswith(MADE)}
 
 
 def anchors(document: Path) -> set[str]:
-    """What links can point to: the headings of a document, as GitHub names them."""
+    """The targets of links in a document: its headings, as GitHub names them."""
     headings = re.findall(r"(?m)^#+ (.*)$", without_blocks(document))
     return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
 
@@ -105,7 +105,7 @@ def test_paths_of_the_architecture_exist() -> None:
 def test_the_graph_of_dependencies_is_the_one_that_is_checked() -> None:
     text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     drawn = re.search(r"(?m)^    core (.*\n(?:    .*\n)+)", text)
-    core, _, addon = (part.splitlines() for part in drawn[1].split("↓"))
+    core, _, addon = (rows_of.splitlines() for rows_of in drawn[1].split("↓"))
     addon[1] = addon[1].replace("extension", "")
     rows = [set(line.split()) for line in (*core, *addon) if line.strip()]
     assert rows == [*CORE_ROOMS, *ADDON_ROOMS[:-1]]

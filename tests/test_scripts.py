@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The parts of scripts/ that can go wrong without anyone noticing."""
+"""The parts of scripts/ that could go wrong unnoticed."""
 
 import re
 import subprocess
@@ -42,7 +42,7 @@ from shell import ROOT, CommandFailed, Unavailable, run, version
 
 @pytest.fixture
 def no_other_pythons(monkeypatch, tmp_path):
-    """Only a folder `bin` on PATH and an empty pyenv, so that a test says what there is to be found."""
+    """Only a folder `bin` on PATH and an empty pyenv, so that a test decides which Pythons exist."""
     (tmp_path / "bin").mkdir()
     monkeypatch.setattr(pythons, "_USUAL_FOLDERS", ())
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
@@ -180,7 +180,7 @@ def test_the_changelog_has_an_entry_for_the_version():
 
 @pytest.fixture
 def tiny_meshes(monkeypatch):
-    """For the benches one small disk and one small closed mesh, whatever data there is."""
+    """Gives the benches one small disk and one small closed mesh, whatever the data folder has."""
     vertices, faces = bench.meshes.built_spheres(level=2)["ellipsoid (built)"]
     cap = authalic.cut(vertices, faces[np.all(vertices[faces][:, :, 2] > 0, axis=1)])[0]
     monkeypatch.setattr(bench.meshes, "disks", lambda: {"cap": (cap.vertices, cap.faces)})
@@ -247,8 +247,8 @@ def test_a_mirrored_chart_is_no_fold_and_scale_does_not_count():
     vertices = np.vstack([square, square + np.array([3, 0, 0])])
     both = np.vstack([faces, faces + 4])
     image = np.vstack([7 * square[:, :2], [-7, 7] * square[:, :2]])
-    found = bench.peers.run.measured(vertices, both, image)
-    assert found.folds == 0 and found.deviation < 1e-12 and np.isclose(found.angle_p99, 1)
+    figures = bench.peers.run.measured(vertices, both, image)
+    assert figures.folds == 0 and figures.deviation < 1e-12 and np.isclose(figures.angle_p99, 1)
     ball, triangles = bench.meshes.icosphere(2)
     mirrored = bench.peers.run.measured(ball, triangles, 100 * ball * [-1, 1, 1])
     assert mirrored.folds == 0 and mirrored.energy < 1e-12
@@ -285,8 +285,8 @@ def test_the_curve_is_read_at_equal_angles():
     points = [(1, 0.4, 1.2), (0.1, 0.1, 1.6), (0.01, 0.05, 2.0)]
     curve = [bench.angle.main.Point("", w, d, 0.0, angle, 9.0, 0, 0.0) for w, d, angle in points]
     assert np.allclose(bench.angle.main.at_angle(curve, 1.4), (0.2, 10**-0.5))
-    other = bench.angle.main.Point("Blender", np.nan, 0.8, 0.0, 1.4, 9.0, 0, 0.0)
-    assert bench.angle.main.beside_cells("ear", 7, other, curve)[-1] == "0.250"
+    blender = bench.angle.main.Point("Blender", np.nan, 0.8, 0.0, 1.4, 9.0, 0, 0.0)
+    assert bench.angle.main.beside_cells("ear", 7, blender, curve)[-1] == "0.250"
     too_flat = bench.angle.main.Point("Blender", np.nan, 0.8, 0.0, 1.1, 9.0, 0, 0.0)
     assert bench.angle.main.beside_cells("ear", 7, too_flat, curve)[-3].startswith(
         "outside the curve, 1.200 to"
@@ -355,21 +355,21 @@ def test_without_cortices_the_bench_of_curves_says_what_is_missing(monkeypatch, 
 
 def test_the_conventional_registration_leaves_a_surface_where_it_is(curved_pair):
     same = bench.hyperbolic.pairs.Pair("same", curved_pair.source, curved_pair.source)
-    found = bench.hyperbolic.methods.harmonic(same)
-    image = bench.hyperbolic.measures.interpolated(same.target.vertices, same.target, found)
-    assert np.allclose(image, same.source.vertices, atol=1e-9) and len(found.folded) == 0
-    measures = bench.hyperbolic.measures.measured(same, found)
+    location = bench.hyperbolic.methods.harmonic(same)
+    image = bench.hyperbolic.measures.interpolated(same.target.vertices, same.target, location)
+    assert np.allclose(image, same.source.vertices, atol=1e-9) and len(location.folded) == 0
+    measures = bench.hyperbolic.measures.measured(same, location)
     assert measures.variation < 1e-9 and measures.correlation > 1 - 1e-9
     assert np.allclose(measures.areas, 1) and measures.turned == 0
 
 
 def test_the_conventional_registration_takes_curves_to_their_places(curved_pair):
-    found = bench.hyperbolic.methods.harmonic(curved_pair)
-    image = bench.hyperbolic.measures.interpolated(curved_pair.target.vertices, curved_pair.target, found)
-    for ours, theirs in zip(curved_pair.source.curves, curved_pair.target.curves, strict=True):
-        path = curved_pair.target.vertices[theirs]
-        assert bench.hyperbolic.measures.distance(image[ours], path).max() < 1e-9
-        assert np.allclose(image[ours[[0, -1]]], path[[0, -1]])
+    location = bench.hyperbolic.methods.harmonic(curved_pair)
+    image = bench.hyperbolic.measures.interpolated(curved_pair.target.vertices, curved_pair.target, location)
+    for curve, partner in zip(curved_pair.source.curves, curved_pair.target.curves, strict=True):
+        path = curved_pair.target.vertices[partner]
+        assert bench.hyperbolic.measures.distance(image[curve], path).max() < 1e-9
+        assert np.allclose(image[curve[[0, -1]]], path[[0, -1]])
 
 
 def test_a_disk_that_folds_is_noticed():
@@ -383,9 +383,9 @@ def test_a_disk_that_folds_is_noticed():
 def test_a_closed_curve_is_begun_where_its_partner_begins():
     sphere = bench.meshes.icosphere(2)[0]
     ring = np.argsort(np.arctan2(sphere[:, 1], sphere[:, 0]))[::9]
-    ours, moved = np.append(ring, ring[0]), np.roll(ring, 4)[::-1]
+    partner, moved = np.append(ring, ring[0]), np.roll(ring, 4)[::-1]
     assert np.array_equal(
-        bench.hyperbolic.pairs.turned_to(np.append(moved, moved[0]), ours, sphere, sphere), ours
+        bench.hyperbolic.pairs.turned_to(np.append(moved, moved[0]), partner, sphere, sphere), partner
     )
 
 
@@ -420,9 +420,9 @@ def test_the_search_for_failures_notices_a_hang_and_goes_on():
 
 
 def test_the_property_tests_are_found():
-    found = bench.fuzz.rust.properties()
-    assert found["random_disks_are_mapped_one_to_one"] == ("--test", "it")
-    assert found["hostile_input_never_panics"] == ("--test", "it")
+    targets = bench.fuzz.rust.properties()
+    assert targets["random_disks_are_mapped_one_to_one"] == ("--test", "it")
+    assert targets["hostile_input_never_panics"] == ("--test", "it")
 
 
 def test_an_error_of_the_package_is_a_row_of_the_table():
@@ -467,9 +467,9 @@ def test_the_demo_and_the_package_agree_on_a_map_onto_a_sphere():
     vertices, faces = bench.meshes.icosphere(3)
     stretched = vertices * (1, 2, 3)
     layout = demo.measure.Layout(stretched[faces], vertices[faces], np.arange(len(faces)))
-    ours, figures = demo.measure.summary(layout), authalic.distortion(stretched, faces, vertices)
-    assert np.isclose(ours["area_ratio_std"], figures.area_ratio_std)
-    assert np.isclose(ours["angle_distortion_mean"], figures.angle_distortion_mean)
+    summary, figures = demo.measure.summary(layout), authalic.distortion(stretched, faces, vertices)
+    assert np.isclose(summary["area_ratio_std"], figures.area_ratio_std)
+    assert np.isclose(summary["angle_distortion_mean"], figures.angle_distortion_mean)
 
 
 def test_the_demo_finds_the_center_of_a_sphere():
@@ -481,6 +481,6 @@ def test_the_demo_finds_the_center_of_a_sphere():
 def test_the_demo_draws_sphere_layouts_when_one_is_missing(tmp_path):
     corners = np.random.default_rng(1).random((20, 3, 2))
     arrays = {"uv": corners, "area_ratio": np.ones(20)}
-    found = {"one": {"Lambert": arrays, "Octahedral": arrays}, "other": {"Lambert": arrays}}
-    demo.figures.draw_sphere_layouts(found, tmp_path / "layouts.png")
+    maps = {"one": {"Lambert": arrays, "Octahedral": arrays}, "other": {"Lambert": arrays}}
+    demo.figures.draw_sphere_layouts(maps, tmp_path / "layouts.png")
     assert (tmp_path / "layouts.png").stat().st_size > 0

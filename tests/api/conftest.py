@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What the tests share."""
+"""Fixtures for several files of tests."""
 
 import os
 import subprocess

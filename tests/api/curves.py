@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Pairs of surfaces with landmark curves, and what their registration has to be, by formulas of their own."""
+"""Pairs of surfaces with landmark curves, and checks of their registrations by independent formulas."""
 
 import heapq
 from typing import NamedTuple
@@ -11,7 +11,7 @@ import authalic
 from . import meshes, oracle, pairs
 
 EXACT = 1e-12
-"""How far a curve's vertex may be from its place, in parts of the target's size."""
+"""The tolerance for the place of a curve's vertex, as a fraction of the target's size."""
 
 
 class CurvePair(NamedTuple):
@@ -45,8 +45,8 @@ def directions(mesh):
     return mesh.vertices / np.linalg.norm(mesh.vertices, axis=1)[:, None]
 
 
-def neighbours(faces):
-    """The neighbours of each vertex, a list of ascending lists."""
+def neighbors(faces):
+    """The neighbors of each vertex, as a list of ascending lists."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     around = [set() for _ in range(faces.max() + 1)]
     for a, b in edges.tolist():
@@ -56,31 +56,31 @@ def neighbours(faces):
 
 
 def along(mesh, stations, taken=()):
-    """The edge path through the vertices nearest to directions, close to the line through them, (k,)."""
-    at, around = directions(mesh), neighbours(mesh.faces)
+    """The edge path (k,) through the vertices nearest to directions, close to the line through them."""
+    places, around = directions(mesh), neighbors(mesh.faces)
     stations = np.asarray(stations, float)
     stations /= np.linalg.norm(stations, axis=1)[:, None]
-    free = np.ones(len(at), bool)
+    free = np.ones(len(places), bool)
     free[list(taken)] = False
-    path = [int(v) for v in ends_of(at, free, stations[:1])]
+    path = [int(v) for v in ends_of(places, free, stations[:1])]
     for k in range(1, len(stations)):
-        goal = int(ends_of(at, free, stations[k : k + 1])[0])
+        goal = int(ends_of(places, free, stations[k : k + 1])[0])
         used = {*path[:-1], *np.flatnonzero(~free).tolist()}
-        path += shortest(at, around, path[-1], goal, used, stations[k - 1 : k + 1])[1:]
+        path += shortest(places, around, path[-1], goal, used, stations[k - 1 : k + 1])[1:]
     return np.array(path)
 
 
-def ends_of(at, free, wanted):
+def ends_of(places, free, wanted):
     """The free vertex nearest to each direction."""
-    gaps = np.linalg.norm(at[None] - wanted[:, None], axis=2)
+    gaps = np.linalg.norm(places[None] - wanted[:, None], axis=2)
     return np.where(free, gaps, np.inf).argmin(axis=1)
 
 
-def shortest(at, around, start, goal, used, arc):
-    """Dijkstra's path, its edges the dearer the farther they are from the arc between two directions."""
+def shortest(places, around, start, goal, used, arc):
+    """Dijkstra's path; edges cost more the farther they are from the arc between two directions."""
     normal = np.cross(*arc)
     normal /= np.linalg.norm(normal) or 1
-    off, open_ends = np.abs(at @ normal), [(0.0, start, start)]
+    off, open_ends = np.abs(places @ normal), [(0.0, start, start)]
     before = {}
     while open_ends:
         far, vertex, previous = heapq.heappop(open_ends)
@@ -89,21 +89,21 @@ def shortest(at, around, start, goal, used, arc):
         before[vertex] = previous
         if vertex == goal:
             break
-        for other in around[vertex]:
-            if other not in before and other not in used:
-                length = np.linalg.norm(at[other] - at[vertex])
-                heapq.heappush(open_ends, (far + length * (1 + 10 * off[other]), other, vertex))
+        for neighbor in around[vertex]:
+            if neighbor not in before and neighbor not in used:
+                length = np.linalg.norm(places[neighbor] - places[vertex])
+                heapq.heappush(open_ends, (far + length * (1 + 10 * off[neighbor]), neighbor, vertex))
     path = [goal]
     while path[-1] != start:
         path.append(before[path[-1]])
     return path[::-1]
 
 
-def ring(mesh, centre, cosine):
-    """The closed curve around the faces around a direction, its first vertex not repeated."""
+def ring(mesh, center, cosine):
+    """The closed curve around the faces near a direction, its first vertex not repeated."""
     middles = directions(mesh)[mesh.faces].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
-    inside = middles @ (np.asarray(centre, float) / np.linalg.norm(centre)) > cosine
+    inside = middles @ (np.asarray(center, float) / np.linalg.norm(center)) > cosine
     return oracle.boundary_loop(mesh.faces[inside])
 
 
@@ -125,7 +125,7 @@ def arcs(count, length=0.55, seed=2):
 
 
 def drawn(mesh, lines):
-    """The edge paths along lines of directions, without a vertex in common."""
+    """Disjoint edge paths along lines of directions."""
     curves = []
     for line in lines:
         curves.append(along(mesh, line, np.concatenate([[], *curves]).astype(int).tolist()))
@@ -139,7 +139,7 @@ def turned(lines, angle):
 
 
 def balls(count, target=None, source=None, angle=0.1):
-    """A bumpy ball and another star-shaped surface with `count` arcs on either, a little turned."""
+    """A bumpy ball and another star-shaped surface with `count` arcs on each, a little turned."""
     source = source or meshes.bumpy_ball(4)
     target = target or ELLIPSOID
     return CurvePair(source, target, drawn(source, arcs(count)), drawn(target, turned(arcs(count), angle)))
@@ -150,11 +150,11 @@ def identical(mesh, lines):
     return CurvePair(mesh, mesh, curves, curves)
 
 
-def opened(mesh, centres, cosine):
+def opened(mesh, centers, cosine):
     """The surface without the faces around some directions."""
     middles = directions(mesh)[mesh.faces].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
-    kept = (middles @ np.asarray(centres, float).T < cosine).all(axis=1)
+    kept = (middles @ np.asarray(centers, float).T < cosine).all(axis=1)
     return meshes.compact(meshes.Mesh(mesh.vertices, mesh.faces[kept]))
 
 
@@ -162,11 +162,11 @@ PARALLELS = meshes.sphere(32, 44)[0]
 ELLIPSOID = meshes.Mesh(PARALLELS.vertices * [1.0, 1.4, 1.9], PARALLELS.faces)
 
 
-# What a registration by curves has to be
+# Checks of registrations by curves
 
 
 def assert_located(result, pair):
-    """Where the result says each vertex of the source lies on the target, there it lies."""
+    """The locations in the result agree with its positions."""
     assert (result.barycentric >= 0).all()
     assert np.abs(result.barycentric.sum(axis=1) - 1).max() < 2e-15
     assert np.array_equal(result.target_faces, pair.target.faces)
@@ -181,7 +181,7 @@ def interpolated(result, target):
 
 
 def assert_certified(result, surfaces):
-    """All that proves a homeomorphism, for surfaces cut along `surfaces` curves and boundary loops."""
+    """The certificates prove a homeomorphism, for surfaces cut along `surfaces` curves and boundary loops."""
     proof = result.certificates
     assert proof.folded.tolist() == []
     assert result.distortion.folded.tolist() == []
@@ -201,7 +201,7 @@ def assert_certified(result, surfaces):
 
 
 def shares(path):
-    """How much of a polyline lies before each of its vertices, from 0 to 1."""
+    """The share of a polyline's length before each of its vertices, from 0 to 1."""
     lengths = np.linalg.norm(np.diff(path, axis=0), axis=1)
     return np.concatenate([[0], np.cumsum(lengths)]) / lengths.sum()
 
@@ -213,27 +213,27 @@ def at_shares(path, where):
 def assert_curves_meet(result, pair, skip=()):
     """Each vertex of an open curve lies at the same share of its partner's length: on it, in order."""
     there, size = interpolated(result, pair.target), pairs.size(pair.target)
-    for k, (ours, theirs) in enumerate(zip(pair.source_curves, pair.target_curves, strict=True)):
+    for k, (curve, partner) in enumerate(zip(pair.source_curves, pair.target_curves, strict=True)):
         if k not in skip:
-            place = at_shares(pair.target.vertices[theirs], shares(pair.source.vertices[ours]))
-            assert np.abs(there[ours] - place).max() <= EXACT * size, f"curve {k}"
+            place = at_shares(pair.target.vertices[partner], shares(pair.source.vertices[curve]))
+            assert np.abs(there[curve] - place).max() <= EXACT * size, f"curve {k}"
 
 
 def on_polyline(points, path):
     """The distance of each point from a polyline and its place there, counted in segments."""
     start, step = path[:-1], np.diff(path, axis=0)
-    part = np.einsum("ijx,jx->ij", points[:, None] - start, step) / (step**2).sum(axis=1)
-    part = part.clip(0, 1)
-    gap = np.linalg.norm(points[:, None] - start - part[..., None] * step, axis=2)
+    share = np.einsum("ijx,jx->ij", points[:, None] - start, step) / (step**2).sum(axis=1)
+    share = share.clip(0, 1)
+    gap = np.linalg.norm(points[:, None] - start - share[..., None] * step, axis=2)
     segment = gap.argmin(axis=1)
-    return gap.min(axis=1), segment + part[np.arange(len(points)), segment]
+    return gap.min(axis=1), segment + share[np.arange(len(points)), segment]
 
 
 def assert_closed_curve_meets(result, pair, curve):
-    """A closed curve lies on its partner and runs once around it, from wherever and either way."""
-    ours, theirs = open_ended(pair.source_curves[curve]), open_ended(pair.target_curves[curve])
-    loop = pair.target.vertices[np.append(theirs, theirs[0])]
-    gap, place = on_polyline(interpolated(result, pair.target)[ours], loop)
+    """A closed curve lies on its partner and runs once around it, from any start and in either direction."""
+    loop, partner = open_ended(pair.source_curves[curve]), open_ended(pair.target_curves[curve])
+    path = pair.target.vertices[np.append(partner, partner[0])]
+    gap, place = on_polyline(interpolated(result, pair.target)[loop], path)
     assert gap.max() <= EXACT * pairs.size(pair.target)
     steps = np.diff(np.append(place, place[0]))
     wraps = [(steps < 0).sum(), (steps > 0).sum()]
@@ -247,7 +247,7 @@ def open_ended(curve):
 
 
 def assert_unfolded_on_sphere(result, pair, rings=1):
-    """Seen from the centre of a star-shaped target no image is turned over, but a few next to curves:
+    """Seen from the center of a star-shaped target no image is turned over, but a few next to curves:
     their images have the sides of the hyperbolic metric, straight ones may differ where that is steep."""
     image = directions(meshes.Mesh(result.positions, pair.source.faces))
     near = np.zeros(len(image), bool)

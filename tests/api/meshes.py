@@ -113,10 +113,10 @@ def annulus(around=40, rings=5, inner=0.4):
 def plate_with_holes(side=25):
     """A square plate with three square holes of different sizes."""
     mesh = grid(side, side, aspect=1.0)
-    centre = mesh.vertices[mesh.faces].mean(axis=1)[:, :2]
+    center = mesh.vertices[mesh.faces].mean(axis=1)[:, :2]
     solid = np.ones(len(mesh.faces), bool)
     for hole, half in (((0.25, 0.25), 0.09), ((0.7, 0.3), 0.13), ((0.5, 0.75), 0.05)):
-        solid &= np.abs(centre - hole).max(axis=1) > half
+        solid &= np.abs(center - hole).max(axis=1) > half
     return compact(Mesh(mesh.vertices, mesh.faces[solid]))
 
 

@@ -25,7 +25,7 @@ def signed_areas(uv, faces):
 
 
 def folded(uv, faces):
-    """Faces whose orientation is not positive, by exact arithmetic wherever rounding could decide."""
+    """Faces whose orientation is not positive, by exact arithmetic where rounding could decide."""
     a, b, c = np.moveaxis(np.asarray(uv, float)[faces], 1, 0)
     left = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
     right = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
@@ -128,7 +128,7 @@ def assert_disk_embedding(result):
 
 
 def folded_on_sphere(positions, faces):
-    """Faces whose determinant is not positive, by exact arithmetic wherever rounding could decide."""
+    """Faces whose determinant is not positive, by exact arithmetic where rounding could decide."""
     corners = np.asarray(positions, float)[faces]
     a, b, c = np.moveaxis(corners, 1, 0)
     size = np.einsum("ij,ij->i", np.abs(a), np.abs(np.roll(b, -1, 1) * np.roll(c, -2, 1)))
@@ -165,8 +165,8 @@ def vertex_weights(faces, targets, n):
 
 def assert_lies_over(positions, vertices, weights):
     """No rotation R makes Σ w (R f)·(v − c) larger: Σ w f (v − c)ᵀ is symmetric, and tr − it is positive."""
-    centred = vertices - weights @ vertices / weights.sum()
-    moment = (weights[:, None] * positions).T @ centred
+    centered = vertices - weights @ vertices / weights.sum()
+    moment = (weights[:, None] * positions).T @ centered
     scale = np.abs(moment).max()
     assert np.abs(moment - moment.T).max() < 1e-7 * scale
     assert np.linalg.eigvalsh(np.trace(moment) * np.eye(3) - moment).min() > -1e-9 * scale

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Pairs of surfaces with landmarks, and what a registration has to be, by formulas of their own."""
+"""Pairs of surfaces with landmarks, and checks of their registrations by independent formulas."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ import authalic
 from . import meshes, oracle
 
 MISSED = 1e-3
-"""A landmark that ends farther than this from its partner, in a domain of radius 1, was missed."""
+"""A landmark that ends farther than this from its partner, in a domain of radius 1, is missed."""
 
 
 class Pair(NamedTuple):
@@ -23,7 +23,7 @@ class Pair(NamedTuple):
 
 
 def register(pair, **options):
-    """Registers a pair of disks or of spheres, whichever it is."""
+    """Registers a pair of disks or of spheres."""
     return register_function(pair)(
         pair.source,
         pair.target,
@@ -46,7 +46,7 @@ def boundary_vertices(faces):
 
 
 def spread(mesh, count):
-    """Vertices inside the surface, each as far as can be from those before, (count,)."""
+    """Vertices (count,) inside the surface, each as far as possible from the ones before it."""
     inside = np.setdiff1d(np.arange(len(mesh.vertices)), boundary_vertices(mesh.faces))
     # away from the boundary as well, which every landmark has to stay clear of
     seen, chosen = [*boundary_vertices(mesh.faces)] or [inside[0]], []
@@ -137,11 +137,11 @@ SPHERE_PAIRS = {
 PAIRS = {**DISK_PAIRS, **SPHERE_PAIRS}
 
 
-# What a registration has to be
+# Checks of registrations
 
 
 def lifted(points):
-    """Points of the disk in the plane z = 1, those of the sphere as they are: both are cones then."""
+    """Points of the disk as points of the plane z = 1, points of the sphere unchanged: both span cones."""
     points = np.asarray(points)
     return points if points.shape[1] == 3 else np.hstack([points, np.ones((len(points), 1))])
 
@@ -163,18 +163,18 @@ def assert_embedding(image, faces):
 
 
 def assert_located(result, pair):
-    """Where the result says each vertex of the source lies on the target, there it lies."""
+    """The locations in the result agree with its positions, and with both maps."""
     barycentric, corners = result.barycentric, result.target_faces[result.triangles]
     assert (barycentric >= 0).all()
     assert np.abs(barycentric.sum(axis=1) - 1).max() < 4e-16 * 4
     positions = np.einsum("ik,ikx->ix", barycentric, pair.target.vertices[corners])
     assert np.abs(positions - result.positions).max() <= 1e-14 * np.abs(pair.target.vertices).max()
-    # the same combination of the domain's corners points to where the source vertex was carried
-    found = np.einsum("ik,ikx->ix", barycentric, lifted(result.target_registered)[corners])
+    # this combination of the domain's corners points to the place of the source vertex
+    directions = np.einsum("ik,ikx->ix", barycentric, lifted(result.target_registered)[corners])
     wanted = lifted(result.registered)
     if result.registered.shape[1] == 3:
-        found /= np.linalg.norm(found, axis=1)[:, None]
-    gap = np.linalg.norm(found - wanted, axis=1)
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+    gap = np.linalg.norm(directions - wanted, axis=1)
     inside = np.setdiff1d(np.arange(len(gap)), outside_chords(result))
     assert gap[inside].max() < 1e-9
     assert gap.max() <= sagitta(result) + 1e-9
@@ -192,7 +192,7 @@ def outside_chords(result):
 
 
 def sagitta(result):
-    """How far the longest chord of the target's boundary is from the circle."""
+    """The distance of the longest chord of the target's boundary from the circle."""
     if result.registered.shape[1] == 3:
         return 0.0
     arcs = oracle.boundary_arcs(result.target_registered, oracle.boundary_loop(result.target_faces))
@@ -200,15 +200,15 @@ def sagitta(result):
 
 
 def assert_figures(result, pair):
-    """The figures the result reports are those of its maps."""
-    ours, theirs = result.registered[pair.source_landmarks], result.target_registered[pair.target_landmarks]
-    assert np.abs(result.landmark_error - np.linalg.norm(ours - theirs, axis=1)).max() < 1e-12
+    """The figures in the result are those of its maps."""
+    source, target = result.registered[pair.source_landmarks], result.target_registered[pair.target_landmarks]
+    assert np.abs(result.landmark_error - np.linalg.norm(source - target, axis=1)).max() < 1e-12
     assert set(np.flatnonzero(result.landmark_error > MISSED)) <= set(result.missed.tolist())
     assert result.missed.tolist() == sorted(set(result.missed.tolist()))
     if result.status != "cancelled":
         assert (result.status == "landmarks_missed") == (len(result.missed) > 0)
     targets = oracle.face_areas(pair.source.vertices, result.faces)
-    energy = oracle.authalic_energy if ours.shape[1] == 2 else oracle.sphere_energy
+    energy = oracle.authalic_energy if source.shape[1] == 2 else oracle.sphere_energy
     expected = energy(result.registered, result.faces, targets)
     assert abs(result.distortion.authalic_energy - expected) < 1e-6 * expected + 1e-12
     assert len(result.distortion.folded) == 0
@@ -234,7 +234,7 @@ def assert_landmarks_meet(result, pair):
 
 
 def assert_the_others_meet(result, pair):
-    """Landmarks that are not named as missed lie where they should, in the domain and on the target."""
+    """Landmarks that are not named as missed meet, in the domain and on the target."""
     met = np.setdiff1d(np.arange(len(pair.source_landmarks)), result.missed)
     gap = result.positions[pair.source_landmarks] - pair.target.vertices[pair.target_landmarks]
     assert result.landmark_error[met].max(initial=0) <= MISSED

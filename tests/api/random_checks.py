@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What must hold for any mesh, sound or not: a sound map or a named error, judged without the library."""
+"""Checks for any mesh, sound or not: a sound map or a named error, judged without the library."""
 
 import inspect
 from typing import NamedTuple
@@ -19,16 +19,16 @@ METHODS = {
 
 
 class Outcome(NamedTuple):
-    """How a map ended: its status, or the error; the SD of the area ratio where there is a map."""
+    """The outcome of a map: its status, or the error; the SD of the area ratio if there is a map."""
 
     status: str
     deviation: float = np.nan
 
 
 def assert_sound_case(case, **options):
-    """The map of a sound mesh is an embedding; returns what came of it.
+    """The map of a sound mesh is an embedding; returns the outcome.
 
-    A SolverError is allowed by the contract; whether it is welcome is for the caller to say.
+    The contract allows a SolverError; the caller says whether it is welcome.
     """
     call = authalic.disk_map if case.kind == "disk" else authalic.sphere_map
     try:
@@ -41,7 +41,7 @@ def assert_sound_case(case, **options):
 
 
 def assert_hostile_case(case, **options):
-    """Every function maps, cuts and measures what it is given, or says what is wrong with it."""
+    """Every function does its work on the mesh, or says what is wrong with it."""
     outcomes = [attempted(call, case.mesh, **options) for call in (authalic.disk_map, authalic.sphere_map)]
     holes = attempted(authalic.disk_map, case.mesh, fill_holes=True, **options)
     patches = cut_or_refused(case.mesh)
@@ -51,7 +51,7 @@ def assert_hostile_case(case, **options):
 
 
 def attempted(call, mesh, **options):
-    """Maps or is refused; the status or the error's name."""
+    """Maps a mesh; returns the status, or the name of the error."""
     try:
         result = call(*mesh, **options)
     except (authalic.MeshError, authalic.SolverError) as error:
@@ -71,7 +71,7 @@ def cut_or_refused(mesh):
 
 
 def assert_says_what(error):
-    """One readable sentence or more, and no confession."""
+    """The error's message is readable, and names no internal error."""
     text = str(error)
     assert text.isprintable() and len(text) > 15, repr(text)
     assert "internal error" not in text and "panic" not in text, text
@@ -92,7 +92,7 @@ def assert_sound_result(result, call, holes=False):
 
 
 def random_options(seed, case):
-    """Often none; else another method, boundary or density, a limit, or a cancel after a few reports."""
+    """Random options, often none: method, boundary, density, limit, or a cancel after a few reports."""
     rng = np.random.default_rng([seed, 1])
     call = authalic.sphere_map if case.kind == "sphere" else authalic.disk_map
     options = {}
@@ -114,6 +114,6 @@ def random_options(seed, case):
 
 
 def cancel_after(reports):
-    """A progress function that cancels."""
+    """A progress function that cancels after some reports."""
     left = iter(range(reports))
     return lambda fraction, message: next(left, None) is not None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Random meshes of known topology, and random ways of spoiling them; everything follows from a seed.
+"""Random meshes of known topology, and random ways to spoil them; everything follows from a seed.
 
 The tests and the search for failures (`scripts/bench fuzz`) share them.
 """
@@ -26,10 +26,10 @@ class Case(NamedTuple):
 
 def hull(points):
     """The triangles of the convex hull of points, all of which lie on it, counter-clockwise from outside."""
-    found = ConvexHull(points)
-    corners = points[found.simplices]
+    convex = ConvexHull(points)
+    corners = points[convex.simplices]
     inward = np.einsum("ij,ij->i", np.cross(corners[:, 1], corners[:, 2]), corners[:, 0]) < 0
-    faces = found.simplices.astype(np.int64)
+    faces = convex.simplices.astype(np.int64)
     faces[inward] = faces[inward][:, ::-1]
     return Mesh(points, faces)
 
@@ -176,11 +176,11 @@ OPEN = {
 }
 
 
-# What changes nothing about a mesh
+# Changes that keep a mesh sound
 
 
 def disguised(rng, mesh):
-    """The mesh in another place, size and position, its vertices and faces in another order."""
+    """The mesh with another place, size and orientation, and with its vertices and faces in another order."""
     order, rows = rng.permutation(len(mesh.vertices)), rng.permutation(len(mesh.faces))
     rank = np.argsort(order)
     faces = np.roll(rank[mesh.faces[rows]], int(rng.integers(3)), axis=1)
@@ -191,7 +191,7 @@ def disguised(rng, mesh):
     return Mesh(np.ascontiguousarray(points), np.ascontiguousarray(faces))
 
 
-# What spoils a mesh, or may
+# Changes that may spoil a mesh
 
 
 def some(rng, count, most=6):
@@ -274,9 +274,9 @@ def loose_vertices(rng, mesh):
 
 
 def two_pieces(rng, mesh):
-    other = random_mesh(rng, 60)[0]
-    points = np.vstack([mesh.vertices, other.vertices])
-    return Mesh(points, np.vstack([mesh.faces, other.faces + len(mesh.vertices)]))
+    second = random_mesh(rng, 60)[0]
+    points = np.vstack([mesh.vertices, second.vertices])
+    return Mesh(points, np.vstack([mesh.faces, second.faces + len(mesh.vertices)]))
 
 
 def extreme_size(rng, mesh):
@@ -293,7 +293,7 @@ def single_precision(rng, mesh):
 
 
 def crumpled(rng, mesh):
-    """The same faces with vertices anywhere."""
+    """The vertices at random places."""
     return Mesh(rng.standard_normal(mesh.vertices.shape), mesh.faces)
 
 
@@ -337,7 +337,7 @@ def sound_case(seed, size=300, names=(*CLOSED, *OPEN)):
 
 
 def hostile_case(seed, size=300, spoilers=tuple(SPOILERS)):
-    """A mesh with one or two things done to it that may have spoiled it."""
+    """A mesh with one or two changes that may have spoiled it."""
     rng = np.random.default_rng(seed)
     mesh, _, name = random_mesh(rng, size)
     for spoil in rng.choice(len(spoilers), min(len(spoilers), int(rng.integers(1, 3))), replace=False):

@@ -16,7 +16,7 @@ FOLDERS = (
 
 
 def file(name):
-    """The path of a file such as "disk/maze.npz"; skips the test where no folder has it."""
+    """The path of a file such as "disk/maze.npz"; skips the test if no folder has it."""
     for folder in FOLDERS:
         if (folder / name).exists():
             return folder / name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Arrays of any dtype and memory layout go in; what is no array of numbers is refused."""
+"""Arrays of any dtype and memory layout are accepted; objects that are no arrays of numbers are refused."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ BALL_FACES = meshes.ball(2).faces
 
 
 def strided(array):
-    """The same values as every second entry of every third row, backwards in memory."""
+    """The values as every second entry of every third row, reversed in memory."""
     wide = np.full((3 * len(array), 2 * array.shape[1]), 99, array.dtype)[::-1]
     wide[::3, ::2] = array
     return wide[::3, ::2]
@@ -157,7 +157,7 @@ def test_inputs_of_sphere_maps_are_left_unchanged(expected_sphere):
         "vertices": BALL.copy(),
         "faces": BALL_FACES.copy(),
         "density": np.ones(len(BALL_FACES)),
-        "initial": 3 * expected_sphere,  # rows are normalised, in a copy
+        "initial": 3 * expected_sphere,  # rows are normalized, in a copy
     }
     arrays["faces"][5] = arrays["faces"][5][[0, 2, 1]]
     before = {name: array.copy() for name, array in arrays.items()}

@@ -232,9 +232,9 @@ def test_the_errors_are_of_the_builtin_kinds():
 
 
 def test_a_map_has_the_attributes_of_the_contract(any_result):
-    own = {authalic.DiskMap: {"uv"}, authalic.SphereMap: {"positions", "refinement"}}[type(any_result)]
+    special = {authalic.DiskMap: {"uv"}, authalic.SphereMap: {"positions", "refinement"}}[type(any_result)]
     assert public_attributes(any_result) == {
-        *(*own, "faces", "status", "iterations", "history", "distortion", "seconds")
+        *(*special, "faces", "status", "iterations", "history", "distortion", "seconds")
     }
     assert isinstance(any_result.distortion, authalic.Distortion)
     assert any_result.status in {"converged", "max_iterations", "stalled", "cancelled"}

@@ -142,14 +142,14 @@ def test_a_moebius_strip_cut_across_is_a_disk():
 
 
 def test_components_come_apart():
-    one, other = meshes.bumpy_cap(), meshes.grid()
-    n = len(one.vertices)
-    mesh = meshes.Mesh(np.vstack([one.vertices, other.vertices]), np.vstack([one.faces, other.faces + n]))
+    cap, sheet = meshes.bumpy_cap(), meshes.grid()
+    n = len(cap.vertices)
+    mesh = meshes.Mesh(np.vstack([cap.vertices, sheet.vertices]), np.vstack([cap.faces, sheet.faces + n]))
     patches = authalic.cut(*mesh)
     assert_maps_back(patches, mesh)
     assert len(patches) == 2
-    assert np.array_equal(patches[0].faces, one.faces)
-    assert np.array_equal(patches[1].faces, other.faces)
+    assert np.array_equal(patches[0].faces, cap.faces)
+    assert np.array_equal(patches[1].faces, sheet.faces)
 
 
 def test_edges_of_three_faces_act_as_seams():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What every disk map has to be: an embedding that keeps areas, whatever the mesh and the density."""
+"""Every disk map is an embedding that preserves areas, whatever the mesh and the density."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from . import meshes, oracle
 ENOUGH = 4e-8 * np.pi
 BOUNDARIES = ("sliding", "arc_length")
 METHODS = ("gauss_newton", "conjugate_gradient", "fixed_point")
-# those on which areas can be kept better than by the harmonic start
+# meshes on which the harmonic start does not preserve areas best
 IMPROVABLE = ("grid", "bumpy_cap", "rough_cap", "slit_sphere", "tube_disk")
 disks = pytest.mark.parametrize("name", meshes.DISKS)
 improvable = pytest.mark.parametrize("name", IMPROVABLE)
@@ -62,10 +62,10 @@ def test_conjugate_gradients_lower_the_energy_in_every_step(name, boundary):
 
 @improvable
 def test_each_method_beats_the_next(name):
-    ours, descent, fixed = (
+    default, descent, fixed = (
         authalic.disk_map(*meshes.DISKS[name], method=method).distortion.authalic_energy for method in METHODS
     )
-    assert max(ours, ENOUGH) <= max(descent, ENOUGH) < fixed
+    assert max(default, ENOUGH) <= max(descent, ENOUGH) < fixed
 
 
 @improvable
@@ -107,13 +107,13 @@ def test_what_can_be_mapped_exactly_is():
 @boundaries
 def test_image_areas_follow_the_density(boundary):
     mesh = meshes.bumpy_cap(20, 40, noise=0)
-    centre = mesh.vertices[mesh.faces].mean(axis=1)
-    density = oracle.face_areas(*mesh) * np.where(centre[:, 0] > 0, 4.0, 1.0)
+    center = mesh.vertices[mesh.faces].mean(axis=1)
+    density = oracle.face_areas(*mesh) * np.where(center[:, 0] > 0, 4.0, 1.0)
     result = authalic.disk_map(*mesh, boundary=boundary, density=density, max_iterations=300)
     oracle.assert_disk_embedding(result)
     image = oracle.signed_areas(result.uv, mesh.faces)
     share, wanted = image / image.sum(), density / density.sum()
-    dense = centre[:, 0] > 0
+    dense = center[:, 0] > 0
     assert share[dense].sum() == pytest.approx(wanted[dense].sum(), rel=0.01)
     assert np.median(np.abs(share / wanted - 1)) < 0.05
     assert result.distortion.area_ratio_std == pytest.approx((share / wanted).std(), rel=1e-6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The same surface, placed, scaled, numbered or oriented in another way, has the same disk map."""
+"""A surface that is moved, scaled, renumbered or turned over keeps its map."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ import authalic
 
 from . import meshes, oracle
 
-# those whose maps take many iterations
+# meshes whose maps take many iterations
 CURVED = ("grid", "bumpy_cap", "rough_cap", "slit_sphere", "tube_disk")
 disks = pytest.mark.parametrize("name", meshes.DISKS)
 curved = pytest.mark.parametrize("name", CURVED)
@@ -59,12 +59,12 @@ def test_the_numbering_of_the_vertices_does_not_matter(name, boundary, method):
     order = np.random.default_rng(8).permutation(len(mesh.vertices))
     place, options = np.argsort(order), {"boundary": boundary, "method": method}
     plain = authalic.disk_map(*mesh, **options)
-    other = authalic.disk_map(mesh.vertices[order], place[mesh.faces], **options)
-    oracle.assert_disk_embedding(other)
+    renumbered = authalic.disk_map(mesh.vertices[order], place[mesh.faces], **options)
+    oracle.assert_disk_embedding(renumbered)
     if method == "gauss_newton":
-        assert_same_map(plain, other, method)
+        assert_same_map(plain, renumbered, method)
     else:
-        assert_same_areas(plain, other, slice(None))
+        assert_same_areas(plain, renumbered, slice(None))
 
 
 @curved
@@ -75,15 +75,15 @@ def test_the_order_of_the_faces_does_not_matter(name, boundary, method):
     order = np.random.default_rng(9).permutation(len(mesh.faces))
     turned = np.roll(mesh.faces[order], 1, axis=1)
     plain = authalic.disk_map(*mesh, **options)
-    other = authalic.disk_map(mesh.vertices, turned, **options)
-    assert_same_map(plain, other, method)
+    reordered = authalic.disk_map(mesh.vertices, turned, **options)
+    assert_same_map(plain, reordered, method)
     if method != "gauss_newton":
-        assert_same_areas(plain, other, order)
+        assert_same_areas(plain, reordered, order)
 
 
-def assert_same_areas(plain, other, order):
-    """Equal but for rounding, which 50 iterations may enlarge by some orders of magnitude."""
-    before, after = plain.distortion, other.distortion
+def assert_same_areas(plain, changed, order):
+    """Areas agree up to rounding, which 50 iterations may enlarge by some orders of magnitude."""
+    before, after = plain.distortion, changed.distortion
     assert after.authalic_energy == pytest.approx(before.authalic_energy, rel=1e-5, abs=1e-10)
     assert np.allclose(after.log2_area_ratio, before.log2_area_ratio[order], atol=1e-5)
 
@@ -112,7 +112,7 @@ def test_faces_turned_against_the_rest_are_turned_and_reported():
 # Closed surfaces: descent enlarges rounding from step to step, so few steps are compared closely
 
 CLOSED = ("ellipsoid", "bumpy_ball", "rough_ball", "parallels")
-# without symmetries: on the others several faces are the roundest, and the start removes the first of them
+# meshes without symmetries: on others several faces are the roundest, and the start removes the first
 UNEVEN = ("bumpy_ball", "rough_ball")
 closed = pytest.mark.parametrize("name", CLOSED)
 uneven = pytest.mark.parametrize("name", UNEVEN)
@@ -166,9 +166,9 @@ def test_the_numbering_of_a_closed_surface_does_not_matter(name, method):
     mesh = meshes.SPHERES[name]
     order = np.random.default_rng(8).permutation(len(mesh.vertices))
     plain = sphere_map(*mesh, method=method)
-    other = sphere_map(mesh.vertices[order], np.argsort(order)[mesh.faces], method=method)
-    assert_same_areas(plain, other, slice(None))
-    assert np.abs(plain.positions[order] - other.positions).max() < 1e-5
+    renumbered = sphere_map(mesh.vertices[order], np.argsort(order)[mesh.faces], method=method)
+    assert_same_areas(plain, renumbered, slice(None))
+    assert np.abs(plain.positions[order] - renumbered.positions).max() < 1e-5
 
 
 @uneven
@@ -177,9 +177,9 @@ def test_the_order_of_the_faces_of_a_closed_surface_does_not_matter(name, method
     mesh = meshes.SPHERES[name]
     order = np.random.default_rng(9).permutation(len(mesh.faces))
     plain = sphere_map(*mesh, method=method)
-    other = sphere_map(mesh.vertices, mesh.faces[order], method=method)
-    assert_same_areas(plain, other, order)
-    assert np.abs(plain.positions - other.positions).max() < 1e-5
+    reordered = sphere_map(mesh.vertices, mesh.faces[order], method=method)
+    assert_same_areas(plain, reordered, order)
+    assert np.abs(plain.positions - reordered.positions).max() < 1e-5
 
 
 @sphere_methods

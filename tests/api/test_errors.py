@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Exceptions and warnings as data: a program need not read what they say in words."""
+"""Exceptions and warnings as data: no program need read their messages."""
 
 import pickle
 import re
@@ -49,12 +49,16 @@ def untangle(image, **options):
     return lambda: authalic.untangle(SHEET, image, **options)
 
 
-def by_points(ours, theirs, source=BALL, target=BALL):
-    return lambda: authalic.register_spheres(source, target, source_landmarks=ours, target_landmarks=theirs)
+def by_points(source_landmarks, target_landmarks, source=BALL, target=BALL):
+    return lambda: authalic.register_spheres(
+        source, target, source_landmarks=source_landmarks, target_landmarks=target_landmarks
+    )
 
 
-def by_curves(ours, theirs, source=BALL, target=BALL):
-    return lambda: authalic.register_hyperbolic(source, target, source_curves=ours, target_curves=theirs)
+def by_curves(source_curves, target_curves, source=BALL, target=BALL):
+    return lambda: authalic.register_hyperbolic(
+        source, target, source_curves=source_curves, target_curves=target_curves
+    )
 
 
 def facts(kind, indices=(), count=None, *, side=None, curve=None, second_curve=None):
@@ -186,8 +190,8 @@ def test_every_kind_has_a_meaning(kinds):
 
 def reversed_curve():
     pair = curves.balls(6)
-    theirs = [pair.target_curves[0][::-1], *pair.target_curves[1:]]
-    return curves.register(pair._replace(target_curves=theirs))
+    target_curves = [pair.target_curves[0][::-1], *pair.target_curves[1:]]
+    return curves.register(pair._replace(target_curves=target_curves))
 
 
 def test_a_warning_is_its_message_with_facts():

@@ -22,7 +22,7 @@ SLITS = {
 
 
 def squares(columns, rows, is_kept=lambda i, j: True):
-    """Some squares of a flat grid, each of two triangles."""
+    """The squares of a flat grid that are kept, each as two triangles."""
     kept = [(i, j) for j in range(rows) for i in range(columns) if is_kept(i, j)]
     corners = [((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)) for i, j in kept]
     places = sorted({corner for square in corners for corner in square})
@@ -53,23 +53,23 @@ def ragged(seed):
 
 
 def largest(kept):
-    """Whether a square is in the largest connected part."""
+    """Whether each square is in the largest component."""
     left, parts = set(zip(*np.nonzero(kept), strict=False)), []
     while left:
         open_squares = {left.pop()}
-        part = set(open_squares)
+        component = set(open_squares)
         while open_squares:
             beside = {(i + a, j + b) for i, j in open_squares for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))}
             open_squares = beside & left
             left -= open_squares
-            part |= open_squares
-        parts.append(part)
+            component |= open_squares
+        parts.append(component)
     most = max(parts, key=len)
     return lambda i, j: (i, j) in most
 
 
 def outline_edges(faces):
-    """The directed edges of one face only."""
+    """The directed edges that have one face only."""
     edges = {(int(f[k]), int(f[(k + 1) % 3])) for f in faces for k in range(3)}
     return np.array([edge for edge in edges if edge[::-1] not in edges])
 
@@ -85,10 +85,10 @@ def side(a, b, c):
 
 
 def crossings(uv, faces):
-    """Pairs of edges of the outline that meet elsewhere than in a common corner."""
+    """Pairs of edges of the outline that meet at more than a common corner."""
     edges = outline_edges(faces)
     low, high = uv[edges].min(1), uv[edges].max(1)
-    found = []
+    crossing = []
     for k, (a, b) in enumerate(edges):
         near = np.all((low[k + 1 :] <= high[k]) & (high[k + 1 :] >= low[k]), axis=1)
         for c, d in edges[k + 1 :][near]:
@@ -96,8 +96,8 @@ def crossings(uv, faces):
                 continue
             p, q, r, s = uv[[a, b, c, d]]
             if side(p, q, r) * side(p, q, s) <= 0 and side(r, s, p) * side(r, s, q) <= 0:
-                found.append((a, b, c, d))
-    return found
+                crossing.append((a, b, c, d))
+    return crossing
 
 
 def figures(vertices, result):
@@ -131,8 +131,8 @@ def energy_gradient(vertices, faces, uv, weight):
     by_q = by_second / height[:, None]
     by_p = by_first / base[:, None] - by_q * (along / base)[:, None]
     gradient = np.zeros_like(uv)
-    for k, part in enumerate((-by_p - by_q, by_p, by_q)):
-        np.add.at(gradient, faces[:, k], part)
+    for k, slope in enumerate((-by_p - by_q, by_p, by_q)):
+        np.add.at(gradient, faces[:, k], slope)
     return energy.sum(), gradient
 
 
@@ -192,7 +192,7 @@ def test_converged_maps_are_stationary(make, weight):
     vertices, faces = np.asarray(mesh[0], float), np.asarray(result.faces)
     uv = at_its_best_size(vertices, faces, result.uv, weight)
     energy, gradient = energy_gradient(vertices, faces, uv, weight)
-    # no motion of the size of an edge gains a noticeable part of the energy
+    # no motion by an edge length gains a noticeable part of the energy
     edge = np.sqrt(1 / len(faces))
     assert np.abs(gradient).max() * edge < 1e-4 * energy
 
@@ -222,7 +222,7 @@ def test_holes_stay_open_and_free():
 
 @pytest.mark.parametrize("rings", [20, 60])
 def test_long_tubes_come_to_an_end(rings):
-    """Conformal maps of them collapse, so the map to the disk has to be the start."""
+    """Their conformal maps collapse, so the map to the disk has to be the start."""
     angle = np.arange(8) * np.pi / 4
     vertices = [(np.cos(a), np.sin(a), 0.8 * ring) for ring in range(rings) for a in angle]
     faces = []
@@ -259,8 +259,8 @@ def test_noise_and_rotations_move_nothing(weight):
     turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
     turn *= np.sign(np.linalg.det(turn))
     first = authalic.disk_map(vertices, faces, boundary="free", angle_weight=weight).uv
-    for other in (vertices + 1e-12 * random.normal(size=vertices.shape), vertices @ turn.T):
-        again = authalic.disk_map(other, faces, boundary="free", angle_weight=weight).uv
+    for moved in (vertices + 1e-12 * random.normal(size=vertices.shape), vertices @ turn.T):
+        again = authalic.disk_map(moved, faces, boundary="free", angle_weight=weight).uv
         assert np.abs(again - first).max() < 1e-6
 
 

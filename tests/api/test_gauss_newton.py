@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What the default method promises: far smaller area errors, no fold on any shape, areas against angles."""
+"""The promises of the default method: small area errors, no fold on any shape, areas against angles."""
 
 import json
 import time
@@ -13,7 +13,7 @@ from . import meshes, oracle, random_checks, random_meshes, real_meshes
 from .test_runs import bumpy_square
 
 DISK_FACTOR, SPHERE_FACTOR = 30, 100
-"""By what E_A is smaller than after the papers' 50 and 100 iterations, where these fold nothing."""
+"""The factors by which E_A is smaller than after the papers' 50 and 100 iterations without folds."""
 
 
 def fine_capsule(aspect, around=24):
@@ -39,7 +39,7 @@ def horned(sharpness, length, level=5):
 
 
 def graded(areas, level=4):
-    """A ball on which vertices are drawn towards a pole, so that face areas differ by a factor of `areas`."""
+    """A ball on which vertices are drawn toward a pole, so that face areas differ by a factor of `areas`."""
     mesh = meshes.ball(level)
     power = np.linspace(1, 12, 200)
     spread = [ratio_of(drawn(mesh, p)) for p in power]
@@ -79,19 +79,21 @@ FINE_SPHERES = {
 @pytest.mark.parametrize("name", FINE_DISKS)
 def test_disks_are_far_more_exact_than_by_conjugate_gradients(name):
     mesh = FINE_DISKS[name]
-    ours, theirs = (authalic.disk_map(*mesh, method=m) for m in ("gauss_newton", "conjugate_gradient"))
-    oracle.assert_disk_embedding(ours)
-    energy, papers = (oracle.authalic_energy(r.uv, r.faces, oracle.face_areas(*mesh)) for r in (ours, theirs))
+    default, published = (authalic.disk_map(*mesh, method=m) for m in ("gauss_newton", "conjugate_gradient"))
+    oracle.assert_disk_embedding(default)
+    energy, papers = (
+        oracle.authalic_energy(r.uv, r.faces, oracle.face_areas(*mesh)) for r in (default, published)
+    )
     assert energy <= papers / DISK_FACTOR
 
 
 @pytest.mark.parametrize("name", FINE_SPHERES)
 def test_spheres_are_far_more_exact_than_by_gradient_descent(name):
     mesh = FINE_SPHERES[name]
-    ours, theirs = (authalic.sphere_map(*mesh, method=m) for m in ("gauss_newton", "gradient_descent"))
-    oracle.assert_sphere_embedding(ours)
+    default, published = (authalic.sphere_map(*mesh, method=m) for m in ("gauss_newton", "gradient_descent"))
+    oracle.assert_sphere_embedding(default)
     targets = oracle.face_areas(*mesh)
-    energy, papers = (oracle.sphere_energy(r.positions, r.faces, targets) for r in (ours, theirs))
+    energy, papers = (oracle.sphere_energy(r.positions, r.faces, targets) for r in (default, published))
     assert energy <= papers / SPHERE_FACTOR
 
 
@@ -105,7 +107,7 @@ def test_the_tolerance_is_that_of_the_deviation_of_the_area_ratio(tolerance):
 
 
 def test_a_limit_of_iterations_is_kept():
-    """Beyond it there are the steps of the start and those that unfold it."""
+    """Not counted are the steps of the start and the steps that unfold it."""
     for limit in (0, 1, 3):
         disk = authalic.disk_map(*meshes.DISKS["rough_cap"], max_iterations=limit)
         sphere = authalic.sphere_map(*meshes.SPHERES["bumpy_ball"], max_iterations=limit)
@@ -167,7 +169,7 @@ def test_closed_surfaces_with_tiny_faces_are_mapped(ratio):
 @pytest.mark.parametrize("boundary", ["sliding", "arc_length"])
 @pytest.mark.parametrize("power", [2, 4, 7])
 def test_disks_with_tiny_faces_are_mapped(power, boundary):
-    """Rings drawn towards the centre: 1e7 and more between the largest and the smallest face at power 4."""
+    """Rings drawn toward the center: 1e7 and more between the largest and the smallest face at power 4."""
     mesh = meshes.bumpy_cap(20, 40, noise=0)
     radius = np.hypot(*mesh.vertices[:, :2].T)[:, None]
     points = np.hstack([mesh.vertices[:, :2] * radius ** (power - 1), mesh.vertices[:, 2:] * radius**power])
@@ -238,11 +240,11 @@ def test_a_flat_disk_stays_what_it_is_at_any_weight():
 
 
 SPEEDY = 1.0
-"""Seconds after which a cancelled call has returned: 0.2 are promised, the rest is for a busy machine."""
+"""Seconds within which a cancelled call returns: 0.2 are promised, the rest is for a busy machine."""
 
 
 def cancelled_after(seconds, call, mesh):
-    """How the call ended that was told to stop at its first report after so many seconds, and how soon."""
+    """The outcome of a call that is cancelled at its first report after so many seconds, and its delay."""
     began, asked = time.perf_counter(), []
 
     def progress(fraction, message):
@@ -324,31 +326,31 @@ def test_the_number_of_threads_changes_no_bit(run_python):
 
 
 MISSED_DISKS = {"hand_53054": 10}
-"""Where the factor is not reached: the one that is."""
+"""The factors of meshes that do not reach the general one."""
 
 
 @real_meshes.each("disk")
 def test_real_disks_are_far_more_exact_than_by_conjugate_gradients(path):
     mesh = real_meshes.load(path)
-    ours = authalic.disk_map(*mesh)
-    oracle.assert_disk_embedding(ours)
-    theirs = authalic.disk_map(*mesh, method="conjugate_gradient", boundary="arc_length")
-    factor = theirs.distortion.authalic_energy / ours.distortion.authalic_energy
-    print(f"{path.stem}: E_A {ours.distortion.authalic_energy:.2e}, {factor:.0f} times smaller")
+    default = authalic.disk_map(*mesh)
+    oracle.assert_disk_embedding(default)
+    published = authalic.disk_map(*mesh, method="conjugate_gradient", boundary="arc_length")
+    factor = published.distortion.authalic_energy / default.distortion.authalic_energy
+    print(f"{path.stem}: E_A {default.distortion.authalic_energy:.2e}, {factor:.0f} times smaller")
     assert factor >= MISSED_DISKS.get(path.stem, DISK_FACTOR)
 
 
 @real_meshes.each("sphere")
 def test_real_spheres_are_far_more_exact_than_by_gradient_descent(path):
     mesh = real_meshes.load(path)
-    ours = authalic.sphere_map(*mesh)
-    oracle.assert_sphere_embedding(ours)
-    theirs = authalic.sphere_map(*mesh, method="gradient_descent", unfold=False)
-    factor = theirs.distortion.authalic_energy / ours.distortion.authalic_energy
-    print(f"{path.stem}: E_A {ours.distortion.authalic_energy:.2e}, {factor:.0f} times smaller")
-    assert factor >= SPHERE_FACTOR or len(theirs.distortion.folded)
+    default = authalic.sphere_map(*mesh)
+    oracle.assert_sphere_embedding(default)
+    published = authalic.sphere_map(*mesh, method="gradient_descent", unfold=False)
+    factor = published.distortion.authalic_energy / default.distortion.authalic_energy
+    print(f"{path.stem}: E_A {default.distortion.authalic_energy:.2e}, {factor:.0f} times smaller")
+    assert factor >= SPHERE_FACTOR or len(published.distortion.folded)
     if path.stem == "david_10671":
-        assert ours.distortion.authalic_energy <= 1e-5
+        assert default.distortion.authalic_energy <= 1e-5
 
 
 def closed_and_valid(path):

@@ -81,11 +81,11 @@ def test_filling_changes_nothing_without_holes():
 
 def test_densities_hold_on_a_surface_with_holes():
     mesh = HOLED["plate"]
-    centre = mesh.vertices[mesh.faces].mean(axis=1)
-    density = oracle.face_areas(*mesh) * np.where(centre[:, 0] > 0.5, 3.0, 1.0)
+    center = mesh.vertices[mesh.faces].mean(axis=1)
+    density = oracle.face_areas(*mesh) * np.where(center[:, 0] > 0.5, 3.0, 1.0)
     result = authalic.disk_map(*mesh, fill_holes=True, density=density, max_iterations=300)
     assert_embedding(result)
-    image, dense = oracle.signed_areas(result.uv, mesh.faces), centre[:, 0] > 0.5
+    image, dense = oracle.signed_areas(result.uv, mesh.faces), center[:, 0] > 0.5
     assert image[dense].sum() / image.sum() == pytest.approx(density[dense].sum() / density.sum(), rel=0.02)
 
 

@@ -15,7 +15,7 @@ CAP = meshes.bumpy_cap()
 
 
 def refused(vertices, faces, words, call=authalic.disk_map, **options):
-    """The elements that the MeshError names and their number."""
+    """The elements that the MeshError names, and their number."""
     with pytest.raises(authalic.MeshError, match=words) as caught:
         call(vertices, faces, **options)
     assert str(caught.value).isprintable()

@@ -142,14 +142,14 @@ def spheres_of_any_shape(draw):
     for _ in range(draw(st.integers(0, 14))):
         chosen = draw(st.integers(0, len(faces) - 1))
         a, b, c = faces[chosen]
-        other = next(k for k, face in enumerate(faces) if k != chosen and {a, b} <= set(face))
-        d = next(v for v in faces[other] if v not in (a, b))
+        neighbor = next(k for k, face in enumerate(faces) if k != chosen and {a, b} <= set(face))
+        d = next(v for v in faces[neighbor] if v not in (a, b))
         joined = any({c, d} <= set(face) for face in faces)
         if joined or draw(st.booleans()):
             faces[chosen : chosen + 1] = [[a, b, n], [b, c, n], [c, a, n]]
             n += 1
         else:
-            faces[chosen], faces[other] = [c, a, d], [d, b, c]
+            faces[chosen], faces[neighbor] = [c, a, d], [d, b, c]
     return draw(arrays.arrays(float, (n, 3), elements=st.integers(-9, 9).map(float))), np.array(faces)
 
 

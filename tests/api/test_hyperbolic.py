@@ -100,26 +100,26 @@ def test_the_result_is_a_registration_with_more(result):
 
 
 def test_a_registration_by_points_has_no_certificates():
-    found = authalic.register_spheres(BALL, BALL, source_landmarks=[0, 9], target_landmarks=[0, 9])
-    assert found.certificates is None
-    assert (found.warnings, found.energies) == ([], [])
+    registration = authalic.register_spheres(BALL, BALL, source_landmarks=[0, 9], target_landmarks=[0, 9])
+    assert registration.certificates is None
+    assert (registration.warnings, registration.energies) == ([], [])
 
 
 def test_curves_are_taken_as_any_sequence_of_integers(result):
     kinds = (list, tuple, lambda c: np.array(c, np.int32), lambda c: np.array(c, np.uint64)[::1])
     given = [kind(curve.tolist()) for kind, curve in zip(kinds, PAIR.source_curves, strict=True)]
-    found = curves.register(PAIR._replace(source_curves=tuple(given)))
-    assert np.array_equal(found.positions, result.positions)
+    registration = curves.register(PAIR._replace(source_curves=tuple(given)))
+    assert np.array_equal(registration.positions, result.positions)
 
 
 def test_surfaces_are_taken_in_any_order_and_precision(result):
     source = np.asfortranarray(PAIR.source.vertices), np.asfortranarray(PAIR.source.faces.astype(np.int32))
-    found = curves.register(PAIR._replace(source=source))
-    assert np.array_equal(found.positions, result.positions)
+    registration = curves.register(PAIR._replace(source=source))
+    assert np.array_equal(registration.positions, result.positions)
 
 
 def test_the_arguments_are_left_as_they_are():
-    before = [np.array(part) for part in (*PAIR.source, *PAIR.target, *PAIR.source_curves)]
+    before = [np.array(array) for array in (*PAIR.source, *PAIR.target, *PAIR.source_curves)]
     curves.register(PAIR)
     for old, new in zip(before, (*PAIR.source, *PAIR.target, *PAIR.source_curves), strict=True):
         assert np.array_equal(old, new)
@@ -141,8 +141,8 @@ def refused(mesh, bad, side, good=GOOD, other=None):
 
 
 def outward(mesh, start, used):
-    """A path of four vertices from one on, through vertices that no curve uses."""
-    around, path = curves.neighbours(mesh.faces), [start]
+    """A path of four vertices from `start`, through vertices that no curve uses."""
+    around, path = curves.neighbors(mesh.faces), [start]
     while len(path) < 4:
         last = [v for v in around[path[-1]] if v not in used and v not in path]
         path.append(max(last, key=lambda v: np.linalg.norm(mesh.vertices[v] - mesh.vertices[start])))
@@ -219,8 +219,8 @@ def test_curves_stay_clear_of_the_boundary(side):
     good = curves.drawn(mesh, LINES)
     rim = next(iter(authalic.cut(*mesh))).boundary_loops[0].tolist()
     used = {v for curve in good for v in curve}
-    towards = outward(mesh, rim[0], used | set(rim))
-    for bad, words in ((towards[::-1], f"vertex {rim[0]}"), (rim[:4], "4 vertices")):
+    from_rim = outward(mesh, rim[0], used | set(rim))
+    for bad, words in ((from_rim[::-1], f"vertex {rim[0]}"), (rim[:4], "4 vertices")):
         error = refused(mesh, [good[0], bad, good[2]], side, good=good)
         assert "curve 1 meets the boundary" in str(error)
         assert words in str(error)
@@ -262,7 +262,10 @@ def test_a_bad_surface_is_a_mesh_error_that_names_it(name, mesh, words):
     heard = []
     with pytest.raises(authalic.MeshError, match=words) as caught:
         authalic.register_hyperbolic(
-            *meshes_given, source_curves=GOOD, target_curves=GOOD, progress=lambda *at: heard.append(at)
+            *meshes_given,
+            source_curves=GOOD,
+            target_curves=GOOD,
+            progress=lambda *report: heard.append(report),
         )
     assert name in str(caught.value)
     assert heard == []
@@ -271,10 +274,10 @@ def test_a_bad_surface_is_a_mesh_error_that_names_it(name, mesh, words):
 def test_mirrored_surfaces_are_refused():
     """A map that keeps the orientation would have to take every curve around the others."""
     source = meshes.bumpy_ball(4)
-    found = curves.drawn(source, curves.arcs(6))
+    lines = curves.drawn(source, curves.arcs(6))
     target = meshes.Mesh(source.vertices * [-1, 1, 1], source.faces[:, ::-1])
     with pytest.raises(authalic.MeshError, match="mirror"):
-        authalic.register_hyperbolic(source, target, source_curves=found, target_curves=found)
+        authalic.register_hyperbolic(source, target, source_curves=lines, target_curves=lines)
 
 
 @pytest.mark.parametrize(

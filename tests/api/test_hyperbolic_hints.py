@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What is told, refused or decided where curves by themselves do not say how surfaces lie over each other."""
+"""Warnings, refusals and choices where curves alone do not say how surfaces lie over each other."""
 
 import numpy as np
 import pytest
@@ -25,9 +25,9 @@ def test_a_curve_that_halves_the_surface_leaves_both_halves_where_they_are(seed)
     target = meshes.Mesh(SPHERE.vertices + noise, SPHERE.faces)
     around = equator(SPHERE)
     for path in (around, around[::-1]):
-        found = curves.register(curves.CurvePair(SPHERE, target, [around], [path]))
-        assert (found.positions * SPHERE.vertices).sum(axis=1).min() > 0.8
-        assert len(found.certificates.folded) == 0
+        registration = curves.register(curves.CurvePair(SPHERE, target, [around], [path]))
+        assert (registration.positions * SPHERE.vertices).sum(axis=1).min() > 0.8
+        assert len(registration.certificates.folded) == 0
 
 
 def test_a_curve_inside_a_ring_on_one_surface_and_outside_on_the_other_is_refused():
@@ -44,9 +44,9 @@ def test_a_curve_inside_a_ring_on_one_surface_and_outside_on_the_other_is_refuse
 def test_open_surfaces_that_look_to_opposite_sides_are_told():
     mesh = curves.opened(SPHERE, [[0, 0, -1]], 0.2)
     lines = curves.drawn(mesh, [[[1, 0, 1], [1, 0.5, 1]], [[-1, 0, 1], [-1, 0.4, 0.8]]])
-    other = meshes.Mesh(mesh.vertices, mesh.faces[:, ::-1])
-    found = curves.register(curves.CurvePair(mesh, other, lines, lines))
-    assert "opposite sides" in found.warnings[0]
+    turned = meshes.Mesh(mesh.vertices, mesh.faces[:, ::-1])
+    registration = curves.register(curves.CurvePair(mesh, turned, lines, lines))
+    assert "opposite sides" in registration.warnings[0]
     assert curves.register(curves.CurvePair(mesh, mesh, lines, lines)).warnings == []
 
 
@@ -54,7 +54,7 @@ def test_limbs_that_no_curve_holds_are_told():
     capsule = meshes.capsule(40, 12)
     capsule = capsule if isinstance(capsule, meshes.Mesh) else capsule[0]
     mesh = meshes.Mesh(capsule.vertices * [1, 1, 5], capsule.faces)
-    around = curves.neighbours(mesh.faces)
+    around = curves.neighbors(mesh.faces)
     top = np.argsort(-mesh.vertices[:, 2])
     paths, used = [], set()
     for start in map(int, top[1:]):
@@ -72,10 +72,10 @@ def test_limbs_that_no_curve_holds_are_told():
             used.update(paths[-1])
     pair = curves.CurvePair(mesh, mesh, paths, paths)
     try:
-        found = curves.register(pair)
+        registration = curves.register(pair)
     except authalic.SolverError as error:
         assert "without folds" in str(error)
     else:
-        assert len(found.certificates.folded) == 0
-        moved = abs(found.positions - mesh.vertices).max()
-        assert moved < 0.5 or any("tenfold" in words for words in found.warnings)
+        assert len(registration.certificates.folded) == 0
+        moved = abs(registration.positions - mesh.vertices).max()
+        assert moved < 0.5 or any("tenfold" in words for words in registration.warnings)

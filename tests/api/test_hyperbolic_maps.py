@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Registrations by curves are homeomorphisms with the curves in place, whatever surfaces and curves are."""
+"""Registrations by curves are homeomorphisms with the curves in place, for all surfaces and curves."""
 
 import numpy as np
 import pytest
@@ -15,8 +15,8 @@ EGG = meshes.radial(lambda x, y, z: 1 + 0.3 * z + 0.1 * np.cos(3 * x), 4)
 
 
 @pytest.fixture(scope="module")
-def found():
-    """Pairs with their registrations, by the number of curves, each made once."""
+def registration_of():
+    """A function from the number of curves to a pair and its registration, each computed once."""
     made = {}
 
     def get(count):
@@ -32,8 +32,8 @@ def found():
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_spheres_with_open_curves(found, count):
-    pair, result = found(count)
+def test_spheres_with_open_curves(registration_of, count):
+    pair, result = registration_of(count)
     curves.assert_registration(result, pair)
     curves.assert_unfolded_on_sphere(result, pair)
     assert result.warnings == []
@@ -60,9 +60,9 @@ def test_rough_surfaces(name):
         curves.assert_registration(result, way)
 
 
-def test_a_vertex_in_two_faces_is_at_one_place(found):
+def test_a_vertex_in_two_faces_is_at_one_place(registration_of):
     """Every vertex of the target has one preimage, so the images of all source vertices keep apart."""
-    _, result = found(6)
+    _, result = registration_of(6)
     apart = np.unique(result.positions.round(12), axis=0)
     assert len(apart) == len(result.positions)
 
@@ -72,8 +72,8 @@ def test_a_vertex_in_two_faces_is_at_one_place(found):
 
 @pytest.mark.parametrize("scale", [1.0, 1e8, 1e-8])
 @pytest.mark.parametrize("count", [1, 2, 6])
-def test_moved_and_scaled_surfaces_have_the_same_map(found, scale, count):
-    pair, result = found(count)
+def test_moved_and_scaled_surfaces_have_the_same_map(registration_of, scale, count):
+    pair, result = registration_of(count)
     turn, _ = np.linalg.qr(np.random.default_rng(4).standard_normal((3, 3)))
     turn *= np.sign(np.linalg.det(turn))
     place = lambda mesh: meshes.Mesh(scale * (mesh.vertices @ turn + [3.0, -2.0, 5.0]), mesh.faces)  # noqa: E731
@@ -85,15 +85,15 @@ def test_moved_and_scaled_surfaces_have_the_same_map(found, scale, count):
 
 
 @pytest.mark.parametrize("scale", [2.0**300, 2.0**-300])
-def test_a_power_of_two_changes_no_bit(found, scale):
-    pair, result = found(4)
+def test_a_power_of_two_changes_no_bit(registration_of, scale):
+    pair, result = registration_of(4)
     source, target = (meshes.Mesh(scale * mesh.vertices, mesh.faces) for mesh in pair[:2])
     assert np.array_equal(curves.register(pair._replace(source=source)).positions, result.positions)
     assert np.array_equal(curves.register(pair._replace(target=target)).positions, scale * result.positions)
 
 
 def permuted(mesh, paths, seed):
-    """The same surface with its vertices and faces in another order, and the new place of each vertex."""
+    """The surface with its vertices and faces in another order, and the new place of each vertex."""
     random = np.random.default_rng(seed)
     order = random.permutation(len(mesh.vertices))
     place = np.argsort(order)
@@ -102,52 +102,52 @@ def permuted(mesh, paths, seed):
 
 
 @pytest.mark.parametrize("count", [1, 2, 6])
-def test_the_order_of_vertices_and_faces_does_not_matter(found, count):
-    pair, result = found(count)
-    source, ours, place = permuted(pair.source, pair.source_curves, 8)
-    target, theirs, _ = permuted(pair.target, pair.target_curves, 9)
-    there = curves.register(curves.CurvePair(source, target, ours, theirs))
+def test_the_order_of_vertices_and_faces_does_not_matter(registration_of, count):
+    pair, result = registration_of(count)
+    source, source_curves, place = permuted(pair.source, pair.source_curves, 8)
+    target, target_curves, _ = permuted(pair.target, pair.target_curves, 9)
+    there = curves.register(curves.CurvePair(source, target, source_curves, target_curves))
     gap = np.linalg.norm(there.positions[place] - result.positions, axis=1)
     if count < 3:
         assert gap.max() < 1e-6
-    # where two edges of a face are split, or two arcs are as long, numbers decide: the discretisation moves
+    # where two edges of a face are split, or two arcs are as long, numbers decide: the discretization moves
     assert gap.mean() < 2e-3 * curves.edge_length(pair.target)
     assert gap.max() < 0.1 * curves.edge_length(pair.target)
 
 
 @pytest.mark.parametrize("count", [4, 6])
-def test_the_order_of_the_curves_hardly_matters(found, count):
-    """Other arcs are cut and other edges split, which is all that may change."""
-    pair, result = found(count)
+def test_the_order_of_the_curves_hardly_matters(registration_of, count):
+    """Only the cuts along arcs and the split edges change."""
+    pair, result = registration_of(count)
     order = np.random.default_rng(1).permutation(count)
     shuffle = lambda paths: [paths[k] for k in order]  # noqa: E731
-    other = pair._replace(
+    reordered = pair._replace(
         source_curves=shuffle(pair.source_curves), target_curves=shuffle(pair.target_curves)
     )
-    gap = np.linalg.norm(curves.register(other).positions - result.positions, axis=1)
+    gap = np.linalg.norm(curves.register(reordered).positions - result.positions, axis=1)
     assert gap.mean() < 0.02 * curves.edge_length(pair.target)
     assert gap.max() < 0.3 * curves.edge_length(pair.target)
 
 
-def test_reversed_pairs_have_the_same_map(found):
-    pair, result = found(4)
-    other = pair._replace(
+def test_reversed_pairs_have_the_same_map(registration_of):
+    pair, result = registration_of(4)
+    turned = pair._replace(
         source_curves=[curve[::-1] for curve in pair.source_curves],
         target_curves=[curve[::-1] for curve in pair.target_curves],
     )
-    gap = np.linalg.norm(curves.register(other).positions - result.positions, axis=1)
+    gap = np.linalg.norm(curves.register(turned).positions - result.positions, axis=1)
     assert gap.mean() < 0.02 * curves.edge_length(pair.target)
 
 
-def test_inside_out_surfaces_have_the_same_map(found):
-    pair, result = found(4)
+def test_inside_out_surfaces_have_the_same_map(registration_of):
+    pair, result = registration_of(4)
     turned = lambda mesh: meshes.Mesh(mesh.vertices, mesh.faces[:, ::-1])  # noqa: E731
     both = curves.register(pair._replace(source=turned(pair.source), target=turned(pair.target)))
     assert np.linalg.norm(both.positions - result.positions, axis=1).mean() < 0.02
     assert both.certificates.folded.tolist() == []
-    one = curves.register(pair._replace(target=turned(pair.target)))
-    assert np.linalg.norm(one.positions - result.positions, axis=1).mean() < 0.02
-    assert one.certificates.folded.tolist() == []
+    half_turned = curves.register(pair._replace(target=turned(pair.target)))
+    assert np.linalg.norm(half_turned.positions - result.positions, axis=1).mean() < 0.02
+    assert half_turned.certificates.folded.tolist() == []
 
 
 # Identity, there and back, data
@@ -167,11 +167,11 @@ def test_a_surface_onto_itself_is_nearly_the_identity(mesh, count):
 
 
 @pytest.mark.parametrize("count", [1, 2, 6])
-def test_the_inverse_leads_back(found, count):
-    pair, result = found(count)
-    back, other = result.inverse(), curves.inverted(pair)
-    curves.assert_located(back, other)
-    curves.assert_curves_meet(back, other)
+def test_the_inverse_leads_back(registration_of, count):
+    pair, result = registration_of(count)
+    back, inverted = result.inverse(), curves.inverted(pair)
+    curves.assert_located(back, inverted)
+    curves.assert_curves_meet(back, inverted)
     # g⁻¹ at the three corners around g(v), weighted as g(v) is
     returned = np.einsum(
         "ik,ikx->ix", result.barycentric, back.positions[result.target_faces[result.triangles]]
@@ -184,16 +184,16 @@ def test_the_inverse_leads_back(found, count):
     assert np.array_equal(again.positions, result.positions)
 
 
-def test_the_inverse_is_about_the_map_of_the_exchanged_surfaces(found):
-    pair, result = found(6)
+def test_the_inverse_is_about_the_map_of_the_exchanged_surfaces(registration_of):
+    pair, result = registration_of(6)
     gap = np.linalg.norm(
         curves.register(curves.inverted(pair)).positions - result.inverse().positions, axis=1
     )
     assert gap.mean() < curves.edge_length(pair.source)
 
 
-def test_data_are_carried_along(found):
-    pair, result = found(4)
+def test_data_are_carried_along(registration_of):
+    pair, result = registration_of(4)
     assert np.abs(result.pull(pair.target.vertices) - result.positions).max() < 1e-14
     labels = np.arange(len(pair.target.vertices))
     nearest = result.pull(labels, nearest=True)
@@ -207,15 +207,15 @@ def test_data_are_carried_along(found):
     assert difference < 1e-14
 
 
-def test_a_morph_begins_and_ends_at_the_surfaces(found):
-    pair, result = found(4)
+def test_a_morph_begins_and_ends_at_the_surfaces(registration_of):
+    pair, result = registration_of(4)
     start, end = (authalic.homotopy(pair.source.vertices, result, t) for t in (0.0, 1.0))
     assert np.abs(start - pair.source.vertices).max() < 1e-14
     assert np.abs(end - result.positions).max() < 1e-14
 
 
-def test_the_figures_are_those_of_the_map_in_space(found):
-    pair, result = found(6)
+def test_the_figures_are_those_of_the_map_in_space(registration_of):
+    pair, result = registration_of(6)
     areas = [oracle.face_areas(v, pair.source.faces) for v in (result.positions, pair.source.vertices)]
     ratio = areas[0] / areas[0].sum() * areas[1].sum() / areas[1]
     assert np.allclose(result.area_ratio, ratio, rtol=1e-9)
@@ -233,8 +233,8 @@ HOLES = {"one": [SOUTH], "two": [SOUTH, EAST], "three": [SOUTH, EAST, WEST]}
 NORTH_LINES = [[[0.5, 0.1, 0.8], [0.1, 0.5, 0.9]], [[-0.4, -0.4, 0.8], [0.2, -0.5, 0.9]]]
 
 
-def open_pair(centres, lines=NORTH_LINES, cosine=0.93):
-    source, target = (curves.opened(mesh, centres, cosine) for mesh in (COARSE, EGG))
+def open_pair(centers, lines=NORTH_LINES, cosine=0.93):
+    source, target = (curves.opened(mesh, centers, cosine) for mesh in (COARSE, EGG))
     return curves.CurvePair(source, target, curves.drawn(source, lines), curves.drawn(target, lines))
 
 
@@ -245,12 +245,12 @@ def boundary(mesh):
 
 def assert_boundary_on_boundary(result, pair):
     """The boundary's vertices lie on the target's boundary, each loop once around one of the other's."""
-    theirs = boundary(pair.target)
+    partners = boundary(pair.target)
     seen = set()
     for loop in boundary(pair.source):
         gaps = [
-            curves.on_polyline(result.positions[loop], pair.target.vertices[np.append(other, other[0])])
-            for other in theirs
+            curves.on_polyline(result.positions[loop], pair.target.vertices[np.append(partner, partner[0])])
+            for partner in partners
         ]
         which = min(range(len(gaps)), key=lambda k: gaps[k][0].max())
         gap, place = gaps[which]
@@ -258,22 +258,22 @@ def assert_boundary_on_boundary(result, pair):
         steps = np.diff(np.append(place, place[0]))
         assert (steps < 0).sum() == 1
         seen.add(which)
-    assert len(seen) == len(theirs)
+    assert len(seen) == len(partners)
 
 
 @pytest.mark.parametrize("lines", [0, 1, 2])
-@pytest.mark.parametrize("centres", HOLES.values(), ids=HOLES)
-def test_boundary_loops_are_features(centres, lines):
-    pair = open_pair(centres, NORTH_LINES[:lines])
+@pytest.mark.parametrize("centers", HOLES.values(), ids=HOLES)
+def test_boundary_loops_are_features(centers, lines):
+    pair = open_pair(centers, NORTH_LINES[:lines])
     result = curves.register(pair)
-    curves.assert_registration(result, pair, lines + len(centres))
+    curves.assert_registration(result, pair, lines + len(centers))
     assert_boundary_on_boundary(result, pair)
     # no hole lands in another's place
-    for centre in centres:
+    for center in centers:
         rim = np.linalg.norm(
-            curves.directions(pair.source) - np.array(centre) / np.linalg.norm(centre), axis=1
+            curves.directions(pair.source) - np.array(center) / np.linalg.norm(center), axis=1
         )
-        assert np.dot(result.positions[rim.argmin()], centre) > 0
+        assert np.dot(result.positions[rim.argmin()], center) > 0
 
 
 @pytest.mark.parametrize("turn", [0, 7])
@@ -312,7 +312,7 @@ def test_a_disk_onto_a_disk_without_curves():
 
 
 def ringed(cosine=0.35, lines=NORTH_LINES, source=COARSE, target=EGG):
-    """Two surfaces with a closed curve around the south and open ones in the north."""
+    """Two surfaces with a closed curve around the south and open curves in the north."""
     rings = [curves.ring(mesh, SOUTH, cosine) for mesh in (source, target)]
     paths = [
         [np.append(ring, ring[0]), *(curves.along(mesh, line) for line in lines)]
@@ -342,8 +342,8 @@ def test_a_closed_curve_on_closed_surfaces(lines):
     curves.assert_closed_curve_meets(result, pair, 0)
     curves.assert_unfolded_on_sphere(result, pair)
     # inside to inside
-    ours = curves.directions(pair.source) @ SOUTH > 0.35
-    assert (result.positions[ours][:, 2] < 0).mean() > 0.99
+    inside = curves.directions(pair.source) @ SOUTH > 0.35
+    assert (result.positions[inside][:, 2] < 0).mean() > 0.99
 
 
 def test_a_closed_curve_has_neither_start_nor_direction():
@@ -353,8 +353,8 @@ def test_a_closed_curve_has_neither_start_nor_direction():
     loop = first[:-1]
     for step in (1, -1):
         for turn in (0, 5, 11):
-            other = np.roll(loop, turn)[::step]
-            given = pair._replace(source_curves=[np.append(other, other[0]), *others])
+            turned = np.roll(loop, turn)[::step]
+            given = pair._replace(source_curves=[np.append(turned, turned[0]), *others])
             result = curves.register(given)
             assert result.certificates.folded.tolist() == []
             assert np.linalg.norm(result.positions - expected, axis=1).max() < 1e-6
@@ -400,29 +400,32 @@ def test_curves_that_trade_places_fold_nothing_but_strain_the_map():
 
 def beside(mesh, curve, used):
     """A path along a curve, one edge apart."""
-    around = curves.neighbours(mesh.faces)
+    around = curves.neighbors(mesh.faces)
     taken, path = {*curve, *used}, []
     for vertex in curve:
-        for other in around[vertex]:
-            left = np.linalg.det(mesh.vertices[[curve[0], curve[-1], other]]) > 0
-            if left and other not in taken and (not path or other in around[path[-1]]):
-                path.append(other)
-                taken.add(other)
+        for neighbor in around[vertex]:
+            left = np.linalg.det(mesh.vertices[[curve[0], curve[-1], neighbor]]) > 0
+            if left and neighbor not in taken and (not path or neighbor in around[path[-1]]):
+                path.append(neighbor)
+                taken.add(neighbor)
     return path
 
 
 def test_curves_one_edge_apart():
     line = curves.along(FINE, [[1, -0.3, 0.2], [0.3, 1, 0.4]]).tolist()
     parallel = beside(FINE, line, ())
-    around = curves.neighbours(FINE.faces)
+    around = curves.neighbors(FINE.faces)
     assert len(parallel) > 5
     assert sum(any(v in around[w] for w in line) for v in parallel) == len(parallel)
-    other = curves.along(FINE, [[-1, 0.3, -0.2], [-0.3, -1, -0.4]], [*line, *parallel])
-    ours = [line, parallel, other]
+    third = curves.along(FINE, [[-1, 0.3, -0.2], [-0.3, -1, -0.4]], [*line, *parallel])
+    lines = [line, parallel, third]
     for pair in (
-        curves.CurvePair(FINE, FINE, ours, ours),
+        curves.CurvePair(FINE, FINE, lines, lines),
         curves.CurvePair(
-            FINE, meshes.Mesh(FINE.vertices * [1, 1.5, 2], FINE.faces), ours, [line[:-1], parallel[1:], other]
+            FINE,
+            meshes.Mesh(FINE.vertices * [1, 1.5, 2], FINE.faces),
+            lines,
+            [line[:-1], parallel[1:], third],
         ),
     ):
         result = curves.register(pair)
@@ -498,8 +501,8 @@ def simple(path):
 # Options
 
 
-def test_given_spheres_say_how_the_surfaces_lie(found):
-    pair, result = found(6)
+def test_given_spheres_say_how_the_surfaces_lie(registration_of):
+    pair, result = registration_of(6)
     spheres = {
         "source_sphere": curves.directions(pair.source),
         "target_sphere": 7 * curves.directions(pair.target),

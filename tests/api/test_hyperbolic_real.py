@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Registrations of real surfaces by curves, where data are there: AUTHALIC_DATA, or ../shared/data."""
+"""Registrations of real surfaces by curves, if there are data: AUTHALIC_DATA, or ../shared/data."""
 
 import json
 
@@ -24,8 +24,8 @@ OTHER_WAY_ROUND = (0, 4)
 
 def sulci(side):
     """The twelve curves of the left or the mirrored right cortex."""
-    found = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
-    return [np.array(path) for path in found[side]]
+    stored = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
+    return [np.array(path) for path in stored[side]]
 
 
 def cortex(side, field):
@@ -33,17 +33,21 @@ def cortex(side, field):
 
 
 def hcp(turned):
-    """Left onto mirrored right midthickness with the five curves, two of them turned or all as stored."""
-    (left, ours), (right, theirs) = (
+    """Left onto mirrored right midthickness by five curves, two of them reversed or all as stored."""
+    (left, left_arrays), (right, right_arrays) = (
         surface(f"brain/hcp_s1200_{side}_32492.npz", "V_midthickness", side == "R") for side in "LR"
     )
     step = lambda k: -1 if k in turned else 1  # noqa: E731
-    paths = [theirs[name][:: step(k)] for k, name in enumerate(HCP_CURVES)]
-    return curves.CurvePair(left, right, [ours[name] for name in HCP_CURVES], paths), ours, theirs
+    paths = [right_arrays[name][:: step(k)] for k, name in enumerate(HCP_CURVES)]
+    return (
+        curves.CurvePair(left, right, [left_arrays[name] for name in HCP_CURVES], paths),
+        left_arrays,
+        right_arrays,
+    )
 
 
 def assert_sound(result, pair, closed=()):
-    """No fold, and the curves where they belong."""
+    """No fold, and the curves in place."""
     proof = result.certificates
     print(f"{proof}, {result.status}, {result.iterations} iterations, {result.seconds:.1f} s", end=", ")
     print(f"area distortion {np.minimum(result.area_distortion, 10).mean():.3f}", *result.warnings)
@@ -62,13 +66,13 @@ def assert_sound(result, pair, closed=()):
 @pytest.mark.parametrize("field", ["V_white", "V_pial"])
 @pytest.mark.parametrize("count", [4, 6, 10, 12])
 def test_the_left_cortex_onto_the_mirrored_right(field, count):
-    (left, ours), (right, theirs) = cortex("left", field), cortex("right", field)
+    (left, left_arrays), (right, right_arrays) = cortex("left", field), cortex("right", field)
     pair = curves.CurvePair(left, right, sulci("left")[:count], sulci("mirrored_right")[:count])
     result = curves.register(pair)
     assert_sound(result, pair)
     assert result.warnings == []
     assert result.certificates.energy_ratio < 1.1
-    correlation, difference = result.compare(ours["sulc"], theirs["sulc"])
+    correlation, difference = result.compare(left_arrays["sulc"], right_arrays["sulc"])
     print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
     assert correlation > 0.85
 
@@ -103,22 +107,27 @@ def test_a_cortex_onto_itself_is_the_identity(field, count):
 
 
 def test_the_chain_of_arcs_does_not_matter():
-    """Another order of the curves cuts other arcs, which moves the map by the discretisation only."""
+    """Another order of the curves cuts other arcs, which moves the map by the discretization only."""
     (left, _), (right, _) = cortex("left", "V_pial"), cortex("right", "V_pial")
-    ours, theirs = sulci("left")[:6], sulci("mirrored_right")[:6]
+    left_curves, right_curves = sulci("left")[:6], sulci("mirrored_right")[:6]
     order = [3, 1, 4, 0, 5, 2]
-    first = curves.register(curves.CurvePair(left, right, ours, theirs))
-    other = curves.CurvePair(left, right, [ours[k][::-1] for k in order], [theirs[k][::-1] for k in order])
-    away = np.linalg.norm(curves.register(other).positions - first.positions, axis=1)
+    first = curves.register(curves.CurvePair(left, right, left_curves, right_curves))
+    reordered = curves.CurvePair(
+        left, right, [left_curves[k][::-1] for k in order], [right_curves[k][::-1] for k in order]
+    )
+    away = np.linalg.norm(curves.register(reordered).positions - first.positions, axis=1)
     print(f"mean {away.mean():.4f} mm, at most {away.max():.3f} mm")
     assert away.mean() < 0.05
     assert away.max() < 0.6
 
 
 def test_the_spheres_of_the_data_lead_to_the_same_map():
-    (left, ours), (right, theirs) = cortex("left", "V_pial"), cortex("right", "V_pial")
+    (left, left_arrays), (right, right_arrays) = cortex("left", "V_pial"), cortex("right", "V_pial")
     pair = curves.CurvePair(left, right, sulci("left")[:6], sulci("mirrored_right")[:6])
-    spheres = {"source_sphere": ours["V_sphere"], "target_sphere": theirs["V_sphere"] * [-1, 1, 1]}
+    spheres = {
+        "source_sphere": left_arrays["V_sphere"],
+        "target_sphere": right_arrays["V_sphere"] * [-1, 1, 1],
+    }
     given = curves.register(pair, **spheres)
     assert_sound(given, pair)
     away = np.linalg.norm(given.positions - curves.register(pair).positions, axis=1)
@@ -128,11 +137,11 @@ def test_the_spheres_of_the_data_lead_to_the_same_map():
 @pytest.mark.parametrize("turned", [OTHER_WAY_ROUND, ()], ids=["matching_ends", "as_stored"])
 def test_the_left_average_cortex_onto_the_mirrored_right(turned):
     """As stored, two curves run against each other: no fold, but the user is told which."""
-    pair, ours, theirs = hcp(turned)
+    pair, left_arrays, right_arrays = hcp(turned)
     is_loop = [meets(pair, k) for k in range(5)]
     result = curves.register(pair)
     assert_sound(result, pair, closed=[k for k in range(5) if is_loop[k]])
-    correlation, difference = result.compare(ours["sulc_S1200"], theirs["sulc_S1200"])
+    correlation, difference = result.compare(left_arrays["sulc_S1200"], right_arrays["sulc_S1200"])
     print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
     if turned:
         assert correlation > 0.7

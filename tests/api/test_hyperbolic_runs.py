@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""How a registration by curves goes and ends: progress, cancel, Ctrl-C, threads, the slow solvers."""
+"""The course and the end of registrations by curves: progress, cancel, Ctrl-C, threads, slow solvers."""
 
 import json
 import threading
@@ -42,7 +42,7 @@ def test_listening_changes_no_bit():
 
 @pytest.mark.parametrize("last", [0, 1, 2, 3, 5, 8, 13, 21])
 def test_a_false_answer_cancels(last):
-    """A map before the last step may be folded: none is returned, or one that is proved to be sound."""
+    """Maps before the last step may be folded: none is returned, or one that is proved to be sound."""
     calls = []
 
     def progress(fraction, message):
@@ -86,17 +86,17 @@ def test_a_progress_function_may_run_another_map():
 
 
 def test_registrations_run_side_by_side():
-    expected, found = curves.register(SMALL), [None] * 3
+    expected, results = curves.register(SMALL), [None] * 3
 
     def work(k):
-        found[k] = curves.register(SMALL)
+        results[k] = curves.register(SMALL)
 
-    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(found))]
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(results))]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    for result in found:
+    for result in results:
         assert_same_bits(result, expected)
 
 
@@ -183,7 +183,7 @@ def test_the_heat_diffusion_may_stop_at_once_or_at_a_tolerance():
 
 
 def test_the_ricci_flow_leads_to_the_metric_of_newtons_method():
-    """Whichever way the metric was found, the map is about the same."""
+    """The map is about the same with either metric method."""
     flow, newton = curves.register(SMALL, metric="ricci_flow"), curves.register(SMALL)
     curves.assert_registration(flow, SMALL)
     gap = np.linalg.norm(flow.positions - newton.positions, axis=1)

@@ -10,10 +10,10 @@ import authalic
 from . import meshes, real_meshes
 
 NOISE = 1e-12
-"""Of the size of the surface; far below what any scanner sees, far above rounding."""
+"""The noise as a fraction of the surface's size; far below a scanner's error, far above rounding."""
 
 STABLE = 1e-6
-"""How far a vertex may move for it, in units of the image's radius."""
+"""The farthest that noise may move a vertex, in units of the image's radius."""
 
 CLOSED = {name: meshes.SPHERES[name] for name in ("bumpy_ball", "rough_ball")}
 OPEN = {name: meshes.DISKS[name] for name in ("bumpy_cap", "rough_cap")}
@@ -28,9 +28,9 @@ def image_of(mesh, **options):
     return authalic.disk_map(*mesh, **options).uv
 
 
-def turned_onto(image, other):
-    """`image` after the rotation that lays it over `other` best."""
-    u, _, v = np.linalg.svd(image.T @ other)
+def turned_onto(image, goal):
+    """`image` after the rotation that lays it best over `goal`."""
+    u, _, v = np.linalg.svd(image.T @ goal)
     signs = np.ones(image.shape[1])
     signs[-1] = np.sign(np.linalg.det(u @ v))
     return image @ (u * signs) @ v
@@ -59,11 +59,11 @@ def renumbered(mesh):
 
 def assert_one_map(mesh, **options):
     plain = image_of(mesh, **options)
-    for other in (noisy(mesh), rotated(mesh)):
-        moved = image_of(other, **options)
+    for changed in (noisy(mesh), rotated(mesh)):
+        moved = image_of(changed, **options)
         assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
-    other, place = renumbered(mesh)
-    moved = image_of(other, **options)[place]
+    changed, place = renumbered(mesh)
+    moved = image_of(changed, **options)[place]
     assert np.abs(turned_onto(moved, plain) - plain).max() < STABLE
 
 
@@ -77,7 +77,7 @@ def test_noise_rotation_and_numbering_do_not_move_the_map(name, angle_weight, re
 
 
 UNSTABLE = {"bull_6200": (0.0, 1e-3), "cowboyhat_2327": (0.0,)}
-"""Known misses: the horns of the bull move by up to 6e-2, the hat by 2e-6 where areas alone count."""
+"""Known misses: the bull's horns move by up to 6e-2, the hat by 2e-6 if areas alone count."""
 
 
 @weights
@@ -129,7 +129,7 @@ def test_a_tolerance_of_areas_is_met_with_less_shear(name, tolerance):
     deviation = np.sqrt(result.distortion.authalic_energy / full)
     assert result.status == "converged"
     assert len(result.distortion.folded) == 0
-    assert deviation <= 1.02 * tolerance  # the image's area is a little less than the full one
+    assert deviation <= 1.02 * tolerance  # the image's area is a little less than the whole
     even, rigid = call(*mesh), call(*mesh, angle_weight=1.0)
     has_less = result.distortion.angle_distortion_mean < even.distortion.angle_distortion_mean
     # or the least shear of all is that even already
@@ -139,7 +139,7 @@ def test_a_tolerance_of_areas_is_met_with_less_shear(name, tolerance):
 @pytest.mark.parametrize("tolerance", [0.2, 0.3])
 @pytest.mark.parametrize("kind", ["sliding", "free", "rectangle", "sphere"])
 def test_a_wide_tolerance_of_areas_is_made_use_of(kind, tolerance):
-    """Where even a weight of 1 leaves areas within the tolerance, a heavier one has less shear."""
+    """If even a weight of 1 leaves areas within the tolerance, a larger weight has less shear."""
     if kind == "sphere":
         mesh = meshes.bumpy_ball()
         call, full = authalic.sphere_map, 4 * np.pi
@@ -186,7 +186,7 @@ def test_noise_does_not_move_coarse_spheres():
 
 @pytest.mark.parametrize("aspect", [1.0, 2.0, 2 + np.sqrt(3)])
 def test_noise_does_not_change_the_size_of_a_free_outline(aspect):
-    """Nothing jumps where the radius is a power of two."""
+    """Nothing jumps at a radius that is a power of two."""
     mesh = meshes.grid(15, 4, aspect=aspect)
     sizes = []
     for seed in range(6):
@@ -237,8 +237,8 @@ def test_no_weight_within_the_tolerance_has_much_less_shear():
     area = 4 * np.pi
     shear = []
     for weight in (1e-3, 3e-3, 1e-2, 3e-2):
-        other = authalic.sphere_map(vertices, faces, angle_weight=weight).distortion
-        if np.sqrt(other.authalic_energy / area) <= tolerance:
-            shear.append(other.angle_distortion_mean)
+        weighted = authalic.sphere_map(vertices, faces, angle_weight=weight).distortion
+        if np.sqrt(weighted.authalic_energy / area) <= tolerance:
+            shear.append(weighted.angle_distortion_mean)
     assert shear and np.sqrt(result.distortion.authalic_energy / area) <= 1.02 * tolerance
     assert result.distortion.angle_distortion_mean < 1.03 * min(shear)

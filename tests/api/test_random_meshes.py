@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Random sound meshes are mapped without a fold; random spoilt ones are mapped or refused."""
+"""Random sound meshes are mapped without a fold; random spoiled ones are mapped or refused."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from .random_meshes import CLOSED, OPEN, SPOILERS
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN])
 def test_the_generators_keep_their_word(name, seed):
-    """One disk or sphere, no face without area, the size that was asked for."""
+    """One disk or sphere, no face without area, of the requested size."""
     case = random_meshes.sound_case(seed, 200, [name])
     (patch,) = authalic.cut(*case.mesh)
     assert patch.is_disk if case.kind == "disk" else patch.is_closed and patch.genus == 0
@@ -38,13 +38,13 @@ def test_any_options_leave_a_sound_map(seed):
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("spoil", SPOILERS, ids=lambda spoil: spoil.__name__)
-def test_spoilt_meshes_are_mapped_or_refused(spoil, seed):
+def test_spoiled_meshes_are_mapped_or_refused(spoil, seed):
     random_checks.assert_hostile_case(random_meshes.hostile_case(300 + seed, 120, [spoil]))
 
 
 def test_a_case_follows_from_its_seed():
     for make in (random_meshes.sound_case, random_meshes.hostile_case):
-        one, other = make(7), make(7)
-        assert one.name == other.name
-        assert np.array_equal(one.mesh.vertices, other.mesh.vertices, equal_nan=True)
-        assert np.array_equal(one.mesh.faces, other.mesh.faces)
+        first, second = make(7), make(7)
+        assert first.name == second.name
+        assert np.array_equal(first.mesh.vertices, second.mesh.vertices, equal_nan=True)
+        assert np.array_equal(first.mesh.faces, second.mesh.faces)

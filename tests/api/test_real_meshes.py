@@ -101,8 +101,8 @@ def test_the_cortex_is_mapped_better_than_by_freesurfer(side, surface):
     result = authalic.sphere_map(vertices, faces)
     oracle.assert_sphere_embedding(result)
     sphere /= np.linalg.norm(sphere, axis=1)[:, None]
-    theirs = authalic.distortion(vertices, faces, sphere)
-    assert result.distortion.area_ratio_std < 0.2 * theirs.area_ratio_std
+    freesurfer = authalic.distortion(vertices, faces, sphere)
+    assert result.distortion.area_ratio_std < 0.2 * freesurfer.area_ratio_std
 
 
 def test_slivers_are_mapped_soundly_or_given_up():

@@ -21,7 +21,7 @@ def rim_of(mesh):
 
 
 def check(result, mesh):
-    """No folds, and the boundary once around the rectangle."""
+    """No folds, and the boundary runs once around the rectangle."""
     assert len(folded(result.uv, result.faces)) == 0
     assert len(result.distortion.folded) == 0
     (width, height), rim = result.uv.max(axis=0), rim_of(mesh)
@@ -38,7 +38,7 @@ def check(result, mesh):
 
 
 def turned(mesh, seed):
-    """The same surface, turned in space."""
+    """The surface, turned in space."""
     frame, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return meshes.Mesh(mesh.vertices @ frame * 7, mesh.faces)
 

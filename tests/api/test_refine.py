@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Faces split where they keep sphere maps from even areas."""
+"""Sphere maps with `refine`: faces that keep areas uneven are split."""
 
 import numpy as np
 import pytest
@@ -42,11 +42,11 @@ def test_limbs_become_even(refined):
 def test_the_refined_surface_is_the_same_surface(refined):
     vertices, faces, _ = whole(LIMBED, refined)
     refinement, n = refined.refinement, len(LIMBED[0])
-    # 1. Split points halve edges of what was there before them
+    # 1. Split points halve edges that were there before them
     halves = np.arange(len(refinement.parents))[:, None] + n
     assert (refinement.parents < halves).all() and len(refinement.parents) > 0
     np.testing.assert_allclose(vertices[n:], vertices[refinement.parents].mean(axis=1), rtol=0, atol=1e-12)
-    # 2. Parts fill their faces, and look the same way
+    # 2. Parts fill their faces, and have their orientation
     normals = np.cross(
         vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]]
     )
@@ -123,7 +123,7 @@ def test_noise_does_not_move_the_refined_map():
 
 
 def test_angles_do_not_make_faces_split():
-    """Where the weight keeps areas uneven, not the mesh, splitting gains little."""
+    """If the weight keeps areas uneven, not the mesh, splitting gains little."""
     result = authalic.sphere_map(*LIMBED, angle_weight=0.3, refine=True)
     assert result.status == "converged" and len(result.refinement.parents) == 0
 

@@ -80,13 +80,13 @@ def test_a_registration_keeps_the_maps_of_both_surfaces(both_results):
     result, pair = both_results
     kind = authalic.DiskMap if pair is CAPS else authalic.SphereMap
     call = authalic.disk_map if pair is CAPS else authalic.sphere_map
-    for found, mesh in ((result.source_map, pair.source), (result.target_map, pair.target)):
+    for kept, mesh in ((result.source_map, pair.source), (result.target_map, pair.target)):
         alone = call(*mesh)
-        assert type(found) is kind
-        assert found.status == alone.status
-        assert found.distortion.authalic_energy == alone.distortion.authalic_energy
+        assert type(kept) is kind
+        assert kept.status == alone.status
+        assert kept.distortion.authalic_energy == alone.distortion.authalic_energy
     image = "uv" if pair is CAPS else "positions"
-    assert np.array_equal(getattr(found, image), getattr(alone, image))
+    assert np.array_equal(getattr(kept, image), getattr(alone, image))
 
 
 def test_a_registration_is_printed_in_one_line_with_figures(both_results):
@@ -130,10 +130,10 @@ def test_landmarks_of_any_integer_dtype_and_whole_reals(pair, dtype):
 def test_any_memory_layout(pair, layout):
     source, target = ((layout(mesh.vertices), layout(mesh.faces)) for mesh in pair[:2])
     landmarks = [np.asarray(layout(marks[:, None]))[:, 0] for marks in pair[2:]]
-    other = pairs.register_function(pair)(
+    laid_out = pairs.register_function(pair)(
         source, target, source_landmarks=landmarks[0], target_landmarks=landmarks[1]
     )
-    assert np.array_equal(other.positions, pairs.register(pair).positions)
+    assert np.array_equal(laid_out.positions, pairs.register(pair).positions)
 
 
 def test_landmarks_as_lists_and_tuples():
@@ -166,7 +166,7 @@ def test_inputs_are_left_unchanged():
 
 
 def refused(pair, words, indices=None, **options):
-    """The error of a registration that has to be refused before its first report of progress."""
+    """The error of a registration that is refused before its first report of progress."""
     heard = []
     with pytest.raises(authalic.MeshError, match=words) as caught:
         pairs.register(pair, progress=lambda *report: heard.append(report), **options)
@@ -354,7 +354,7 @@ UNSTABLE = {"ball_and_ellipsoid", "two_landmarks", "spikes"}
 
 @pytest.mark.parametrize("name", pairs.PAIRS)
 def test_noise_does_not_move_a_registration(name, request):
-    """With a little weight of angles; where areas alone count, it moves coarse ones by up to a tenth."""
+    """With a small weight of angles; if areas alone count, noise moves coarse surfaces by up to a tenth."""
     if name in UNSTABLE:
         request.applymarker(pytest.mark.xfail(reason="known: noise moves this registration", strict=False))
     pair = pairs.PAIRS[name]
@@ -364,5 +364,5 @@ def test_noise_does_not_move_a_registration(name, request):
         return meshes.Mesh(mesh.vertices + 1e-12 * pairs.size(mesh) * noise, mesh.faces)
 
     moved = pair._replace(source=noisy(pair.source, 1), target=noisy(pair.target, 2))
-    plain, other = (pairs.register(each, angle_weight=1e-3).positions for each in (pair, moved))
-    assert np.abs(other - plain).max() < 1e-6 * pairs.size(pair.target)
+    plain, noisy_positions = (pairs.register(each, angle_weight=1e-3).positions for each in (pair, moved))
+    assert np.abs(noisy_positions - plain).max() < 1e-6 * pairs.size(pair.target)

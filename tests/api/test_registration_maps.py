@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Where registrations take a surface: identities, known maps, landmarks, and never a fold."""
+"""The maps of registrations: identities, known maps, landmarks, and never a fold."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def test_a_surface_onto_its_copy_scaled_by_a_power_of_two_is_the_identity(name, 
 @pytest.mark.parametrize("count", [2, 12])
 @pytest.mark.parametrize("name", SURFACES)
 def test_a_surface_onto_its_copy_turned_moved_and_scaled(name, count):
-    """Rounding may turn or shear the two maps against each other; landmarks meet all the same."""
+    """Rounding may turn or shear the two maps against each other, but landmarks meet."""
     mesh = SURFACES[name]
     marks = pairs.spread(mesh, min(count, 6))
     target = meshes.Mesh(3 * (mesh.vertices @ turned() + [3.0, -2.0, 5.0]), mesh.faces)
@@ -72,7 +72,7 @@ def test_a_surface_onto_its_renumbered_copy(name):
 
 @pytest.mark.parametrize("name", ["bumpy_cap", "rough_cap", "bumpy_ball", "rough_ball"])
 def test_a_surface_onto_a_finer_mesh_of_itself_stays_in_place(name):
-    """Area-preserving maps are many; angles and a dozen landmarks say which."""
+    """There are many area-preserving maps; angles and a dozen landmarks choose one."""
     mesh = SURFACES[name]
     marks = pairs.spread(mesh, 12)
     pair = pairs.Pair(mesh, pairs.subdivided(mesh), marks, marks)
@@ -245,7 +245,7 @@ def test_surfaces_of_any_size_and_place_register():
 
 
 def test_the_area_ratio_of_the_identity_on_an_uneven_copy():
-    """Stretched to twice its width, a rectangle keeps all shares of area."""
+    """Stretching a rectangle to twice its width keeps all area ratios."""
     mesh = meshes.grid()
     marks = pairs.spread(mesh, 4)
     wide = meshes.Mesh(mesh.vertices * [2, 1, 1], mesh.faces)

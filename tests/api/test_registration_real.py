@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Registrations of real surfaces, where a data folder is there: AUTHALIC_DATA, or ../shared/data."""
+"""Registrations of real surfaces, if there is a data folder: AUTHALIC_DATA, or ../shared/data."""
 
 import json
 
@@ -40,34 +40,38 @@ def surface(name, field="V", mirror=False):
 def fsaverage5(field, points):
     """Left onto mirrored right, with the named points of the twelve curves."""
     curves = json.loads(real_meshes.file("brain/fsaverage5_curves.json").read_text())
-    (left, ours), (right, theirs) = (
+    (left, left_arrays), (right, right_arrays) = (
         surface(f"brain/fsaverage5_{side}_10242.npz", field, mirror)
         for side, mirror in (("left", False), ("right", True))
     )
-    found = [
+    landmarks = [
         (a[pick(a)], b[pick(b)])
         for a, b in zip(curves["left"], curves["mirrored_right"], strict=True)
         for pick in points
     ]
-    return pairs.Pair(left, right, *np.array(found).T), ours["sulc"], theirs["sulc"]
+    return pairs.Pair(left, right, *np.array(landmarks).T), left_arrays["sulc"], right_arrays["sulc"]
 
 
 def hcp(given_order):
-    """Left onto mirrored right midthickness, with the ends of the curves that have ends."""
-    (left, ours), (right, theirs) = (
+    """Left onto mirrored right midthickness, with the ends of the open curves."""
+    (left, left_arrays), (right, right_arrays) = (
         surface(f"brain/hcp_s1200_{side}_32492.npz", "V_midthickness", side == "R") for side in "LR"
     )
-    found = []
+    landmarks = []
     for name in HCP_CURVES:
-        ends = [arrays[name][[0, -1]] for arrays in (ours, theirs)]
-        sphere = ours["V_sphere"][ends[0]], theirs["V_sphere"][ends[1]] * [-1, 1, 1]
+        ends = [arrays[name][[0, -1]] for arrays in (left_arrays, right_arrays)]
+        sphere = left_arrays["V_sphere"][ends[0]], right_arrays["V_sphere"][ends[1]] * [-1, 1, 1]
         straight, crossed = (
-            np.linalg.norm(sphere[0] - other).sum() for other in (sphere[1], sphere[1][::-1])
+            np.linalg.norm(sphere[0] - partner).sum() for partner in (sphere[1], sphere[1][::-1])
         )
-        found += list(
+        landmarks += list(
             zip(ends[0], ends[1] if given_order or straight < crossed else ends[1][::-1], strict=True)
         )
-    return pairs.Pair(left, right, *np.array(found).T), ours["sulc_S1200"], theirs["sulc_S1200"]
+    return (
+        pairs.Pair(left, right, *np.array(landmarks).T),
+        left_arrays["sulc_S1200"],
+        right_arrays["sulc_S1200"],
+    )
 
 
 POINTS = {
@@ -77,7 +81,7 @@ POINTS = {
 
 
 def assert_what_the_papers_reach(result, pair):
-    """No fold, landmarks at 1e-3 of the domain and half a percent of the target's size at the most."""
+    """No fold, and landmarks within 1e-3 of the domain and half a percent of the target's size."""
     gap = result.positions[pair.source_landmarks] - pair.target.vertices[pair.target_landmarks]
     error, apart = result.landmark_error, np.linalg.norm(gap, axis=1).max() / pairs.size(pair.target)
     print(f"{result.status}, landmark error {error.mean():.1e}, at most {error.max():.1e}", end=", ")
@@ -88,7 +92,7 @@ def assert_what_the_papers_reach(result, pair):
 
 
 def assert_sound(result, pair):
-    """As pairs.assert_registration, without the test of every vertex against every boundary edge."""
+    """Like pairs.assert_registration, but without the test of every vertex against every boundary edge."""
     pairs.assert_embedding(result.registered, result.faces)
     pairs.assert_embedding(result.target_registered, result.target_faces)
     pairs.assert_figures(result, pair)
@@ -100,40 +104,40 @@ def assert_sound(result, pair):
 @pytest.mark.parametrize("field", ["V_white", "V_pial"])
 @pytest.mark.parametrize("points", POINTS.values(), ids=POINTS)
 def test_the_left_cortex_onto_the_mirrored_right(field, points):
-    pair, ours, theirs = fsaverage5(field, points)
+    pair, left_arrays, right_arrays = fsaverage5(field, points)
     result = pairs.register(pair)
     assert_what_the_papers_reach(result, pair)
-    correlation, difference = result.compare(ours, theirs)
+    correlation, difference = result.compare(left_arrays, right_arrays)
     print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
     assert correlation > 0.5
 
 
 @pytest.mark.parametrize("given_order", [False, True], ids=["matching_ends", "ends_as_stored"])
 def test_the_left_average_cortex_onto_the_mirrored_right(given_order):
-    """Two of the curves are stored the other way round on the right: their ends then trade places."""
-    pair, ours, theirs = hcp(given_order)
+    """Two of the curves are stored in reverse on the right, so their ends trade places."""
+    pair, left_arrays, right_arrays = hcp(given_order)
     result = pairs.register(pair)
     assert_what_the_papers_reach(result, pair)
     if not given_order:
-        correlation, difference = result.compare(ours, theirs)
+        correlation, difference = result.compare(left_arrays, right_arrays)
         print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
         assert correlation > 0.3
 
 
 def test_two_averages_of_the_same_cortex_lie_over_each_other():
-    """The vertices of both have the same numbers, so where each belongs is known."""
-    (ours, arrays), (theirs, _) = (
+    """The vertices of both have the same numbers, so the true map is known."""
+    (source, arrays), (target, _) = (
         surface("brain/hcp_s1200_L_32492.npz", field)
         for field in ("V_midthickness", "V_conte69_midthickness")
     )
     curves = [arrays[name] for name in arrays if name.startswith("lm_")]
     marks = np.unique(np.concatenate([curve[:: max(len(curve) // 6, 1)] for curve in curves]))
-    pair = pairs.Pair(ours, theirs, marks, marks)
+    pair = pairs.Pair(source, target, marks, marks)
     result = pairs.register(pair)
     assert_what_the_papers_reach(result, pair)
-    away = np.linalg.norm(result.positions - theirs.vertices, axis=1)
+    away = np.linalg.norm(result.positions - target.vertices, axis=1)
     print(f"mean distance to where each vertex belongs: {away.mean():.2f} mm")
-    assert away.mean() < 0.1 * pairs.size(theirs)
+    assert away.mean() < 0.1 * pairs.size(target)
 
 
 MISSES_TWO = pytest.mark.xfail(
@@ -174,7 +178,7 @@ def test_a_real_surface_onto_itself_is_the_identity(folder, name):
 
 
 def test_a_head_onto_a_head():
-    """Landmarks by the extremes of the two heads, which both look along the same axis."""
+    """The landmarks are extremes of the two heads, which look along the same axis."""
     source, target = (
         real_meshes.load(real_meshes.file(f"sphere/{file}.npz")) for file in ("david_10671", "maxplanck_9002")
     )

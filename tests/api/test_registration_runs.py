@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""How a registration goes and ends: progress, cancel, Ctrl-C, threads."""
+"""The course and the end of registrations: progress, cancel, Ctrl-C, threads."""
 
 import json
 import threading
@@ -68,7 +68,7 @@ def cancelled_after(pair, last):
 @both
 @pytest.mark.parametrize("last", [0, 1, 3, 6, 12, 24, 40, 80, 160])
 def test_a_false_answer_cancels_and_leaves_a_sound_map_or_none(pair, last):
-    """Before both surfaces have a map there is nothing to return."""
+    """Until both surfaces have a map there is nothing to return."""
     result, count = cancelled_after(pair, last)
     if isinstance(result, authalic.SolverError):
         assert "cancelled" in str(result)
@@ -117,17 +117,17 @@ def test_a_progress_function_may_run_another_map(pair):
 
 @both
 def test_registrations_run_side_by_side(pair):
-    expected, found = pairs.register(pair), [None] * 3
+    expected, results = pairs.register(pair), [None] * 3
 
     def work(k):
-        found[k] = pairs.register(pair)
+        results[k] = pairs.register(pair)
 
-    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(found))]
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(results))]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    for result in found:
+    for result in results:
         assert_same_bits(result, expected)
 
 

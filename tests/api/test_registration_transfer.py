@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What a registration carries: values, corner data, labels, the inverse, comparisons and morphs."""
+"""Data through a registration: values, corner data, labels, the inverse, comparisons and morphs."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def identity(request):
 
 
 def seam_faces(mesh):
-    """The faces on one side of a seam: where the first coordinate of the centre is positive."""
+    """The faces on one side of a seam: where the first coordinate of the center is positive."""
     return mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 0
 
 
@@ -85,7 +85,7 @@ def test_values_of_any_layout(both):
 
 
 def test_what_is_not_a_number_stays_where_it_was(identity):
-    """A NaN reaches the vertices that lie in a face with it, and no others."""
+    """A NaN reaches exactly the vertices that lie in a face with it."""
     result, mesh = identity
     values = np.arange(len(mesh.vertices), dtype=float)
     values[7] = np.nan
@@ -195,7 +195,7 @@ def test_corners_are_those_of_the_faces_as_given():
         assert np.quantile(np.abs(pulled - result.pull(values)[faces]), 0.9) < 1e-9
 
 
-# What is refused
+# Refusals
 
 
 def test_values_of_another_length_are_refused(both):
@@ -241,7 +241,7 @@ def test_the_inverse_goes_back(both):
 
 
 def test_there_and_back_is_nearly_where_it_was(both):
-    """Both ways are piecewise linear on other meshes, so they agree up to the size of a face."""
+    """Both maps are piecewise linear on different meshes, so they agree up to the size of a face."""
     result, pair = both
     there_and_back = result.pull(result.inverse().positions)
     moved = np.linalg.norm(there_and_back - pair.source.vertices, axis=1)
@@ -276,14 +276,14 @@ def reference(values, pulled, weights):
 
 def test_scalars_are_compared_by_area(both):
     result, pair = both
-    ours = pair.source.vertices @ [1.0, 2.0, -1.0]
-    theirs = np.sin(pair.target.vertices @ [3.0, 1.0, 2.0])
+    source_values = pair.source.vertices @ [1.0, 2.0, -1.0]
+    target_values = np.sin(pair.target.vertices @ [3.0, 1.0, 2.0])
     areas = oracle.face_areas(pair.source.vertices, result.faces)
-    weights = oracle.vertex_weights(result.faces, areas, len(ours))
-    found = result.compare(ours, theirs)
-    assert isinstance(found, tuple)
-    assert [type(figure) for figure in found] == [float, float]
-    assert found == pytest.approx(reference(ours, result.pull(theirs), weights), rel=1e-9)
+    weights = oracle.vertex_weights(result.faces, areas, len(source_values))
+    figures = result.compare(source_values, target_values)
+    assert isinstance(figures, tuple)
+    assert [type(figure) for figure in figures] == [float, float]
+    assert figures == pytest.approx(reference(source_values, result.pull(target_values), weights), rel=1e-9)
 
 
 def test_the_surface_itself_compares_perfectly(identity):
@@ -331,11 +331,11 @@ def test_a_morph_ends_on_the_target_by_straight_lines(both):
 
 
 def weighted_moments(points, weights):
-    centre = weights @ points / weights.sum()
-    return centre, np.sqrt(weights @ ((points - centre) ** 2).sum(axis=1) / weights.sum())
+    center = weights @ points / weights.sum()
+    return center, np.sqrt(weights @ ((points - center) ** 2).sum(axis=1) / weights.sum())
 
 
-def test_an_aligned_morph_ends_at_a_similar_copy_of_the_target_that_has_not_travelled(both):
+def test_an_aligned_morph_ends_at_a_similar_copy_of_the_target_that_has_not_traveled(both):
     result, pair = both
     end = authalic.homotopy(pair.source.vertices, result, 1.0, align=True)
     areas = oracle.face_areas(pair.source.vertices, result.faces)
@@ -362,9 +362,9 @@ def test_alignment_removes_travel(identity):
     for scale in (1.0, 2.0**10):
         copy = meshes.Mesh(scale * (mesh.vertices @ turn + 5), mesh.faces)
         result = pairs.register(pairs.Pair(mesh, copy, marks, marks))
-        travelled = authalic.homotopy(mesh.vertices, result, 1.0)
+        traveled = authalic.homotopy(mesh.vertices, result, 1.0)
         aligned = authalic.homotopy(mesh.vertices, result, 1.0, align=True)
-        gaps = [np.linalg.norm(end - mesh.vertices, axis=1).mean() for end in (travelled, aligned)]
+        gaps = [np.linalg.norm(end - mesh.vertices, axis=1).mean() for end in (traveled, aligned)]
         assert gaps[1] < 0.1 * pairs.size(mesh) < gaps[0]
 
 

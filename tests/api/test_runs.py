@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""How a run goes and ends: limits, restarts, progress, cancel, Ctrl-C, threads."""
+"""The course and the end of a run: limits, restarts, progress, cancel, Ctrl-C, threads."""
 
 import json
 import threading
@@ -28,12 +28,12 @@ def map_sphere(mesh=meshes.SPHERES["hedgehog"], **options):
     return result, result.positions
 
 
-# what every long call has to do, whatever it computes
+# checks for every long call
 maps = pytest.mark.parametrize("call", [map_disk, map_sphere])
 
 
 def bumpy_square(side):
-    """A mesh of side² vertices, made fast."""
+    """A mesh of side² vertices that is quickly made."""
     mesh = meshes.grid(side, side, aspect=1.0)
     x, y, _ = mesh.vertices.T
     return meshes.Mesh(np.stack([x, y, 0.2 * np.sin(9 * x) * np.cos(7 * y)], axis=1), mesh.faces)
@@ -243,17 +243,17 @@ def test_other_python_threads_run_meanwhile(call, mesh):
 @maps
 def test_maps_run_side_by_side(call):
     expected = call()[1]
-    found = [None] * 4
+    results = [None] * 4
 
     def work(k):
-        found[k] = call()[1]
+        results[k] = call()[1]
 
-    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(found))]
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(len(results))]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert all(np.array_equal(image, expected) for image in found)
+    assert all(np.array_equal(image, expected) for image in results)
 
 
 DIGEST = """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""What every sphere map has to be: a bijection that keeps areas, whatever the mesh and the density."""
+"""Every sphere map is a bijection that preserves areas, whatever the mesh and the density."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from . import meshes, oracle
 
 METHODS = ("gauss_newton", "gradient_descent", "fixed_point")
 LINE_SEARCHES = ("interpolation", "bounded")
-# those with enough vertices to keep areas better than the conformal start does
+# meshes with enough vertices to preserve areas better than the conformal start
 IMPROVABLE = ("ellipsoid", "bumpy_ball", "rough_ball", "spiky_ball", "capsule")
 spheres = pytest.mark.parametrize("name", meshes.SPHERES)
 improvable = pytest.mark.parametrize("name", IMPROVABLE)
@@ -77,7 +77,7 @@ def test_each_method_beats_the_next(name, line_search):
 
 
 @line_searches
-def test_gradient_descent_lowers_the_normalised_energy_in_every_step(line_search):
+def test_gradient_descent_lowers_the_normalized_energy_in_every_step(line_search):
     """E = (|M|/A) Σ a²/|τ|, on the scale |M| = A; runs of one more iteration each share all others."""
     mesh = meshes.bumpy_ball()
     targets, energies = oracle.face_areas(*mesh), []
@@ -90,8 +90,8 @@ def test_gradient_descent_lowers_the_normalised_energy_in_every_step(line_search
 
 def test_both_line_searches_come_to_the_same_energy():
     mesh = meshes.bumpy_ball()
-    one, two = (energy_of(mesh, descended(mesh, line_search=search)) for search in LINE_SEARCHES)
-    assert 1 / 3 < one / two < 3
+    first, second = (energy_of(mesh, descended(mesh, line_search=search)) for search in LINE_SEARCHES)
+    assert 1 / 3 < first / second < 3
 
 
 @spheres
@@ -116,13 +116,13 @@ def test_a_ball_stays_where_it_is():
 @methods
 def test_image_areas_follow_the_density(method):
     mesh = meshes.ball(4)
-    centre = mesh.vertices[mesh.faces].mean(axis=1)
-    density = oracle.face_areas(*mesh) * np.where(centre[:, 2] > 0, 4.0, 1.0)
+    center = mesh.vertices[mesh.faces].mean(axis=1)
+    density = oracle.face_areas(*mesh) * np.where(center[:, 2] > 0, 4.0, 1.0)
     result = authalic.sphere_map(*mesh, method=method, density=density, max_iterations=200)
     oracle.assert_sphere_embedding(result)
     share = oracle.solid_angles(result.positions, mesh.faces) / (4 * np.pi)
     wanted = density / density.sum()
-    assert share[centre[:, 2] > 0].sum() == pytest.approx(0.8, rel=0.01)
+    assert share[center[:, 2] > 0].sum() == pytest.approx(0.8, rel=0.01)
     assert np.median(np.abs(share / wanted - 1)) < 0.05
     assert result.distortion.authalic_energy == pytest.approx(energy_of(mesh, result, density), rel=1e-8)
 

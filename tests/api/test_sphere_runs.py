@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""How a run onto the sphere goes and ends: limits, tolerances, start maps, progress, cancel."""
+"""The course and the end of a run onto the sphere: limits, tolerances, start maps, progress, cancel."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ papers_methods = pytest.mark.parametrize("method", METHODS[1:])
 
 
 def stretch_energy(result, mesh=BUMPY):
-    """Σ a²/|τ| with image and targets scaled to the area of the sphere, as Algorithm 2 watches it here."""
+    """Σ a²/|τ| with image and targets scaled to the area of the sphere, which Algorithm 2 watches."""
     targets, areas = oracle.face_areas(*mesh), oracle.face_areas(result.positions, mesh.faces)
     return 4 * np.pi * (areas**2 / targets).sum() * targets.sum() / areas.sum() ** 2
 

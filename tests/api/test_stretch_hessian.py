@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The Hessian of the stretch energy against its gradient, which is built here from cotangents."""
+"""The Hessian of the stretch energy against a gradient built from cotangents."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The handle of a surface: as good as its arrays everywhere, checked once, never changed."""
+"""Surfaces give the results of their arrays, are checked once, and never change."""
 
 import threading
 
@@ -31,7 +31,7 @@ def band(stacks=12, slices=24):
 
 
 def same(first, second):
-    """Whether two results hold the same bits, whatever they are made of, but for times."""
+    """Whether two results of any kind hold the same bits, except for times."""
     if isinstance(first, np.ndarray):
         return first.dtype == second.dtype and first.tobytes() == second.tobytes()
     if isinstance(first, (list, tuple)):
@@ -49,7 +49,7 @@ CURVES = {"curves": [[76, 100, 124, 148], [88, 112, 136, 160, 184]]}
 LANDMARKS = {"source_landmarks": [0, 5], "target_landmarks": [0, 7]}
 ON_BOTH = {"source_curves": CURVES["curves"], "target_curves": CURVES["curves"]}
 
-# Of every function: the mesh, what follows it, and the options.
+# For every function: the mesh, the further arguments, and the options.
 CALLS = {
     "cut": (authalic.cut, CAP, (), {}),
     "cut_seams": (authalic.cut, CAP, (), {"seams": CAP.faces[:3, :2]}),
@@ -183,7 +183,7 @@ def test_a_surface_that_a_map_refuses_raises_what_its_arrays_raise_each_time(mes
 def test_errors_of_a_registration_name_the_surface_at_fault():
     good, bad = authalic.Surface(*CAP), authalic.Surface(FIN_POINTS, FIN)
     for pair in ((good, bad), (bad, good)):
-        arrays = [(CAP if one is good else (FIN_POINTS, FIN)) for one in pair]
+        arrays = [(CAP if is_good is good else (FIN_POINTS, FIN)) for is_good in pair]
         with pytest.raises(authalic.MeshError) as expected:
             authalic.register_disks(*map(tuple, arrays), **LANDMARKS)
         with pytest.raises(authalic.MeshError) as caught:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Maps with folds become maps without, and as little as can be is changed."""
+"""Maps with folds become maps without folds, and change as little as possible."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ GRID = meshes.quads(20, 20)
 
 
 def plane(side=20, bend=0.0):
-    """Places of a grid of vertices; with `bend` its outline is not convex."""
+    """The places of a grid of vertices, with an outline that `bend` makes concave."""
     y, x = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float), indexing="ij")
     x, y = x - bend * side * np.sin(np.pi * y / (side - 1)), y + bend * side * np.cos(np.pi * x / (side - 1))
     return np.stack([x.ravel(), y.ravel()], axis=1)
@@ -37,7 +37,7 @@ def areas(faces, image):
 
 
 def check(result, faces, image, held):
-    """No folds, and all kept bit for bit that must be or says that it is."""
+    """No folds; what must stay, or is said to stay, keeps its bits."""
     assert (areas(faces, result.image) > 0).all()
     assert len(result.distortion.folded) == 0
     assert (result.image[held] == image[held]).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of the extension as installed: the zip AUTHALIC_EXTENSION_ZIP, in a scratch profile."""
+"""Tests of the installed extension: the zip AUTHALIC_EXTENSION_ZIP, in a scratch profile."""
 
 import os
 import sys

@@ -31,9 +31,9 @@ def add(source: Sequence[int] | None = (), target: Sequence[int] | None = (), **
 
 
 def listed(obj: MeshObject | None = None) -> list[tuple[Any, ...]]:
-    """(name, source path, target path, problem) of each."""
-    found = part("landmarks.curves").pairs(obj or bpy.data.objects["Head A"])
-    return [(one.name, one.source.vertices, one.target.vertices, one.problem) for one in found]
+    """(name, source path, target path, problem) of each curve."""
+    curves = part("landmarks.curves").pairs(obj or bpy.data.objects["Head A"])
+    return [(curve.name, curve.source.vertices, curve.target.vertices, curve.problem) for curve in curves]
 
 
 def refused(words: str, call: Callable[..., Any], **options: Any) -> None:
@@ -44,11 +44,11 @@ def refused(words: str, call: Callable[..., Any], **options: Any) -> None:
 
 
 def select_path(obj: MeshObject, *paths: Sequence[int], active: Any = None) -> None:
-    """Selects the edges of some paths and nothing else in edit mode; `active` is a vertex or an edge."""
+    """Selects only the edges of some paths in edit mode; `active` is a vertex or an edge."""
     edit = bmesh.from_edit_mesh(obj.data)
     for elements in (edit.faces, edit.edges, edit.verts):
-        for one in elements:
-            one.select = False
+        for element in elements:
+            element.select = False
     edit.verts.ensure_lookup_table()
     for path in paths:
         for first, second in pairwise(path):
@@ -68,14 +68,14 @@ def selected_edges(obj: MeshObject) -> list[tuple[int, ...]]:
     """The selected edges as sorted pairs of vertices, in either mode."""
     if obj.data.is_editmode:
         edit = bmesh.from_edit_mesh(obj.data)
-        found = [[vertex.index for vertex in edge.verts] for edge in edit.edges if edge.select]
+        edges = [[vertex.index for vertex in edge.verts] for edge in edit.edges if edge.select]
     else:
-        found = [list(edge.vertices) for edge in obj.data.edges if edge.select]
-    return sorted(tuple(sorted(pair)) for pair in found)
+        edges = [list(edge.vertices) for edge in obj.data.edges if edge.select]
+    return sorted(tuple(sorted(pair)) for pair in edges)
 
 
 def route(obj: MeshObject, *stops: Sequence[float]) -> tuple[int, ...]:
-    """The vertices along edges of an object on short ways from stop (a point) to stop."""
+    """The vertices of shortest edge paths on an object from stop to stop, which are points."""
     points = np.array([vertex.co for vertex in obj.data.vertices])
     near = [int(np.argmin(np.linalg.norm(points - stop, axis=1))) for stop in stops]
     around: dict[int, list[int]] = {}
@@ -95,9 +95,9 @@ def _shortest(points: Array, around: dict[int, list[int]], first: int, last: int
         if vertex in before:
             continue
         before[vertex] = origin
-        for other in around[vertex]:
-            step = float(np.linalg.norm(points[other] - points[vertex]))
-            heapq.heappush(heap, (length + step, other, vertex))
+        for neighbor in around[vertex]:
+            step = float(np.linalg.norm(points[neighbor] - points[vertex]))
+            heapq.heappush(heap, (length + step, neighbor, vertex))
     path = [last]
     while path[-1] != first:
         path.append(before[path[-1]])

@@ -8,10 +8,10 @@ MODULE = "bl_ext.user_default.authalic"
 
 
 def part(name: str) -> Any:
-    """A module by its name within the extension; looked up anew, since installing again replaces them all."""
+    """The extension's module of this name; looked up anew, since installing again replaces them all."""
     return importlib.import_module(f"{MODULE}.{name}")
 
 
 def library() -> Any:
-    """The package `authalic`, which comes with the extension and is there once that is installed."""
+    """The package `authalic`, which is installed with the extension."""
     return importlib.import_module("authalic")

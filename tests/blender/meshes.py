@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for the tests, and what is measured on them with numpy alone."""
+"""Meshes for the tests, and measurements of them with numpy alone."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
@@ -36,7 +36,7 @@ def add(
 
 
 def select(*objects: MeshObject) -> None:
-    """Selects exactly these; the first is the active one."""
+    """Selects exactly these objects; the first becomes active."""
     bpy.ops.object.select_all(action="DESELECT")
     for obj in objects:
         obj.select_set(True)
@@ -103,12 +103,12 @@ def closed_suzanne(levels: int = 1) -> MeshObject:
     mesh = bmesh.new()
     mesh.from_mesh(obj.data)
     head = max(mesh.verts, key=lambda vertex: abs(vertex.co.x))  # the tip of an ear
-    found, border = {head}, [head]
+    reached, border = {head}, [head]
     while border:
         border = [edge.other_vert(vertex) for vertex in border for edge in vertex.link_edges]
-        border = list(set(border) - found)
-        found.update(border)
-    bmesh.ops.delete(mesh, geom=[vertex for vertex in mesh.verts if vertex not in found], context="VERTS")
+        border = list(set(border) - reached)
+        reached.update(border)
+    bmesh.ops.delete(mesh, geom=[vertex for vertex in mesh.verts if vertex not in reached], context="VERTS")
     bmesh.ops.holes_fill(mesh, edges=[edge for edge in mesh.edges if edge.is_boundary])
     mesh.to_mesh(obj.data)
     mesh.free()
@@ -157,7 +157,7 @@ def select_faces(obj: MeshObject, chosen: Callable[[int], bool], hidden: Collect
 
 
 def uv(obj: MeshObject, layer: str | None = None) -> Array:
-    """UVs (c, 2) float32 of a layer, by default the active one, in object mode or edit mode."""
+    """The UVs (c, 2) float32 of a layer, by default the active one, in object mode or edit mode."""
     if obj.data.is_editmode:
         obj.update_from_editmode()
         mesh = bmesh.from_edit_mesh(obj.data)
@@ -193,14 +193,14 @@ def uv_areas(image: Array) -> Array:
 
 
 def area_ratios(obj: MeshObject, layer: str | None = None) -> Array:
-    """UV area over surface area (t,), rescaled so that both sums agree; negative for a flip."""
+    """UV area over surface area (t,), scaled so that both sums agree; negative for a flip."""
     corners, _, points = triangles(obj)
     image, area = uv_areas(uv(obj, layer)[corners]), surface_areas(points)
     return image / area * (area.sum() / np.abs(image).sum())
 
 
 def islands(obj: MeshObject, layer: str | None = None) -> Array:
-    """The UV island number of each triangle, by what triangles share UVs at a vertex."""
+    """The UV island number of each triangle; triangles that share a UV at a vertex have one number."""
     corners, _, _ = triangles(obj)
     vertices = np.array([loop.vertex_index for loop in obj.data.loops])
     key = np.column_stack([vertices, uv(obj, layer).view(np.int32)])
@@ -217,16 +217,16 @@ def islands(obj: MeshObject, layer: str | None = None) -> Array:
 
 def densities(*objects: MeshObject) -> Array:
     """UV area over world area of every island of all objects."""
-    found = []
+    ratios = []
     for obj in objects:
         corners, _, points = triangles(obj)
         image, area, label = uv_areas(uv(obj)[corners]), surface_areas(points), islands(obj)
-        found += list(np.bincount(label, image) / np.bincount(label, area))
-    return np.array(found)
+        ratios += list(np.bincount(label, image) / np.bincount(label, area))
+    return np.array(ratios)
 
 
-def tetrahedron(centre: Sequence[float] = (0, 0, 0)) -> Surface:
-    vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) + centre
+def tetrahedron(center: Sequence[float] = (0, 0, 0)) -> Surface:
+    vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) + center
     return vertices, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
 
 
@@ -254,7 +254,7 @@ def ring(offset: Sequence[float] = (0, 0, 0), n: int = 4) -> Surface:
 
 
 def together(*parts: tuple[Array, Any]) -> tuple[Array, list[list[int]]]:
-    """Several (vertices, faces) as one; faces stay lists, so that they may differ in size."""
+    """Several (vertices, faces) as one surface; faces stay lists, so that they may differ in size."""
     vertices, faces, start = [], [], 0
     for points, polygons in parts:
         vertices += [tuple(point) for point in points]
@@ -264,7 +264,7 @@ def together(*parts: tuple[Array, Any]) -> tuple[Array, list[list[int]]]:
 
 
 def tube(rings: int, around: int, closed: bool = True, step: float = 0.8) -> tuple[Array, list[list[int]]]:
-    """A long tube of quads, open at its first ring and closed by a fan (or open too) at its last one."""
+    """A long tube of quads, open at its first ring; at its last one closed by a fan, or open too."""
     angle = 2 * np.pi * np.arange(around) / around
     height = np.repeat(step * np.arange(rings), around)
     vertices = np.column_stack([np.tile(np.cos(angle), rings), np.tile(np.sin(angle), rings), height])

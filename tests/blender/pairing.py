@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of landmarks for the tests: two objects, and what is done with them."""
+"""Pairs of landmarks for the tests: two objects, and steps with them."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,7 @@ from meshes import Array, MeshObject
 
 
 def heads() -> tuple[MeshObject, MeshObject]:
-    """Two grids of which the active one has the other for a target."""
+    """Two grids; the active one has the other as its target."""
     source, target = meshes.add_grid("Head A"), meshes.add_grid("Head B", n=8)
     target.location.x = 3
     source.authalic_target = target
@@ -51,7 +51,7 @@ def position(obj: MeshObject, vertex: int) -> Array:
 
 
 def in_edit_mode(obj: MeshObject, *vertices: int, do: Callable[[], Any]) -> None:
-    """Does something to some selected vertices of an object and returns to object mode."""
+    """Applies an operator to some vertices of an object in edit mode."""
     meshes.edit(obj)
     select_vertices(obj, *vertices)
     do()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects with landmark pairs, and what registrations leave on them."""
+"""Objects with landmark pairs, and the data that registrations leave on them."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -49,7 +49,7 @@ def nearest(obj: MeshObject, points: ArrayLike) -> list[int]:
 
 
 def positions(obj: MeshObject, key: str | None = None) -> Array:
-    """Of a mesh or of its shape key, (n, 3)."""
+    """The positions (n, 3) of a mesh or of its shape key."""
     points = obj.data.shape_keys.key_blocks[key].points if key else obj.data.vertices
     values = np.empty(3 * len(points), np.float32)
     points.foreach_get("co", values)

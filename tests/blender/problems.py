@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors of the library made by the tests, and a library that says the wrong words."""
+"""Errors of the library made by the tests, and a library with garbled messages."""
 
 import functools
 from collections.abc import Callable
@@ -29,7 +29,7 @@ def warned(kind: str, message: str = GARBLED, **facts: Any) -> Any:
 
 
 def garble(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Has the library say `GARBLED` in place of each message of an error and of a warning."""
+    """Replaces the message of every error and warning of the library by `GARBLED`."""
     for name in FUNCTIONS:
         monkeypatch.setattr(library(), name, _garbled(getattr(library(), name)))
 
@@ -47,7 +47,7 @@ def _garbled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class _Registration:
-    """A registration whose warnings say the wrong words."""
+    """A registration with garbled warnings."""
 
     def __init__(self, registration: Any) -> None:
         self.registration = registration

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangulated spheres as arrays, and what is computed on them by spherical trigonometry."""
+"""Triangulated spheres as arrays, and their figures by spherical trigonometry."""
 
 from fractions import Fraction
 
@@ -12,7 +12,7 @@ def unit(vectors: Array) -> Array:
 
 
 def icosphere(subdivisions: int, turned: int | None = None) -> tuple[Array, Array]:
-    """Vertices (n, 3) and triangles (m, 3) of an icosahedron with its faces divided in four; maybe turned."""
+    """Vertices (n, 3) and triangles (m, 3) of a subdivided icosahedron, optionally turned."""
     golden = (1 + 5**0.5) / 2
     corners = np.array([(0, a, b * golden) for a in (-1, 1) for b in (-1, 1)])
     vertices = unit(np.concatenate([np.roll(corners, k, axis=1) for k in range(3)]))
@@ -37,13 +37,13 @@ def _divided(vertices: Array, faces: Array) -> tuple[Array, Array]:
 
 
 def rotation(seed: int) -> Array:
-    """Some rotation (3, 3)."""
+    """A random rotation (3, 3)."""
     matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     return matrix * np.linalg.det(matrix)
 
 
 def uneven(vertices: Array, strength: float = 0.4) -> Array:
-    """Points of the sphere pulled towards one side, smoothly and without a fold."""
+    """Points of the sphere pulled toward one side, smoothly and without a fold."""
     return unit(vertices + strength * np.array([0.3, 0.5, 0.8]))
 
 
@@ -60,9 +60,9 @@ def areas(triangles: Array) -> Array:
 
 def exactly_folded(uv: Array) -> list[int]:
     """Faces of images (m, 3, 2) in single precision that are not counter-clockwise, in exact arithmetic."""
-    found = []
+    folded = []
     for face, triangle in enumerate(np.asarray(uv, np.float32)):
         (ax, ay), (bx, by), (cx, cy) = [[Fraction(float(x)) for x in corner] for corner in triangle]
         if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) <= 0:
-            found.append(face)
-    return found
+            folded.append(face)
+    return folded

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is traded for what: presets, outlines, slider and tolerance, and the islands that come of it."""
+"""Areas against angles: presets, outlines, slider, tolerance, and the islands that result."""
 
 import time
 from collections.abc import Callable
@@ -16,7 +16,7 @@ PRESETS = ("CIRCLE", "EVEN", "BALANCED", "SOFT")
 
 
 def report_of(**solver: Any) -> Any:
-    """What a job says of the selected meshes."""
+    """The report of a job on the selected meshes."""
     unwrap, bridge = part("jobs.unwrap"), part("bridge")
     settings = unwrap.Settings(mapping=bridge.UnwrapSettings(solver=bridge.Solver(**solver)))
     return unwrap.job(bpy.context, settings).execute()
@@ -34,7 +34,7 @@ def seamed_suzanne(levels: int = 2) -> MeshObject:
 
 
 def figures_of(**options: Any) -> Any:
-    """Area ratio SD and angle distortion of an unwrap as a script calls it, as measured."""
+    """The measured area ratio SD and angle distortion of an unwrap that a script calls."""
     assert bpy.ops.authalic.unwrap(**options) == {"FINISHED"}
     figures = part("jobs.measure").job(bpy.context).execute()
     assert figures.flips == 0
@@ -66,14 +66,14 @@ def test_flat_islands_keep_their_shape() -> None:
 @pytest.mark.skipif(bpy.app.version < (4, 3), reason="Minimum Stretch came with Blender 4.3")
 def test_the_whole_slider_beats_minimum_stretch() -> None:
     seamed_suzanne()
-    ours = report_of(angle_weight=1.0).figures
+    authalic = report_of(angle_weight=1.0).figures
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.uv.unwrap(method="MINIMUM_STRETCH", fill_holes=True, iterations=10, margin=0.001)
     bpy.ops.object.mode_set(mode="OBJECT")
-    theirs = part("jobs.measure").job(bpy.context).execute()
-    assert ours.flips == 0
-    assert ours.angle < theirs.angle and ours.deviation < theirs.deviation
+    blender = part("jobs.measure").job(bpy.context).execute()
+    assert authalic.flips == 0
+    assert authalic.angle < blender.angle and authalic.deviation < blender.deviation
 
 
 def test_islands_with_outlines_of_their_own_are_packed_apart() -> None:
@@ -159,11 +159,11 @@ def test_iterations_limit_every_method() -> None:
         assert all_ < 0.7 * few
 
 
-# The preset of the redo panel, which moves with the slider
+# The preset of the redo panel, which follows the slider
 
 
 def operator_properties() -> Any:
-    """Properties of the operator as the redo panel and the sidebar show them."""
+    """The operator's properties, as the redo panel and the sidebar show them."""
     return bpy.context.window_manager.operator_properties_last("authalic.unwrap")
 
 

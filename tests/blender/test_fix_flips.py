@@ -24,7 +24,7 @@ def flat_grid(offset: Sequence[float] = (0, 0, 0), n: int = N) -> tuple[Array, A
 
 
 def laid_flat(obj: MeshObject, scale: float = 0.1, mirrored: bool = False) -> MeshObject:
-    """Gives an object UVs: its x and y."""
+    """Gives an object its x and y as UVs."""
     obj.data.uv_layers.new(name="UVMap")
     position = np.array([obj.data.vertices[loop.vertex_index].co for loop in obj.data.loops])
     uv = position[:, :2] * [-scale if mirrored else scale, scale] + 0.5
@@ -37,14 +37,14 @@ def corner_vertices(obj: MeshObject) -> Array:
 
 
 def move(obj: MeshObject, vertex: int, to: Any) -> None:
-    """Puts all UVs of a vertex somewhere else."""
+    """Moves all UVs of a vertex."""
     uv = meshes.uv(obj)
     uv[corner_vertices(obj) == vertex] = to
     meshes.set_uv(obj, uv)
 
 
 def tangled_grid(mirrored: bool = False, **options: Any) -> MeshObject:
-    """A grid one vertex of which has gone too far, over several faces."""
+    """A grid with the UVs of one vertex moved across several faces."""
     obj = laid_flat(meshes.add(*flat_grid(**options), "Grid"), mirrored=mirrored)
     inner = (N + 1) * 4 + 3
     uv = meshes.uv(obj)
@@ -54,14 +54,14 @@ def tangled_grid(mirrored: bool = False, **options: Any) -> MeshObject:
 
 
 def flipped(obj: MeshObject, mirrored: bool = False) -> Array:
-    """The polygons with a triangle that is not open to the right side."""
+    """The polygons with a triangle of the wrong orientation."""
     corners, polygons, _ = meshes.triangles(obj)
     areas = meshes.uv_areas(meshes.uv(obj)[corners])
     return np.unique(polygons[(areas >= 0) if mirrored else (areas <= 0)])
 
 
 def boundary(obj: MeshObject) -> Array:
-    """Which corners are at boundary vertices of the mesh."""
+    """The corners at boundary vertices of the mesh, as a mask."""
     edges = [edge.vertices for edge, count in zip(obj.data.edges, uses(obj), strict=True) if count == 1]
     return np.isin(corner_vertices(obj), np.unique(np.array([tuple(edge) for edge in edges])))
 
@@ -72,7 +72,7 @@ def uses(obj: MeshObject) -> Array:
 
 
 def islands_of_uvs(obj: MeshObject, before: Array) -> int:
-    """How many UV vertices are elsewhere than before."""
+    """The number of UV vertices that have moved."""
     moved = (meshes.uv(obj) != before).any(axis=1)
     return len(np.unique(corner_vertices(obj)[moved]))
 
@@ -115,9 +115,9 @@ def test_pinned_uvs_stay() -> None:
     assert fix() == {"FINISHED"}
     assert len(flipped(obj)) == 0
     assert (meshes.uv(obj)[pinned] == before[pinned]).all()
-    found = np.empty(len(pinned), bool)
-    obj.data.attributes[".pn.UVMap"].data.foreach_get("value", found)
-    assert (found == pinned).all()
+    is_pinned = np.empty(len(pinned), bool)
+    obj.data.attributes[".pn.UVMap"].data.foreach_get("value", is_pinned)
+    assert (is_pinned == pinned).all()
 
 
 def test_pins_that_leave_no_way_out_are_told() -> None:
@@ -212,12 +212,12 @@ def test_nothing_to_fix_changes_nothing(capfd: pytest.CaptureFixture[str]) -> No
 
 def test_only_the_active_uv_map_changes() -> None:
     obj = tangled_grid()
-    other = obj.data.uv_layers.new(name="Other")
+    inactive = obj.data.uv_layers.new(name="Other")
     before = meshes.uv(obj, "Other")
     obj.data.uv_layers.active = obj.data.uv_layers["UVMap"]
     fix()
     assert len(flipped(obj)) == 0
-    assert (meshes.uv(obj, other.name) == before).all() and obj.data.uv_layers.active.name == "UVMap"
+    assert (meshes.uv(obj, inactive.name) == before).all() and obj.data.uv_layers.active.name == "UVMap"
 
 
 def both_halves_tangled() -> tuple[MeshObject, set[int]]:

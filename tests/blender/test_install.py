@@ -16,8 +16,8 @@ def _menu_entries() -> list[Any]:
 
 
 def _registered() -> set[str]:
-    found = {name for name in dir(bpy.types) if name.startswith("AUTHALIC_")}
-    return found | ({"figures"} if hasattr(bpy.types.WindowManager, "authalic_figures") else set())
+    names = {name for name in dir(bpy.types) if name.startswith("AUTHALIC_")}
+    return names | ({"figures"} if hasattr(bpy.types.WindowManager, "authalic_figures") else set())
 
 
 def test_enabled() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The path below the operators: jobs, the bridge, and the plain logic around them."""
+"""The path below the operators: jobs, the bridge, and the logic around them."""
 
 import threading
 import time

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Landmark curves are kept through edits of the meshes, undo, saving and files, and told where they broke."""
+"""Landmark curves survive edits of the meshes, undo, saving and files; breaks are reported."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -43,9 +43,9 @@ def test_paths_are_followed_when_vertices_are_deleted(heads: tuple[MeshObject, M
     before = places(source, LOOP), places(target, ROW_B)
     edited(source, 0, 1, 2, do=delete)
     edited(target, 80, 79, 0, do=delete)
-    (_, row, row_b, problem), (_, loop, loop_b, other) = curving.listed()
+    (_, row, row_b, problem), (_, loop, loop_b, loop_problem) = curving.listed()
     assert (row, row_b) == (tuple(v - 3 for v in ROW), tuple(v - 1 for v in ROW_B)) and problem is None
-    assert loop == tuple(v - 3 for v in LOOP) and len(loop_b) == 9 and other is None
+    assert loop == tuple(v - 3 for v in LOOP) and len(loop_b) == 9 and loop_problem is None
     np.testing.assert_allclose(places(source, loop), before[0])
     np.testing.assert_allclose(places(target, row_b), before[1])
 
@@ -56,8 +56,8 @@ def test_subdividing_divides_paths(heads: tuple[MeshObject, MeshObject], cuts: i
     curving.add(ROW[::-1], ROW_B)
     curving.add(LOOP, LOOP_B)
     edited(source, *range(49), do=lambda: bpy.ops.mesh.subdivide(number_cuts=cuts))
-    (_, row, _, problem), (_, loop, _, other) = curving.listed()
-    assert problem is None and other is None
+    (_, row, _, problem), (_, loop, _, loop_problem) = curving.listed()
+    assert problem is None and loop_problem is None
     assert row[:: cuts + 1] == ROW[::-1] and len(row) == 3 * (cuts + 1) + 1
     assert set(loop[:: cuts + 1]) == set(LOOP) and len(loop) == 8 * (cuts + 1) + 1 and loop[0] == LOOP[0]
 
@@ -99,8 +99,8 @@ def test_a_broken_path_is_told_and_can_be_set_again(
     meshes.edit(source, target)
     assert curving.selected_edges(target) == left
     call.landmark_curve_add()
-    (name, found, again, fine) = curving.listed()[0]
-    assert (name, found, fine) == ("Curve 1", ROW, None) and len(again) == 5
+    (name, row, partner, fine) = curving.listed()[0]
+    assert (name, row, fine) == ("Curve 1", ROW, None) and len(partner) == 5
     assert len(curving.listed()) == 1
 
 

@@ -87,8 +87,8 @@ def test_add_selected_edges_of_both(heads: tuple[MeshObject, MeshObject]) -> Non
     turned = (25, 32, 31, 30, 23, 16, 17, 18, 25)
     # the row has vertices 8 to 11, the loop does not touch it
     assert curving.listed()[0] == ("Curve 1", ROW, ROW_B, None)
-    (_, found, other, problem) = curving.listed()[1]
-    assert found in (turned, turned[::-1]) and set(other) == set(LOOP_B) and problem is None
+    (_, source_path, target_path, problem) = curving.listed()[1]
+    assert source_path in (turned, turned[::-1]) and set(target_path) == set(LOOP_B) and problem is None
     bpy.ops.object.mode_set(mode="OBJECT")
     assert curving.listed()[0] == ("Curve 1", ROW, ROW_B, None)
 
@@ -101,7 +101,7 @@ def test_selected_edges_complete_the_active_curve(heads: tuple[MeshObject, MeshO
     call.landmark_curve_add()
     curving.select_path(source, OTHER)
     call.landmark_curve_add()
-    assert [one[2] for one in curving.listed()] == [(), ()] and source.authalic_landmark_curve_index == 1
+    assert [curve[2] for curve in curving.listed()] == [(), ()] and source.authalic_landmark_curve_index == 1
     curving.select_path(source)
     curving.select_path(target, OTHER_B)
     call.landmark_curve_add()
@@ -227,13 +227,13 @@ def test_remove_and_clear(heads: tuple[MeshObject, MeshObject]) -> None:
     for source, target in ((ROW, ROW_B), (OTHER, OTHER_B), ((36, 37, 38), (64, 65, 66))):
         curving.add(source, target)
     call.landmark_curve_remove(index=1)
-    assert [one[1] for one in curving.listed()] == [ROW, (36, 37, 38)]
+    assert [item[1] for item in curving.listed()] == [ROW, (36, 37, 38)]
     curving.add(OTHER, OTHER_B)
     assert curving.listed()[2] == ("Curve 4", OTHER, OTHER_B, None)
     call.landmark_curve_clear()
     assert curving.listed() == []
     for obj in heads:
-        assert not [one.name for one in obj.data.attributes if "authalic" in one.name]
+        assert not [item.name for item in obj.data.attributes if "authalic" in item.name]
 
 
 def test_reverse(heads: tuple[MeshObject, MeshObject]) -> None:
@@ -310,8 +310,8 @@ def copy_of(source: MeshObject, linked: bool = False) -> MeshObject:
 
 
 def marked(obj: MeshObject) -> Any:
-    """The attributes of curves that a mesh has."""
-    return [one.name for one in obj.data.attributes if "authalic_curve" in one.name]
+    """The names of the mesh attributes of curves."""
+    return [attribute.name for attribute in obj.data.attributes if "authalic_curve" in attribute.name]
 
 
 @pytest.mark.parametrize("linked", [False, True])
@@ -369,13 +369,13 @@ def test_undo_of_a_change_of_a_copy(heads: tuple[MeshObject, MeshObject]) -> Non
     pairing.step("Copied")
     call.landmark_curve_reverse("EXEC_DEFAULT", True)
     call.landmark_curve_clear("EXEC_DEFAULT", True)
-    own = ("Curve 1", ROW, ROW_B[::-1], None)
-    for expected in ([own], [("Curve 1", ROW, ROW_B, None)]):
+    changed = ("Curve 1", ROW, ROW_B[::-1], None)
+    for expected in ([changed], [("Curve 1", ROW, ROW_B, None)]):
         bpy.ops.ed.undo()
         assert curving.listed(bpy.data.objects["Head A.001"]) == expected
         assert curving.listed() == [("Curve 1", ROW, ROW_B, None)]
     bpy.ops.ed.redo()
-    assert curving.listed(bpy.data.objects["Head A.001"]) == [own]
+    assert curving.listed(bpy.data.objects["Head A.001"]) == [changed]
 
 
 def test_nothing_is_left_on_meshes(heads: tuple[MeshObject, MeshObject]) -> None:
@@ -415,7 +415,7 @@ def test_a_copy_with_its_own_curves_can_be_edited(heads: tuple[MeshObject, MeshO
     meshes.edit(copy, target)
     curving.add((22, 15, 8), (28, 19, 10), index=0)
     assert curving.listed(copy) == [("Curve 2", (22, 15, 8), (28, 19, 10), None)]
-    assert [one[3] for one in curving.listed(source)] == [None, None]
+    assert [curve[3] for curve in curving.listed(source)] == [None, None]
 
 
 def test_a_deleted_target_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
@@ -432,17 +432,17 @@ def test_lines(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(LOOP)
     markers = part("overlay.curves")
     meshes.select(target, source)
-    found = markers.shown(bpy.context)
-    assert [(line.object_name, line.number, line.is_active, line.has_problem) for line in found] == [
+    lines = markers.shown(bpy.context)
+    assert [(line.object_name, line.number, line.is_active, line.has_problem) for line in lines] == [
         ("Head A", 0, False, False),
         ("Head B", 0, False, False),
         ("Head A", 1, True, False),
     ]
-    assert found[0].edges == ((8, 9), (9, 10), (10, 11)) and found[2].is_closed
+    assert lines[0].edges == ((8, 9), (9, 10), (10, 11)) and lines[2].is_closed
     assert markers.icon(0) != markers.icon(1) and markers.icon(10) == markers.icon(0)
     icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
     assert all(markers.icon(number) in icons for number in range(10))
-    assert all(len(markers._color(line, bpy.context)) == 3 for line in found)
+    assert all(len(markers._color(line, bpy.context)) == 3 for line in lines)
     bpy.context.scene.authalic_show_landmarks = False
     assert markers.shown(bpy.context) == []
     markers._draw_lines()  # without a window nothing is drawn
@@ -473,8 +473,8 @@ def test_everything_has_words() -> None:
     for name in ("add", "remove", "clear", "select", "reverse"):
         operator = getattr(bpy.ops.authalic, f"landmark_curve_{name}").get_rna_type()
         assert operator.description and not operator.description.endswith(".")
-        own = [p for p in operator.properties if p.identifier in ("index", "side", "source_vertices")]
-        assert all(p.name and p.description and not p.description.endswith(".") for p in own)
+        described = [p for p in operator.properties if p.identifier in ("index", "side", "source_vertices")]
+        assert all(p.name and p.description and not p.description.endswith(".") for p in described)
 
 
 def test_unregistering_leaves_nothing(extension: str) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Landmarks are kept through edits of the meshes and through undo, and told where they are lost."""
+"""Landmarks survive edits of the meshes and undo; lost ones are reported."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The vertex under the cursor by geometry alone, and the picking operator with events that are made up."""
+"""The vertex under the cursor by geometry alone, and the picking operator with made-up events."""
 
 import types
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ WIDTH, HEIGHT = 800, 600
 
 
 def perspective(eye: Sequence[float] = (0, 0, 10), lens: float = 1.5) -> Any:
-    """A view from the eye straight down, +Y upwards."""
+    """A view from the eye straight down, with +Y up."""
     near, far, aspect = 0.1, 100.0, WIDTH / HEIGHT
     depth = [(far + near) / (near - far), 2 * far * near / (near - far)]
     projection = [[lens, 0, 0, 0], [0, lens * aspect, 0, 0], [0, 0, *depth], [0, 0, -1, 0]]
@@ -63,16 +63,16 @@ def test_every_vertex_of_an_open_surface_is_found_at_its_pixel(view: Any, mode: 
     elif mode == "subdivided":
         obj.modifiers.new("Subdivision", "SUBSURF")
     bpy.context.view_layer.update()
-    one, seen = surface(obj), view()
-    pixels = seen.project(one.world())
-    assert [pick([one], seen, pixel + 0.4) for pixel in pixels] == [(0, k) for k in range(36)]
+    pickable, seen = surface(obj), view()
+    pixels = seen.project(pickable.world())
+    assert [pick([pickable], seen, pixel + 0.4) for pixel in pixels] == [(0, k) for k in range(36)]
 
 
 def test_the_far_side_is_not_picked() -> None:
-    one, seen = surface(meshes.icosphere(3)), perspective()
-    points = one.world()
+    pickable, seen = surface(meshes.icosphere(3)), perspective()
+    points = pickable.world()
     for pixel in seen.project(points):
-        which, vertex = pick([one], seen, pixel)
+        which, vertex = pick([pickable], seen, pixel)
         assert which == 0 and points[vertex][2] > -0.1
 
 
@@ -80,18 +80,18 @@ def test_the_nearer_object_is_picked() -> None:
     far, near = meshes.add_grid("Far"), meshes.add_grid("Near")
     near.location.z = 2
     bpy.context.view_layer.update()
-    found = pick([surface(far), surface(near)], perspective(), (400, 300))
-    assert found == (1, 24)
+    picked = pick([surface(far), surface(near)], perspective(), (400, 300))
+    assert picked == (1, 24)
     assert pick([surface(far), surface(near)], perspective(), (400, 300), blocked=3.0) is None
     assert pick([surface(far), surface(near)], perspective(), (400, 300), blocked=9.0) == (1, 24)
 
 
 def test_beside_the_surface_the_nearest_vertex_within_some_pixels() -> None:
-    one, seen = surface(meshes.add_grid()), perspective()
-    corner = seen.project(one.world([0]))[0]
-    assert pick([one], seen, corner - 10) == (0, 0)
-    assert pick([one], seen, corner - 30) is None
-    assert pick([one], seen, (5, 5)) is None
+    pickable, seen = surface(meshes.add_grid()), perspective()
+    corner = seen.project(pickable.world([0]))[0]
+    assert pick([pickable], seen, corner - 10) == (0, 0)
+    assert pick([pickable], seen, corner - 30) is None
+    assert pick([pickable], seen, (5, 5)) is None
     assert pick([], seen, (5, 5)) is None
 
 
@@ -117,7 +117,7 @@ def test_hidden_faces_are_not_picked() -> None:
 
 
 class Session:
-    """The operator on two grids in one view, with events that are made up."""
+    """The operator on two grids in one view, with made-up events."""
 
     def __init__(self) -> None:
         self.source, self.target = meshes.add_grid("Head A"), meshes.add_grid("Head B")
@@ -176,9 +176,9 @@ class Session:
 
 @pytest.fixture
 def session() -> Iterator[Session]:
-    made = Session()
-    yield made
-    made.close()
+    new = Session()
+    yield new
+    new.close()
 
 
 def test_clicks_make_pairs(session: Session) -> None:
@@ -186,7 +186,7 @@ def test_clicks_make_pairs(session: Session) -> None:
     assert session.listed() == []
     session.click(session.target, 11)
     session.click(session.target, 20)
-    session.click(session.target, 21)  # thought better of it
+    session.click(session.target, 21)  # a second choice of the source
     session.click(session.source, 30)
     assert session.listed() == [(10, 11, None), (30, 21, None)]
     assert session.send("ESC") == {"FINISHED"}
@@ -211,7 +211,7 @@ def test_taking_back(session: Session, key: dict[str, Any]) -> None:
     assert session.listed() == [(10, 10, None)]
     session.send(**key)
     session.send(**key)
-    # The second pair had made the first one a step of undo; the end is one too.
+    # The second pair made the first a step of undo; so does the end.
     assert session.listed() == [] and session.send("ESC") == {"FINISHED"}
 
 

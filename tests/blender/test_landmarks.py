@@ -45,7 +45,7 @@ def test_add_the_selected_vertices_in_edit_mode(heads: tuple[MeshObject, MeshObj
 
 
 def test_the_source_is_known_from_its_target_too(heads: tuple[MeshObject, MeshObject]) -> None:
-    """In edit mode of both, whichever of them was made active last."""
+    """In edit mode of both, whichever became active last."""
     meshes.edit(heads[1], heads[0])
     pairing.select_vertices(heads[0], 4)
     pairing.select_vertices(heads[1], 60)
@@ -131,8 +131,8 @@ def test_scripts_may_write_the_list_itself(heads: tuple[MeshObject, MeshObject])
     pair.source_vertex = 1000
     assert pairing.listed()[0][1] == -1 and "is gone" in pairing.listed()[0][3]
     pair.source_vertex = 4
-    other = source.authalic_landmarks.add()
-    other.source_vertex, other.target_vertex = 4, 6
+    second = source.authalic_landmarks.add()
+    second.source_vertex, second.target_vertex = 4, 6
     assert pairing.listed()[1][3] == 'has vertex 4 of Head A, as "Nose" has'
 
 
@@ -274,8 +274,8 @@ def test_everything_has_words() -> None:
     for name in ("add", "pick", "remove", "clear", "jump", "export", "import"):
         operator = getattr(bpy.ops.authalic, f"landmark_{name}").get_rna_type()
         assert operator.description and not operator.description.endswith(".")
-        own = [p for p in operator.properties if p.identifier in ("index", "side", "source_vertex")]
-        assert all(p.name and p.description and not p.description.endswith(".") for p in own)
+        described = [p for p in operator.properties if p.identifier in ("index", "side", "source_vertex")]
+        assert all(p.name and p.description and not p.description.endswith(".") for p in described)
 
 
 def test_unregistering_leaves_nothing(extension: str) -> None:

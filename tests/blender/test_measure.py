@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.measure against formulas of its own in numpy."""
+"""authalic.measure against independent formulas in numpy."""
 
 import re
 from typing import Any
@@ -15,7 +15,7 @@ ATTRIBUTE = "authalic_log2_area_ratio"
 
 
 def figures() -> dict[str, float]:
-    """The numbers of the line, by their names."""
+    """The numbers in the reported line, by name."""
     line = bpy.context.window_manager.authalic_figures
     number = r"(-?[\d.]+(?:e[+-]?\d+)?)"
     pattern = (
@@ -55,15 +55,15 @@ def sigma_ratio(points: Array, image: Array) -> Any:
 def test_figures_and_attribute() -> None:
     obj = stretched_grid()
     assert bpy.ops.authalic.measure() == {"FINISHED"}
-    ratios, found = meshes.area_ratios(obj), figures()
+    ratios, reported = meshes.area_ratios(obj), figures()
     corners, polygons, points = meshes.triangles(obj)
-    assert found["mean"] == pytest.approx(ratios.mean(), abs=6e-4)
-    assert found["deviation"] == pytest.approx(ratios.std(), rel=6e-3)
-    assert found["low"] == pytest.approx(np.log2(ratios).min(), abs=6e-3)
-    assert found["high"] == pytest.approx(np.log2(ratios).max(), abs=6e-3)
-    assert found["flips"] == 0
+    assert reported["mean"] == pytest.approx(ratios.mean(), abs=6e-4)
+    assert reported["deviation"] == pytest.approx(ratios.std(), rel=6e-3)
+    assert reported["low"] == pytest.approx(np.log2(ratios).min(), abs=6e-3)
+    assert reported["high"] == pytest.approx(np.log2(ratios).max(), abs=6e-3)
+    assert reported["flips"] == 0
     angle = sigma_ratio(points, meshes.uv(obj)[corners].astype(float)).mean()
-    assert found["angle"] == pytest.approx(angle, abs=6e-3)
+    assert reported["angle"] == pytest.approx(angle, abs=6e-3)
     area = meshes.surface_areas(points)
     expected = np.log2(np.bincount(polygons, ratios * area) / np.bincount(polygons, area))
     np.testing.assert_allclose(attribute(obj), expected, atol=1e-4)
@@ -165,6 +165,6 @@ def test_attribute_of_another_kind_is_replaced(mode: str, kind: str, domain: str
     bpy.ops.object.mode_set(mode=mode)
     assert bpy.ops.authalic.measure() == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")
-    found = obj.data.attributes[ATTRIBUTE]
-    assert (found.domain, found.data_type) == ("FACE", "FLOAT")
+    attribute_ = obj.data.attributes[ATTRIBUTE]
+    assert (attribute_.domain, attribute_.data_type) == ("FACE", "FLOAT")
     np.testing.assert_array_equal(attribute(obj), expected)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jobs behind a living window: Esc, Enter, progress. Without a window, so the events are made up."""
+"""Jobs behind a living window: Esc, Enter, progress. There is no window here, so the events are made up."""
 
 import time
 import types
@@ -15,7 +15,7 @@ from meshes import Array, MeshObject
 
 
 class Recorder:
-    """Takes any call and remembers its name and arguments."""
+    """Accepts any call and records its name and arguments."""
 
     def __init__(self) -> None:
         self.calls: list[tuple[Any, ...]] = []
@@ -32,7 +32,7 @@ class Recorder:
 
 
 def operator(job: Any, context: Any) -> Any:
-    """An operator of the mixin, which Blender itself would not let be made, with a context that records."""
+    """An operator of the mixin as a plain object, which Blender forbids, with a context that records."""
     modal = part("operators.modal").Modal
 
     class Plain(modal):  # type: ignore[misc, valid-type]
@@ -51,23 +51,23 @@ def operator(job: Any, context: Any) -> Any:
         def report(self, kinds: set[str], text: str) -> None:
             self.said.append((*kinds, text))
 
-    made = Plain()
+    plain = Plain()
     context.window_manager, context.workspace, context.window = Recorder(), Recorder(), object()
-    return made
+    return plain
 
 
 def event(kind: str, value: str = "PRESS") -> Any:
     return types.SimpleNamespace(type=kind, value=value)
 
 
-def run(made: Any, context: Any, events: Sequence[Any] = ()) -> Any:
+def run(running: Any, context: Any, events: Sequence[Any] = ()) -> Any:
     """Sends events, then timer ticks until the operator has ended; returns how it ended."""
-    assert made._start(context) == {"RUNNING_MODAL"}
-    for one in events:
-        assert made.modal(context, one) <= {"RUNNING_MODAL", "PASS_THROUGH"}
+    assert running._start(context) == {"RUNNING_MODAL"}
+    for event_ in events:
+        assert running.modal(context, event_) <= {"RUNNING_MODAL", "PASS_THROUGH"}
     deadline = time.monotonic() + 60
     while time.monotonic() < deadline:
-        ended = made.modal(context, event("TIMER", "NOTHING"))
+        ended = running.modal(context, event("TIMER", "NOTHING"))
         if ended != {"RUNNING_MODAL"}:
             return ended
         time.sleep(0.01)
@@ -85,9 +85,9 @@ LONG = {"method": "GRADIENT_DESCENT", "iterations": 100000}
 
 def test_a_run_to_its_end_writes_what_execute_writes() -> None:
     obj, context = meshes.suzanne(1), types.SimpleNamespace()
-    made = operator(suzanne_job, context)
-    assert run(made, context) == {"FINISHED"}
-    assert made.said[0][0] == "INFO" and "3 islands" in made.said[0][1]
+    running = operator(suzanne_job, context)
+    assert run(running, context) == {"FINISHED"}
+    assert running.said[0][0] == "INFO" and "3 islands" in running.said[0][1]
     modal = meshes.uv(obj, "New")
     bpy.ops.authalic.unwrap(uv_layer="New")
     assert (meshes.uv(obj, "New") == modal).all()
@@ -96,22 +96,22 @@ def test_a_run_to_its_end_writes_what_execute_writes() -> None:
 def test_esc_discards() -> None:
     obj, context = meshes.suzanne(), types.SimpleNamespace()
     before = [layer.name for layer in obj.data.uv_layers]
-    made = operator(lambda: suzanne_job(**LONG), context)
-    assert run(made, context, [event("ESC")]) == {"CANCELLED"}
-    assert made.said == [("ERROR", "cancelled, nothing was changed")]
+    running = operator(lambda: suzanne_job(**LONG), context)
+    assert run(running, context, [event("ESC")]) == {"CANCELLED"}
+    assert running.said == [("ERROR", "cancelled, nothing was changed")]
     assert [layer.name for layer in obj.data.uv_layers] == before
 
 
 @pytest.mark.parametrize("key", ["RET", "NUMPAD_ENTER"])
 def test_enter_keeps_the_best_so_far(key: str) -> None:
     obj, context = meshes.suzanne(), types.SimpleNamespace()
-    made = operator(lambda: suzanne_job(**LONG), context)
-    assert made._start(context) == {"RUNNING_MODAL"}
+    running = operator(lambda: suzanne_job(**LONG), context)
+    assert running._start(context) == {"RUNNING_MODAL"}
     time.sleep(1.0)
-    made.modal(context, event(key))
-    made._running._thread.join(10)
-    assert made.modal(context, event("TIMER")) == {"FINISHED"}
-    ((kind, line),) = made.said
+    running.modal(context, event(key))
+    running._running._thread.join(10)
+    assert running.modal(context, event("TIMER")) == {"FINISHED"}
+    ((kind, line),) = running.said
     assert kind == "WARNING" and "stopped early" in line
     assert (meshes.area_ratios(obj, "New")[_written(obj)] > 0).all()
 
@@ -169,23 +169,23 @@ def test_a_shape_key_can_be_kept_early() -> None:
 def test_other_keys_are_held_back_and_looking_around_is_not() -> None:
     meshes.suzanne(1)
     context = types.SimpleNamespace()
-    made = operator(suzanne_job, context)
-    made._start(context)
+    running = operator(suzanne_job, context)
+    running._start(context)
     for kind in ("X", "G", "TAB", "LEFTMOUSE", "RIGHTMOUSE", "Z"):
-        assert made.modal(context, event(kind)) == {"RUNNING_MODAL"}
+        assert running.modal(context, event(kind)) == {"RUNNING_MODAL"}
     for kind in ("MIDDLEMOUSE", "WHEELUPMOUSE", "MOUSEMOVE"):
-        assert made.modal(context, event(kind)) == {"PASS_THROUGH"}
-    made.modal(context, event("ESC", "RELEASE"))  # of the key that opened a menu, say
-    assert not made._running._cancel.is_set()
-    made.cancel(context)
-    made._running._thread.join(10)
+        assert running.modal(context, event(kind)) == {"PASS_THROUGH"}
+    running.modal(context, event("ESC", "RELEASE"))  # of the key that opened a menu, say
+    assert not running._running._cancel.is_set()
+    running.cancel(context)
+    running._running._thread.join(10)
 
 
 def test_the_header_and_the_timer_are_cleared() -> None:
     meshes.suzanne(1)
     context = types.SimpleNamespace()
-    made = operator(suzanne_job, context)
-    run(made, context)
+    running = operator(suzanne_job, context)
+    run(running, context)
     manager, workspace = context.window_manager, context.workspace
     assert len(manager.named("event_timer_add")) == len(manager.named("event_timer_remove")) == 1
     assert len(manager.named("progress_begin")) == len(manager.named("progress_end")) == 1
@@ -207,10 +207,10 @@ def test_a_mesh_that_changed_meanwhile_is_left_alone(change: Any) -> None:
         bpy.context.view_layer.update()
     else:
         meshes.subdivided(obj, 1)
-    made = operator(lambda: job, context)
-    made._running, made._timer = job, None
-    assert made.modal(context, event("TIMER")) == {"CANCELLED"}
-    assert made.said == [("ERROR", "Grid has changed meanwhile; nothing was written")]
+    running = operator(lambda: job, context)
+    running._running, running._timer = job, None
+    assert running.modal(context, event("TIMER")) == {"CANCELLED"}
+    assert running.said == [("ERROR", "Grid has changed meanwhile; nothing was written")]
 
 
 def test_without_a_window_invoke_runs_to_the_end() -> None:

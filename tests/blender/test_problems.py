@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The extension's own sentences for what the library refuses: made from data, whatever the library says."""
+"""The extension's own sentences for errors of the library, made from their data, not their messages."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -64,7 +64,7 @@ def test_an_unknown_kind_is_told_in_the_words_of_the_library() -> None:
 
 
 def refusal(call: Callable[..., Any], **options: Any) -> str:
-    """What an operator says, with its result or its error."""
+    """The output of an operator, with its result or its error."""
     try:
         call(**options)
     except RuntimeError as error:
@@ -163,17 +163,17 @@ def registered(
     spoil: Spoil | None = None,
     progress: Callable[..., bool] = lambda *_: True,
 ) -> str:
-    """What the bridge says of a registration by curves (source path, target path) of two objects."""
+    """The bridge's report of a registration of two objects by curves (source path, target path)."""
     source, _ = couple(make, spoil)
     bridge, sides = part("bridge"), part("jobs.register").chosen(bpy.context).sides
     named = [(f"Curve {number}", *both) for number, both in enumerate(curves(source), 1)]
     settings = part("registration.settings").Settings(method="CURVES")
     part("bridge.registrations")._registrations._found.clear()
     try:
-        found = bridge.register(*sides, named, settings, progress)
+        registration = bridge.register(*sides, named, settings, progress)
     except bridge.Unsuitable as error:
         return str(error)
-    return "; ".join(found.remarks)
+    return "; ".join(registration.remarks)
 
 
 ARCS = (
@@ -229,12 +229,12 @@ def swapped(obj: MeshObject) -> Curves:
 
 
 def reversed_once(obj: MeshObject) -> Curves:
-    (ours, theirs), *others = same(obj)
-    return [(ours, theirs[::-1]), *others]
+    (source_path, target_path), *others = same(obj)
+    return [(source_path, target_path[::-1]), *others]
 
 
 def reversed_all(obj: MeshObject) -> Curves:
-    return [(ours, theirs[::-1]) for ours, theirs in same(obj)]
+    return [(source_path, target_path[::-1]) for source_path, target_path in same(obj)]
 
 
 def rows(obj: MeshObject) -> Curves:
@@ -284,7 +284,7 @@ CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
 
 
 def told(case: Callable[[], str], capfd: pytest.CaptureFixture[str]) -> str:
-    """All that is said in a case, without the seconds that it took."""
+    """All output of a case, without its seconds."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     capfd.readouterr()
     said = case()

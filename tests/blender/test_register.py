@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.register: the morph it writes, where it ends, what it says and what it refuses."""
+"""authalic.register: the morph that it writes, its end, its report and its refusals."""
 
 import re
 import time
@@ -52,7 +52,7 @@ def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
 
 
 def assert_near(points: Any, expected: Any) -> None:
-    """As near as maps of surfaces that differ in more than rounding come to each other."""
+    """Points agree as well as maps of surfaces that differ by more than rounding do."""
     np.testing.assert_allclose(points, expected, atol=0.02 * pairs.size(expected))
 
 
@@ -217,7 +217,7 @@ def test_n_gons() -> None:
 
 def curve_points(obj: MeshObject) -> Any:
     """(frame, value) of the key frames of the morph."""
-    curves = [curve for found in part("blender.animation")._curves(obj.data.shape_keys) for curve in found]
+    curves = [curve for group in part("blender.animation")._curves(obj.data.shape_keys) for curve in group]
     assert [curve.data_path for curve in curves] == [f'key_blocks["{KEY}"].value']
     return [tuple(point.co) for point in curves[0].keyframe_points]
 
@@ -243,7 +243,7 @@ def test_animation_of_other_keys_stays() -> None:
     other = source.shape_key_add(name="Other")
     other.keyframe_insert("value", frame=5)
     register(animate=True)
-    curves = [curve for found in part("blender.animation")._curves(source.data.shape_keys) for curve in found]
+    curves = [curve for group in part("blender.animation")._curves(source.data.shape_keys) for curve in group]
     assert [curve.data_path for curve in curves] == [
         'key_blocks["Other"].value',
         f'key_blocks["{KEY}"].value',
@@ -409,11 +409,9 @@ def test_lost_landmark() -> None:
 def test_pairs_that_cannot_meet_are_named(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = sheets()
     source.data.calc_loop_triangles()
-    middle = min(source.data.loop_triangles, key=lambda one: one.center.length)
-    triangle = list(middle.vertices)
-    swapped = dict(
-        zip("ABC", zip(triangle, [triangle[1], triangle[0], triangle[2]], strict=True), strict=True)
-    )
+    middle = min(source.data.loop_triangles, key=lambda triangle: triangle.center.length)
+    a, b, c = list(middle.vertices)
+    swapped = {"A": (a, b), "B": (b, a), "C": (c, c)}
     pairs.pair(source, source.authalic_target, swapped)
     assert register() == {"FINISHED"}
     said = capfd.readouterr().out
@@ -438,7 +436,7 @@ def test_shared_mesh(capfd: pytest.CaptureFixture[str]) -> None:
 
 
 def test_worst_pairs_are_named() -> None:
-    one = part("registration.registered").Registered(
+    registration = part("registration.registered").Registered(
         *[None] * 6,
         names=list("ABCDE"),
         errors=np.array([0.01, 0.02, 0.004, 0.011, 0.0105]),
@@ -448,11 +446,11 @@ def test_worst_pairs_are_named() -> None:
         status="converged",
         seconds=0.0,
     )
-    assert [name for name, _ in one.worst] == ["B", "D", "E"]
-    said = part("jobs.register_report")._worst(one)
+    assert [name for name, _ in registration.worst] == ["B", "D", "E"]
+    said = part("jobs.register_report")._worst(registration)
     assert said == ', worst at "B" 2.000 %; "D" 1.100 %; "E" 1.050 %'
-    one.errors = np.full(5, 1e-7)
-    assert part("jobs.register_report")._worst(one) == ""
+    registration.errors = np.full(5, 1e-7)
+    assert part("jobs.register_report")._worst(registration) == ""
 
 
 def test_the_larger_energy_is_reported() -> None:
@@ -470,8 +468,8 @@ def test_the_larger_energy_is_reported() -> None:
     figures = part("registration.registered").registered_by_points
     assert figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"]).energy == 0.25
     Native.target_distortion = Figures(0.5, [3])
-    found = figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"])
-    assert (found.energy, found.folds) == (0.5, 1)
+    registered = figures(Native, sides, "SPHERE", np.zeros((2, 1), int), ["A"])
+    assert (registered.energy, registered.folds) == (0.5, 1)
 
 
 def test_what_is_seen_but_not_registered_is_named(capfd: pytest.CaptureFixture[str]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.register by landmark curves: the morph, what it says and refuses, and transfers after it."""
+"""authalic.register by landmark curves: the morph, its report, its refusals, and transfers after it."""
 
 import contextlib
 import re
@@ -68,7 +68,7 @@ def onto_another_sphere() -> tuple[MeshObject, MeshObject]:
 
 
 def from_polyline(points: Array, corners: Any) -> Array:
-    """How far points (k, 3) are from a polyline (n, 3)."""
+    """The distances of points (k, 3) from a polyline (n, 3)."""
     a, along = corners[:-1], np.diff(corners, axis=0)
     place = np.einsum("knd,nd->kn", points[:, None] - a, along) / (along**2).sum(axis=1)
     nearest = a + np.clip(place, 0, 1)[..., None] * along
@@ -181,7 +181,7 @@ def test_transfer_by_curves_alone() -> None:
 
 
 def layer(target: MeshObject) -> None:
-    """Gives a target something that can be transferred."""
+    """Gives a target a layer to transfer."""
     target.vertex_groups.new(name="All").add(range(len(target.data.vertices)), 1.0, "REPLACE")
 
 
@@ -337,7 +337,7 @@ def test_undo_and_redo() -> None:
 
 @pytest.mark.parametrize("end", ["cancel", "end_early"])
 def test_stopped(end: str) -> None:
-    """Enter keeps what there is; where nothing is yet, it is an error, and neither writes half a morph."""
+    """Enter keeps the current result; without one it is an error. Neither writes half a morph."""
     source, _ = balls()
     registration = part("jobs.register")
     settings = registration.Settings(part("registration.settings").Settings(method="CURVES"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.sphere_shape_key: the key it writes, what it leaves alone, and what it refuses."""
+"""authalic.sphere_shape_key: the key that it writes, the data that it leaves alone, and its refusals."""
 
 import re
 from pathlib import Path
@@ -50,8 +50,8 @@ def vertex_triangles(obj: MeshObject) -> Array:
     return np.array([tuple(triangle.vertices) for triangle in obj.data.loop_triangles])
 
 
-def centre_and_radius(points: Array, triangles: Array) -> tuple[Array, float]:
-    """Of the sphere that has the area of a surface, about the centre of its area."""
+def center_and_radius(points: Array, triangles: Array) -> tuple[Array, float]:
+    """The center of a surface's area, and the radius of the sphere with this area."""
     area = meshes.surface_areas(points[triangles])
     return area @ points[triangles].mean(axis=1) / area.sum(), np.sqrt(area.sum() / (4 * np.pi))
 
@@ -67,12 +67,12 @@ def test_key_is_the_sphere_of_the_same_area(name: str, capfd: pytest.CaptureFixt
     assert blocks[NAME].value == 0 and blocks[NAME].relative_key == blocks["Basis"]
     assert (mesh_positions(obj) == before).all() and (key_positions(obj, "Basis") == before).all()
     triangles = vertex_triangles(obj)
-    centre, radius = centre_and_radius(before.astype(float), triangles)
-    around = key_positions(obj) - centre
+    center, radius = center_and_radius(before.astype(float), triangles)
+    around = key_positions(obj) - center
     np.testing.assert_allclose(
         np.linalg.norm(around, axis=1), radius, rtol=2e-2 if name == "n-gons" else 1e-4
     )
-    if name != "n-gons":  # Blender divides these in its own way
+    if name != "n-gons":  # Blender triangulates these in its own way
         assert (np.linalg.det(around[triangles].astype(float)) > 0).all()
     assert f"{NAME} on {obj.name}: area ratio SD" in said and "0 flips, angle distortion" in said
     assert float(re.search(r"radius ([\d.]+)", said)[1]) == pytest.approx(radius, rel=2e-2)
@@ -92,8 +92,8 @@ def test_key_lies_over_the_mesh() -> None:
     obj.data.transform(Matrix.Translation((5, 6, 7)))
     add_key()
     points = mesh_positions(obj).astype(float)
-    centre, _ = centre_and_radius(points, vertex_triangles(obj))
-    cosine = (spheres.unit(points - centre) * spheres.unit(key_positions(obj) - centre)).sum(axis=1)
+    center, _ = center_and_radius(points, vertex_triangles(obj))
+    cosine = (spheres.unit(points - center) * spheres.unit(key_positions(obj) - center)).sum(axis=1)
     assert cosine.mean() > 0.9
 
 
@@ -102,10 +102,10 @@ def test_inside_out_mesh_does_not_turn_inside_out() -> None:
     obj.data.flip_normals()
     assert add_key() == {"FINISHED"}
     points, triangles = mesh_positions(obj).astype(float), vertex_triangles(obj)
-    centre, _ = centre_and_radius(points, triangles)
-    around = (key_positions(obj) - centre)[triangles]
+    center, _ = center_and_radius(points, triangles)
+    around = (key_positions(obj) - center)[triangles]
     assert (np.linalg.det(around) < 0).all()
-    cosine = (spheres.unit(points - centre) * spheres.unit(key_positions(obj) - centre)).sum(axis=1)
+    cosine = (spheres.unit(points - center) * spheres.unit(key_positions(obj) - center)).sum(axis=1)
     assert cosine.mean() > 0.9
 
 
@@ -113,8 +113,8 @@ def test_inconsistent_normals() -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.polygons[7].flip()
     assert add_key() == {"FINISHED"}
-    centre, _ = centre_and_radius(mesh_positions(obj).astype(float), vertex_triangles(obj))
-    volumes = np.linalg.det((key_positions(obj) - centre)[vertex_triangles(obj)])
+    center, _ = center_and_radius(mesh_positions(obj).astype(float), vertex_triangles(obj))
+    volumes = np.linalg.det((key_positions(obj) - center)[vertex_triangles(obj)])
     assert np.flatnonzero(volumes < 0).tolist() == [7]
 
 
@@ -158,9 +158,9 @@ def test_other_keys_stay_and_the_first_one_counts() -> None:
     assert blocks["Smile"].value == 1 and blocks["Other"].value == 0.25
     assert blocks["Other"].relative_key == blocks["Smile"]
     assert blocks[NAME].relative_key == blocks["First"] and blocks[NAME].value == 0
-    _, radius = centre_and_radius(points.astype(float), vertex_triangles(obj))
-    centre = key_positions(obj).mean(axis=0)
-    assert np.linalg.norm(key_positions(obj) - centre, axis=1).mean() == pytest.approx(radius, rel=0.05)
+    _, radius = center_and_radius(points.astype(float), vertex_triangles(obj))
+    center = key_positions(obj).mean(axis=0)
+    assert np.linalg.norm(key_positions(obj) - center, axis=1).mean() == pytest.approx(radius, rel=0.05)
 
 
 def test_object_scale_does_not_matter(capfd: pytest.CaptureFixture[str]) -> None:
@@ -169,7 +169,7 @@ def test_object_scale_does_not_matter(capfd: pytest.CaptureFixture[str]) -> None
     bpy.context.view_layer.update()
     add_key()
     assert f"{obj.name}: non-uniform scale" in capfd.readouterr().out
-    _, radius = centre_and_radius(mesh_positions(obj).astype(float), vertex_triangles(obj))
+    _, radius = center_and_radius(mesh_positions(obj).astype(float), vertex_triangles(obj))
     size = np.ptp(key_positions(obj), axis=0)
     np.testing.assert_allclose(size, 2 * radius, rtol=0.05)
 

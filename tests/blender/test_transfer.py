@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.transfer: what it copies from the target, how well, and what it leaves alone."""
+"""authalic.transfer: the layers that it copies from the target, and the data that it leaves alone."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -63,12 +63,12 @@ def add_colors(obj: MeshObject, name: str, kind: str, domain: str) -> Array:
 
 def weights(obj: MeshObject, name: str) -> Array:
     group = obj.vertex_groups[name].index
-    found = np.full(len(obj.data.vertices), np.nan)
+    values = np.full(len(obj.data.vertices), np.nan)
     for vertex in obj.data.vertices:
         for entry in vertex.groups:
             if entry.group == group:
-                found[vertex.index] = entry.weight
-    return found
+                values[vertex.index] = entry.weight
+    return values
 
 
 def add_group(obj: MeshObject, name: str, values: Any) -> None:
@@ -122,7 +122,7 @@ def test_an_existing_map_is_replaced_and_others_stay() -> None:
 
 
 def test_linear_uvs_between_tessellations() -> None:
-    """They are the registered positions seen from above, with landmarks in the corners near the true ones."""
+    """The UVs are the registered positions seen from above, near the true ones at landmarks."""
     source, target = coarse_and_fine([(0.8, 0.8, 0), (-0.8, 0.8, 0), (0.8, -0.8, 0), (-0.8, -0.8, 0)])
     angles = {"angle_weight": 0.545}
     bpy.ops.authalic.register(**angles)
@@ -137,7 +137,7 @@ def test_linear_uvs_between_tessellations() -> None:
 
 
 def test_a_seam_stays_a_seam() -> None:
-    """The halves of a sheet apart by 5: no face of the source has corners on both sides."""
+    """The halves of a sheet lie 5 apart: no face of the source has corners on both sides."""
     source, target = copies()
     target.data.uv_layers.new(name="Halves")
     where = pairs.positions(target)[[loop.vertex_index for loop in target.data.loops]]
@@ -181,9 +181,9 @@ def test_vertex_groups(matrix: Matrix | None) -> None:
     add_group(source, "Right", np.full(len(values), 0.25))
     assert only("vertex_groups") == {"FINISHED"}
     assert [group.name for group in source.vertex_groups] == ["Before", "Right", "Empty"]
-    found = weights(source, "Right")
-    np.testing.assert_allclose(np.nan_to_num(found), values, atol=1e-5 if matrix is None else 0.05)
-    assert np.isnan(found).sum() > len(values) / 4 and np.isnan(weights(source, "Empty")).all()
+    transferred = weights(source, "Right")
+    np.testing.assert_allclose(np.nan_to_num(transferred), values, atol=1e-5 if matrix is None else 0.05)
+    assert np.isnan(transferred).sum() > len(values) / 4 and np.isnan(weights(source, "Empty")).all()
     assert weights(source, "Before")[0] == 0.5
 
 
@@ -193,8 +193,8 @@ def test_colors(kind: str, domain: str) -> None:
     source, target = copies()
     wanted = add_colors(target, "Paint", kind, domain)
     assert only("colour_attributes") == {"FINISHED"}
-    found = source.data.color_attributes["Paint"]
-    assert (found.data_type, found.domain) == (kind, domain)
+    attribute = source.data.color_attributes["Paint"]
+    assert (attribute.data_type, attribute.domain) == (kind, domain)
     np.testing.assert_allclose(colors(source, "Paint"), wanted, atol=1e-5 if kind == "FLOAT_COLOR" else 0.01)
 
 
@@ -216,9 +216,9 @@ def test_shape_keys_turn_with_the_spaces() -> None:
     assert only("shape_keys") == {"FINISHED"}
     blocks = source.data.shape_keys.key_blocks
     assert [block.name for block in blocks] == ["Basis", "Smile"]
-    found = pairs.positions(source, "Smile") - pairs.positions(source)
+    displacements = pairs.positions(source, "Smile") - pairs.positions(source)
     linear = np.array(source.matrix_world.inverted() @ target.matrix_world)[:3, :3]
-    np.testing.assert_allclose(found, smile @ linear.T, atol=0.05)
+    np.testing.assert_allclose(displacements, smile @ linear.T, atol=0.05)
     assert (
         blocks["Smile"].value == 0 and blocks["Smile"].slider_max == 2 and blocks["Smile"].slider_min == -0.5
     )
@@ -274,12 +274,11 @@ def test_everything_at_once_and_closed(capfd: pytest.CaptureFixture[str]) -> Non
 
 
 def test_n_gons_and_loose_vertices() -> None:
-    """Polygons that are divided from their centre, on both sides."""
+    """Polygons that are divided from their center, on both sides."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=12)
-    made = bpy.context.object
-    target = meshes.add(
-        [*pairs.positions(made), (9, 9, 9)], [list(face.vertices) for face in made.data.polygons], "Twin"
-    )
+    cylinder = bpy.context.object
+    faces = [list(face.vertices) for face in cylinder.data.polygons]
+    target = meshes.add([*pairs.positions(cylinder), (9, 9, 9)], faces, "Twin")
     source = pairs.twin(target, name="Can")
     pairs.pair(source, target, [0, 9, 16])
     wanted = random_uv(target, "Map")
@@ -308,7 +307,9 @@ def test_what_cannot_be_written_is_named(capfd: pytest.CaptureFixture[str]) -> N
 
 def layers(obj: MeshObject) -> list[list[str]]:
     data = obj.data
-    return [[one.name for one in kind] for kind in (data.uv_layers, obj.vertex_groups, data.color_attributes)]
+    return [
+        [layer.name for layer in kind] for kind in (data.uv_layers, obj.vertex_groups, data.color_attributes)
+    ]
 
 
 def test_color_and_group_of_one_name_on_the_target(capfd: pytest.CaptureFixture[str]) -> None:
@@ -327,7 +328,7 @@ def test_color_and_group_of_one_name_on_the_target(capfd: pytest.CaptureFixture[
 
 @pytest.mark.parametrize("kind", ["FLOAT_COLOR", "BYTE_COLOR"])
 def test_color_and_group_of_one_name_on_both(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
-    """What is there already is written in place, but no other type can take its place."""
+    """An existing layer is overwritten, but not by one of another type."""
     source, target = copies()
     wanted = add_colors(target, "Col", "FLOAT_COLOR", "POINT")
     before = add_colors(source, "Col", kind, "POINT")
@@ -344,7 +345,7 @@ def test_color_and_group_of_one_name_on_both(kind: str, capfd: pytest.CaptureFix
 def test_what_blender_names_otherwise_is_left_out_whole(
     kind: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Should a name turn out to be taken only when a layer is added, the object keeps what it had."""
+    """If a name turns out to be taken only when a layer is added, the object keeps its layers."""
     source, target = copies()
     random_uv(target, "Map")
     if kind == "UV map":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.unwrap in object mode: the UVs it writes, measured from the mesh by numpy alone."""
+"""authalic.unwrap in object mode: its UVs, measured by numpy alone."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,14 +24,14 @@ def assert_sound(obj: MeshObject, deviation: float = 0.1, layer: str | None = No
 
 
 def assert_no_overlap(*objects: MeshObject, resolution: int = 512) -> None:
-    """No pixel centre of the unit square lies strictly inside triangles of two islands."""
-    found = np.zeros((resolution, resolution), int)
+    """No pixel center of the unit square lies strictly inside triangles of two islands."""
+    covered = np.zeros((resolution, resolution), int)
     for obj in objects:
         corners, _, _ = meshes.triangles(obj)
         image, label = meshes.uv(obj)[corners].astype(float), meshes.islands(obj)
         for island in range(label.max() + 1):
-            found += _coverage(image[label == island], resolution)
-    assert found.max() == 1
+            covered += _coverage(image[label == island], resolution)
+    assert covered.max() == 1
 
 
 def _coverage(triangles: Array, resolution: int) -> Array:
@@ -90,7 +90,7 @@ def test_ngon_with_corners_in_a_line() -> None:
 
 
 def test_quads_that_share_a_diagonal_stay_whole() -> None:
-    # Two quads with two edges in common: one way of halving them makes their diagonals coincide.
+    # Two quads with two common edges: if split in one way, their diagonals coincide.
     vertices = [(0, 0, 0), (1, -1, 0.2), (2, 0, 0), (1, 0.3, 0), (1, 1, 0.2)]
     obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
     assert unwrap() == {"FINISHED"}
@@ -98,7 +98,7 @@ def test_quads_that_share_a_diagonal_stay_whole() -> None:
 
 
 def test_a_bow_of_quads_over_one_diagonal() -> None:
-    # Both quads can only be halved along 0-2, which the mesh also has as an edge of the triangle.
+    # Both quads can only be split along 0-2, which is also an edge of the triangle.
     vertices = [(0, 0, 0), (1, -1, 0), (2, 0, 0), (1, -0.1, 0), (1, 1, 0)]
     obj = meshes.add(vertices, [[0, 1, 2, 3], [0, 3, 2, 4]])
     assert unwrap() == {"FINISHED"}

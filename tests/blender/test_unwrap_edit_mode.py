@@ -31,8 +31,8 @@ def test_only_selected_faces_change() -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
     assert (meshes.uv(obj) == after).all()
     corners, polygons, points = meshes.triangles(obj)
-    own = np.isin(polygons, list(chosen))
-    ratio = meshes.uv_areas(after[corners[own]]) / meshes.surface_areas(points[own])
+    is_chosen = np.isin(polygons, list(chosen))
+    ratio = meshes.uv_areas(after[corners[is_chosen]]) / meshes.surface_areas(points[is_chosen])
     assert ratio.min() > 0 and ratio.std() / ratio.mean() < 0.1
     # The selection alone fills the square.
     assert np.ptp(after[mask], axis=0).max() > 0.9

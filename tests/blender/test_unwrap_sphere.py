@@ -47,15 +47,15 @@ def assert_sound(obj: MeshObject, deviation: float) -> Any:
 def assert_no_overlap(obj: MeshObject, resolution: int = 700) -> None:
     """No pixel's middle lies in two triangles of the UVs."""
     corners, _, _ = meshes.triangles(obj)
-    found = np.zeros((resolution, resolution), int)
+    covered = np.zeros((resolution, resolution), int)
     for triangle in meshes.uv(obj)[corners].astype(float) * resolution - 0.5:
         low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
         x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
         inside = np.ones(x.shape, bool)
         for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
             inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
-        found[y[inside], x[inside]] += 1
-    assert found.max() == 1
+        covered[y[inside], x[inside]] += 1
+    assert covered.max() == 1
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -95,7 +95,7 @@ def aspect(obj: MeshObject) -> float:
 def test_lambert_has_its_true_aspect_and_fills_the_width() -> None:
     obj = meshes.icosphere(5)
     unwrap()
-    # The faces at the seam stand out on the right, at the poles by up to a sixth or a fifth of a turn.
+    # The faces at the seam extend beyond the right side, at the poles by up to a fifth of a turn.
     assert np.pi - 0.01 < aspect(obj) < np.pi * (1 + 1 / 5 + 0.05)
     assert np.ptp(meshes.uv(obj)[:, 0]) > 0.99
 

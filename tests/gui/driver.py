@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Steps in a living Blender window: events, pictures of the screen, checks; ends Blender when all is done.
+"""Steps in a living Blender window: events, pictures of the screen, checks; then ends Blender.
 
-The event loop has to run between an event and what is checked of it, so that a script is a list of functions
-of which the driver calls one after the other.
+The event loop has to run between an event and its check, so a script is a list of functions, which the driver
+calls one after the other.
 """
 
 import os
@@ -25,7 +25,7 @@ def say(*words: object) -> None:
 
 
 def view() -> dict[str, Any]:
-    """What operators need to be called as if from the 3D view."""
+    """The context with which operators run as if called from the 3D view."""
     window = bpy.context.window_manager.windows[0]
     area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
     region = next(region for region in area.regions if region.type == "WINDOW")
@@ -39,25 +39,25 @@ def call(operator: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
 
 
 def pixel(name: str, vertex: int) -> tuple[float, float]:
-    """Where a vertex of an object is in the window."""
-    found, obj = view(), bpy.data.objects[name]
+    """The place of a vertex of an object in the window."""
+    window, obj = view(), bpy.data.objects[name]
     point = obj.matrix_world @ obj.data.vertices[vertex].co
-    space = found["area"].spaces.active
-    place = location_3d_to_region_2d(found["region"], space.region_3d, point)
-    return int(found["region"].x + place.x), int(found["region"].y + place.y)
+    space = window["area"].spaces.active
+    place = location_3d_to_region_2d(window["region"], space.region_3d, point)
+    return int(window["region"].x + place.x), int(window["region"].y + place.y)
 
 
-def send(kind: str, value: str, at: tuple[float, float] = (500, 400), **modifiers: Any) -> None:
-    view()["window"].event_simulate(kind, value, x=at[0], y=at[1], **modifiers)
+def send(kind: str, value: str, place: tuple[float, float] = (500, 400), **modifiers: Any) -> None:
+    view()["window"].event_simulate(kind, value, x=place[0], y=place[1], **modifiers)
 
 
 def move(where: Callable[[], tuple[float, float]]) -> Callable[[], None]:
-    """A step that moves the mouse to what `where()` returns."""
+    """A step that moves the mouse to the place that `where()` returns."""
     return lambda: send("MOUSEMOVE", "NOTHING", where())
 
 
 def click(where: Callable[[], tuple[float, float]], **modifiers: Any) -> list[Callable[[], None]]:
-    """Steps that click there."""
+    """Steps that click at the place that `where()` returns."""
     return [
         move(where),
         lambda: send("LEFTMOUSE", "PRESS", where(), **modifiers),
@@ -79,11 +79,11 @@ def picture(name: str) -> Callable[[], None]:
     return take
 
 
-def check(what: str, found: Callable[[], object], expected: object) -> Callable[[], None]:
-    """A step that compares what `found()` returns."""
+def check(what: str, get: Callable[[], object], expected: object) -> Callable[[], None]:
+    """A step that compares the value of `get()` with the expected one."""
 
     def compare() -> None:
-        value = found()
+        value = get()
         assert value == expected, f"{what}: {value!r} instead of {expected!r}"
         say("ok", what)
 
@@ -91,7 +91,7 @@ def check(what: str, found: Callable[[], object], expected: object) -> Callable[
 
 
 def run(steps: Iterable[Callable[[], object]]) -> None:
-    """Runs the steps one after the other; the last line of checks.log says how it went."""
+    """Runs the steps one after the other; the last line of checks.log has the outcome."""
     bpy.context.preferences.view.show_splash = False
     started, waiting = time.monotonic(), iter(steps)
 

@@ -44,7 +44,7 @@ def tab() -> None:
 
 
 def route(edit: bmesh.types.BMesh, start: Sequence[float], end: Sequence[float]) -> list[Any]:
-    """Vertices along edges from near one point to near another, always on to what is nearest to the end."""
+    """Vertices along edges from near one point to near another; each next one is nearest to the end."""
 
     def nearest(place: Sequence[float]) -> Any:
         return min(edit.verts, key=lambda vertex: (vertex.co - Vector(place)).length)
@@ -52,19 +52,19 @@ def route(edit: bmesh.types.BMesh, start: Sequence[float], end: Sequence[float])
     path, last = [nearest(start)], nearest(end)
     while path[-1] != last:
         around = [edge.other_vert(path[-1]) for edge in path[-1].link_edges]
-        path.append(min(around, key=lambda one: (one.co - last.co).length))
+        path.append(min(around, key=lambda neighbor: (neighbor.co - last.co).length))
     return path
 
 
 def select(name: str, height: float | None) -> Callable[[], None]:
-    """A step that selects the edges of a path across the front and nothing else of an object."""
+    """A step that selects only the edges of a path across the front of an object."""
 
     def chosen() -> None:
         mesh = bpy.data.objects[name].data
         edit = bmesh.from_edit_mesh(mesh)
         for elements in (edit.faces, edit.edges, edit.verts):
-            for one in elements:
-                one.select = False
+            for element in elements:
+                element.select = False
         if height is not None:
             wide = 0.6
             path = route(edit, (-wide, -0.9, height), (wide, -0.9, height))
@@ -82,7 +82,7 @@ def add() -> None:
 
 
 def step(message: str) -> Callable[[], Any]:
-    """A step of undo, which operators that are called from a timer do not make."""
+    """Pushes a step of undo, which operators called from a timer do not."""
     return lambda: call(bpy.ops.ed.undo_push, message=message)
 
 
@@ -91,8 +91,8 @@ def mode(name: str) -> Callable[[], Any]:
 
 
 def curves() -> list[tuple[bool, bool, str | None]]:
-    found = landmark_curves.pairs(bpy.data.objects[A])
-    return [(bool(one.source.vertices), bool(one.target.vertices), one.problem) for one in found]
+    pairs = landmark_curves.pairs(bpy.data.objects[A])
+    return [(bool(pair.source.vertices), bool(pair.target.vertices), pair.problem) for pair in pairs]
 
 
 def register() -> None:
@@ -100,8 +100,8 @@ def register() -> None:
 
 
 def keys() -> list[str]:
-    found = bpy.data.objects[A].data.shape_keys
-    return [key.name for key in found.key_blocks] if found else []
+    shape_keys = bpy.data.objects[A].data.shape_keys
+    return [key.name for key in shape_keys.key_blocks] if shape_keys else []
 
 
 def half() -> None:

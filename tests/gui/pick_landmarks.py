@@ -57,7 +57,9 @@ def pairs() -> list[Any]:
 
 
 def running() -> bool:
-    return "AUTHALIC_OT_landmark_pick" in [one.bl_idname for one in view()["window"].modal_operators]
+    return "AUTHALIC_OT_landmark_pick" in [
+        operator.bl_idname for operator in view()["window"].modal_operators
+    ]
 
 
 def hints() -> list[Any]:

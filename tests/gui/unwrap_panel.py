@@ -56,7 +56,7 @@ def start(name: str) -> Callable[[], None]:
 
 
 def running() -> list[str]:
-    return [one.bl_idname for one in view()["window"].modal_operators]
+    return [operator.bl_idname for operator in view()["window"].modal_operators]
 
 
 def uv() -> Any:
@@ -67,7 +67,7 @@ def uv() -> Any:
 
 
 def flips() -> Any:
-    """How many triangles of the UV map are flipped."""
+    """The number of flipped triangles of the UV map."""
     mesh = bpy.data.objects[NAME].data
     mesh.calc_loop_triangles()
     x, y = uv()[np.array([tuple(t.loops) for t in mesh.loop_triangles])].astype(float).transpose(2, 0, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes an object look unlike its mesh."""
+"""Modifiers and shape keys that make an object look unlike its mesh."""
 
 import bpy
 

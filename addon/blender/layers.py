@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is transferred between meshes: UV maps, vertex groups, color attributes, shape keys as arrays."""
+"""The layers of a transfer as arrays: UV maps, vertex groups, color attributes, shape keys."""
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
@@ -15,7 +15,7 @@ from .types import MeshObject
 
 UV_MAP, GROUP, COLOR, KEY = "UV map", "vertex group", "color attribute", "shape key"
 _NO_WEIGHT = 1e-6
-_ASIDE = "authalic replaced"  # what a color attribute is called while another takes its name
+_ASIDE = "authalic replaced"  # the name of a color attribute while another takes its own
 
 
 @dataclass
@@ -137,13 +137,13 @@ def _is_alike(attribute: bpy.types.Attribute, layer: Layer) -> bool:
 
 def _added(collection: Any, layer: Layer, **kind: str) -> Any:
     """A new layer of the same name in a collection; None if Blender adds none of this name."""
-    made = None
-    with suppress(RuntimeError):  # how bpy passes on an error report
-        made = collection.new(name=layer.name, **kind)
-    if made is not None and made.name != layer.name:
-        collection.remove(made)
-        made = None
-    return made
+    added = None
+    with suppress(RuntimeError):  # bpy passes on an error report so
+        added = collection.new(name=layer.name, **kind)
+    if added is not None and added.name != layer.name:
+        collection.remove(added)
+        added = None
+    return added
 
 
 def _write_uv_map(obj: MeshObject, layer: Layer, corners: Integers, uv: Floats) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the vertices of a mesh are seen: moved by its shape keys and modifiers, or as they are edited."""
+"""The visible positions of vertices: moved by shape keys and modifiers, or as they are edited."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -16,7 +16,7 @@ from .types import MeshObject
 Hit = tuple[Vector, list[int]]
 """A point of a surface and the vertices of the face there."""
 Cast = Callable[[Vector, Vector], Hit | None]
-"""What a ray with an origin and a direction hits first."""
+"""The first hit of a ray with an origin and a direction."""
 
 Z = Vector((0.0, 0.0, 1.0))
 # Modifiers that may give the vertices of the mesh other numbers; others add some behind them, if any.

@@ -24,9 +24,9 @@ class CannotFix(Exception):
 
 @dataclass
 class Report:
-    """What was done, a `bridge.Unflipped`, and what could not be."""
+    """The report of a run: a `bridge.Unflipped`, refusals and notes."""
 
-    found: bridge.Unflipped
+    result: bridge.Unflipped
     refusals: list[bridge.Refusal]
     notes: list[str]
 
@@ -35,11 +35,11 @@ class Report:
         return "; ".join([self._done(), *left, *self.notes])
 
     def _done(self) -> str:
-        if not self.found.faces:
+        if not self.result.faces:
             return "No flipped faces"
-        faces = messages.count(self.found.faces, "flipped face")
-        islands = messages.count(self.found.islands, "island")
-        return f"Fixed {faces} in {islands}; {messages.count(self.found.moved, 'UV')} moved"
+        faces = messages.count(self.result.faces, "flipped face")
+        islands = messages.count(self.result.islands, "island")
+        return f"Fixed {faces} in {islands}; {messages.count(self.result.moved, 'UV')} moved"
 
 
 def job(context: bpy.types.Context) -> Job[bridge.Unflipped, Report]:

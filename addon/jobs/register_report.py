@@ -11,7 +11,7 @@ _MIRRORED = 3  # so many landmarks on a disk tell front from back
 
 @dataclass
 class Report:
-    """What was written: the shape key's name and figures of the registration."""
+    """The name of the shape key that was written, and figures of the registration."""
 
     key: str
     registered: Registered
@@ -28,7 +28,7 @@ class Report:
 
 
 def warnings(registered: Registered) -> list[str]:
-    """What is not as requested, in words."""
+    """Notes on a registration that is not as requested."""
     early = messages.ENDED_EARLY_BY_CURVES if registered.by_curves else messages.ENDED_EARLY
     notes = [early] if registered.ended_early else []
     if registered.missed and registered.by_curves and not registered.ended_early:

@@ -33,7 +33,7 @@ class Settings:
 
 @dataclass
 class Report:
-    """What was done: (object name, `bridge.SphereShape`) for each key, and what was left as it was."""
+    """(object name, `bridge.SphereShape`) for each key, and the objects that were left as they were."""
 
     shapes: list[tuple[str, bridge.SphereShape]]
     refusals: list[bridge.Refusal]
@@ -132,7 +132,7 @@ def _figures(shape: bridge.SphereShape) -> str:
 
 
 def _notes(done: Sequence[tuple[MeshObject, bridge.SphereShape]]) -> list[str]:
-    """What was written but may not be what was wanted."""
+    """Remarks on keys that were written but may not be as wanted."""
     early = [messages.ENDED_EARLY] if any(shape.ended_early for _, shape in done) else []
     notes = [f"{obj.name}: {shape.shortfall}" for obj, shape in done if shape.shortfall is not None]
     scaled = [

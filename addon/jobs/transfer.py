@@ -28,7 +28,7 @@ Pulled = tuple[Registered, bool, list[tuple[Integers, Floats]]]
 
 @dataclass
 class Settings:
-    """What to transfer, and how to register; `registration` None is the latest of the session."""
+    """The layers to transfer, and the registration; None is the latest of the session."""
 
     uv_maps: bool = True
     active_uv_only: bool = False
@@ -41,7 +41,7 @@ class Settings:
 
 @dataclass
 class Report:
-    """What was written: (kind, name) of each layer, and what could not be; `by` which registration."""
+    """The layers (kind, name) that were written, and refusals; `by` names the registration."""
 
     source: str
     target: str
@@ -118,7 +118,7 @@ def _read(couple: Couple, settings: Settings) -> list[layers.Layer]:
 def _nothing(couple: Couple, refusals: list[str]) -> Exception:
     if refusals:
         return CannotRegister(messages.listed(refusals))
-    return targets.NothingToDo(f"{couple.target.name} has nothing of what is to be transferred")
+    return targets.NothingToDo(f"{couple.target.name} has no layers of the chosen kinds")
 
 
 def _registration(
@@ -149,7 +149,7 @@ def _by(registered: Registered, is_new: bool) -> str:
 
 
 def _turn(registered: Registered, couple: Couple) -> Floats:
-    """How the target is turned and scaled in the world when it is laid over the source."""
+    """The rotation and scale in the world that lay the target over the source."""
     ends = [bridge.morphed(registered, *couple.sides, align) for align in (False, True)]
     return elements.turn_and_scale(*ends)
 

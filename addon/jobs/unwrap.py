@@ -41,7 +41,7 @@ class Settings:
 
 @dataclass
 class Report:
-    """What was done: the mapped islands, their measurement, and what was left as it was."""
+    """The number of mapped islands, their figures, and the islands that were left as they were."""
 
     islands: int
     figures: bridge.Figures | None
@@ -171,7 +171,7 @@ def _figures(
     """The figures of what was mapped, by Blender's triangles where these are not those of the islands."""
     if not any(island.has_divided_polygons for island in islands):
         return bridge.measure_islands(islands)
-    return bridge.measure([_mapped(surface, *part) for surface, part in zip(surfaces, parts, strict=True)])
+    return bridge.measure([_mapped(surface, *uvs) for surface, uvs in zip(surfaces, parts, strict=True)])
 
 
 def _mapped(surface: Surface, corners: Integers, uv: Singles) -> Surface:
@@ -182,7 +182,7 @@ def _mapped(surface: Surface, corners: Integers, uv: Singles) -> Surface:
 
 
 def _notes(chosen: Sequence[Chosen], islands: Sequence[bridge.Island], figures: bridge.Figures) -> list[str]:
-    """What was written but may not be what was wanted."""
+    """Remarks on UVs that were written but may not be as wanted."""
     short = [(island, island.shortfall) for island in islands if island.shortfall is not None]
     short.sort(key=lambda pair: -pair[1].deviation)
     notes = [f"{island.name} at face {island.polygon}: {shortfall}" for island, shortfall in short]

@@ -20,8 +20,8 @@ from . import paths
 
 _NAME = "authalic_curve_"
 _BITS = 24
-# What was found last: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}), and the
-# `scene_changes` when it was true last.
+# The last search: (session id of a mesh, key) -> (counts of its elements, {mark: `_Found`}), and the
+# `scene_changes` at which it was last known to be true.
 _seen: dict[tuple[int, str], tuple[tuple[int, int, int], "dict[int, _Found]"]] = {}
 _true: dict[tuple[int, str], int] = {}
 

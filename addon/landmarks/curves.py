@@ -42,18 +42,18 @@ class AUTHALIC_PG_landmark_curve(bpy.types.PropertyGroup):
     name: StringProperty(name="Name", description="The name of this pair of curves")
     source_vertices: StringProperty(
         name="Source Vertices",
-        description="The vertices on this object from start to end; of a loop the first one again at the end",
+        description="The vertices on this object from start to end; a loop repeats the first one at the end",
         get=_numbers("source"),
     )
     target_vertices: StringProperty(
         name="Target Vertices",
-        description="The vertices on the target from start to end; of a loop the first one again at the end",
+        description="The vertices on the target from start to end; a loop repeats the first one at the end",
         get=_numbers("target"),
     )
     mark: IntProperty(options={"HIDDEN"})
     error: FloatProperty(
         name="Error",
-        description="How far the last registration missed this pair, in percent of the target's size. "
+        description="Error of the last registration at this pair, in percent of the target's size. "
         "Negative if there was none",
         default=-1.0,
     )
@@ -211,7 +211,7 @@ def _problem(
     marked: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
-    """What is wrong with a pair whose paths are on two objects; `taken` are the vertices of earlier ones."""
+    """The problem of a pair with paths on two objects, or None; `taken` are the vertices of earlier pairs."""
     broken = [_worded(path, obj) for path, obj in zip(marked, objects, strict=True) if path.problem]
     touching = _touching(taken, numbered, marked, objects)
     return broken[0] if broken else touching or _unlike(marked, objects)
@@ -223,7 +223,7 @@ def _touching(
     marked: Sequence[curve_marks.MarkedPath],
     objects: Sequence[MeshObject],
 ) -> str | None:
-    """What is wrong if an earlier curve has a vertex of a path; else remembers them in `taken`."""
+    """The problem if an earlier curve has a vertex of a path; else remembers the vertices in `taken`."""
     for side, path, obj in zip(SIDES, marked, objects, strict=True):
         for vertex in path.vertices:
             earlier = taken.setdefault((side, vertex), numbered)
@@ -233,20 +233,20 @@ def _touching(
 
 
 def _unlike(marked: Sequence[curve_marks.MarkedPath], objects: Sequence[MeshObject]) -> str | None:
-    """What is wrong with two paths that are fine by themselves."""
+    """The problem of two paths that are sound by themselves, or None."""
     for path, obj in zip(marked, objects, strict=True):
         few = _too_few(path.vertices)
         if few:
             return f"{few} on {obj.name}"
     if marked[0].is_closed != marked[1].is_closed:
         closed, opened = objects if marked[0].is_closed else objects[::-1]
-        return f"is closed on {closed.name} and open on {opened.name}; both must be either"
+        return f"is closed on {closed.name} and open on {opened.name}; both must be open or both closed"
     return None
 
 
 def _too_few(path: Path) -> str | None:
     count, fewest = len(path) - 1, _FEWEST[paths.is_closed(path)]
-    return None if count >= fewest else f"has {messages.count(count, 'edge')} where {fewest} are the least"
+    return None if count >= fewest else f"needs at least {fewest} edges, not {count},"
 
 
 def _check(source: MeshObject, side: str, path: Path, index: int) -> None:

@@ -5,8 +5,8 @@
      "pairs": [{"name": "Nose", "source": 12, "target": 345}],
      "curves": [{"name": "Brow", "source": [3, 4, 9], "target": [7, 8, 12]}]}
 
-"source" and "target" of a pair are numbers of vertices, from 0, of the objects of those names; of a curve
-those of all vertices along its edges, of a closed one the first again at the end. A file without curves has
+"source" and "target" of a pair are vertex numbers, from 0, on the objects of those names. A curve has the
+numbers of all vertices along its edges; a closed one repeats the first at the end. A file without curves has
 no "curves".
 """
 
@@ -54,7 +54,7 @@ def to_text(landmarks: Landmarks) -> str:
             {"name": name, "source": list(a), "target": list(b)} for name, a, b in landmarks.curves
         ]
     text = json.dumps(content, indent=2, ensure_ascii=False)
-    return _NUMBERS.sub(lambda found: f"[{', '.join(found[0][1:-1].replace(',', ' ').split())}]", text) + "\n"
+    return _NUMBERS.sub(lambda match: f"[{', '.join(match[0][1:-1].replace(',', ' ').split())}]", text) + "\n"
 
 
 def from_text(text: str) -> Landmarks:

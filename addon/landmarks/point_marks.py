@@ -14,7 +14,7 @@ from ..blender.element_marks import element_counts
 
 NAME = "authalic_landmark"
 _MARKS = element_marks.Marks(NAME, "POINT")
-# What was found last: session id of a mesh -> (counts of its elements, marks).
+# The last search: session id of a mesh -> (counts of its elements, marks).
 _seen: dict[int, tuple[tuple[int, int, int], dict[int, list[int]]]] = {}
 
 

@@ -56,7 +56,7 @@ class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
     waiting: IntProperty(default=NONE, options={"HIDDEN"})
     error: FloatProperty(
         name="Error",
-        description="How far the last registration missed this pair, in percent of the target's size. "
+        description="Error of the last registration at this pair, in percent of the target's size. "
         "Negative if there was none",
         default=-1.0,
     )
@@ -175,7 +175,7 @@ def _repeated(
     vertices: tuple[int, int],
     objects: tuple[MeshObject, MeshObject],
 ) -> str | None:
-    """What is wrong if an earlier pair has one of the vertices; else remembers them in `taken`."""
+    """The problem if an earlier pair has one of the vertices; else remembers the vertices in `taken`."""
     for vertex, obj, side in zip(vertices, objects, ("source", "target"), strict=True):
         if vertex != NONE and (side, vertex) in taken:
             return f'has vertex {vertex} of {obj.name}, as "{taken[side, vertex]}" has'

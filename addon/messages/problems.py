@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors and warnings of the library as sentences for an artist, made from what they carry as data. No bpy.
+"""Errors and warnings of the library as sentences for an artist, made from their data. No bpy.
 
 The library's own messages are not read: each kind of error and of warning has its sentence here.
 """
@@ -31,11 +31,11 @@ ERRORS = {
     "loose_vertex": "{its.vertices} without a face: delete loose geometry",
     "several_components": "consists of {its.count} pieces where one is allowed; separate it by loose parts",
     "closed_surface": "is closed; mark seams to cut it open",
-    "open_surface": "has a boundary, as at {its.vertices}, which a sphere has not; fill its holes",
+    "open_surface": "has a boundary, as at {its.vertices}, but a sphere has none; fill its holes",
     "handles": "has handles, like a torus; close them up or mark seams to cut them open",
     "several_boundaries": "has {its.count} boundaries; turn on Fill Holes or mark seams to join them",
     "seam_not_edge": _REPORT,
-    # Options and arrays, which the extension is to give right
+    # Options and arrays, which the extension should get right
     "invalid_array": _REPORT,
     "invalid_option": _REPORT,
     "invalid_density": _REPORT,
@@ -63,7 +63,7 @@ ERRORS = {
     # Landmark curves
     "curve_counts": "give a partner to {its.unpaired}, or leave it out",
     "no_curves": "a landmark curve is needed; select edges that belong together on both and add them",
-    "short_curve": "{its.curve} is too short, two edges are the least: lengthen it, or subdivide there",
+    "short_curve": "{its.curve} is too short, it needs at least two edges: lengthen it, or subdivide there",
     "curve_off_edges": "{its.curve} leaves the edges of the mesh between {its.vertices}: add it again",
     "curve_meets_itself": "{its.curve} meets itself at {its.vertices}: remove the crossing",
     "curves_meet": (
@@ -101,13 +101,11 @@ ERRORS = {
 }
 
 WARNINGS = {
-    "opposite_normals": f"the surfaces look to opposite sides, so the map mirrors one: {FLIP}",
-    "backward_curve": (
-        "{its.curve} fits far better the other way round: reverse its path on one of the surfaces"
-    ),
+    "opposite_normals": f"the surfaces face opposite ways, so the map mirrors one: {FLIP}",
+    "backward_curve": ("{its.curve} fits far better in reverse: reverse its path on one of the surfaces"),
     "uncertain_winding": (
-        "the curves move too much to tell how the surface between them goes along: it may wind around them "
-        "more than meant"
+        "the curves move too far to tell how the surface between them follows: it may wind around them more "
+        "than intended"
     ),
     "strained": (
         "the map is strained, its energy is {its.value:.1f} times that of the surface itself (1.0 to 1.2 is "
@@ -121,7 +119,7 @@ WARNINGS = {
 
 
 class Problem(Protocol):
-    """What an error or a warning of the library carries beside its message."""
+    """The data of an error or a warning of the library."""
 
     @property
     def kind(self) -> str: ...
@@ -153,7 +151,7 @@ def in_words(
 
 
 class _Terms:
-    """What the sentence for a problem may name."""
+    """The terms that the sentence for a problem may name."""
 
     def __init__(
         self,

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over the meshes in the 3D view."""
+"""Markers and lines drawn over the meshes in the 3D view."""

@@ -30,7 +30,7 @@ End = tuple[Vector, Vector, float]
 _COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)
 _WIDTH, _ACTIVE_WIDTH, _RIM = 3.0, 4.0, 2.5
 _DOT, _ARROW = 4.5, 11.0
-# How much nearer to the eye lines are drawn than the surface they lie on, as a part of the distance.
+# Lines are drawn nearer to the eye than their surface, by this part of the distance.
 _NEARER = 2e-3
 _handles: list[Any] = []
 
@@ -102,7 +102,7 @@ def _draw_lines() -> None:
     for depth_test, alpha in passes:
         gpu.state.depth_test_set(depth_test)
         with gpu.matrix.push_pop():  # type: ignore[attr-defined]
-            gpu.matrix.load_matrix(_towards_eye(context) @ gpu.matrix.get_model_view_matrix())
+            gpu.matrix.load_matrix(_to_eye(context) @ gpu.matrix.get_model_view_matrix())
             for line, obj, shape in drawn:
                 _draw_line(line, obj, shape, context, alpha)
     gpu.state.depth_test_set("NONE")
@@ -143,7 +143,7 @@ def _end_edges(line: Line) -> tuple[Edge, Edge]:
     return line.edges[0], line.edges[-1][::-1]
 
 
-def _towards_eye(context: bpy.types.Context) -> Matrix:
+def _to_eye(context: bpy.types.Context) -> Matrix:
     """The matrix that moves points of the view nearer to the eye, at the same pixels."""
     view = context.region_data
     if view.is_perspective:

@@ -15,7 +15,7 @@ from ..blender import vertex_positions
 from ..blender.types import MeshObject, is_mesh
 
 PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
-BEHIND = 0.22  # how opaque what is hidden is
+BEHIND = 0.22  # the opacity of hidden markers
 _SIDES = 24
 
 

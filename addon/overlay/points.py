@@ -32,7 +32,7 @@ class Marker(NamedTuple):
     has_problem: bool = False
 
 
-# What picking shows besides: markers of vertices that are no landmarks yet.
+# Markers that picking shows for vertices that are no landmarks yet.
 hints: list[Marker] = []
 
 

@@ -92,7 +92,7 @@ def _check_edges(side: Side, curves: Sequence[CurvePair], lines: Sequence[Intege
 def _without_curves(
     side: Side, curves: Sequence[CurvePair], lines: Sequence[Integers], loops: Sequence[Integers]
 ) -> int:
-    """How many boundary loops are no curves. Raises `Unsuitable` where a curve has a part of one."""
+    """The number of boundary loops that are no curves. Raises `Unsuitable` if a curve has a part of one."""
     left = len(loops)
     for (name, *_), path in zip(curves, lines, strict=True):
         for loop in loops:

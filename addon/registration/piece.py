@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every registration asks of a surface: one piece without handles. Plain numpy, no bpy."""
+"""The requirement of every registration: one piece without handles. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
 

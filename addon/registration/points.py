@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a registration by landmark points asks of two surfaces and their landmarks. Plain numpy, no bpy."""
+"""The requirements of a registration by landmark points. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
 
@@ -34,12 +34,12 @@ def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted:
 
 _NOT_WANTED = {
     "DISK": "is closed, a disk has a boundary; set Domain to Automatic or Sphere",
-    "SPHERE": "has a boundary, which a sphere has not; fill it or set Domain to Automatic or Disk",
+    "SPHERE": "has a boundary, but a sphere has none; fill it or set Domain to Automatic or Disk",
 }
 
 
 def _shape(side: Side, patches: Sequence[Patch]) -> str:
-    """What one side is, which must be a single piece without handles and with one boundary at the most."""
+    """The shape of one side, which must be a single piece without handles and with at most one boundary."""
     patch = check_piece(side, patches)
     loops = [side.vertices[patch.vertex_of[loop]] for loop in patch.boundary_loops]
     if len(loops) > 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How two surfaces are registered. Plain data, no bpy."""
+"""The settings of a registration. Plain data, no bpy."""
 
 from dataclasses import dataclass
 

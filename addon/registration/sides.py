@@ -44,7 +44,7 @@ class Side:
         return float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
     def points_of(self, vertices: Integers) -> Integers:
-        """Where mesh vertices (k,) are among the points, -1 for loose ones."""
+        """The points of mesh vertices (k,), -1 for loose vertices."""
         numbers = np.full(self.count, -1)
         real = np.flatnonzero(self.vertices >= 0)
         numbers[self.vertices[real]] = real

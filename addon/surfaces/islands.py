@@ -37,7 +37,7 @@ def box(uv: Floats) -> Floats:
 
 
 def upright(uv: Floats) -> Floats:
-    """Points (n, 2) turned so that their bounding box is as small as can be, its long side horizontal."""
+    """Points (n, 2) turned so that their bounding box is as small as possible, its long side horizontal."""
     outline, angles = _outline(uv), np.linspace(0, np.pi / 2, _TURNS, endpoint=False)
     angle = _tightest(outline, angles)
     angle = _tightest(outline, angle + np.linspace(-angles[1], angles[1], _TURNS))

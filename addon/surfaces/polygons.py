@@ -8,8 +8,7 @@ import numpy as np
 from .arrays import Booleans, Floats
 from .surface import Surface
 
-# What face attributes show for a face that is folded over, and the limit for all others: shading
-# cannot deal with infinities.
+# The limit of face attributes, and its negative the value of folded faces: shading cannot show infinities.
 LOG2_LIMIT = 20.0
 
 

@@ -22,7 +22,7 @@ def radius(points: Floats, faces: Integers) -> float:
 
 
 def volume(points: Floats, faces: Integers) -> float:
-    """The signed volume inside a closed surface: negative where its faces look inwards."""
+    """The signed volume inside a closed surface: negative where its faces look inward."""
     a, b, c = (points[faces[:, corner]] for corner in range(3))
     return np.einsum("ij,ij", a, np.cross(b, c)) / 6
 
@@ -30,8 +30,8 @@ def volume(points: Floats, faces: Integers) -> float:
 def over_surface(points: Floats, faces: Integers, positions: Floats) -> Floats:
     """A map `positions` (n, 3), outward-oriented by a closed surface's `faces` (m, 3), laid over the surface.
 
-    On a surface whose faces look inwards such a map is turned inside out: it is mirrored, so that faces look
-    inwards on the sphere as well.
+    On a surface whose faces look inward such a map is turned inside out: it is mirrored, so that faces look
+    inward on the sphere as well.
     """
     points = points - centroid(points, faces)
     if volume(points, faces) >= 0:

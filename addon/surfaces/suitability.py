@@ -11,7 +11,7 @@ from .arrays import Integers
 
 
 class Patch(Protocol):
-    """What a piece of a surface says of its topology, as `authalic.Patch` does."""
+    """The topology of a piece of a surface, as `authalic.Patch` has it."""
 
     @property
     def genus(self) -> int | None: ...
@@ -24,7 +24,7 @@ class Patch(Protocol):
 
 
 class Unsuitable(Exception):
-    """There is no map of the wanted kind for a surface; says why and what to do about it."""
+    """A surface has no map of the wanted kind; the message says why and what to do about it."""
 
 
 def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
@@ -33,7 +33,7 @@ def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
         raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
     if domain == "SPHERE" and not patch.is_closed:
         raise Unsuitable(
-            "has a boundary, which a sphere has not; clear its seams, fill its holes or set Domain to "
+            "has a boundary, but a sphere has none; clear its seams, fill its holes or set Domain to "
             "Automatic"
         )
     if domain == "DISK" and patch.is_closed:
@@ -82,10 +82,10 @@ def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> N
         raise Unsuitable("is one-sided, like a Klein bottle, and has no map onto a sphere; remesh it")
     if not patch.is_closed:
         holes = messages.count(len(patch.boundary_loops), "open boundary")
-        raise Unsuitable(f"has {holes}, which a sphere has not; fill the holes first")
+        raise Unsuitable(f"has {holes}, but a sphere has none; fill the holes first")
     if patch.genus > 0:
         raise Unsuitable(
-            f"has {handles(patch)}, like a torus, which a sphere has not; close it up or remesh it"
+            f"has {handles(patch)}, like a torus, but a sphere has none; close it up or remesh it"
         )
 
 

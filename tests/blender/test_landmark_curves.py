@@ -172,7 +172,7 @@ def test_a_path_without_an_active_end_runs_as_its_partner(
         ),
         ([(8, 9, 10), (9, 16)], r"The 3 selected edges of Head A branch at 1 vertex \(9\)"),
         ([(8, 9, 10, 11), (2, 9, 16), (30, 31)], r"make up 2 pieces and branch at 1 vertex \(9\)"),
-        ([(8, 9)], "The curve has 1 edge where 2 are the least on Head A"),
+        ([(8, 9)], "The curve needs at least 2 edges, not 1, on Head A"),
     ],
 )
 def test_what_is_no_path(heads: tuple[MeshObject, MeshObject], paths: Any, words: str) -> None:
@@ -197,8 +197,8 @@ def test_refusals(heads: tuple[MeshObject, MeshObject], in_edit: bool) -> None:
     refused("Head A has no vertex 49, its 49 vertices are 0 to 48", source="47 48 49")
     refused("Head A: no edge joins vertices 22 and 24", source="22 24 25")
     refused("The curve comes to vertex 23 twice on Head A", source="22 23 24 23")
-    refused("The curve has 1 edge where 2 are the least", source="22 23")
-    refused("The curve has 2 edges where 3 are the least", source="22 23 22")
+    refused("The curve needs at least 2 edges, not 1,", source="22 23")
+    refused("The curve needs at least 3 edges, not 2,", source="22 23 22")
     refused('"2x" is not the number of a vertex', source="2x 3")
     refused("Head A has no curve 7, its 1 are 0 to 0", index=7)
     for name in ("remove", "select", "reverse"):
@@ -219,8 +219,8 @@ def test_open_and_closed_do_not_match(heads: tuple[MeshObject, MeshObject]) -> N
     curving.add(LOOP, ROW_B)
     curving.add(ROW, LOOP_B)
     said = [problem for *_, problem in curving.listed()]
-    assert said[0] == "is closed on Head A and open on Head B; both must be either"
-    assert said[1] == "is closed on Head B and open on Head A; both must be either"
+    assert said[0] == "is closed on Head A and open on Head B; both must be open or both closed"
+    assert said[1] == "is closed on Head B and open on Head A; both must be open or both closed"
 
 
 def test_remove_and_clear(heads: tuple[MeshObject, MeshObject]) -> None:

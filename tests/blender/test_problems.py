@@ -277,7 +277,7 @@ CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
     ),
     "mirrored": (lambda: registered(same, spoil=mirrored), ["Object > Mirror"]),
     "swapped": (lambda: registered(swapped), ["strained"]),
-    "reversed": (lambda: registered(reversed_once), ['curve "Curve 1" fits far better the other way']),
+    "reversed": (lambda: registered(reversed_once), ['curve "Curve 1" fits far better in reverse']),
     "turned_over": (lambda: registered(rows, sheet, turned_over), ["Mesh > Normals > Flip"]),
     "cancelled": (lambda: registered(same, progress=lambda *_: False), ["cancelled before"]),
 }

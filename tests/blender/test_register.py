@@ -299,7 +299,7 @@ def test_open_and_closed() -> None:
 @pytest.mark.parametrize(
     ("make", "domain", "pattern"),
     [
-        (sheets, "SPHERE", "Sheet: has a boundary, which a sphere has not; fill it or set Domain"),
+        (sheets, "SPHERE", "Sheet: has a boundary, but a sphere has none; fill it or set Domain"),
         (balls, "DISK", "Icosphere: is closed, a disk has a boundary; set Domain to Automatic"),
     ],
 )

@@ -294,7 +294,7 @@ def test_sentences_name_curves_and_vertices() -> None:
     (warned,) = part("registration.problems").remarks(
         [problems.warned("backward_curve", curve=1)], sides, curves
     )
-    assert warned.startswith('curve "Jaw" fits far better the other way round')
+    assert warned.startswith('curve "Jaw" fits far better in reverse')
     unpaired = said("curve_counts", indices=(0, 1), count=2)
     assert unpaired.startswith('give a partner to curves "Brow" and "Jaw"')
     assert said("no_arc", curve=9).startswith("no path joins curve 9 to the next")
@@ -320,7 +320,7 @@ def test_a_curve_that_runs_the_other_way_is_told(capfd: pytest.CaptureFixture[st
     balls()
     bpy.ops.authalic.landmark_curve_reverse(index=1)
     assert register() == {"FINISHED"}
-    assert 'curve "Curve 2" fits far better the other way round' in capfd.readouterr().out
+    assert 'curve "Curve 2" fits far better in reverse' in capfd.readouterr().out
 
 
 def test_undo_and_redo() -> None:

@@ -186,7 +186,7 @@ def refusal(pattern: str, *objects: MeshObject) -> None:
 
 def test_open_mesh() -> None:
     meshes.add_grid("Sail")
-    refusal(r"Sail: has 1 open boundary, which a sphere has not; fill the holes")
+    refusal(r"Sail: has 1 open boundary, but a sphere has none; fill the holes")
 
 
 def test_handle() -> None:

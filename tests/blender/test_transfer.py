@@ -379,7 +379,7 @@ def test_what_blender_names_otherwise_is_left_out_whole(
 def test_nothing_to_transfer(capfd: pytest.CaptureFixture[str]) -> None:
     source, _ = copies()
     assert transfer() == {"CANCELLED"}
-    assert "Twin has nothing of what is to be transferred" in capfd.readouterr().out
+    assert "Twin has no layers of the chosen kinds" in capfd.readouterr().out
     assert source.data.shape_keys is None
 
 

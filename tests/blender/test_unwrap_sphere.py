@@ -210,7 +210,7 @@ def test_sphere_leaves_open_islands(capfd: pytest.CaptureFixture[str]) -> None:
     assert unwrap(domain="SPHERE") == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Unwrapped 1 island" in said
-    assert "Mixed at face 0: has a boundary, which a sphere has not; clear its seams" in said
+    assert "Mixed at face 0: has a boundary, but a sphere has none; clear its seams" in said
     assert (meshes.uv(obj)[:144] == before[:144]).all()
 
 
@@ -218,7 +218,7 @@ def test_sphere_cut_open_by_seams_goes_to_the_disk_or_is_refused() -> None:
     obj = meshes.seam_sphere()
     assert unwrap(outline="CIRCLE") == {"FINISHED"}
     assert aspect(obj) == pytest.approx(1, abs=0.02)
-    with pytest.raises(RuntimeError, match="has a boundary, which a sphere has not; clear its seams"):
+    with pytest.raises(RuntimeError, match="has a boundary, but a sphere has none; clear its seams"):
         unwrap(domain="SPHERE")
 
 

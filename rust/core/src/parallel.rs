@@ -54,7 +54,9 @@ pub(crate) fn join<A: Send, B: Send>(
 
 /// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
 /// several.
-fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
+///
+/// `work` is behind a pointer so that rayon is compiled once a type, not once a loop.
+fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: &(dyn Fn(usize, &mut [T]) + Sync)) {
     let on_these_threads = |out: &mut [T]| {
         out.par_chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part));
     };
@@ -70,14 +72,14 @@ fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: impl Fn(usize, &m
 
 /// Writes `value(i)` into every `out[i]`.
 pub(crate) fn fill<T: Send>(out: &mut [T], value: impl Fn(usize) -> T + Sync + Send) {
-    for_each_chunk(out, CHUNK, |first, part| {
+    for_each_chunk(out, CHUNK, &|first, part| {
         part.iter_mut().enumerate().for_each(|(k, element)| *element = value(first + k));
     });
 }
 
 /// Replaces every `out[i]` by `value(i, out[i])`.
 pub(crate) fn fill_with_old<T: Copy + Send>(out: &mut [T], value: impl Fn(usize, T) -> T + Sync + Send) {
-    for_each_chunk(out, CHUNK, |first, part| {
+    for_each_chunk(out, CHUNK, &|first, part| {
         part.iter_mut().enumerate().for_each(|(k, element)| *element = value(first + k, *element));
     });
 }
@@ -92,7 +94,7 @@ pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> 
 /// Σ value(i) over `0..n`.
 pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let mut partial = vec![0.0; n.div_ceil(CHUNK)];
-    for_each_chunk(&mut partial, 1, |chunk, part| {
+    for_each_chunk(&mut partial, 1, &|chunk, part| {
         part[0] = (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&value).sum();
     });
     partial.iter().sum()
@@ -102,7 +104,7 @@ pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
 pub(crate) fn sums<const K: usize>(n: usize, values: impl Fn(usize) -> [f64; K] + Sync + Send) -> [f64; K] {
     let mut partial = vec![[0.0; K]; n.div_ceil(CHUNK)];
     let add = |sum: [f64; K], terms: [f64; K]| std::array::from_fn(|k| sum[k] + terms[k]);
-    for_each_chunk(&mut partial, 1, |chunk, part| {
+    for_each_chunk(&mut partial, 1, &|chunk, part| {
         part[0] = (chunk * CHUNK..n.min((chunk + 1) * CHUNK)).map(&values).fold([0.0; K], add);
     });
     partial.into_iter().fold([0.0; K], add)

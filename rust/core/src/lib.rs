@@ -5,7 +5,7 @@
 //! [`disk_map`] maps a surface with one boundary to the unit disk or onto a rectangle, [`sphere_map`] a closed surface
 //! onto the unit sphere. No result has a folded face, which exact predicates decide. [`register_disks`] and
 //! [`register_spheres`] map one surface onto another by landmark points, [`register_hyperbolic`] by landmark curves.
-//! [`untangle`] removes the folds of a given map, [`distortion`] measures any map.
+//! [`untangle()`] removes the folds of a given map, [`distortion()`] measures any map.
 //!
 //! All of them take a [`Surface`]: vertices (n, 3) and faces (m, 3) as arrays of the crate [`ndarray`], checked once and
 //! never copied again. Results are arrays too.

@@ -18,7 +18,7 @@
 //! Pieces with one or two features are mapped by `flat`. [`hyperbolic_structure`] has the paper's other objects: the
 //! Fuchsian group (`fuchsian`), pants and hexagons (`pants`) and closed geodesics (`trace`).
 //!
-//! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and pairs of [`Curves`]. Cost: some twenty sparse
+//! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es and [`LandmarkCurves`]. Cost: some twenty sparse
 //! factorizations.
 
 mod assembly;

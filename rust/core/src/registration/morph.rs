@@ -35,9 +35,10 @@ pub fn homotopy(
         let (found, expected) = (t.to_string(), "a finite number".into());
         return Err(Error::InvalidOption { name: "t", found, expected });
     }
-    let morphed = match align {
-        true => aligned(&vertices, positions, &correspondence.vertex_areas(), t),
-        false => between(&vertices, positions, t),
+    let morphed = if align {
+        aligned(&vertices, positions, &correspondence.vertex_areas(), t)
+    } else {
+        between(&vertices, positions, t)
     };
     Ok(from_vectors(morphed))
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Factorizations of matrices that are given entry by entry.
 //!
-//! A mesh's matrices share one pattern, so [`Cholesky::analyze`] orders and analyzes it once and
-//! [`Cholesky::refactor`] only computes numbers. Input: the upper triangle in compressed columns. Cost and method: see
-//! [`super::multifrontal`], of which each entry is an element.
+//! A mesh's matrices share one pattern, so [`Cholesky::analyze_on`] orders and analyzes it once and
+//! [`Cholesky::refactor_while`] only computes numbers. Input: the upper triangle in compressed columns. Cost and
+//! method: see [`super::multifrontal`], of which each entry is an element.
 
 use sprs::CsMat;
 
@@ -21,20 +21,17 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Orders and analyzes the pattern of a symmetric matrix given by its upper triangle; nothing is
-    /// factored yet.
-    ///
-    /// # Errors
-    /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
+    /// `analyze_on` without a mesh.
     #[cfg(test)]
     pub(crate) fn analyze(upper: &CsMat<f64>) -> Result<Self, Error> {
         Self::analyze_in(Order::Sparse, upper)
     }
 
-    /// [`Self::analyze`] for a system over vertices of a mesh, ascending; uses the mesh's elimination order if it has one.
+    /// Orders and analyzes the pattern of a symmetric matrix given by its upper triangle; nothing is factored yet.
+    /// The rows are vertices of the mesh, ascending, and its elimination order is used if it has one.
     ///
     /// # Errors
-    /// As [`Self::analyze`].
+    /// [`NumericsError::FactorizationFailed`] where the matrix is too large for 32-bit indices.
     pub(crate) fn analyze_on(mesh: &TriangleMesh, upper: &CsMat<f64>) -> Result<Self, Error> {
         let order = if mesh.in_elimination_order() { Order::AsGiven } else { Order::Sparse };
         Self::analyze_in(order, upper)
@@ -51,20 +48,18 @@ impl Cholesky {
         Ok(Self { symbolic, factor })
     }
 
-    /// Factors a matrix of the analyzed pattern, given by its upper triangle.
-    ///
-    /// # Errors
-    /// [`NumericsError::FactorizationFailed`] where the matrix is not positive definite to working precision.
+    /// `refactor_while` that nothing cancels.
     #[cfg(test)]
     pub(crate) fn refactor(&mut self, upper: &CsMat<f64>) -> Result<(), Error> {
         let mut silent = crate::control::Silent;
         self.refactor_while(upper, &Watch::new(&mut silent, 0.0, ""))
     }
 
-    /// [`Self::refactor`], which the watch may cancel.
+    /// Factors a matrix of the analyzed pattern, given by its upper triangle.
     ///
     /// # Errors
-    /// As [`Self::refactor`], and [`Error::CancelledEarly`].
+    /// [`NumericsError::FactorizationFailed`] where the matrix is not positive definite to working precision,
+    /// [`Error::CancelledEarly`] where the watch's observer ends the run.
     pub(crate) fn refactor_while(&mut self, upper: &CsMat<f64>, watch: &Watch<'_>) -> Result<(), Error> {
         let values = upper.data();
         let assemble = |element: &Element, place: &mut Place<'_, f64>| {

@@ -287,7 +287,7 @@ fn the_scale_of_a_density_does_not_matter() {
 fn bad_densities_are_refused() {
     let mesh = common::icosphere(0).mesh();
     let refusal = |density: &[f64]| {
-        refused(&mesh, SphereMapOptions { density: Some(aview1(&density)), ..Default::default() })
+        refused(&mesh, SphereMapOptions { density: Some(aview1(density)), ..Default::default() })
     };
     let mut density = vec![1.0; 20];
     assert!(matches!(refusal(&density[1..]), Error::InvalidArray { name: "density", .. }));

@@ -15,7 +15,7 @@ Selection = Dict[str, Tuple[str, ...]]
 BLENDER = ("blender-4.2", "blender-5")
 BUILT = ("wheel", "types", "python", "extension", *BLENDER)
 RUST = ("rustfmt", "clippy", "rust", "rustdoc")
-EVERYTHING = (*RUST, "ruff", *BUILT)
+EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
 PROJECT = (*STRUCTURE, "tests/test_scripts.py")
 

@@ -50,15 +50,17 @@ def build_wheel(dev: Environment, portable: bool = False, log: Path | None = Non
 
 
 def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Path:
-    """The extension zip in dist/: the sources of addon/, a generated manifest, and the wheel."""
-    folder = OUT / "extension"
-    _lay_out_extension(folder, wheel)
+    """The extension zip in dist/: the sources of addon/, a generated manifest, and the wheel.
+
+    It is built anew only when a source has changed.
+    """
     target = DIST / f"authalic-{version()}-{platform()}.zip"
-    target.unlink(missing_ok=True)
-    tool = [blender.python, _blender_ext(blender)]
-    run([*tool, "validate", folder], log=log)
-    run([*tool, "build", "--source-dir", folder, "--output-filepath", target], log=log)
-    run([*tool, "validate", target], log=log)
+    stamp = DIST / "extension.stamp"
+    wanted = content_hash([*files_below("addon"), wheel])
+    if not target.exists() or not stamp.exists() or stamp.read_text() != wanted:
+        stamp.unlink(missing_ok=True)
+        _zip(target, wheel, blender, log)
+        stamp.write_text(wanted)
     return target
 
 
@@ -86,6 +88,16 @@ def fresh_profile(archive: Path, profile: Path) -> dict[str, str]:
 def announce(path: Path) -> None:
     """One line about a file that was written."""
     say(f"{path.relative_to(ROOT)}  ({path.stat().st_size / 1e6:.1f} MB)")
+
+
+def _zip(target: Path, wheel: Path, blender: Environment, log: Path | None) -> None:
+    folder = OUT / "extension"
+    _lay_out_extension(folder, wheel)
+    target.unlink(missing_ok=True)
+    tool = [blender.python, _blender_ext(blender)]
+    run([*tool, "validate", folder], log=log)
+    run([*tool, "build", "--source-dir", folder, "--output-filepath", target], log=log)
+    run([*tool, "validate", target], log=log)
 
 
 def _maturin(dev: Environment, folder: Path, options: tuple[str, ...], log: Path | None) -> None:

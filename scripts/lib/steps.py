@@ -7,6 +7,7 @@ import re
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Callable
 
 import distribution
@@ -19,7 +20,12 @@ CARGO_OPTIONS = ("--locked", "--release", "--workspace", "--features", "metis")
 """The wheel's profile and features everywhere: the tests run real solves, and no crate is built twice."""
 _PYTHON_TESTS = ("tests", "--ignore=tests/blender", "--ignore=tests/gui")
 _BLENDER_TESTS = ("tests/blender",)
+_SIDE_BY_SIDE = ("--numprocesses=2", "--dist=worksteal")
+"""Small meshes keep one processor busy; more processes would only be in the way of large ones."""
 _PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python")
+
+_BUILDING = Lock()
+"""Keeps steps that run side by side from building the same file."""
 
 # Tests do much that Blender's types refuse: they pass any sequence, and use properties of the extension.
 _LAX_ABOUT_BLENDER = (
@@ -55,12 +61,22 @@ class TestsFailed(Exception):
 class Step:
     """A named step; `run` takes the file for its log and returns the tests it counted.
 
-    If it runs pytest, it also takes `places`, the files and folders to run instead of all.
+    If it runs pytest, it also takes `places`, the files and folders to run instead of all. Neighbors of the
+    same `group` run side by side.
     """
 
     name: str
     what: str
     run: Callable[..., Count]
+    group: str = ""
+
+
+def make_environments(log: Path) -> Count:
+    """Downloading and unpacking takes a minute, which the compiler's processors can spare."""
+    environment.dev()
+    environment.any_blender()
+    environment.blender_oldest()
+    return Count()
 
 
 def check_rust_format(log: Path) -> Count:
@@ -113,7 +129,7 @@ def check_types(log: Path) -> Count:
 
 def test_python(log: Path, places: tuple[str, ...] = _PYTHON_TESTS) -> Count:
     install_wheel(log)
-    return _pytest(environment.dev(), places, {}, log)
+    return _pytest(environment.dev(), places, {}, log, _SIDE_BY_SIDE)
 
 
 def build_extension(log: Path) -> Count:
@@ -130,17 +146,20 @@ def test_blender_newest(log: Path, places: tuple[str, ...] = _BLENDER_TESTS) -> 
 
 
 STEPS = (
-    Step("rustfmt", "formatting of the Rust code", check_rust_format),
-    Step("clippy", "lints of the Rust code", check_clippy),
+    Step("environments", "Python environments in .venv/", make_environments, "first"),
+    Step("rustfmt", "formatting of the Rust code", check_rust_format, "first"),
+    Step("clippy", "lints of the Rust code", check_clippy, "first"),
     Step("rust", "tests of the Rust crates", test_rust),
-    Step("rustdoc", "documentation of the Rust crates", check_rust_docs),
-    Step("ruff", "formatting and lints of the Python code", check_python_style),
+    Step("rustdoc", "documentation of the Rust crates", check_rust_docs, "documentation"),
+    Step("ruff", "formatting and lints of the Python code", check_python_style, "documentation"),
     Step("wheel", "build of the wheel, installed into .venv/dev", install_wheel),
     Step("types", "stub against the built module, types of the package and of the extension", check_types),
     Step("python", "tests of the Python package and of the project's structure", test_python),
     Step("extension", "build and validation of the extension zip", build_extension),
-    Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest),
-    Step("blender-5", "tests of the installed extension in the newest Blender", test_blender_newest),
+    Step("blender-4.2", "tests of the installed extension in Blender 4.2", test_blender_oldest, "blender"),
+    Step(
+        "blender-5", "tests of the installed extension in the newest Blender", test_blender_newest, "blender"
+    ),
 )
 
 
@@ -164,8 +183,9 @@ def count_junit(report: Path) -> Count:
 
 
 def _extension(blender: Environment, log: Path) -> Path:
-    wheel = distribution.build_wheel(environment.dev(), log=log)
-    return distribution.build_zip(wheel, blender, log)
+    with _BUILDING:
+        wheel = distribution.build_wheel(environment.dev(), log=log)
+        return distribution.build_zip(wheel, blender, log)
 
 
 def _test_in_blender(blender: Environment, places: tuple[str, ...], log: Path) -> Count:
@@ -174,11 +194,17 @@ def _test_in_blender(blender: Environment, places: tuple[str, ...], log: Path) -
     return _pytest(blender, places, variables, log)
 
 
-def _pytest(where: Environment, places: tuple[str, ...], variables: dict[str, str], log: Path) -> Count:
+def _pytest(
+    where: Environment,
+    places: tuple[str, ...],
+    variables: dict[str, str],
+    log: Path,
+    options: tuple[str, ...] = (),
+) -> Count:
     """Runs pytest; a run that does not end after it has written its report is killed and fails."""
     report = log.with_suffix(".xml")
     report.unlink(missing_ok=True)
-    command = [where.python, "-m", "pytest", f"--junitxml={report}", *places]
+    command = [where.python, "-m", "pytest", f"--junitxml={report}", *options, *places]
     try:
         run(command, variables, log, report)
     except CommandFailed as failure:

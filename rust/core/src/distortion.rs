@@ -14,7 +14,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 use crate::arrays::{from_rows, from_vectors, rows_of};
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::geometry::{area, triangle};
-use crate::mesh::{Face, Surface};
+use crate::mesh::{Face, Surface, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -64,7 +64,7 @@ impl Image<'_> {
     }
 
     /// The image of a vertex as a point in space, where the plane is z = 0.
-    pub(crate) fn point(self, vertex: usize) -> Vector3 {
+    pub(crate) fn point(self, vertex: Vertex) -> Vector3 {
         match self {
             Self::Plane(map) => Vector3([map[vertex][0], map[vertex][1], 0.0]),
             Self::Sphere(map) => map[vertex],
@@ -127,21 +127,21 @@ struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     /// Refuses coordinates that are not finite.
     fn new(image: Image<'a>) -> Result<Self, Error> {
-        let not_finite = (0..image.len()).filter(|&vertex| !image.point(vertex).is_finite());
+        let not_finite = (0..image.len()).filter(|&vertex| !image.point(Vertex::new(vertex)).is_finite());
         if let Some(vertices) = Elements::collect(not_finite) {
             return Err(MapError::NonFinite { name: "image", vertices }.into());
         }
-        let largest =
-            (0..image.len()).fold(0.0, |most, vertex| f64::max(most, image.point(vertex).max_abs()));
+        let largest = (0..image.len())
+            .fold(0.0, |most, vertex| f64::max(most, image.point(Vertex::new(vertex)).max_abs()));
         let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0) } else { 0.0 };
         Ok(Self { image, factor: (-exponent).exp2() })
     }
 
-    fn corners(&self, face: [u32; 3]) -> [Vector3; 3] {
-        face.map(|vertex| self.image.point(vertex as usize) * self.factor)
+    fn corners(&self, face: [Vertex; 3]) -> [Vector3; 3] {
+        face.map(|vertex| self.image.point(vertex) * self.factor)
     }
 
-    fn is_folded(&self, face: [u32; 3]) -> bool {
+    fn is_folded(&self, face: [Vertex; 3]) -> bool {
         let corners = self.corners(face);
         match self.image {
             Image::Plane(_) => {
@@ -159,13 +159,13 @@ impl<'a> Scaled<'a> {
 
 /// Faces whose exact orientation in the plane is not positive, ascending. Coordinates must be finite and
 /// moderate.
-pub fn folded_in_plane(faces: &[[u32; 3]], map: &[[f64; 2]]) -> Vec<usize> {
+pub fn folded_in_plane(faces: &[[Vertex; 3]], map: &[[f64; 2]]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
 /// Faces whose exact orientation around the origin is not positive, ascending: the folds of an outward oriented map onto
 /// the sphere. Coordinates must be finite and moderate.
-pub fn folded_on_sphere(faces: &[[u32; 3]], map: &[Vector3]) -> Vec<usize> {
+pub fn folded_on_sphere(faces: &[[Vertex; 3]], map: &[Vector3]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
 
@@ -213,7 +213,7 @@ pub fn distortion(
 /// has no area.
 pub(crate) fn measure(
     points: &[Vector3],
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     image: Image<'_>,
     targets: &[f64],
 ) -> Result<Distortion, Error> {
@@ -227,7 +227,7 @@ pub(crate) fn measure(
 /// As [`distortion`].
 pub(crate) fn distortion_in_space(
     points: &[Vector3],
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     image: &[Vector3],
     folded: Vec<usize>,
     targets: &[f64],
@@ -237,7 +237,7 @@ pub(crate) fn distortion_in_space(
 
 fn figures(
     points: &[Vector3],
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     image: Scaled<'_>,
     folded: Vec<usize>,
     targets: &[f64],
@@ -299,7 +299,7 @@ fn assembled(
 /// As [`distortion`].
 pub(crate) fn distortion_of_wholes(
     of_parts: &Distortion,
-    parts: &[[u32; 3]],
+    parts: &[[Vertex; 3]],
     image: Image<'_>,
     targets: &[f64],
     face_of: &[Face],
@@ -354,13 +354,13 @@ fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error
     Ok(density.iter().map(|value| value / largest).collect())
 }
 
-fn folded(faces: &[[u32; 3]], image: Scaled<'_>) -> Vec<usize> {
+fn folded(faces: &[[Vertex; 3]], image: Scaled<'_>) -> Vec<usize> {
     let is_folded = parallel::map(faces.len(), |face| image.is_folded(faces[face]));
     (0..faces.len()).filter(|&face| is_folded[face]).collect()
 }
 
 /// Flat image areas with the exact sign; the rounded sign differs only for areas of rounding size.
-fn signed_areas(faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
+fn signed_areas(faces: &[[Vertex; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
     let mut areas = parallel::map(faces.len(), |face| area(image.corners(faces[face])));
     for &face in folded {
         areas[face] = -areas[face];
@@ -368,7 +368,12 @@ fn signed_areas(faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<
     areas
 }
 
-fn angle_distortion(points: &[Vector3], faces: &[[u32; 3]], image: Scaled<'_>, folded: &[usize]) -> Vec<f64> {
+fn angle_distortion(
+    points: &[Vector3],
+    faces: &[[Vertex; 3]],
+    image: Scaled<'_>,
+    folded: &[usize],
+) -> Vec<f64> {
     let mut ratios = parallel::map(faces.len(), |face| {
         singular_value_ratio(triangle(points, faces[face]), image.corners(faces[face]))
     });
@@ -410,6 +415,7 @@ fn summary(values: &[f64]) -> (f64, f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::faces_of_indices;
 
     const SQUARE: [Vector3; 4] = [
         Vector3([0.0, 0.0, 0.0]),
@@ -420,7 +426,7 @@ mod tests {
     const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
     fn measured(map: &[[f64; 2]]) -> Distortion {
-        measure(&SQUARE, &HALVES, Image::Plane(map), &[0.5, 0.5]).unwrap()
+        measure(&SQUARE, &faces_of_indices(&HALVES), Image::Plane(map), &[0.5, 0.5]).unwrap()
     }
 
     #[test]
@@ -452,7 +458,7 @@ mod tests {
 
     #[test]
     fn a_face_within_rounding_of_a_line_is_decided_exactly() {
-        let faces = [[0, 1, 2]];
+        let faces = [[0, 1, 2].map(Vertex)];
         // the third point lies off the line through the others by less than the rounding of the products
         let above = [[0.0, 0.0], [1e16, 1e16], [3.0, 3.0 + 4.440892098500626e-16]];
         let below = [[0.0, 0.0], [1e16, 1e16], [3.0, 3.0 - 4.440892098500626e-16]];
@@ -464,14 +470,14 @@ mod tests {
     fn faces_of_the_sphere_are_positive_seen_from_outside() {
         let octant = [0, 1, 2].map(Vector3::unit);
         let figures = |face| measure(&octant, &[face], Image::Sphere(&octant), &[1.0]).unwrap();
-        assert!(figures([0, 1, 2]).folded.is_empty());
-        assert_eq!(figures([0, 2, 1]).folded, [0]);
+        assert!(figures([0, 1, 2].map(Vertex)).folded.is_empty());
+        assert_eq!(figures([0, 2, 1].map(Vertex)).folded, [0]);
     }
 
     #[test]
     fn a_collapsed_image_is_refused() {
         let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
-        let refused = measure(&SQUARE, &HALVES, Image::Plane(&flat), &[0.5, 0.5]);
+        let refused = measure(&SQUARE, &faces_of_indices(&HALVES), Image::Plane(&flat), &[0.5, 0.5]);
         assert!(matches!(refused, Err(Error::InvalidArray { name: "image", .. })));
     }
 

@@ -149,7 +149,7 @@ pub use hyperbolic::{
     HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants, RoughSphere,
     Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
 };
-pub use mesh::{Patch, Surface, Topology};
+pub use mesh::{Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
 pub use registration::{
     Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,

@@ -122,8 +122,11 @@ pub fn from_indices<D: Dimension>(py: Python<'_>, indices: ArrayView<'_, u32, D>
 }
 
 /// Indices as an (n,) int64 array.
-pub fn from_index_list(py: Python<'_>, list: impl ExactSizeIterator<Item = usize>) -> Py<PyArray1<i64>> {
-    PyArray1::from_iter(py, list.map(|i| i as i64)).unbind()
+pub fn from_index_list(
+    py: Python<'_>,
+    list: impl ExactSizeIterator<Item = impl Into<usize>>,
+) -> Py<PyArray1<i64>> {
+    PyArray1::from_iter(py, list.map(|index| index.into() as i64)).unbind()
 }
 
 fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyUntypedArray>> {

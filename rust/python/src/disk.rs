@@ -198,7 +198,7 @@ pub fn disk_map(
         Ok((authalic::disk_map(&surface, &options, observer)?, surface))
     })?;
     // 3. The result
-    DiskMap::new(py, map, oriented(&surface))
+    DiskMap::new(py, map, oriented(&surface).view())
 }
 
 fn parse_method(method: &str) -> PyResult<DiskMethod> {

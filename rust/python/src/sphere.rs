@@ -236,7 +236,7 @@ pub fn sphere_map(
     // 3. The result
     let refinement = map.refinement.take().map(|refinement| Refinement::new(py, *refinement, &surface));
     let refinement = refinement.transpose()?.map(|refinement| Py::new(py, refinement)).transpose()?;
-    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface))? })
+    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface).view())? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::hyperbolic_structure`: Fuchsian group, pants and hexagons.
 
-use authalic::{self as core, Complex, Moebius};
+use authalic::{self as core, Complex, Moebius, Vertex};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
@@ -121,11 +121,12 @@ type Sides = (Py<PyArray1<i64>>, Py<PyArray1<i64>>);
 
 impl HyperbolicStructure {
     fn new(py: Python<'_>, structure: core::HyperbolicStructure) -> PyResult<Self> {
-        let list = |values: &[u32]| from_index_list(py, values.iter().map(|&i| i as usize));
-        let sides = |sides: &[[Vec<u32>; 2]]| -> Vec<Sides> {
+        let list = |vertices: &[Vertex]| from_index_list(py, vertices.iter().copied());
+        let sides = |sides: &[[Vec<Vertex>; 2]]| -> Vec<Sides> {
             sides.iter().map(|[left, right]| (list(left), list(right))).collect()
         };
-        let vertex_of = structure.vertex_of.iter().map(|vertex| vertex.map_or(-1, i64::from));
+        let vertex_of =
+            structure.vertex_of.iter().map(|vertex| vertex.map_or(-1, |vertex| i64::from(vertex.0)));
         let pants = structure.pants.iter().map(|pants| Py::new(py, Pants::new(py, pants)?));
         Ok(Self {
             vertices: from_array(py, structure.vertices()),

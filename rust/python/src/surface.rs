@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::Surface`: the handle, its patches, and surfaces as arguments.
 
-use authalic::{Error, Topology};
-use numpy::ndarray::{Array2, ArrayView2, aview2};
+use authalic::{Error, Topology, Vertex};
+use numpy::ndarray::{Array2, aview2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -180,8 +180,8 @@ fn read_only<T: numpy::Element>(array: Bound<'_, PyArray2<T>>) -> PyResult<Py<Py
     Ok(array.unbind())
 }
 
-fn index_lists(py: Python<'_>, lists: &[Vec<u32>]) -> Vec<Py<PyArray1<i64>>> {
-    lists.iter().map(|list| from_index_list(py, list.iter().map(|&i| i as usize))).collect()
+fn index_lists(py: Python<'_>, lists: &[Vec<Vertex>]) -> Vec<Py<PyArray1<i64>>> {
+    lists.iter().map(|list| from_index_list(py, list.iter().copied())).collect()
 }
 
 /// One piece of a cut mesh (an island), with maps back to the input. Taken wherever a Surface is.
@@ -216,8 +216,8 @@ impl Patch {
         let face_of = patch.corner_of.column(0).iter().map(|&corner| corner as usize / 3).collect::<Vec<_>>();
         Ok(Self {
             vertices: from_array(py, patch.surface.vertices().to_owned()),
-            faces: from_indices(py, patch.surface.faces()),
-            vertex_of: from_index_list(py, patch.vertex_of.iter().map(|&vertex| vertex as usize)),
+            faces: from_indices(py, patch.surface.faces().view()),
+            vertex_of: from_index_list(py, patch.vertex_of.iter().copied()),
             corner_of: from_indices(py, patch.corner_of.view()),
             face_of: from_index_list(py, face_of.into_iter()),
             euler_characteristic: patch.topology.euler_characteristic,
@@ -389,7 +389,7 @@ fn too_many() -> PyErr {
 }
 
 /// The oriented faces of a surface that has been mapped.
-pub fn oriented(surface: &authalic::Surface) -> ArrayView2<'_, u32> {
+pub fn oriented(surface: &authalic::Surface) -> Array2<u32> {
     surface.oriented_faces().expect("a surface that was mapped is orientable")
 }
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// Places the boundary loop on the unit circle, counter-clockwise, arcs proportional to the edge lengths;
 /// the loop's smallest vertex goes to (1, 0). Interior vertices go to the origin.
@@ -15,23 +15,23 @@ pub(super) fn arc_length(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
     let mut travelled = 0.0;
     for (&vertex, length) in boundary.iter().zip(lengths) {
         let angle = TAU * travelled / total;
-        map[vertex as usize] = [angle.cos(), angle.sin()];
+        map[vertex] = [angle.cos(), angle.sin()];
         travelled += length;
     }
     map
 }
 
 /// Length of the edge that leaves each vertex of a loop.
-fn edge_lengths(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
-    let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
+fn edge_lengths(mesh: &TriangleMesh, boundary: &[Vertex]) -> Vec<f64> {
+    let point = |k: usize| mesh.points()[boundary[k % boundary.len()]];
     (0..boundary.len()).map(|k| point(k + 1).distance(point(k))).collect()
 }
 
 /// The arc from each vertex of the loop to the next, or `None` where the loop does not run once around the
 /// circle, counter-clockwise, without turning back.
-pub(super) fn arcs(boundary: &[u32], map: &[[f64; 2]]) -> Option<Vec<f64>> {
+pub(super) fn arcs(boundary: &[Vertex], map: &[[f64; 2]]) -> Option<Vec<f64>> {
     let arc = |k: usize| {
-        let [from, to] = [boundary[k], boundary[(k + 1) % boundary.len()]].map(|v| map[v as usize]);
+        let [from, to] = [boundary[k], boundary[(k + 1) % boundary.len()]].map(|v| map[v]);
         let sine = from[0] * to[1] - from[1] * to[0];
         sine.atan2(from[0] * to[0] + from[1] * to[1])
     };
@@ -41,7 +41,7 @@ pub(super) fn arcs(boundary: &[u32], map: &[[f64; 2]]) -> Option<Vec<f64>> {
 }
 
 /// True if the loop runs once around the circle, counter-clockwise, without turning back.
-pub(super) fn runs_once_around(boundary: &[u32], map: &[[f64; 2]]) -> bool {
+pub(super) fn runs_once_around(boundary: &[Vertex], map: &[[f64; 2]]) -> bool {
     arcs(boundary, map).is_some()
 }
 

@@ -44,7 +44,7 @@ pub(super) fn nearly_folded(areas: &[f64], targets: &[f64]) -> bool {
 /// True if every face is positive by more than its rounding error; never true for a folded face.
 pub(super) fn clearly_unfolded(mesh: &TriangleMesh, map: &[[f64; 2]]) -> bool {
     parallel::all(mesh.n_faces(), |face| {
-        let [a, b, c] = mesh.faces()[face].map(|vertex| map[vertex as usize]);
+        let [a, b, c] = mesh.faces()[face].map(|vertex| map[vertex]);
         let (left, right) = ((b[0] - a[0]) * (c[1] - a[1]), (b[1] - a[1]) * (c[0] - a[0]));
         // the filter of Shewchuk's orient2d: (3 + 16ε)ε with ε = 2⁻⁵³
         left - right > 3.330_669_073_875_471_6e-16 * (left.abs() + right.abs())

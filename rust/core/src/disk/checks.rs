@@ -4,7 +4,7 @@
 use super::options::{Boundary, DiskMapOptions, DiskMethod};
 use super::{boundary, rectangle};
 use crate::error::{Elements, Error, MapError, MeshError};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::options::{check_angle_weight, check_area_tolerance};
 
 /// Refuses a surface that is no disk, and options out of range.
@@ -71,14 +71,14 @@ fn check_initial(
         return Ok(());
     }
     let boundary = &mesh.boundary_loops()[0];
-    let off_circle = |&v: &usize| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
-    if let Some(vertices) = Elements::collect(boundary.iter().map(|&v| v as usize).filter(off_circle)) {
+    let off_circle = |&v: &Vertex| (initial[v][0].hypot(initial[v][1]) - 1.0).abs() > 1e-6;
+    if let Some(vertices) = Elements::collect(boundary.iter().copied().filter(off_circle)) {
         return Err(
             MapError::InitialBoundary { vertices, reason: "it must lie on the unit circle".into() }.into()
         );
     }
     if !boundary::runs_once_around(boundary, initial) {
-        let vertices = Elements::collect(boundary.iter().map(|&v| v as usize)).expect("a loop has vertices");
+        let vertices = Elements::collect(boundary.iter().copied()).expect("a loop has vertices");
         return Err(MapError::InitialBoundary {
             vertices,
             reason: "it must run once around the unit circle, counter-clockwise (mirror the map if it runs clockwise)".into(),

@@ -6,8 +6,8 @@
 //! dropped from the result.
 
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area, area_vector};
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::{Vector3, coordinates};
 
 /// A hole's faces get at least this part of the mean target, so that a slit without area stays solvable.
@@ -30,7 +30,7 @@ pub(super) fn fill_holes(mesh: &TriangleMesh, targets: &[f64]) -> Result<Filled,
     let scale = targets.iter().sum::<f64>() / mesh.face_areas().iter().sum::<f64>();
     let least = SMALLEST_SHARE * targets.iter().sum::<f64>() / targets.len() as f64;
     for hole in &mesh.boundary_loops()[1..] {
-        let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
+        let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
         let share = (scale * spanned_area(&corners) / hole.len() as f64).max(least);
         fill(hole, &mut points, &mut faces);
         targets.resize(faces.len(), share);
@@ -49,9 +49,9 @@ pub(crate) fn closed(mesh: &TriangleMesh) -> Result<TriangleMesh, Error> {
 }
 
 /// Fills one hole by a fan to a new vertex.
-fn fill(hole: &[u32], points: &mut Vec<Vector3>, faces: &mut Vec<[u32; 3]>) {
-    let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex as usize]).collect();
-    let apex = points.len() as u32;
+fn fill(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
+    let corners: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
+    let apex = Vertex::new(points.len());
     points.push(apex_of(&corners));
     for k in 0..hole.len() {
         // the loop has the surface on its left, the fan lies on its right

@@ -131,17 +131,17 @@ pub(crate) fn map_disk(
 /// folds a sliver.
 fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let boundary = &mesh.boundary_loops()[0];
-    let [x, y] = map[boundary[0] as usize];
+    let [x, y] = map[boundary[0]];
     let mut turned = parallel::map(map.len(), |v| {
         let [u, w] = map[v];
         [x * u + y * w, x * w - y * u]
     });
     for &v in boundary {
-        let [u, w] = turned[v as usize];
+        let [u, w] = turned[v];
         // rounding may leave no coordinate beyond the circle
-        turned[v as usize] = [u, w].map(|c| c / u.hypot(w));
+        turned[v] = [u, w].map(|c| c / u.hypot(w));
     }
-    turned[boundary[0] as usize] = [1.0, 0.0];
+    turned[boundary[0]] = [1.0, 0.0];
     let was_sound = certificate::is_bijective(mesh, &map);
     if was_sound && !certificate::is_bijective(mesh, &turned) { map } else { turned }
 }

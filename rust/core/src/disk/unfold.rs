@@ -10,7 +10,7 @@
 
 use super::certificate::folded;
 use crate::energy::mean_value::{self, Weights, correct};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// Passes with the same vertices free, each with the weights of the map before it; the first nearly always
 /// suffices.
@@ -29,7 +29,7 @@ pub(crate) fn unfold_within(
     most_rings: usize,
 ) -> Option<Vec<[f64; 2]>> {
     let folds = folded(mesh, map);
-    let n_interior = (0..mesh.n_vertices()).filter(|&v| !mesh.is_boundary(v)).count();
+    let n_interior = Vertex::all(mesh.n_vertices()).filter(|&v| !mesh.is_boundary(v)).count();
     let mut rings = 2;
     loop {
         // 1. Free the interior vertices within a few rings of the folded faces
@@ -47,7 +47,7 @@ pub(crate) fn unfold_within(
 }
 
 /// A few passes of the mean-value correction; `None` where folds remain.
-fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[u32]) -> Option<Vec<[f64; 2]>> {
+fn mend(mesh: &TriangleMesh, map: &[[f64; 2]], free: &[Vertex]) -> Option<Vec<[f64; 2]>> {
     let mut map = map.to_vec();
     for _ in 0..PASSES {
         correct(mesh, &mut map, free, Weights::MeanValue)?;
@@ -98,7 +98,7 @@ mod tests {
     fn an_interior_collapsed_to_a_point_is_unfolded() {
         let mesh = grid(12);
         let mut map = tutte(&mesh);
-        (0..map.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| map[v] = [0.3, -0.2]);
+        Vertex::all(map.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| map[v] = [0.3, -0.2]);
         let mended = unfold(&mesh, &map).unwrap();
         assert!(folded(&mesh, &mended).is_empty());
     }

@@ -17,7 +17,7 @@ use super::kernel::kernel_centroid;
 use super::star::{Star, angle};
 use crate::codomain::motion::{Motion, rotated};
 use crate::control::{Observer, Phase, Status};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// λ, the weight of the shape in the energy.
@@ -99,7 +99,7 @@ pub fn relaxed(
 ) -> (Vec<Vector3>, Status) {
     let mut embedding = Embedding::new(mesh, targets);
     embedding.places = map;
-    embedding.placed = (0..mesh.n_vertices() as u32).collect();
+    embedding.placed = Vertex::all(mesh.n_vertices()).collect();
     let sweeps = 4 * RELAXED_SHAPES.len();
     for sweep in 0..sweeps {
         embedding.shape = RELAXED_SHAPES[sweep / 4];
@@ -125,7 +125,7 @@ struct Embedding<'a> {
     star: Star,
     room: [Vec<[f64; 2]>; 2],
     /// The vertices in the order in which they came back, which does not depend on their numbering.
-    placed: Vec<u32>,
+    placed: Vec<Vertex>,
 }
 
 impl<'a> Embedding<'a> {
@@ -178,8 +178,8 @@ impl<'a> Embedding<'a> {
 
     /// Lays the remaining vertices onto a regular tetrahedron or triangle; returns their number.
     fn lay_base(&mut self) -> Option<usize> {
-        let n = self.mesh.n_vertices() as u32;
-        let mut base: Vec<u32> = (0..n).filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
+        let all = Vertex::all(self.mesh.n_vertices());
+        let mut base: Vec<Vertex> = all.filter(|&vertex| !self.decimation.is_gone(vertex)).collect();
         base.sort_by(|&a, &b| self.decimation.preference(a).total_cmp(&self.decimation.preference(b)));
         self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
@@ -195,9 +195,9 @@ impl<'a> Embedding<'a> {
         // one of the two orders has the right orientation
         let orders: [&[usize]; 2] = [&[0, 1, 2, 3], &[0, 2, 1, 3]];
         for order in orders {
-            base.iter().zip(order).for_each(|(&vertex, &k)| self.places[vertex as usize] = corners[k]);
+            base.iter().zip(order).for_each(|(&vertex, &k)| self.places[vertex] = corners[k]);
             self.fill_star(base[0]);
-            if self.star.energy(self.places[base[0] as usize], self.shape).is_some() {
+            if self.star.energy(self.places[base[0]], self.shape).is_some() {
                 return Some(base.len());
             }
         }
@@ -212,17 +212,17 @@ impl<'a> Embedding<'a> {
         // 1. A place
         let mut place = match motion {
             Motion::Circle => self.place_on_arc()?,
-            motion => self.place_in_kernel(self.places[onto as usize], motion)?,
+            motion => self.place_in_kernel(self.places[onto], motion)?,
         };
         // 2. Newton steps of the vertex
         for _ in 0..NEWTON_STEPS {
             let Some(better) = self.star.improved(place, motion, self.shape) else { break };
             place = better;
         }
-        self.places[vertex as usize] = place;
+        self.places[vertex] = place;
         self.placed.push(vertex);
         // 3. One Newton step of each neighbor, first of the vertex onto which it had collapsed
-        let mut ring: Vec<u32> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
+        let mut ring: Vec<Vertex> = self.decimation.star(vertex).map(|(next, _, _)| next).collect();
         let first = ring.iter().position(|&neighbor| neighbor == onto).unwrap_or(0);
         ring.rotate_left(first);
         for neighbor in ring {
@@ -266,23 +266,23 @@ impl<'a> Embedding<'a> {
     }
 
     /// One Newton step of one vertex, which never folds a face.
-    fn relax(&mut self, vertex: u32) {
+    fn relax(&mut self, vertex: Vertex) {
         self.fill_star(vertex);
-        let place = &mut self.places[vertex as usize];
+        let place = &mut self.places[vertex];
         if let Some(better) = self.star.improved(*place, self.motion(vertex), self.shape) {
-            self.places[vertex as usize] = better;
+            self.places[vertex] = better;
         }
     }
 
-    fn motion(&self, vertex: u32) -> Motion {
-        match (self.travelled.is_empty(), self.mesh.is_boundary(vertex as usize)) {
+    fn motion(&self, vertex: Vertex) -> Motion {
+        match (self.travelled.is_empty(), self.mesh.is_boundary(vertex)) {
             (true, _) => Motion::Sphere,
             (false, false) => Motion::Plane,
             (false, true) => Motion::Circle,
         }
     }
 
-    fn fill_star(&mut self, vertex: u32) {
+    fn fill_star(&mut self, vertex: Vertex) {
         let apex = self.decimation.apex();
         self.star.clear();
         let (mut before, mut behind) = (None, None);
@@ -292,15 +292,15 @@ impl<'a> Embedding<'a> {
             } else if after == apex {
                 before = Some(next);
             } else {
-                self.star.push(self.places[next as usize], self.places[after as usize], target);
+                self.star.push(self.places[next], self.places[after], target);
             }
         }
         if let (Some(before), Some(behind)) = (before, behind) {
-            let arc = |from: u32, to: u32| {
-                let share = self.travelled[to as usize] - self.travelled[from as usize];
+            let arc = |from: Vertex, to: Vertex| {
+                let share = self.travelled[to] - self.travelled[from];
                 if share > 0.0 { share } else { share + TAU }
             };
-            let places = [before, behind].map(|vertex| self.places[vertex as usize]);
+            let places = [before, behind].map(|vertex| self.places[vertex]);
             self.star.arcs = Some([(places[0], arc(before, vertex)), (places[1], arc(vertex, behind))]);
         }
     }
@@ -312,13 +312,13 @@ fn polygon_area(n: usize) -> f64 {
 }
 
 /// The length along the boundary up to each of its vertices, 2π in total; 0 elsewhere.
-fn travelled(mesh: &TriangleMesh, boundary: &[u32]) -> Vec<f64> {
-    let point = |k: usize| mesh.points()[boundary[k % boundary.len()] as usize];
+fn travelled(mesh: &TriangleMesh, boundary: &[Vertex]) -> Vec<f64> {
+    let point = |k: usize| mesh.points()[boundary[k % boundary.len()]];
     let lengths: Vec<f64> = (0..boundary.len()).map(|k| point(k).distance(point(k + 1))).collect();
     let total: f64 = lengths.iter().sum();
     let (mut travelled, mut so_far) = (vec![0.0; mesh.n_vertices()], 0.0);
     for (&vertex, length) in boundary.iter().zip(lengths) {
-        travelled[vertex as usize] = TAU * so_far / total;
+        travelled[vertex] = TAU * so_far / total;
         so_far += length;
     }
     travelled

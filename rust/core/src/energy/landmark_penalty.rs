@@ -6,6 +6,7 @@
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// Landmark vertices with the places where they should lie.
@@ -13,7 +14,7 @@ use crate::vector::Vector3;
 pub(crate) struct LandmarkPenalty {
     /// λ.
     pub weight: f64,
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     places: Vec<Vector3>,
     /// One corner of each landmark, to which its Hessian is added, with the landmark's number; ascending.
     corners: Vec<(u32, u32)>,
@@ -23,25 +24,25 @@ impl LandmarkPenalty {
     /// The penalty on `vertices` away from `places`, for maps of the energy's surface.
     pub(crate) fn new(
         energy: &AuthalicEnergy,
-        vertices: Vec<u32>,
+        vertices: Vec<Vertex>,
         places: Vec<Vector3>,
         weight: f64,
     ) -> Self {
         let corner =
-            |(landmark, &vertex): (usize, &u32)| (energy.vertex_corners(vertex as usize)[0], landmark as u32);
+            |(landmark, &vertex): (usize, &Vertex)| (energy.vertex_corners(vertex)[0], landmark as u32);
         let mut corners: Vec<(u32, u32)> = vertices.iter().enumerate().map(corner).collect();
         corners.sort_unstable();
         Self { weight, vertices, places, corners }
     }
 
     /// The landmark vertices.
-    pub(crate) fn vertices(&self) -> &[u32] {
+    pub(crate) fn vertices(&self) -> &[Vertex] {
         &self.vertices
     }
 
     /// The distance of each landmark from its place.
     pub(crate) fn gaps(&self, map: &[Vector3]) -> Vec<f64> {
-        let gap = |(&vertex, &place): (&u32, &Vector3)| map[vertex as usize].distance(place);
+        let gap = |(&vertex, &place): (&Vertex, &Vector3)| map[vertex].distance(place);
         self.vertices.iter().zip(&self.places).map(gap).collect()
     }
 
@@ -53,7 +54,6 @@ impl LandmarkPenalty {
     /// Adds the gradient by the unknowns of every vertex.
     pub(crate) fn add_gradient(&self, map: &[Vector3], frames: &[Frame], gradient: &mut [[f64; 2]]) {
         for (&vertex, &place) in self.vertices.iter().zip(&self.places) {
-            let vertex = vertex as usize;
             let pull = (map[vertex] - place) * (2.0 * self.weight);
             let slopes = frames[vertex].axes.map(|axis| pull.dot(axis));
             gradient[vertex] = [gradient[vertex][0] + slopes[0], gradient[vertex][1] + slopes[1]];
@@ -65,7 +65,7 @@ impl LandmarkPenalty {
         let first = self.corners.partition_point(|&(corner, _)| (corner as usize) < 3 * face);
         let here = self.corners[first..].iter().take_while(|&&(corner, _)| (corner as usize) < 3 * face + 3);
         for &(corner, landmark) in here {
-            let (k, vertex) = (corner as usize % 3, self.vertices[landmark as usize] as usize);
+            let (k, vertex) = (corner as usize % 3, self.vertices[landmark as usize]);
             let away = map[vertex] - self.places[landmark as usize];
             let bend = 1.0 - away.dot(frames[vertex].outward);
             let curvature = 2.0 * self.weight * bend.max(0.0);
@@ -88,7 +88,7 @@ mod tests {
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 4], Codomain::Sphere, 0.0);
         let map: Vec<Vector3> = corners.iter().map(|&x| Vector3(x) * (1.0 / Vector3(x).norm())).collect();
         let place = Vector3([0.6, 0.8, 0.0]);
-        let penalty = LandmarkPenalty::new(&energy, vec![2, 0], vec![map[2], place], 0.7);
+        let penalty = LandmarkPenalty::new(&energy, [2, 0].map(Vertex).to_vec(), vec![map[2], place], 0.7);
         assert!((penalty.value(&map) - 0.7 * map[0].distance(place).powi(2)).abs() < 1e-15);
         let motions = [Motion::Sphere; 4];
         let frames = frames(&motions, &map);

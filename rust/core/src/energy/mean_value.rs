@@ -18,7 +18,7 @@
 
 use sprs::TriMat;
 
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::sparse::solve_general;
 
 /// Vertices at most `rings` edges away from a vertex of the given faces for which `is_free` holds, ascending.
@@ -26,18 +26,18 @@ pub(crate) fn free_within(
     mesh: &TriangleMesh,
     faces: &[usize],
     rings: usize,
-    is_free: impl Fn(usize) -> bool,
-) -> Vec<u32> {
+    is_free: impl Fn(Vertex) -> bool,
+) -> Vec<Vertex> {
     let mut reached = vec![false; mesh.n_vertices()];
-    let mut front: Vec<u32> = faces.iter().flat_map(|&face| mesh.faces()[face]).collect();
+    let mut front: Vec<Vertex> = faces.iter().flat_map(|&face| mesh.faces()[face]).collect();
     for ring in 0..=rings {
-        front.retain(|&vertex| !std::mem::replace(&mut reached[vertex as usize], true));
+        front.retain(|&vertex| !std::mem::replace(&mut reached[vertex], true));
         if ring < rings {
-            let one_rings = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex as usize));
+            let one_rings = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
             front = one_rings.flat_map(|&corner| mesh.faces()[corner as usize / 3]).collect();
         }
     }
-    (0..mesh.n_vertices() as u32).filter(|&v| reached[v as usize] && is_free(v as usize)).collect()
+    Vertex::all(mesh.n_vertices()).filter(|&v| reached[v] && is_free(v)).collect()
 }
 
 /// The weights of a correction.
@@ -53,20 +53,20 @@ pub(crate) enum Weights {
 pub(crate) fn correct(
     mesh: &TriangleMesh,
     map: &mut [[f64; 2]],
-    free: &[u32],
+    free: &[Vertex],
     weights: Weights,
 ) -> Option<()> {
     let n = free.len();
     let mut unknown = vec![usize::MAX; mesh.n_vertices()];
     for (i, &vertex) in free.iter().enumerate() {
-        unknown[vertex as usize] = i;
+        unknown[vertex] = i;
     }
     let mut matrix = TriMat::new((n, n));
     let mut rhs = vec![0.0; 2 * n];
     for (i, &vertex) in free.iter().enumerate() {
         let one_ring = match weights {
-            Weights::MeanValue => mean_value_weights(mesh, map, vertex as usize),
-            Weights::Uniform => uniform_weights(mesh, vertex as usize),
+            Weights::MeanValue => mean_value_weights(mesh, map, vertex),
+            Weights::Uniform => uniform_weights(mesh, vertex),
         };
         for (neighbor, weight) in one_ring {
             matrix.add_triplet(i, i, weight);
@@ -81,28 +81,28 @@ pub(crate) fn correct(
     }
     solve_general(&matrix.to_csc(), &mut rhs).ok()?;
     for (i, &vertex) in free.iter().enumerate() {
-        map[vertex as usize] = [rhs[i], rhs[n + i]];
+        map[vertex] = [rhs[i], rhs[n + i]];
     }
     Some(())
 }
 
 /// Equal weights of the one-ring of `vertex` that sum to 1; a neighbor appears once per shared face.
-fn uniform_weights(mesh: &TriangleMesh, vertex: usize) -> Vec<(usize, f64)> {
+fn uniform_weights(mesh: &TriangleMesh, vertex: Vertex) -> Vec<(Vertex, f64)> {
     let corners = mesh.vertex_corners(vertex);
     let weight = 0.5 / corners.len() as f64;
     let neighbors = corners.iter().flat_map(|&corner| {
         let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
-        [1, 2].map(|step| face[(k + step) % 3] as usize)
+        [1, 2].map(|step| face[(k + step) % 3])
     });
     neighbors.map(|neighbor| (neighbor, weight)).collect()
 }
 
 /// The weights (6.3b) of the one-ring of `vertex`, scaled to sum 1; a neighbor appears once per shared face.
-fn mean_value_weights(mesh: &TriangleMesh, map: &[[f64; 2]], vertex: usize) -> Vec<(usize, f64)> {
+fn mean_value_weights(mesh: &TriangleMesh, map: &[[f64; 2]], vertex: Vertex) -> Vec<(Vertex, f64)> {
     let mut weights = Vec::with_capacity(16);
     for &corner in mesh.vertex_corners(vertex) {
         let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
-        let [one, two] = [1, 2].map(|step| face[(k + step) % 3] as usize);
+        let [one, two] = [1, 2].map(|step| face[(k + step) % 3]);
         let [a, b] = [one, two].map(|v| [map[v][0] - map[vertex][0], map[v][1] - map[vertex][1]]);
         // a collapsed edge or an angle of 180° gets a large weight, not an infinite one
         let [length_a, length_b] = [a, b].map(|e| e[0].hypot(e[1]).max(1e-12));
@@ -128,7 +128,7 @@ mod tests {
         let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
         let mesh = TriangleMesh::new(&vertices, &faces).unwrap();
         let map: Vec<[f64; 2]> = vertices.iter().map(|p| [p[0], p[1]]).collect();
-        let average = mean_value_weights(&mesh, &map, 0)
+        let average = mean_value_weights(&mesh, &map, Vertex(0))
             .iter()
             .fold([0.0; 2], |sum, &(v, weight)| [sum[0] + weight * map[v][0], sum[1] + weight * map[v][1]]);
         assert!((average[0] - 0.1).hypot(average[1] - 0.2) < 1e-14);
@@ -140,7 +140,7 @@ mod tests {
         let faces: Vec<[u32; 3]> =
             (0..4).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 1], [2 * i + 1, 2 * i + 2, 2 * i + 3]]).collect();
         let mesh = TriangleMesh::new(&strip, &faces).unwrap();
-        assert_eq!(free_within(&mesh, &[0], 0, |_| true), [0, 1, 2]);
-        assert_eq!(free_within(&mesh, &[0], 1, |v| v != 1), [0, 2, 3, 4]);
+        assert_eq!(free_within(&mesh, &[0], 0, |_| true), [0, 1, 2].map(Vertex));
+        assert_eq!(free_within(&mesh, &[0], 1, |v| v != Vertex(1)), [0, 2, 3, 4].map(Vertex));
     }
 }

@@ -25,8 +25,8 @@ use std::f64::consts::PI;
 use sprs::{CsMat, TriMat};
 
 use super::stretch::{Profile, Value};
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{area_vector, triangle};
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -124,8 +124,8 @@ impl<'a> SpatialStretchEnergy<'a> {
             for (p, q) in (0..9).flat_map(|p| (0..9).map(move |q| (p, q))) {
                 let (s, t, corner_p, corner_q) = (p / 3, q / 3, p % 3, q % 3);
                 let value = factor * hessian_entry(edges[corner_p], edges[corner_q], s, t);
-                let row = s * n + vertices[corner_p] as usize;
-                entries.add_triplet(row, t * n + vertices[corner_q] as usize, value);
+                let row = s * n + vertices[corner_p].index();
+                entries.add_triplet(row, t * n + vertices[corner_q].index(), value);
             }
         }
         entries.to_csc()
@@ -157,7 +157,7 @@ impl<'a> SpatialStretchEnergy<'a> {
     fn gather(&self, map: &[Vector3], pull: &[Vector3]) -> Vec<Vector3> {
         parallel::map(map.len(), |vertex| {
             let mut sum = Vector3::ZERO;
-            for &corner in self.mesh.vertex_corners(vertex) {
+            for &corner in self.mesh.vertex_corners(Vertex::new(vertex)) {
                 let (face, k) = (corner as usize / 3, corner as usize % 3);
                 let points = self.corners(map, face);
                 let force = (points[(k + 1) % 3] - points[(k + 2) % 3]).cross(pull[face]);

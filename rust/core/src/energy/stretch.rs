@@ -27,7 +27,7 @@
 
 use std::f64::consts::PI;
 
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 
 /// The cost ψ of an area ratio ρ, per target area.
@@ -163,7 +163,7 @@ impl<'a> StretchEnergy<'a> {
     }
 
     fn corners(&self, map: &[[f64; 2]], face: usize) -> [[f64; 2]; 3] {
-        self.mesh.faces()[face].map(|vertex| map[vertex as usize])
+        self.mesh.faces()[face].map(|vertex| map[vertex])
     }
 
     /// Σ over the faces of each vertex of `by_area` times ∂a_τ/∂f_v, a quarter turn of half the opposite
@@ -171,7 +171,7 @@ impl<'a> StretchEnergy<'a> {
     fn gather(&self, map: &[[f64; 2]], by_area: &[f64]) -> Vec<[f64; 2]> {
         parallel::map(map.len(), |vertex| {
             let mut sum = [0.0; 2];
-            for &corner in self.mesh.vertex_corners(vertex) {
+            for &corner in self.mesh.vertex_corners(Vertex::new(vertex)) {
                 let (face, k) = (corner as usize / 3, corner as usize % 3);
                 let points = self.corners(map, face);
                 let (from, to) = (points[(k + 1) % 3], points[(k + 2) % 3]);

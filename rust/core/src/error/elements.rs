@@ -19,13 +19,13 @@ pub struct Elements {
 
 impl Elements {
     /// Collects the indices of an iterator, or `None` where it is empty.
-    pub fn collect(indices: impl IntoIterator<Item = usize>) -> Option<Self> {
-        Self::gather(indices.into_iter().map(|index| [index]))
+    pub fn collect(indices: impl IntoIterator<Item = impl Into<usize>>) -> Option<Self> {
+        Self::gather(indices.into_iter().map(|index| [index.into()]))
     }
 
     /// Collects edges, each named by its two vertices, or `None` where there are none.
-    pub fn edges(edges: impl IntoIterator<Item = [u32; 2]>) -> Option<Self> {
-        Self::gather(edges.into_iter().map(|edge| edge.map(|end| end as usize)))
+    pub fn edges(edges: impl IntoIterator<Item = [impl Into<usize>; 2]>) -> Option<Self> {
+        Self::gather(edges.into_iter().map(|edge| edge.map(Into::into)))
     }
 
     fn gather<const ARITY: usize>(mut all: impl Iterator<Item = [usize; ARITY]>) -> Option<Self> {

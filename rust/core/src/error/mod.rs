@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn an_error_of_a_surface_keeps_what_it_says_as_data() {
-        let folded = Elements::collect([3, 5]).unwrap();
+        let folded = Elements::collect([3usize, 5]).unwrap();
         let error = Error::from(NumericsError::NoEmbedding { folded }).of_surface(Side::Target);
         let whole = error.with_faces(|face| 10 * face);
         assert_eq!((whole.kind(), whole.side()), (ErrorKind::NoEmbedding, Some(Side::Target)));

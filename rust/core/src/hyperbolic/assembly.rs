@@ -17,7 +17,7 @@ use crate::control::{History, Status};
 use crate::distortion::{Distortion, Image, distortion_in_space, measure};
 use crate::error::Error;
 use crate::location::{Location, Locator, points_on};
-use crate::mesh::{Surface, TriangleMesh};
+use crate::mesh::{Surface, TriangleMesh, Vertex};
 use crate::parallel;
 use crate::registration::correspondence::{Correspondence, Registered};
 use crate::vector::Vector3;
@@ -276,7 +276,7 @@ impl Assembly {
 }
 
 /// Locations as points of the unit sphere.
-fn interpolated(locations: &[Location], faces: &[[u32; 3]], on_sphere: &[Vector3]) -> Vec<Vector3> {
+fn interpolated(locations: &[Location], faces: &[[Vertex; 3]], on_sphere: &[Vector3]) -> Vec<Vector3> {
     parallel::map(locations.len(), |vertex| {
         let place = locations[vertex].point_on(on_sphere, faces);
         place * (1.0 / place.norm())

@@ -248,13 +248,13 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
             assert!(location.barycentric.iter().all(|&weight| (0.0..=1.0).contains(&weight)));
             let face = location.triangle.index();
             let images = super::harmonic::certificates::image(&map, &map.input, face);
-            let first = map.input.faces[face][0] as usize;
+            let first = map.input.faces[face][0].index();
             // the same point of the hyperboloid from the images of the corners
             let weighted = |k: usize| moebius::to_hyperboloid(images[k]) * location.barycentric[k];
             let point = moebius::from_hyperboloid(weighted(0) + (weighted(1) + weighted(2)));
             let walk = map.atlas.walk(map.places.faces[first], point);
             let corners = sliced.target.surface.faces[walk.face];
-            let Some(k) = corners.iter().position(|&corner| corner as usize == vertex) else {
+            let Some(k) = corners.iter().position(|&corner| corner.index() == vertex) else {
                 assert!(
                     is_boundary(&sliced.target, vertex),
                     "vertex {vertex} is not in the face that covers it"
@@ -269,7 +269,7 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
 
 fn is_boundary(sliced: &Sliced, vertex: usize) -> bool {
     let corners = (0..3 * sliced.faces.len()).filter(|&corner| sliced.surface.opposite[corner] == NO_CORNER);
-    corners.map(|corner| sliced.surface.faces[corner / 3][(corner + 1) % 3]).any(|v| v as usize == vertex)
+    corners.map(|corner| sliced.surface.faces[corner / 3][(corner + 1) % 3]).any(|v| v.index() == vertex)
 }
 
 #[test]

@@ -15,8 +15,8 @@ mod bvh;
 use robust::{Coord3D, orient3d};
 
 use crate::control::Watch;
-use crate::mesh::Face;
 use crate::mesh::geometry::{determinant_rounding, triangle};
+use crate::mesh::{Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 use bvh::{Bounds, Tree};
@@ -49,20 +49,20 @@ impl Location {
     }
 
     /// The point of the place on a surface.
-    pub(crate) fn point_on(&self, points: &[Vector3], faces: &[[u32; 3]]) -> Vector3 {
+    pub(crate) fn point_on(&self, points: &[Vector3], faces: &[[Vertex; 3]]) -> Vector3 {
         self.point(triangle(points, faces[self.triangle]))
     }
 }
 
 /// The points of places on a surface.
-pub(crate) fn points_on(locations: &[Location], points: &[Vector3], faces: &[[u32; 3]]) -> Vec<Vector3> {
+pub(crate) fn points_on(locations: &[Location], points: &[Vector3], faces: &[[Vertex; 3]]) -> Vec<Vector3> {
     parallel::map(locations.len(), |place| locations[place].point_on(points, faces))
 }
 
 /// Finds points in a map.
 pub(crate) struct Locator<'a> {
     positions: &'a [Vector3],
-    faces: &'a [[u32; 3]],
+    faces: &'a [[Vertex; 3]],
     /// Whether the map lies in the plane z = 1.
     in_plane: bool,
     tree: Tree,
@@ -71,7 +71,7 @@ pub(crate) struct Locator<'a> {
 impl<'a> Locator<'a> {
     /// Prepares to find points among `faces` with corners `positions`, either all in the plane z = 1 or on
     /// the sphere.
-    pub(crate) fn new(positions: &'a [Vector3], faces: &'a [[u32; 3]]) -> Self {
+    pub(crate) fn new(positions: &'a [Vector3], faces: &'a [[Vertex; 3]]) -> Self {
         let in_plane = positions.iter().all(|position| position[2] == 1.0);
         let bounds = parallel::map(faces.len(), |face| match triangle(positions, faces[face]) {
             flat if in_plane => flat.into_iter().fold(Bounds::default(), Bounds::with),

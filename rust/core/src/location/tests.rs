@@ -3,9 +3,10 @@ use std::collections::HashMap;
 
 use super::*;
 use crate::control::Silent;
+use crate::mesh::{Face, Vertex, faces_of_indices};
 
 /// Positions and faces.
-pub(crate) type Map = (Vec<Vector3>, Vec<[u32; 3]>);
+pub(crate) type Map = (Vec<Vector3>, Vec<[Vertex; 3]>);
 
 /// Numbers in [-1, 1) without order.
 pub(crate) fn number(i: usize) -> f64 {
@@ -27,16 +28,17 @@ pub(crate) fn octasphere(level: usize) -> Map {
     let [x, y, z] = [0, 1, 2].map(Vector3::unit);
     let mut points = vec![x, y, -x, -y, z, -z];
     let upper = (0..4u32).map(|i| [i, (i + 1) % 4, 4]);
-    let mut faces: Vec<[u32; 3]> = upper.clone().chain(upper.map(|[a, b, _]| [b, a, 5])).collect();
+    let halves = upper.clone().chain(upper.map(|[a, b, _]| [b, a, 5]));
+    let mut faces: Vec<_> = halves.map(|face| face.map(Vertex)).collect();
     for _ in 0..level {
         let mut middles = HashMap::new();
-        let mut middle = |a: u32, b: u32| {
+        let mut middle = |a: Vertex, b: Vertex| {
             *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                points.push(unit(points[a as usize] + points[b as usize]));
-                points.len() as u32 - 1
+                points.push(unit(points[a] + points[b]));
+                Vertex::new(points.len() - 1)
             })
         };
-        let split = |[a, b, c]: [u32; 3]| {
+        let split = |[a, b, c]: [Vertex; 3]| {
             let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         };
@@ -47,7 +49,7 @@ pub(crate) fn octasphere(level: usize) -> Map {
 
 fn tetrahedron() -> Map {
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
-    (corners.map(Vector3).map(unit).to_vec(), vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    (corners.map(Vector3).map(unit).to_vec(), faces_of_indices(&[[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]))
 }
 
 /// Two poles and slivers from each to the equator, a quarter of the sphere long.
@@ -56,7 +58,8 @@ fn spindle(n: u32) -> Map {
     let equator = (0..n).map(|i| [turn(i).cos(), turn(i).sin(), 0.0]);
     let points = equator.chain([[0., 0., 1.], [0., 0., -1.]]).map(Vector3).collect();
     let upper = (0..n).map(|i| [i, (i + 1) % n, n]);
-    (points, upper.clone().chain(upper.map(|[a, b, _]| [b, a, n + 1])).collect())
+    let halves = upper.clone().chain(upper.map(|[a, b, _]| [b, a, n + 1]));
+    (points, halves.map(|face| face.map(Vertex)).collect())
 }
 
 /// Rings of the unit disk around its center, `6 j` points in ring j.
@@ -79,7 +82,7 @@ pub(crate) fn rings(n: u32) -> Map {
             }
         }
     }
-    (points, faces)
+    (points, faces_of_indices(&faces))
 }
 
 /// Whole spheres: fine, coarse, of slivers, and unevenly spread.
@@ -181,7 +184,7 @@ fn a_vertex_is_found_exactly() {
         let locator = Locator::new(&map.0, &map.1);
         for (vertex, &x) in map.0.iter().enumerate() {
             let location = locator.locate(x);
-            let corner = map.1[location.triangle].iter().position(|&v| v as usize == vertex);
+            let corner = map.1[location.triangle].iter().position(|&v| v.index() == vertex);
             let mut exact = [0.0; 3];
             exact[corner.expect("a triangle at the vertex")] = 1.0;
             assert_eq!(location.barycentric, exact);
@@ -206,7 +209,7 @@ fn beyond_a_chord_the_nearest_point_of_the_boundary_is_meant() {
     }
     // far away, past a corner of the rim: between two triangles, the first
     let beyond = locator.locate(Vector3([30.0, 0.0, 1.0]));
-    let corner = map.0.len() as u32 - 18;
+    let corner = Vertex::new(map.0.len() - 18);
     assert_eq!(place(&map, beyond), Vector3([1.0, 0.0, 1.0]));
     assert_eq!(beyond.triangle.index(), map.1.iter().position(|face| face.contains(&corner)).unwrap());
 }

@@ -7,15 +7,15 @@
 //!
 //! Every half has half the area. Lengths may be measured in any map of the mesh. Cost: linear.
 
-use super::{Face, TriangleMesh};
+use super::{Face, TriangleMesh, Vertex};
 
 /// A mesh with some faces split. Vertices keep their numbers, and midpoints follow them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bisection {
     /// (k, 2): the ends of the edge that each new vertex halves.
-    pub parents: Vec<[u32; 2]>,
+    pub parents: Vec<[Vertex; 2]>,
     /// (m', 3): the faces, oriented as before.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// (m',): the original face of each face, ascending.
     pub face_of: Vec<Face>,
     /// (m',): the original face's area over that of the face: 1, 2 or 4.
@@ -27,7 +27,7 @@ pub(crate) struct Bisection {
 pub(crate) fn bisect_longest_edges(
     mesh: &TriangleMesh,
     marked: &[bool],
-    length: impl Fn(u32, u32) -> f64,
+    length: impl Fn(Vertex, Vertex) -> f64,
 ) -> Bisection {
     let longest: Vec<usize> = mesh.faces().iter().map(|&face| across_longest_edge(face, &length)).collect();
     let midpoints = Midpoints::new(mesh, marked, &longest);
@@ -42,7 +42,7 @@ pub(crate) fn bisect_longest_edges(
         let apex = longest[number];
         let [a, b, c] = [0, 1, 2].map(|k| face[(apex + k) % 3]);
         let [bc, ca, ab] = [0, 1, 2].map(|k| midpoints.of_corner[number.corner((apex + k) % 3)]);
-        let mut push = |corners: [u32; 3], parts: u8| {
+        let mut push = |corners: [Vertex; 3], parts: u8| {
             split.faces.push(corners);
             split.face_of.push(number);
             split.parts.push(parts);
@@ -68,7 +68,7 @@ pub(crate) fn bisect_longest_edges(
 }
 
 /// The corner of a face across its longest edge.
-fn across_longest_edge(face: [u32; 3], length: &impl Fn(u32, u32) -> f64) -> usize {
+fn across_longest_edge(face: [Vertex; 3], length: &impl Fn(Vertex, Vertex) -> f64) -> usize {
     let lengths = [0, 1, 2].map(|k| length(face[(k + 1) % 3], face[(k + 2) % 3]));
     (1..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most })
 }
@@ -76,9 +76,9 @@ fn across_longest_edge(face: [u32; 3], length: &impl Fn(u32, u32) -> f64) -> usi
 /// The midpoints of split edges.
 struct Midpoints {
     /// (k, 2): the ends of the edges.
-    parents: Vec<[u32; 2]>,
+    parents: Vec<[Vertex; 2]>,
     /// (3 m,): the new vertex on the edge across each corner.
-    of_corner: Vec<Option<u32>>,
+    of_corner: Vec<Option<Vertex>>,
 }
 
 impl Midpoints {
@@ -91,7 +91,7 @@ impl Midpoints {
             if midpoints.of_corner[corner as usize].is_some() {
                 continue;
             }
-            let middle = (mesh.n_vertices() + midpoints.parents.len()) as u32;
+            let middle = Vertex::new(mesh.n_vertices() + midpoints.parents.len());
             let ends = [1, 2].map(|k| mesh.faces()[face][(longest[face] + k) % 3]);
             midpoints.parents.push(ends);
             midpoints.of_corner[corner as usize] = Some(middle);
@@ -136,8 +136,7 @@ mod tests {
         let mesh = grid(8);
         let marked: Vec<bool> = (0..mesh.n_faces()).map(|face| face % 7 == 3).collect();
         let points = mesh.points();
-        let split =
-            bisect_longest_edges(&mesh, &marked, |a, b| points[a as usize].distance(points[b as usize]));
+        let split = bisect_longest_edges(&mesh, &marked, |a, b| points[a].distance(points[b]));
         // 1. Every marked face is split, and some follow
         for (face, _) in marked.iter().enumerate().filter(|(_, is_marked)| **is_marked) {
             assert!(split.face_of.iter().filter(|of| of.index() == face).count() > 1);
@@ -146,7 +145,7 @@ mod tests {
         // 2. The parts have the area of their face, each its share
         let mut all = points.to_vec();
         for [a, b] in &split.parents {
-            let [a, b] = [all[*a as usize], all[*b as usize]];
+            let [a, b] = [all[*a], all[*b]];
             all.push((a + b) * 0.5);
         }
         let mut sums = vec![0.0; mesh.n_faces()];

@@ -3,6 +3,8 @@
 //!
 //! Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
 
+use super::Vertex;
+
 /// The entry of a boundary edge in a table of opposite corners.
 pub(crate) const NO_CORNER: u32 = u32::MAX;
 
@@ -17,12 +19,12 @@ pub(crate) fn previous_corner(corner: u32) -> u32 {
 }
 
 /// The vertex at a corner.
-pub(crate) fn vertex_at(faces: &[[u32; 3]], corner: u32) -> u32 {
+pub(crate) fn vertex_at(faces: &[[Vertex; 3]], corner: u32) -> Vertex {
     faces[corner as usize / 3][corner as usize % 3]
 }
 
 /// The directed edge opposite to a corner.
-pub(crate) fn half_edge(faces: &[[u32; 3]], corner: u32) -> [u32; 2] {
+pub(crate) fn half_edge(faces: &[[Vertex; 3]], corner: u32) -> [Vertex; 2] {
     [vertex_at(faces, next_corner(corner)), vertex_at(faces, previous_corner(corner))]
 }
 
@@ -36,11 +38,11 @@ pub(crate) struct EdgeTable {
 
 impl EdgeTable {
     /// Sorts the edges of all faces: by buckets of the lower vertex, then within each.
-    pub(crate) fn new(n_vertices: usize, faces: &[[u32; 3]]) -> Self {
+    pub(crate) fn new(n_vertices: usize, faces: &[[Vertex; 3]]) -> Self {
         let edges = || (0..3 * faces.len() as u32).map(|corner| (corner, sorted(half_edge(faces, corner))));
         let mut start = vec![0u32; n_vertices + 1];
         for (_, [low, _]) in edges() {
-            start[low as usize + 1] += 1;
+            start[low.index() + 1] += 1;
         }
         for v in 0..n_vertices {
             start[v + 1] += start[v];
@@ -48,8 +50,8 @@ impl EdgeTable {
         let mut free = start.clone();
         let mut entries = vec![0u64; 3 * faces.len()];
         for (corner, [low, high]) in edges() {
-            entries[free[low as usize] as usize] = u64::from(high) << 32 | u64::from(corner);
-            free[low as usize] += 1;
+            entries[free[low] as usize] = u64::from(high.0) << 32 | u64::from(corner);
+            free[low] += 1;
         }
         for v in 0..n_vertices {
             entries[start[v] as usize..start[v + 1] as usize].sort_unstable();
@@ -58,21 +60,21 @@ impl EdgeTable {
     }
 
     /// Every edge with its entries, in ascending order; [`corner_of_entry`] reads an entry.
-    pub(crate) fn edges(&self) -> impl Iterator<Item = ([u32; 2], &[u64])> {
-        (0..self.start.len() as u32 - 1).flat_map(move |low| {
+    pub(crate) fn edges(&self) -> impl Iterator<Item = ([Vertex; 2], &[u64])> {
+        Vertex::all(self.start.len() - 1).flat_map(move |low| {
             let same_edge = |a: &u64, b: &u64| a >> 32 == b >> 32;
             self.bucket(low)
                 .chunk_by(same_edge)
-                .map(move |entries| ([low, (entries[0] >> 32) as u32], entries))
+                .map(move |entries| ([low, Vertex((entries[0] >> 32) as u32)], entries))
         })
     }
 
     /// The corners opposite to an edge; none if there is no such edge.
-    pub(crate) fn corners(&self, edge: [u32; 2]) -> impl Iterator<Item = u32> {
+    pub(crate) fn corners(&self, edge: [Vertex; 2]) -> impl Iterator<Item = u32> {
         let [low, high] = sorted(edge);
         let bucket = self.bucket(low);
-        let begin = bucket.partition_point(|entry| entry >> 32 < u64::from(high));
-        bucket[begin..].iter().take_while(move |&entry| entry >> 32 == u64::from(high)).map(corner_of_entry)
+        let begin = bucket.partition_point(|entry| entry >> 32 < u64::from(high.0));
+        bucket[begin..].iter().take_while(move |&entry| entry >> 32 == u64::from(high.0)).map(corner_of_entry)
     }
 
     /// The opposite corner of every corner: [`NO_CORNER`] unless exactly two faces share the edge.
@@ -91,8 +93,8 @@ impl EdgeTable {
         opposite
     }
 
-    fn bucket(&self, low: u32) -> &[u64] {
-        &self.entries[self.start[low as usize] as usize..self.start[low as usize + 1] as usize]
+    fn bucket(&self, low: Vertex) -> &[u64] {
+        &self.entries[self.start[low] as usize..self.start[low.index() + 1] as usize]
     }
 }
 
@@ -102,7 +104,7 @@ pub(crate) fn corner_of_entry(entry: &u64) -> u32 {
 }
 
 /// An edge with its lower vertex first.
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+fn sorted([a, b]: [Vertex; 2]) -> [Vertex; 2] {
     [a.min(b), a.max(b)]
 }
 
@@ -115,10 +117,10 @@ pub(crate) struct VertexCorners {
 
 impl VertexCorners {
     /// Sorts the corners of all faces by vertex.
-    pub(crate) fn new(n_vertices: usize, faces: &[[u32; 3]]) -> Self {
+    pub(crate) fn new(n_vertices: usize, faces: &[[Vertex; 3]]) -> Self {
         let mut start = vec![0u32; n_vertices + 1];
         for &v in faces.as_flattened() {
-            start[v as usize + 1] += 1;
+            start[v.index() + 1] += 1;
         }
         for v in 0..n_vertices {
             start[v + 1] += start[v];
@@ -126,8 +128,8 @@ impl VertexCorners {
         let mut free = start.clone();
         let mut corners = vec![0u32; 3 * faces.len()];
         for (corner, &v) in faces.as_flattened().iter().enumerate() {
-            corners[free[v as usize] as usize] = corner as u32;
-            free[v as usize] += 1;
+            corners[free[v] as usize] = corner as u32;
+            free[v] += 1;
         }
         Self { start, corners }
     }
@@ -138,12 +140,12 @@ impl VertexCorners {
     }
 
     /// The corners at a vertex.
-    pub(crate) fn of(&self, vertex: usize) -> &[u32] {
-        &self.corners[self.start[vertex] as usize..self.start[vertex + 1] as usize]
+    pub(crate) fn of(&self, vertex: Vertex) -> &[u32] {
+        &self.corners[self.start[vertex] as usize..self.start[vertex.index() + 1] as usize]
     }
 
     /// Whether the corners at a vertex form one fan, for consistently oriented faces.
-    pub(crate) fn is_one_fan(&self, vertex: usize, opposite: &[u32]) -> bool {
+    pub(crate) fn is_one_fan(&self, vertex: Vertex, opposite: &[u32]) -> bool {
         let corners = self.of(vertex);
         let Some(&first) = corners.first() else {
             return true;

@@ -17,8 +17,8 @@ use ndarray::{Array2, CowArray, Ix2};
 use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
 use super::orientation::Orientation;
 use super::topology::Topology;
-use super::{Surface, geometry, validate};
-use crate::arrays::{from_rows, row_major, rows};
+use super::{Surface, Vertex, geometry, validate};
+use crate::arrays::{from_rows, rows_of};
 use crate::error::{Elements, Error, MeshError};
 
 /// A connected part of a cut surface.
@@ -28,7 +28,7 @@ pub struct Patch {
     /// order, winding and corner order of those of the cut surface.
     pub surface: Surface,
     /// The vertex of the cut surface of which each vertex is a copy, (n,), ascending.
-    pub vertex_of: Vec<u32>,
+    pub vertex_of: Vec<Vertex>,
     /// The corner of the cut surface (3 × face + corner) that each corner was, (m, 3).
     pub corner_of: Array2<u32>,
     /// The topology of the patch, even if it has faces without area or duplicates.
@@ -54,13 +54,14 @@ impl Surface {
     /// # Errors
     /// Seams that are out of range, or no edges of the surface.
     pub fn cut<'a>(&self, seams: impl Into<CowArray<'a, u32, Ix2>>) -> Result<Vec<Patch>, Error> {
-        let seams = row_major::<2, _>("seams", seams.into())?;
-        along(self, rows(seams.view()))
+        let seams = seams.into();
+        let seams: Vec<_> = rows_of("seams", seams.view())?.iter().map(|seam| seam.map(Vertex)).collect();
+        along(self, &seams)
     }
 }
 
 /// The patches of a surface cut along edges.
-fn along(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
+fn along(surface: &Surface, seams: &[[Vertex; 2]]) -> Result<Vec<Patch>, Error> {
     let (vertices, faces) = (surface.vertex_rows(), surface.face_rows());
     // 1. The seams.
     check_range(vertices.len(), seams)?;
@@ -84,8 +85,8 @@ fn along(surface: &Surface, seams: &[[u32; 2]]) -> Result<Vec<Patch>, Error> {
 #[derive(Default, Clone)]
 struct Draft {
     vertices: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
-    vertex_of: Vec<u32>,
+    faces: Vec<[Vertex; 3]>,
+    vertex_of: Vec<Vertex>,
     corner_of: Vec<[u32; 3]>,
 }
 
@@ -102,13 +103,13 @@ impl Draft {
     }
 }
 
-fn check_range(n_vertices: usize, seams: &[[u32; 2]]) -> Result<(), MeshError> {
-    let outside = seams.iter().copied().filter(|seam| seam.iter().any(|&v| v as usize >= n_vertices));
+fn check_range(n_vertices: usize, seams: &[[Vertex; 2]]) -> Result<(), MeshError> {
+    let outside = seams.iter().copied().filter(|seam| seam.iter().any(|&v| v.index() >= n_vertices));
     validate::refuse(Elements::edges(outside), |seams| MeshError::SeamOutOfRange { seams, n_vertices })
 }
 
 /// Disconnects the faces on both sides of the seams.
-fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Result<(), MeshError> {
+fn open_seams(table: &EdgeTable, seams: &[[Vertex; 2]], opposite: &mut [u32]) -> Result<(), MeshError> {
     let mut unknown = Vec::new();
     for &seam in seams {
         let mut corners = table.corners(seam).peekable();
@@ -121,7 +122,7 @@ fn open_seams(table: &EdgeTable, seams: &[[u32; 2]], opposite: &mut [u32]) -> Re
 }
 
 /// Joins the corners at both ends of every edge between neighbors.
-fn join_corners(faces: &[[u32; 3]], opposite: &[u32]) -> UnionFind {
+fn join_corners(faces: &[[Vertex; 3]], opposite: &[u32]) -> UnionFind {
     let mut joined = UnionFind::new(opposite.len());
     for corner in 0..opposite.len() as u32 {
         let across = opposite[corner as usize];
@@ -142,22 +143,22 @@ fn join_corners(faces: &[[u32; 3]], opposite: &[u32]) -> UnionFind {
 /// Numbers the joined corners within their patches by (input vertex, first corner); returns their numbers.
 fn number_vertices(
     vertices: &[[f64; 3]],
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     mut joined: UnionFind,
     patch_of: &[u32],
     drafts: &mut [Draft],
-) -> Vec<u32> {
-    const UNNUMBERED: u32 = u32::MAX;
+) -> Vec<Vertex> {
+    const UNNUMBERED: Vertex = Vertex(u32::MAX);
     let corners = VertexCorners::new(vertices.len(), faces);
     let mut numbers = vec![UNNUMBERED; 3 * faces.len()];
-    for (v, &position) in vertices.iter().enumerate() {
+    for (v, &position) in Vertex::all(vertices.len()).zip(vertices) {
         for &corner in corners.of(v) {
             let root = joined.root(corner) as usize;
             if numbers[root] == UNNUMBERED {
                 let draft = &mut drafts[patch_of[corner as usize / 3] as usize];
-                numbers[root] = draft.vertices.len() as u32;
+                numbers[root] = Vertex::new(draft.vertices.len());
                 draft.vertices.push(position);
-                draft.vertex_of.push(v as u32);
+                draft.vertex_of.push(v);
             }
             numbers[corner as usize] = numbers[root];
         }
@@ -165,7 +166,7 @@ fn number_vertices(
     numbers
 }
 
-fn collect_faces(numbers: Vec<u32>, patch_of: &[u32], drafts: &mut [Draft]) {
+fn collect_faces(numbers: Vec<Vertex>, patch_of: &[u32], drafts: &mut [Draft]) {
     for (face, (corners, &patch)) in numbers.as_chunks::<3>().0.iter().zip(patch_of).enumerate() {
         let draft = &mut drafts[patch as usize];
         draft.faces.push(*corners);

@@ -4,12 +4,13 @@
 //! Areas and cotangents are meant for points in the unit bounding box of
 //! [`normalized`], where no square of a length over- or underflows.
 
+use super::Vertex;
 use crate::vector::Vector3;
 
 /// The corners of face `[i, j, k]`.
 #[inline]
-pub fn triangle(points: &[Vector3], [i, j, k]: [u32; 3]) -> [Vector3; 3] {
-    [points[i as usize], points[j as usize], points[k as usize]]
+pub fn triangle(points: &[Vector3], [i, j, k]: [Vertex; 3]) -> [Vector3; 3] {
+    [points[i], points[j], points[k]]
 }
 
 /// The normal of a triangle, of length equal to its area; the corners run counterclockwise seen from its tip.
@@ -44,22 +45,20 @@ pub fn cotangents(corners: [Vector3; 3]) -> [f64; 3] {
 }
 
 /// The area of every face, (m,).
-pub fn face_areas(points: &[Vector3], faces: &[[u32; 3]]) -> Vec<f64> {
+pub fn face_areas(points: &[Vector3], faces: &[[Vertex; 3]]) -> Vec<f64> {
     faces.iter().map(|&face| area(triangle(points, face))).collect()
 }
 
 /// The cotangents at the corners of every face, (m, 3).
-pub fn corner_cotangents(points: &[Vector3], faces: &[[u32; 3]]) -> Vec<[f64; 3]> {
+pub fn corner_cotangents(points: &[Vector3], faces: &[[Vertex; 3]]) -> Vec<[f64; 3]> {
     faces.iter().map(|&face| cotangents(triangle(points, face))).collect()
 }
 
 /// The length of a closed polygon through the given points.
-pub fn loop_length(points: &[Vector3], vertices: &[u32]) -> f64 {
+pub fn loop_length(points: &[Vector3], vertices: &[Vertex]) -> f64 {
     let last = vertices.len().saturating_sub(1);
     let next = |i: usize| if i == last { 0 } else { i + 1 };
-    (0..vertices.len())
-        .map(|i| points[vertices[i] as usize].distance(points[vertices[next(i)] as usize]))
-        .sum()
+    (0..vertices.len()).map(|i| points[vertices[i]].distance(points[vertices[next(i)]])).sum()
 }
 
 /// Centres points on their bounding box and scales its diagonal to one; returns them with the diagonal.

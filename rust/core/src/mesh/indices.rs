@@ -4,9 +4,96 @@
 use std::fmt;
 use std::ops::{Index, IndexMut};
 
+use ndarray::Array2;
+
+use crate::arrays::from_rows;
+
+/// Lets a type of indices index slices, convert to its number and print as it.
+macro_rules! index_slices {
+    ($Index:ident) => {
+        impl<T> Index<$Index> for [T] {
+            type Output = T;
+
+            fn index(&self, index: $Index) -> &T {
+                &self[index.index()]
+            }
+        }
+
+        impl<T> IndexMut<$Index> for [T] {
+            fn index_mut(&mut self, index: $Index) -> &mut T {
+                &mut self[index.index()]
+            }
+        }
+
+        impl<T> Index<$Index> for Vec<T> {
+            type Output = T;
+
+            fn index(&self, index: $Index) -> &T {
+                &self[index.index()]
+            }
+        }
+
+        impl<T> IndexMut<$Index> for Vec<T> {
+            fn index_mut(&mut self, index: $Index) -> &mut T {
+                &mut self[index.index()]
+            }
+        }
+
+        impl From<$Index> for usize {
+            fn from(index: $Index) -> Self {
+                index.index()
+            }
+        }
+
+        impl fmt::Display for $Index {
+            fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.index().fmt(formatter)
+            }
+        }
+
+        impl fmt::Debug for $Index {
+            fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.index().fmt(formatter)
+            }
+        }
+    };
+}
+
+/// A vertex of a mesh, by its index.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[repr(transparent)]
+pub struct Vertex(pub u32);
+
 /// A face of a mesh, by its index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[repr(transparent)]
 pub struct Face(pub u32);
+
+index_slices!(Vertex);
+index_slices!(Face);
+
+impl Vertex {
+    /// The vertex of an index below 2³².
+    pub const fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// The index of the vertex.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The vertices with the indices `0..n`.
+    pub fn all(n: usize) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
+        (0..n).map(Self::new)
+    }
+}
+
+impl From<u32> for Vertex {
+    fn from(index: u32) -> Self {
+        Self(index)
+    }
+}
 
 impl Face {
     /// The face of an index below 2³².
@@ -20,7 +107,7 @@ impl Face {
     }
 
     /// The faces with the indices `0..n`.
-    pub fn all(n: usize) -> impl ExactSizeIterator<Item = Self> + Clone {
+    pub fn all(n: usize) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
         (0..n).map(Self::new)
     }
 
@@ -40,44 +127,15 @@ impl Face {
     }
 }
 
-impl<T> Index<Face> for [T] {
-    type Output = T;
-
-    fn index(&self, face: Face) -> &T {
-        &self[face.index()]
-    }
+/// Faces of the vertices with the indices in rows, (m, 3).
+#[cfg(test)]
+pub(crate) fn faces_of_indices(rows: &[[u32; 3]]) -> Vec<[Vertex; 3]> {
+    rows.iter().map(|row| row.map(Vertex)).collect()
 }
 
-impl<T> IndexMut<Face> for [T] {
-    fn index_mut(&mut self, face: Face) -> &mut T {
-        &mut self[face.index()]
-    }
-}
-
-impl<T> Index<Face> for Vec<T> {
-    type Output = T;
-
-    fn index(&self, face: Face) -> &T {
-        &self[face.index()]
-    }
-}
-
-impl<T> IndexMut<Face> for Vec<T> {
-    fn index_mut(&mut self, face: Face) -> &mut T {
-        &mut self[face.index()]
-    }
-}
-
-impl fmt::Display for Face {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(formatter)
-    }
-}
-
-impl fmt::Debug for Face {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(formatter)
-    }
+/// The indices of the vertices of each of `rows`, (m, N).
+pub(crate) fn index_array<const N: usize>(rows: &[[Vertex; N]]) -> Array2<u32> {
+    from_rows(rows.iter().map(|row| row.map(|vertex| vertex.0)).collect())
 }
 
 #[cfg(test)]
@@ -94,10 +152,10 @@ mod tests {
     }
 
     #[test]
-    fn faces_index_slices_and_print_as_numbers() {
+    fn indices_read_and_write_slices_and_print_as_numbers() {
         let mut values = vec![1, 2, 3];
         values[Face(1)] += 10;
-        assert_eq!((values[Face(1)], values.as_slice()[Face::new(2)]), (12, 3));
-        assert_eq!(format!("{} {:?}", Face(7), Face(8)), "7 8");
+        assert_eq!((values[Vertex(1)], values.as_slice()[Face::new(2)]), (12, 3));
+        assert_eq!(format!("{} {:?}", Vertex(7), Face(8)), "7 8");
     }
 }

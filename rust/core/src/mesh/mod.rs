@@ -23,7 +23,10 @@ pub(crate) use corners::{
     EdgeTable, NO_CORNER, VertexCorners, corner_of_entry, half_edge, next_corner, previous_corner, vertex_at,
 };
 pub use cut::Patch;
-pub use indices::Face;
+#[cfg(test)]
+pub(crate) use indices::faces_of_indices;
+pub(crate) use indices::index_array;
+pub use indices::{Face, Vertex};
 pub use orientation::consistent;
 pub use surface::Surface;
 pub use topology::Topology;

@@ -5,6 +5,7 @@
 //! Edges of three or more faces do not connect. Linear in the number of faces.
 
 use super::corners::{EdgeTable, NO_CORNER, half_edge};
+use super::{Face, Vertex};
 
 /// The faces to flip, and the components.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,11 +13,11 @@ pub struct Orientation {
     /// Whether each face has to be flipped to agree with its component, (m,).
     pub flipped: Vec<bool>,
     /// An edge at which some component cannot be oriented. Its faces are left as given.
-    pub conflict: Option<[u32; 2]>,
+    pub conflict: Option<[Vertex; 2]>,
     /// The edge-connected component of each face, (m,). Components are ordered by lowest face.
     pub component: Vec<u32>,
     /// The lowest face of each component.
-    pub first_faces: Vec<u32>,
+    pub first_faces: Vec<Face>,
 }
 
 /// Orients faces that have not been validated.
@@ -26,14 +27,14 @@ pub struct Orientation {
 ///
 /// # Panics
 /// If an index is out of range.
-pub fn consistent(n_vertices: usize, faces: &[[u32; 3]]) -> Orientation {
+pub fn consistent(n_vertices: usize, faces: &[[Vertex; 3]]) -> Orientation {
     let opposite = EdgeTable::new(n_vertices, faces).opposites();
     Orientation::propagate(faces, &opposite)
 }
 
 impl Orientation {
     /// Orients faces across the pairs of corners in `opposite`.
-    pub(crate) fn propagate(faces: &[[u32; 3]], opposite: &[u32]) -> Self {
+    pub(crate) fn propagate(faces: &[[Vertex; 3]], opposite: &[u32]) -> Self {
         let mut walk = Self {
             flipped: vec![false; faces.len()],
             conflict: None,
@@ -41,8 +42,8 @@ impl Orientation {
             first_faces: Vec::new(),
         };
         let mut conflicts = Vec::new();
-        for seed in 0..faces.len() as u32 {
-            if walk.component[seed as usize] == u32::MAX {
+        for seed in Face::all(faces.len()) {
+            if walk.component[seed] == u32::MAX {
                 conflicts.push(walk.flood(faces, opposite, seed));
             }
         }
@@ -51,28 +52,28 @@ impl Orientation {
     }
 
     /// Orients a component like its seed; returns the first edge that contradicts.
-    fn flood(&mut self, faces: &[[u32; 3]], opposite: &[u32], seed: u32) -> Option<[u32; 2]> {
+    fn flood(&mut self, faces: &[[Vertex; 3]], opposite: &[u32], seed: Face) -> Option<[Vertex; 2]> {
         let label = self.first_faces.len() as u32;
         self.first_faces.push(seed);
-        self.component[seed as usize] = label;
+        self.component[seed] = label;
         let mut conflict = None;
         let mut pending = vec![seed];
         while let Some(face) = pending.pop() {
-            let [a, b, c] = faces[face as usize];
-            let flipped = self.flipped[face as usize];
+            let [a, b, c] = faces[face];
+            let flipped = self.flipped[face];
             for (side, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
-                let across = opposite[3 * face as usize + side];
+                let across = opposite[face.corner(side)];
                 if across == NO_CORNER {
                     continue;
                 }
                 let agree = half_edge(faces, across)[0] != from;
                 let wanted = flipped ^ !agree;
-                let neighbor = across / 3;
-                if self.component[neighbor as usize] == u32::MAX {
-                    self.component[neighbor as usize] = label;
-                    self.flipped[neighbor as usize] = wanted;
+                let neighbor = Face::of_corner(across);
+                if self.component[neighbor] == u32::MAX {
+                    self.component[neighbor] = label;
+                    self.flipped[neighbor] = wanted;
                     pending.push(neighbor);
-                } else if self.flipped[neighbor as usize] != wanted {
+                } else if self.flipped[neighbor] != wanted {
                     conflict = conflict.or(Some([from.min(to), from.max(to)]));
                 }
             }
@@ -81,7 +82,7 @@ impl Orientation {
     }
 
     /// Takes the orientation of the majority of each component; leaves components that cannot be oriented as given.
-    fn settle(&mut self, conflicts: &[Option<[u32; 2]>]) {
+    fn settle(&mut self, conflicts: &[Option<[Vertex; 2]>]) {
         self.conflict = conflicts.iter().find_map(|conflict| *conflict);
         if !self.flipped.contains(&true) {
             return;
@@ -98,7 +99,7 @@ impl Orientation {
     }
 
     /// Flips the faces: the first corner stays, the other two change places; `opposite` follows.
-    pub(crate) fn apply(&self, faces: &mut [[u32; 3]], opposite: &mut [u32]) {
+    pub(crate) fn apply(&self, faces: &mut [[Vertex; 3]], opposite: &mut [u32]) {
         if !self.flipped.contains(&true) {
             return;
         }
@@ -113,7 +114,7 @@ impl Orientation {
 
     /// The corner after [`Self::apply`] of a corner of the faces as given.
     fn moved(&self, corner: u32) -> u32 {
-        match (self.flipped[corner as usize / 3], corner % 3) {
+        match (self.flipped[Face::of_corner(corner)], corner % 3) {
             (true, 1) => corner + 1,
             (true, 2) => corner - 1,
             _ => corner,

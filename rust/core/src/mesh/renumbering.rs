@@ -6,7 +6,7 @@
 
 use super::corners::{NO_CORNER, VertexCorners};
 use super::triangle_mesh::mark_boundary;
-use super::{Face, TriangleMesh};
+use super::{Face, TriangleMesh, Vertex};
 use crate::parallel;
 
 /// A renumbered mesh with its given numbers.
@@ -14,7 +14,7 @@ use crate::parallel;
 pub(crate) struct Renumbered {
     pub mesh: TriangleMesh,
     /// The given vertex of each vertex, (n,).
-    pub vertices: Vec<u32>,
+    pub vertices: Vec<Vertex>,
     /// The given face of each face, (m,).
     pub faces: Vec<Face>,
 }
@@ -22,10 +22,10 @@ pub(crate) struct Renumbered {
 impl Renumbered {
     /// Renumbers `mesh` so that `vertices[k]` becomes vertex k; faces are sorted by their lowest vertex, corners and
     /// boundary loops keep their beginnings.
-    pub(crate) fn new(mesh: &TriangleMesh, vertices: Vec<u32>) -> Self {
+    pub(crate) fn new(mesh: &TriangleMesh, vertices: Vec<Vertex>) -> Self {
         let place = inverse(&vertices);
-        let lowest = |face: usize| mesh.faces[face].map(|vertex| place[vertex as usize]).into_iter().min();
-        let keys = parallel::map(mesh.n_faces(), |face| (lowest(face).unwrap_or(0), Face::new(face)));
+        let lowest = |face: usize| mesh.faces[face].map(|vertex| place[vertex]).into_iter().min();
+        let keys = parallel::map(mesh.n_faces(), |face| (lowest(face).unwrap_or_default(), Face::new(face)));
         let mut order = keys;
         order.sort_unstable();
         let faces: Vec<Face> = order.into_iter().map(|(_, face)| face).collect();
@@ -36,13 +36,13 @@ impl Renumbered {
     /// Values in the order of the given vertices.
     pub(crate) fn given<T: Copy + Default>(&self, values: &[T]) -> Vec<T> {
         let mut out = vec![T::default(); values.len()];
-        self.vertices.iter().zip(values).for_each(|(&vertex, &value)| out[vertex as usize] = value);
+        self.vertices.iter().zip(values).for_each(|(&vertex, &value)| out[vertex] = value);
         out
     }
 
     /// Values in the order of the renumbered vertices.
     pub(crate) fn of_vertices<T: Copy>(&self, values: &[T]) -> Vec<T> {
-        self.vertices.iter().map(|&vertex| values[vertex as usize]).collect()
+        self.vertices.iter().map(|&vertex| values[vertex]).collect()
     }
 
     /// The given index of a renumbered face.
@@ -56,21 +56,21 @@ impl Renumbered {
     }
 }
 
-fn renumbered(mesh: &TriangleMesh, vertices: &[u32], place: &[u32], faces: &[Face]) -> TriangleMesh {
+fn renumbered(mesh: &TriangleMesh, vertices: &[Vertex], place: &[Vertex], faces: &[Face]) -> TriangleMesh {
     let mut new_face = vec![Face::default(); faces.len()];
     faces.iter().zip(Face::all(faces.len())).for_each(|(&given, new)| new_face[given] = new);
     let corner = |corner: u32| match corner {
         NO_CORNER => NO_CORNER,
         corner => new_face[Face::of_corner(corner)].corner(corner as usize % 3) as u32,
     };
-    let new_faces = parallel::map(faces.len(), |face| mesh.faces[faces[face]].map(|v| place[v as usize]));
+    let new_faces = parallel::map(faces.len(), |face| mesh.faces[faces[face]].map(|v| place[v]));
     let mut topology = mesh.topology.clone();
-    topology.boundary_loops.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex as usize]);
-    topology.first_faces.iter_mut().for_each(|face| *face = new_face[Face(*face)].0);
+    topology.boundary_loops.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex]);
+    topology.first_faces.iter_mut().for_each(|face| *face = new_face[*face]);
     TriangleMesh {
-        points: vertices.iter().map(|&vertex| mesh.points[vertex as usize]).collect(),
+        points: vertices.iter().map(|&vertex| mesh.points[vertex]).collect(),
         scale: mesh.scale,
-        flipped: mesh.flipped.iter().map(|&face| new_face[Face(face)].0).collect(),
+        flipped: mesh.flipped.iter().map(|&face| new_face[face]).collect(),
         areas: parallel::map(faces.len(), |face| mesh.areas[faces[face]]),
         opposite: parallel::map(3 * faces.len(), |k| corner(mesh.opposite[faces[k / 3].corner(k % 3)])),
         corners: VertexCorners::new(vertices.len(), &new_faces),
@@ -81,9 +81,9 @@ fn renumbered(mesh: &TriangleMesh, vertices: &[u32], place: &[u32], faces: &[Fac
     }
 }
 
-fn inverse(order: &[u32]) -> Vec<u32> {
-    let mut place = vec![0; order.len()];
-    order.iter().enumerate().for_each(|(k, &element)| place[element as usize] = k as u32);
+fn inverse(order: &[Vertex]) -> Vec<Vertex> {
+    let mut place = vec![Vertex::default(); order.len()];
+    order.iter().zip(Vertex::all(order.len())).for_each(|(&vertex, number)| place[vertex] = number);
     place
 }
 
@@ -95,16 +95,16 @@ mod tests {
     fn a_renumbered_mesh_is_the_mesh_of_the_renumbered_arrays() {
         let vertices = [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
         let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]).unwrap();
-        let order = vec![3, 0, 4, 2, 1];
+        let order = [3, 0, 4, 2, 1].map(Vertex).to_vec();
         let renumbered = Renumbered::new(&mesh, order.clone());
         let direct = TriangleMesh::new(&renumbered.of_vertices(&vertices), renumbered.mesh.faces()).unwrap();
         assert_eq!(renumbered.mesh.opposite, direct.opposite);
         assert_eq!(renumbered.mesh.on_boundary, direct.on_boundary);
         assert_eq!(renumbered.mesh.areas, direct.areas);
         assert_eq!(renumbered.given(&renumbered.of_vertices(&vertices)), vertices);
-        let there = renumbered.mesh.boundary_loops()[0].iter().map(|&v| order[v as usize]);
+        let there = renumbered.mesh.boundary_loops()[0].iter().map(|&v| order[v]);
         assert_eq!(there.collect::<Vec<_>>(), mesh.boundary_loops()[0]);
-        for vertex in 0..5 {
+        for vertex in Vertex::all(5) {
             assert_eq!(renumbered.mesh.vertex_corners(vertex), direct.vertex_corners(vertex));
         }
     }

@@ -3,11 +3,12 @@
 
 use std::sync::{Arc, OnceLock};
 
-use ndarray::{Array2, ArrayView2, CowArray, Ix2, aview2};
+use ndarray::{Array2, ArrayView2, CowArray, Ix2};
 
+use super::indices::index_array;
 use super::soup::TriangleSoup;
-use super::{Topology, TriangleMesh, validate};
-use crate::arrays::{from_rows, row_major, rows};
+use super::{Topology, TriangleMesh, Vertex, validate};
+use crate::arrays::{from_rows, row_major, rows, rows_of};
 use crate::error::Error;
 use crate::vector::Vector3;
 
@@ -34,13 +35,13 @@ pub struct Surface(Arc<Parts>);
 #[derive(Debug)]
 struct Parts {
     vertices: Array2<f64>,
-    faces: Array2<u32>,
+    faces: Vec<[Vertex; 3]>,
     mesh: OnceLock<Result<TriangleMesh, Error>>,
     soup: OnceLock<Result<TriangleSoup, Error>>,
 }
 
 impl Surface {
-    /// A surface of `vertices` (n, 3) and `faces` (m, 3), vertex indices. Owned arrays are not copied.
+    /// A surface of `vertices` (n, 3), not copied where they are owned, and `faces` (m, 3), vertex indices.
     ///
     /// # Errors
     /// Arrays of another shape or empty, coordinates that are not finite, indices out of range, faces that repeat a
@@ -50,17 +51,18 @@ impl Surface {
         faces: impl Into<CowArray<'a, u32, Ix2>>,
     ) -> Result<Self, Error> {
         let vertices = row_major::<3, _>("vertices", vertices.into())?;
-        let faces = row_major::<3, _>("faces", faces.into())?;
-        validate::arrays(rows(vertices.view()), rows(faces.view()))?;
+        let faces = faces.into();
+        let faces = rows_of("faces", faces.view())?.iter().map(|face| face.map(Vertex)).collect::<Vec<_>>();
+        validate::arrays(rows(vertices.view()), &faces)?;
         Ok(Self::of_checked(vertices, faces))
     }
 
     /// A surface of rows that have passed [`validate::arrays`].
-    pub(crate) fn of_checked_rows(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Self {
-        Self::of_checked(from_rows(vertices), from_rows(faces))
+    pub(crate) fn of_checked_rows(vertices: Vec<[f64; 3]>, faces: Vec<[Vertex; 3]>) -> Self {
+        Self::of_checked(from_rows(vertices), faces)
     }
 
-    fn of_checked(vertices: Array2<f64>, faces: Array2<u32>) -> Self {
+    fn of_checked(vertices: Array2<f64>, faces: Vec<[Vertex; 3]>) -> Self {
         Self(Arc::new(Parts { vertices, faces, mesh: OnceLock::new(), soup: OnceLock::new() }))
     }
 
@@ -70,16 +72,16 @@ impl Surface {
     }
 
     /// The faces as given, (m, 3).
-    pub fn faces(&self) -> ArrayView2<'_, u32> {
-        self.0.faces.view()
+    pub fn faces(&self) -> Array2<u32> {
+        index_array(self.face_rows())
     }
 
     /// The faces oriented like most of their component, (m, 3), as maps have them.
     ///
     /// # Errors
     /// As [`Self::topology`].
-    pub fn oriented_faces(&self) -> Result<ArrayView2<'_, u32>, Error> {
-        self.mesh().map(|mesh| aview2(mesh.faces()))
+    pub fn oriented_faces(&self) -> Result<Array2<u32>, Error> {
+        self.mesh().map(|mesh| index_array(mesh.faces()))
     }
 
     /// The number of vertices.
@@ -89,7 +91,7 @@ impl Surface {
 
     /// The number of faces.
     pub fn n_faces(&self) -> usize {
-        self.0.faces.nrows()
+        self.0.faces.len()
     }
 
     /// The topology of the surface.
@@ -106,7 +108,8 @@ impl Surface {
     /// # Errors
     /// As [`Self::topology`].
     pub(crate) fn mesh(&self) -> Result<&TriangleMesh, Error> {
-        let mesh = self.0.mesh.get_or_init(|| TriangleMesh::of_checked(self.vertex_rows(), self.face_rows()));
+        let mesh =
+            self.0.mesh.get_or_init(|| TriangleMesh::of_checked(self.vertex_rows(), self.0.faces.clone()));
         mesh.as_ref().map_err(Clone::clone)
     }
 
@@ -133,8 +136,8 @@ impl Surface {
         rows(self.vertices())
     }
 
-    pub(crate) fn face_rows(&self) -> &[[u32; 3]] {
-        rows(self.faces())
+    pub(crate) fn face_rows(&self) -> &[[Vertex; 3]] {
+        &self.0.faces
     }
 }
 
@@ -152,14 +155,14 @@ pub(crate) struct Triangles<'a> {
     /// The vertices, centered on their bounding box and scaled to a unit diagonal, (n, 3).
     pub points: &'a [Vector3],
     /// The faces, (m, 3), oriented like most of their component.
-    pub faces: &'a [[u32; 3]],
+    pub faces: &'a [[Vertex; 3]],
     /// Their areas, (m,).
     pub areas: &'a [f64],
 }
 
 #[cfg(test)]
 mod tests {
-    use ndarray::{ShapeBuilder, array};
+    use ndarray::{ShapeBuilder, array, aview2};
 
     use super::*;
     use crate::error::MeshError;

@@ -6,8 +6,8 @@
 //! sorting, never by hashing, so that the order of results never changes from run to run.
 
 use super::corners::{EdgeTable, NO_CORNER, half_edge};
-use super::geometry;
 use super::orientation::Orientation;
+use super::{Face, Vertex, geometry};
 use crate::vector::Vector3;
 
 /// The topology of a surface.
@@ -21,9 +21,9 @@ pub struct Topology {
     pub orientable: bool,
     /// The boundary loops as vertex lists, the surface on the left of travel. Each starts at its smallest
     /// vertex; the longest (by length in space) comes first, at a tie the one with the smallest vertex.
-    pub boundary_loops: Vec<Vec<u32>>,
+    pub boundary_loops: Vec<Vec<Vertex>>,
     /// The lowest face of each component.
-    pub first_faces: Vec<u32>,
+    pub first_faces: Vec<Face>,
 }
 
 impl Topology {
@@ -45,7 +45,7 @@ impl Topology {
     /// Orients faces without non-manifold edges and vertices and describes their surface.
     ///
     /// Every vertex must be used and no coordinate may overflow when squared.
-    pub(crate) fn of_faces(points: &[Vector3], faces: &[[u32; 3]]) -> Self {
+    pub(crate) fn of_faces(points: &[Vector3], faces: &[[Vertex; 3]]) -> Self {
         let mut opposite = EdgeTable::new(points.len(), faces).opposites();
         let mut oriented = faces.to_vec();
         let orientation = Orientation::propagate(faces, &opposite);
@@ -56,11 +56,11 @@ impl Topology {
     /// Describes the surface of faces to which `orientation` has been applied.
     pub(crate) fn of_oriented(
         points: &[Vector3],
-        faces: &[[u32; 3]],
+        faces: &[[Vertex; 3]],
         opposite: &[u32],
         orientation: Orientation,
     ) -> Self {
-        let boundary: Vec<[u32; 2]> = (0..opposite.len() as u32)
+        let boundary: Vec<[Vertex; 2]> = (0..opposite.len() as u32)
             .filter(|&corner| opposite[corner as usize] == NO_CORNER)
             .map(|corner| half_edge(faces, corner))
             .collect();
@@ -85,8 +85,8 @@ impl Topology {
 ///
 /// At most two edges may meet in a vertex. The loops run along the edges; on a surface that cannot be
 /// oriented the edge that leaves the first vertex decides.
-fn trace_loops(n_vertices: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
-    const NONE: u32 = u32::MAX;
+fn trace_loops(n_vertices: usize, edges: &[[Vertex; 2]]) -> Vec<Vec<Vertex>> {
+    const NONE: Vertex = Vertex(u32::MAX);
     if edges.is_empty() {
         return Vec::new();
     }
@@ -94,14 +94,14 @@ fn trace_loops(n_vertices: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut links = vec![[NONE; 2]; n_vertices];
     for &[from, to] in edges {
         for (vertex, place, neighbor) in [(from, 0, to), (to, 1, from)] {
-            let slots = &mut links[vertex as usize];
+            let slots = &mut links[vertex];
             slots[if slots[place] == NONE { place } else { 1 - place }] = neighbor;
         }
     }
     let mut visited = vec![false; n_vertices];
     let mut loops = Vec::new();
-    for start in 0..n_vertices as u32 {
-        if links[start as usize][0] != NONE && !visited[start as usize] {
+    for start in Vertex::all(n_vertices) {
+        if links[start][0] != NONE && !visited[start] {
             loops.push(trace_loop(start, &links, &mut visited));
         }
     }
@@ -109,20 +109,20 @@ fn trace_loops(n_vertices: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
 }
 
 /// Follows the links from one vertex until they come back.
-fn trace_loop(start: u32, links: &[[u32; 2]], visited: &mut [bool]) -> Vec<u32> {
+fn trace_loop(start: Vertex, links: &[[Vertex; 2]], visited: &mut [bool]) -> Vec<Vertex> {
     let mut vertices = Vec::new();
-    let (mut previous, mut vertex) = (links[start as usize][1], start);
-    while !visited[vertex as usize] {
-        visited[vertex as usize] = true;
+    let (mut previous, mut vertex) = (links[start][1], start);
+    while !visited[vertex] {
+        visited[vertex] = true;
         vertices.push(vertex);
-        let [ahead, behind] = links[vertex as usize];
+        let [ahead, behind] = links[vertex];
         (previous, vertex) = (vertex, if ahead == previous { behind } else { ahead });
     }
     vertices
 }
 
 /// Puts the longest loop first and keeps the order of equally long ones.
-fn by_length(points: &[Vector3], loops: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+fn by_length(points: &[Vector3], loops: Vec<Vec<Vertex>>) -> Vec<Vec<Vertex>> {
     let mut measured: Vec<_> = loops.into_iter().map(|l| (geometry::loop_length(points, &l), l)).collect();
     measured.sort_by(|a, b| b.0.total_cmp(&a.0));
     measured.into_iter().map(|(_, vertices)| vertices).collect()

@@ -4,7 +4,7 @@
 use super::corners::{EdgeTable, NO_CORNER, VertexCorners};
 use super::orientation::Orientation;
 use super::topology::Topology;
-use super::{geometry, validate};
+use super::{Face, Vertex, geometry, validate};
 use crate::error::{Elements, Error, MeshError};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -26,8 +26,8 @@ use crate::vector::Vector3;
 pub struct TriangleMesh {
     pub(super) points: Vec<Vector3>,
     pub(super) scale: f64,
-    pub(super) faces: Vec<[u32; 3]>,
-    pub(super) flipped: Vec<u32>,
+    pub(super) faces: Vec<[Vertex; 3]>,
+    pub(super) flipped: Vec<Face>,
     pub(super) areas: Vec<f64>,
     pub(super) opposite: Vec<u32>,
     pub(super) corners: VertexCorners,
@@ -38,7 +38,7 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Validates `vertices` (n, 3) and `faces` (m, 3).
+    /// Validates `vertices` (n, 3) and `faces` (m, 3), vertices or their indices.
     ///
     /// Faces oriented against most of their component are flipped: the first vertex stays, the other two
     /// change places.
@@ -48,23 +48,26 @@ impl TriangleMesh {
     /// finite, indices out of range, faces that repeat a vertex, duplicate faces, faces without area,
     /// edges of three or more faces, surfaces that cannot be oriented, vertices in which parts only touch,
     /// and vertices without a face.
-    pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
-        validate::arrays(vertices, faces)?;
+    pub fn new<V>(vertices: &[[f64; 3]], faces: &[[V; 3]]) -> Result<Self, Error>
+    where
+        V: Copy + Into<Vertex>,
+    {
+        let faces: Vec<_> = faces.iter().map(|face| face.map(Into::into)).collect();
+        validate::arrays(vertices, &faces)?;
         Self::of_checked(vertices, faces)
     }
 
     /// [`Self::new`] of arrays that have passed [`validate::arrays`].
-    pub(super) fn of_checked(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, Error> {
+    pub(super) fn of_checked(vertices: &[[f64; 3]], mut faces: Vec<[Vertex; 3]>) -> Result<Self, Error> {
         // 1. Each face by itself.
         let (points, scale) = geometry::normalized(vertices);
-        let table = EdgeTable::new(points.len(), faces);
-        validate::no_duplicates(faces, &table)?;
-        let areas = validate::positive_areas(vertices, &points, scale, faces)?;
+        let table = EdgeTable::new(points.len(), &faces);
+        validate::no_duplicates(&faces, &table)?;
+        let areas = validate::positive_areas(vertices, &points, scale, &faces)?;
         // 2. A manifold in its edges, with one orientation.
         validate::manifold_edges(&table)?;
         let mut opposite = table.opposites();
         drop(table);
-        let mut faces = faces.to_vec();
         let orientation = Orientation::propagate(&faces, &opposite);
         validate::refuse(Elements::edges(orientation.conflict), |edges| MeshError::NotOrientable { edges })?;
         orientation.apply(&mut faces, &mut opposite);
@@ -72,7 +75,7 @@ impl TriangleMesh {
         let corners = VertexCorners::new(points.len(), &faces);
         validate::manifold_vertices(&corners, points.len(), &opposite)?;
         // 4. Its topology.
-        let flipped = flipped_indices(&orientation);
+        let flipped = flipped_faces(&orientation);
         let topology = Topology::of_oriented(&points, &faces, &opposite, orientation);
         let on_boundary = mark_boundary(points.len(), &topology.boundary_loops);
         Ok(Self {
@@ -101,7 +104,7 @@ impl TriangleMesh {
             (NO_CORNER, _) | (_, 0) => corner,
             (_, k) => corner - k + 3 - k,
         };
-        let faces: Vec<[u32; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let faces: Vec<[Vertex; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
         let mut opposite = vec![NO_CORNER; self.opposite.len()];
         for (old, &across) in self.opposite.iter().enumerate() {
             opposite[corner(old as u32) as usize] = corner(across);
@@ -125,12 +128,12 @@ impl TriangleMesh {
     }
 
     /// The faces, consistently oriented, (m, 3).
-    pub fn faces(&self) -> &[[u32; 3]] {
+    pub fn faces(&self) -> &[[Vertex; 3]] {
         &self.faces
     }
 
     /// The faces that were flipped to orient the mesh, in ascending order.
-    pub fn flipped_faces(&self) -> &[u32] {
+    pub fn flipped_faces(&self) -> &[Face] {
         &self.flipped
     }
 
@@ -158,23 +161,26 @@ impl TriangleMesh {
     /// The measure of each vertex, (n,): a third of the `measure` (m,) of each of its faces.
     pub(crate) fn vertex_shares(&self, measure: &[f64]) -> Vec<f64> {
         parallel::map(self.n_vertices(), |vertex| {
-            self.vertex_corners(vertex).iter().map(|&corner| measure[corner as usize / 3] / 3.0).sum()
+            self.vertex_corners(Vertex::new(vertex))
+                .iter()
+                .map(|&corner| measure[Face::of_corner(corner)] / 3.0)
+                .sum()
         })
     }
 
     /// The corners at a vertex, in ascending order.
-    pub fn vertex_corners(&self, vertex: usize) -> &[u32] {
+    pub fn vertex_corners(&self, vertex: Vertex) -> &[u32] {
         self.corners.of(vertex)
     }
 
     /// The boundary loops, the surface on the left of travel: the longest first, each from its smallest
     /// vertex.
-    pub fn boundary_loops(&self) -> &[Vec<u32>] {
+    pub fn boundary_loops(&self) -> &[Vec<Vertex>] {
         &self.topology.boundary_loops
     }
 
     /// Whether a vertex lies on the boundary.
-    pub fn is_boundary(&self, vertex: usize) -> bool {
+    pub fn is_boundary(&self, vertex: Vertex) -> bool {
         self.on_boundary[vertex]
     }
 
@@ -249,27 +255,27 @@ impl TriangleMesh {
 
     fn require_one_component(&self) -> Result<(), MeshError> {
         let first_faces = &self.topology.first_faces;
-        let faces = Elements::collect(first_faces.iter().map(|&face| face as usize));
+        let faces = Elements::collect(first_faces.iter().copied());
         let several = faces.filter(|_| first_faces.len() > 1);
         validate::refuse(several, |faces| MeshError::SeveralComponents { faces })
     }
 }
 
 /// A vertex of each loop, and the edge counts of the loops.
-fn described(loops: &[Vec<u32>]) -> (Option<Elements>, Vec<usize>) {
-    let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0] as usize));
+fn described(loops: &[Vec<Vertex>]) -> (Option<Elements>, Vec<usize>) {
+    let vertices = Elements::collect(loops.iter().map(|vertices| vertices[0]));
     (vertices, loops.iter().map(Vec::len).collect())
 }
 
-fn flipped_indices(orientation: &Orientation) -> Vec<u32> {
+fn flipped_faces(orientation: &Orientation) -> Vec<Face> {
     let flipped = orientation.flipped.iter().enumerate().filter(|(_, flipped)| **flipped);
-    flipped.map(|(face, _)| face as u32).collect()
+    flipped.map(|(face, _)| Face::new(face)).collect()
 }
 
-pub(super) fn mark_boundary(n_vertices: usize, loops: &[Vec<u32>]) -> Vec<bool> {
+pub(super) fn mark_boundary(n_vertices: usize, loops: &[Vec<Vertex>]) -> Vec<bool> {
     let mut on_boundary = vec![false; n_vertices];
     for &vertex in loops.iter().flatten() {
-        on_boundary[vertex as usize] = true;
+        on_boundary[vertex] = true;
     }
     on_boundary
 }

@@ -2,8 +2,8 @@
 //! The checks of a mesh; each error names the elements at fault.
 
 use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
-use super::geometry;
 use super::geometry::triangle;
+use super::{Face, Vertex, geometry};
 use crate::error::{Elements, MeshError};
 use crate::vector::Vector3;
 
@@ -17,7 +17,7 @@ const ROUNDINGS: f64 = 4.0;
 const SMALLEST_HEIGHT: f64 = 1e-60;
 
 /// Checks the arrays alone: sizes, finite coordinates, index range, three different vertices per face.
-pub(super) fn arrays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), MeshError> {
+pub(super) fn arrays(vertices: &[[f64; 3]], faces: &[[Vertex; 3]]) -> Result<(), MeshError> {
     sizes(vertices.len(), faces.len())?;
     finite(vertices)?;
     in_range(vertices.len(), faces)?;
@@ -38,31 +38,31 @@ fn finite(vertices: &[[f64; 3]]) -> Result<(), MeshError> {
     refuse(bad, |vertices| MeshError::NonFinite { vertices })
 }
 
-fn in_range(n_vertices: usize, faces: &[[u32; 3]]) -> Result<(), MeshError> {
-    let outside = |v: &u32| *v as usize >= n_vertices;
+fn in_range(n_vertices: usize, faces: &[[Vertex; 3]]) -> Result<(), MeshError> {
+    let outside = |v: &Vertex| v.index() >= n_vertices;
     let bad = which(faces, |face| face.iter().any(outside));
     refuse(bad, |bad| {
-        let value = faces[bad.first[0]].into_iter().find(outside).map_or(0, i64::from);
+        let value = faces[bad.first[0]].into_iter().find(outside).map_or(0, |vertex| i64::from(vertex.0));
         MeshError::IndexOutOfRange { faces: bad, value, n_vertices }
     })
 }
 
-fn distinct_corners(faces: &[[u32; 3]]) -> Result<(), MeshError> {
+fn distinct_corners(faces: &[[Vertex; 3]]) -> Result<(), MeshError> {
     let bad = which(faces, |[a, b, c]| a == b || b == c || c == a);
     refuse(bad, |faces| MeshError::RepeatedVertex { faces })
 }
 
 /// Refuses faces with the same vertices as an earlier one.
-pub(super) fn no_duplicates(faces: &[[u32; 3]], table: &EdgeTable) -> Result<(), MeshError> {
+pub(super) fn no_duplicates(faces: &[[Vertex; 3]], table: &EdgeTable) -> Result<(), MeshError> {
     let mut repeated = Vec::new();
     let mut apexes = Vec::new();
     for ([_, high], entries) in table.edges().filter(|(_, entries)| entries.len() > 1) {
         apexes.clear();
-        apexes.extend(entries.iter().map(corner_of_entry).map(|c| (vertex_at(faces, c), c / 3)));
+        apexes.extend(entries.iter().map(corner_of_entry).map(|c| (vertex_at(faces, c), Face::of_corner(c))));
         apexes.sort_unstable();
         let same = apexes.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         // Each face is looked at once, from the edge of its two lower vertices.
-        repeated.extend(same.filter(|pair| pair[1].0 > high).map(|pair| pair[1].1 as usize));
+        repeated.extend(same.filter(|pair| pair[1].0 > high).map(|pair| pair[1].1));
     }
     repeated.sort_unstable();
     refuse(Elements::collect(repeated), |faces| MeshError::DuplicateFaces { faces })
@@ -75,13 +75,13 @@ pub(super) fn positive_areas(
     vertices: &[[f64; 3]],
     points: &[Vector3],
     scale: f64,
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
 ) -> Result<Vec<f64>, MeshError> {
     let areas = geometry::face_areas(points, faces);
     let bad = faces.iter().zip(&areas).enumerate().filter(|(_, (face, area))| {
         // the coordinates were rounded both as given and after normalization
         let corners = triangle(points, **face);
-        let given = largest(face.map(|vertex| Vector3(vertices[vertex as usize]))) / scale;
+        let given = largest(face.map(|vertex| Vector3(vertices[vertex]))) / scale;
         is_flat(corners, **area, given.max(largest(corners)))
     });
     let bad = Elements::collect(bad.map(|(face, _)| face));
@@ -114,9 +114,9 @@ pub(super) fn manifold_vertices(
     n: usize,
     opposite: &[u32],
 ) -> Result<(), MeshError> {
-    let pinched = Elements::collect((0..n).filter(|&v| !corners.is_one_fan(v, opposite)));
+    let pinched = Elements::collect(Vertex::all(n).filter(|&v| !corners.is_one_fan(v, opposite)));
     refuse(pinched, |vertices| MeshError::NonManifoldVertices { vertices })?;
-    let loose = Elements::collect((0..n).filter(|&v| corners.of(v).is_empty()));
+    let loose = Elements::collect(Vertex::all(n).filter(|&v| corners.of(v).is_empty()));
     refuse(loose, |vertices| MeshError::UnreferencedVertices { vertices })
 }
 

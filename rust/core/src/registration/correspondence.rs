@@ -16,7 +16,7 @@ use crate::arrays::{from_rows, from_vectors, rows, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{Error, Side};
 use crate::location::{Location, Locator, points_on};
-use crate::mesh::{Surface, TriangleMesh};
+use crate::mesh::{Surface, TriangleMesh, Vertex, index_array};
 use crate::vector::Vector3;
 
 /// A one-to-one map g of a source surface onto a target.
@@ -34,18 +34,18 @@ pub struct Correspondence {
 pub(crate) struct Registered {
     pub surface: Surface,
     /// As oriented.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// The vertices in the domain.
     pub in_domain: Vec<Vector3>,
 }
 
 impl Registered {
-    pub(crate) fn new(surface: &Surface, faces: &[[u32; 3]], in_domain: Vec<Vector3>) -> Arc<Self> {
+    pub(crate) fn new(surface: &Surface, faces: &[[Vertex; 3]], in_domain: Vec<Vector3>) -> Arc<Self> {
         Arc::new(Self { surface: surface.clone(), faces: faces.to_vec(), in_domain })
     }
 
     fn given_faces(&self) -> GivenFaces<'_> {
-        GivenFaces { given: rows(self.surface.faces()), oriented: &self.faces, registered: &self.in_domain }
+        GivenFaces { given: self.surface.face_rows(), oriented: &self.faces, registered: &self.in_domain }
     }
 }
 
@@ -80,12 +80,12 @@ impl Correspondence {
 
     /// The source's faces as oriented, (m, 3).
     pub fn faces(&self) -> Array2<u32> {
-        from_rows(self.source.faces.clone())
+        index_array(&self.source.faces)
     }
 
     /// The target's faces as oriented, (m_t, 3).
     pub fn target_faces(&self) -> Array2<u32> {
-        from_rows(self.target.faces.clone())
+        index_array(&self.target.faces)
     }
 
     /// g(v) of each vertex v of the source, (n, 3), in the target's coordinates.
@@ -148,7 +148,7 @@ impl Correspondence {
     }
 
     /// The vertex of the target nearest to each vertex of the source, (n,): where to take labels from.
-    pub fn nearest_vertices(&self) -> Vec<u32> {
+    pub fn nearest_vertices(&self) -> Vec<Vertex> {
         nearest_vertices(&self.target.faces, &self.locations)
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Figures of quality of a registration: area ratios, and the agreement of data on both surfaces.
 
+use crate::mesh::Vertex;
 use crate::mesh::geometry::{face_areas, normalized};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -10,7 +11,7 @@ use crate::vector::Vector3;
 ///
 /// `points` (n, 3) and `faces` (m, 3) are the source, each face with an area; `positions` (n, 3) are g. All are 0 where
 /// the image has no area.
-pub fn area_ratios(points: &[[f64; 3]], faces: &[[u32; 3]], positions: &[Vector3]) -> Vec<f64> {
+pub fn area_ratios(points: &[[f64; 3]], faces: &[[Vertex; 3]], positions: &[Vector3]) -> Vec<f64> {
     let (areas, images) =
         (face_areas(&normalized(points).0, faces), face_areas(&normalized(positions).0, faces));
     let total = |areas: &[f64]| parallel::sum(areas.len(), |face| areas[face]);
@@ -22,11 +23,11 @@ pub fn area_ratios(points: &[[f64; 3]], faces: &[[u32; 3]], positions: &[Vector3
 }
 
 /// A third of the area of the faces at each vertex, (n,), of the surface scaled to a bounding box with a diagonal of 1.
-pub fn vertex_areas(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<f64> {
+pub fn vertex_areas(points: &[[f64; 3]], faces: &[[Vertex; 3]]) -> Vec<f64> {
     let areas = face_areas(&normalized(points).0, faces);
     let mut at_vertex = vec![0.0; points.len()];
     for (face, area) in faces.iter().zip(areas) {
-        face.iter().for_each(|&vertex| at_vertex[vertex as usize] += area / 3.0);
+        face.iter().for_each(|&vertex| at_vertex[vertex] += area / 3.0);
     }
     at_vertex
 }
@@ -66,7 +67,7 @@ mod tests {
     #[test]
     fn ratios_are_relative_to_the_whole() {
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        let faces = [[0, 1, 2], [0, 2, 3]];
+        let faces = [[0, 1, 2], [0, 2, 3]].map(|face| face.map(Vertex));
         let huge = square.map(|[x, y, _]| [1e200, 3e200 * x, -2e200 * y]);
         area_ratios(&square, &faces, &huge.map(Vector3))
             .iter()

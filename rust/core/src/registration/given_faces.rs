@@ -3,15 +3,16 @@
 
 use super::transfer::{corner_sides, nearest_corners, pull_corners, pull_rows};
 use crate::location::Location;
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// A registered surface with its faces as given, whose corners the data follow.
 #[derive(Debug, Clone, Copy)]
 pub struct GivenFaces<'a> {
     /// (m, 3): the faces as given.
-    pub given: &'a [[u32; 3]],
+    pub given: &'a [[Vertex; 3]],
     /// (m, 3): the faces as oriented.
-    pub oriented: &'a [[u32; 3]],
+    pub oriented: &'a [[Vertex; 3]],
     /// (n, 3): the vertices in the domain, on the unit sphere or in the plane z = 1.
     pub registered: &'a [Vector3],
 }

@@ -18,8 +18,8 @@ use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::stretch::Profile;
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
 use crate::mesh::renumbering::Renumbered;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, minimize, target_floors};
 use crate::sparse::{Order, elimination_order};
@@ -141,12 +141,17 @@ impl Carrying<'_> {
         let mesh = &by_order.mesh;
         let floor = target_floors::floors(mesh.face_areas())[0];
         let energy = target_floors::energy(mesh, mesh.face_areas(), self.domain.into(), floor);
-        let mut place_of = vec![0u32; mesh.n_vertices()];
-        by_order.vertices.iter().enumerate().for_each(|(new, &given)| place_of[given as usize] = new as u32);
-        let landmarks = self.landmarks.iter().map(|&vertex| place_of[vertex]).collect();
+        let mut number_of = vec![Vertex::default(); mesh.n_vertices()];
+        by_order
+            .vertices
+            .iter()
+            .zip(Vertex::all(mesh.n_vertices()))
+            .for_each(|(&given, new)| number_of[given] = new);
+        let landmarks = self.landmarks.iter().map(|&vertex| number_of[vertex]).collect();
         let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.options.weight);
-        let motions =
-            (0..mesh.n_vertices()).map(|vertex| self.domain.motion(mesh.is_boundary(vertex))).collect();
+        let motions = Vertex::all(mesh.n_vertices())
+            .map(|vertex| self.domain.motion(mesh.is_boundary(vertex)))
+            .collect();
         Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
     }
 
@@ -252,7 +257,7 @@ impl Carrying<'_> {
         let mut there = map.clone();
         for (k, gap) in problem.penalty.gaps(&map).into_iter().enumerate() {
             if gap <= WITHIN_REACH {
-                there[problem.penalty.vertices()[k] as usize] = self.places[k];
+                there[problem.penalty.vertices()[k]] = self.places[k];
             }
         }
         if problem.energy.is_embedding(&there) { there } else { map }

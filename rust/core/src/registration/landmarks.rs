@@ -3,7 +3,7 @@
 
 use crate::codomain::CanonicalDomain;
 use crate::error::{Elements, Error, LandmarkError, Side};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Pairs of corresponding vertices, one on the source and one on the target.
@@ -50,7 +50,7 @@ fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<()
         let vertex = landmarks[pairs.first[0]];
         return Err(LandmarkError::Repeated { side, first: first[vertex], pairs, vertex });
     }
-    if let Some(pairs) = pairs(&|pair| mesh.is_boundary(landmarks[pair])) {
+    if let Some(pairs) = pairs(&|pair| mesh.is_boundary(Vertex::new(landmarks[pair]))) {
         let vertex = landmarks[pairs.first[0]];
         return Err(LandmarkError::OnBoundary { side, pairs, vertex });
     }

@@ -26,8 +26,8 @@ pub(crate) fn solve_dirichlet(
     factor.solve(&mut correction);
     let n = laplacian.free().len();
     for (i, &vertex) in laplacian.free().iter().enumerate() {
-        map[vertex as usize][0] -= correction[i];
-        map[vertex as usize][1] -= correction[n + i];
+        map[vertex][0] -= correction[i];
+        map[vertex][1] -= correction[n + i];
     }
     Ok(())
 }

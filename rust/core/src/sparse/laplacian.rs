@@ -8,7 +8,7 @@
 
 use sprs::{CsMat, CsMatI};
 
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 
 const NONE: u32 = u32::MAX;
@@ -20,7 +20,7 @@ type EdgeCorners = [u32; 2];
 #[derive(Debug, Clone)]
 pub struct Laplacian {
     /// Mesh vertex of each unknown, ascending.
-    free: Vec<u32>,
+    free: Vec<Vertex>,
     /// Unknown of each mesh vertex, `u32::MAX` where it is held.
     unknown: Vec<u32>,
     /// The upper triangle with the diagonal last in each column.
@@ -33,7 +33,7 @@ pub struct Laplacian {
 
 impl Laplacian {
     /// Analyzes the pattern of the vertices for which `is_free` holds.
-    pub fn new(mesh: &TriangleMesh, is_free: impl Fn(usize) -> bool) -> Self {
+    pub fn new(mesh: &TriangleMesh, is_free: impl Fn(Vertex) -> bool) -> Self {
         let (free, unknown) = number_unknowns(mesh.n_vertices(), is_free);
         let columns = upper_columns(mesh, &free, &unknown);
         let (matrix, gathers, columns) = compress(columns);
@@ -41,12 +41,12 @@ impl Laplacian {
     }
 
     /// Mesh vertex of each unknown, ascending.
-    pub fn free(&self) -> &[u32] {
+    pub fn free(&self) -> &[Vertex] {
         &self.free
     }
 
     /// Unknown of a mesh vertex, `None` where the vertex is held.
-    pub fn unknown(&self, vertex: usize) -> Option<usize> {
+    pub fn unknown(&self, vertex: Vertex) -> Option<usize> {
         (self.unknown[vertex] != NONE).then_some(self.unknown[vertex] as usize)
     }
 
@@ -61,12 +61,12 @@ impl Laplacian {
         &mut self,
         mesh: &TriangleMesh,
         weights: &[f64],
-        entry: impl Fn(usize, usize) -> f64 + Sync,
+        entry: impl Fn(Vertex, Vertex) -> f64 + Sync,
     ) {
         let (free, gathers, columns) = (&self.free, &self.gathers, &self.columns);
         let rows = self.matrix.indices().to_vec();
         parallel::fill(self.matrix.data_mut(), |k| {
-            let (row, column) = (free[rows[k]] as usize, free[columns[k] as usize] as usize);
+            let (row, column) = (free[rows[k]], free[columns[k] as usize]);
             let value = match gathers[k] {
                 [NONE, _] => diagonal(mesh, weights, row),
                 [one, NONE] => -weights[one as usize],
@@ -90,7 +90,7 @@ impl Laplacian {
     /// (L f)_I for a planar map f of all vertices: the first coordinates of the free vertices, then the
     /// second.
     pub fn residual(&self, mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]]) -> Vec<f64> {
-        let by_vertex = parallel::map(self.free.len(), |i| apply(mesh, weights, map, self.free[i] as usize));
+        let by_vertex = parallel::map(self.free.len(), |i| apply(mesh, weights, map, self.free[i]));
         by_vertex.iter().map(|value| value[0]).chain(by_vertex.iter().map(|value| value[1])).collect()
     }
 
@@ -101,12 +101,12 @@ impl Laplacian {
 }
 
 /// (L f)_v for one vertex.
-fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: usize) -> [f64; 2] {
+fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: Vertex) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for &corner in mesh.vertex_corners(vertex) {
         let (face, k) = (corner as usize / 3, corner as usize % 3);
         for (neighbor, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
-            let image = map[mesh.faces()[face][neighbor] as usize];
+            let image = map[mesh.faces()[face][neighbor]];
             let weight = weights[3 * face + facing];
             sum[0] += weight * (map[vertex][0] - image[0]);
             sum[1] += weight * (map[vertex][1] - image[1]);
@@ -116,7 +116,7 @@ fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: usize) 
 }
 
 /// L_vv: the weights of all edges at `vertex`.
-fn diagonal(mesh: &TriangleMesh, weights: &[f64], vertex: usize) -> f64 {
+fn diagonal(mesh: &TriangleMesh, weights: &[f64], vertex: Vertex) -> f64 {
     mesh.vertex_corners(vertex)
         .iter()
         .map(|&corner| {
@@ -126,27 +126,27 @@ fn diagonal(mesh: &TriangleMesh, weights: &[f64], vertex: usize) -> f64 {
         .sum()
 }
 
-fn number_unknowns(n_vertices: usize, is_free: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<u32>) {
-    let free: Vec<u32> = (0..n_vertices).filter(|&v| is_free(v)).map(|v| v as u32).collect();
+fn number_unknowns(n_vertices: usize, is_free: impl Fn(Vertex) -> bool) -> (Vec<Vertex>, Vec<u32>) {
+    let free: Vec<Vertex> = Vertex::all(n_vertices).filter(|&v| is_free(v)).collect();
     let mut unknown = vec![NONE; n_vertices];
     for (i, &v) in free.iter().enumerate() {
-        unknown[v as usize] = i as u32;
+        unknown[v] = i as u32;
     }
     (free, unknown)
 }
 
 /// For each column the rows above the diagonal with the corners that face the edge, ascending.
-fn upper_columns(mesh: &TriangleMesh, free: &[u32], unknown: &[u32]) -> Vec<Vec<(u32, EdgeCorners)>> {
+fn upper_columns(mesh: &TriangleMesh, free: &[Vertex], unknown: &[u32]) -> Vec<Vec<(u32, EdgeCorners)>> {
     parallel::map(free.len(), |column| {
         let vertex = free[column];
         let mut rows: Vec<(u32, EdgeCorners)> = Vec::with_capacity(4);
-        for &corner in mesh.vertex_corners(vertex as usize) {
+        for &corner in mesh.vertex_corners(vertex) {
             let face = mesh.faces()[corner as usize / 3];
             let base = corner / 3 * 3;
             for (neighbor, facing) in [(1, 2), (2, 1)] {
                 let neighbor = face[((corner + neighbor) % 3) as usize];
                 let facing = base + (corner % 3 + facing) % 3;
-                add_neighbor(&mut rows, unknown[neighbor as usize], column as u32, facing);
+                add_neighbor(&mut rows, unknown[neighbor], column as u32, facing);
             }
         }
         rows.sort_unstable();

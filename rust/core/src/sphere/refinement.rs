@@ -28,7 +28,7 @@ use crate::error::Error;
 use crate::mesh::bisection::{Bisection, bisect_longest_edges};
 use crate::mesh::geometry::triangle;
 use crate::mesh::ties::tie_breakers;
-use crate::mesh::{Face, Surface, TriangleMesh};
+use crate::mesh::{Face, Surface, TriangleMesh, Vertex, index_array};
 use crate::parallel;
 use crate::vector::{Vector3, coordinates};
 
@@ -84,7 +84,7 @@ impl Refinement {
 pub(super) struct Refined {
     pub mesh: TriangleMesh,
     pub targets: Vec<f64>,
-    parents: Vec<[u32; 2]>,
+    parents: Vec<[Vertex; 2]>,
     face_of: Vec<Face>,
 }
 
@@ -162,13 +162,10 @@ impl Refined {
         // 1. Longest edges of the image; mirrored edges differ in length by rounding only
         let points = self.mesh.points();
         let preference = tie_breakers(points);
-        let length = |a: u32, b: u32| {
-            let [a, b] = [a as usize, b as usize];
-            map[a].distance(map[b]) * (preference[a] + preference[b])
-        };
+        let length = |a: Vertex, b: Vertex| map[a].distance(map[b]) * (preference[a] + preference[b]);
         let Bisection { parents, faces, face_of, parts } = bisect_longest_edges(&self.mesh, &blocked, length);
         // 2. Midpoints on the surface and on the sphere
-        let middle = |of: &[Vector3], [a, b]: [u32; 2]| (of[a as usize] + of[b as usize]) * 0.5;
+        let middle = |of: &[Vector3], [a, b]: [Vertex; 2]| (of[a] + of[b]) * 0.5;
         let on_surface = parents.iter().map(|&ends| middle(points, ends));
         let points: Vec<Vector3> = points.iter().copied().chain(on_surface).collect();
         let on_sphere = parents.iter().map(|&ends| onto_sphere(middle(map, ends)));
@@ -210,9 +207,9 @@ impl Refined {
     /// The result for the caller, with the images of the split points.
     pub(super) fn into_refinement(self, positions: SpatialMap, distortion: Distortion) -> Refinement {
         Refinement {
-            parents: from_rows(self.parents),
+            parents: index_array(&self.parents),
             positions: from_vectors(positions),
-            faces: from_rows(self.mesh.faces().to_vec()),
+            faces: index_array(self.mesh.faces()),
             face_of: self.face_of.into_iter().map(Face::index).collect(),
             distortion,
         }

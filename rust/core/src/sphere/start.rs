@@ -22,9 +22,9 @@ use crate::distortion::folded_on_sphere;
 use crate::embedding::{Stop, progressive_sphere};
 use crate::energy::SpatialStretchEnergy;
 use crate::error::{Elements, Error, NumericsError};
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::{corner_cotangents, triangle};
 use crate::mesh::ties::tie_breakers;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
 use crate::vector::Vector3;
@@ -147,7 +147,7 @@ fn conformal_within(
 }
 
 /// The map rotated so that the removed face lies at the south pole.
-fn upright(map: SpatialMap, removed: [u32; 3]) -> SpatialMap {
+fn upright(map: SpatialMap, removed: [Vertex; 3]) -> SpatialMap {
     let [a, b, c] = triangle(&map, removed);
     let face = a + (b + c);
     // a half turn about the axis between the face and the pole
@@ -170,7 +170,7 @@ fn roundest_face(mesh: &TriangleMesh) -> usize {
     // symmetric surfaces have several roundest faces
     let tie_breakers = tie_breakers(mesh.points());
     let values = parallel::map(mesh.n_faces(), |face| {
-        let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex as usize]).sum();
+        let preference: f64 = mesh.faces()[face].iter().map(|&vertex| tie_breakers[vertex]).sum();
         preference * roundness(face)
     });
     // max_by takes the last of equals, so search from the back
@@ -190,9 +190,9 @@ fn harmonic(
     let held = mesh.faces()[removed];
     let mut plane = vec![[0.0; 2]; mesh.n_vertices()];
     for (vertex, place) in held.into_iter().zip(mirrored_triangle(triangle(mesh.points(), held))) {
-        plane[vertex as usize] = place;
+        plane[vertex] = place;
     }
-    let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&(vertex as u32)));
+    let mut laplacian = Laplacian::new(mesh, |vertex| !held.contains(&vertex));
     let mut factor = Cholesky::analyze_on(mesh, laplacian.matrix())?;
     solve_dirichlet(mesh, &mut laplacian, &mut factor, by_corner, &mut plane, watch)?;
     Ok(plane)

@@ -109,7 +109,10 @@ mod tests {
         let triangle = [[0.1, 0.2], [0.4, 0.1], [0.3, 0.5]];
         for (chart, positive) in [(Chart::South, true), (Chart::North, false)] {
             let map = triangle.map(|z| chart.lift(z)).to_vec();
-            assert_eq!(crate::distortion::folded_on_sphere(&[[0, 1, 2]], &map).is_empty(), positive);
+            assert_eq!(
+                crate::distortion::folded_on_sphere(&[[0, 1, 2].map(crate::mesh::Vertex)], &map).is_empty(),
+                positive
+            );
         }
     }
 

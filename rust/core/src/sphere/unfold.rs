@@ -13,7 +13,7 @@ use crate::codomain::SpatialMap;
 use crate::distortion::folded_on_sphere;
 use crate::energy::mean_value;
 use crate::energy::mean_value::{Weights, correct};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Modulus up to which a chart's vertices may be freed, a little beyond its hemisphere; the paper's r.
@@ -60,10 +60,10 @@ fn mend(mesh: &TriangleMesh, map: &[Vector3], rings: usize, weights: Weights) ->
     for chart in [Chart::North, Chart::South] {
         let folded = folded_on_sphere(mesh.faces(), &map);
         let mut plane = chart.project_all(&map);
-        let modulus = |vertex: usize| plane[vertex][0].hypot(plane[vertex][1]);
+        let modulus = |vertex: Vertex| plane[vertex][0].hypot(plane[vertex][1]);
         let free = mean_value::free_within(mesh, &folded, rings, |vertex| modulus(vertex) < RADIUS);
         if !free.is_empty() && correct(mesh, &mut plane, &free, weights).is_some() {
-            free.iter().for_each(|&vertex| map[vertex as usize] = chart.lift(plane[vertex as usize]));
+            free.iter().for_each(|&vertex| map[vertex] = chart.lift(plane[vertex]));
         }
     }
     map

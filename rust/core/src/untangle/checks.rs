@@ -7,7 +7,7 @@ use super::options::UntangleOptions;
 use super::positions::Positions;
 use crate::distortion::Image;
 use crate::error::{Elements, Error, MapError};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Refuses arguments that do not fit the mesh.
@@ -25,7 +25,7 @@ pub(super) fn arguments(
         let (found, expected) = (format!("of shape ({rows}, {width})"), format!("of shape ({n}, {width})"));
         return Err(Error::InvalidArray { name: "image", found, expected });
     }
-    let not_finite = |v: &usize| !image.point(*v).is_finite();
+    let not_finite = |v: &usize| !image.point(Vertex::new(*v)).is_finite();
     if let Some(vertices) = Elements::collect((0..n).filter(not_finite)) {
         return Err(MapError::NonFinite { name: "image", vertices }.into());
     }
@@ -53,11 +53,11 @@ pub(super) fn arguments(
 pub(super) fn components(mesh: &TriangleMesh) -> Vec<u32> {
     let mut component = vec![u32::MAX; mesh.n_vertices()];
     for (k, &face) in mesh.topology().first_faces.iter().enumerate() {
-        let mut front = vec![mesh.faces()[face as usize][0]];
+        let mut front = vec![mesh.faces()[face][0]];
         while let Some(vertex) = front.pop() {
-            if component[vertex as usize] == u32::MAX {
-                component[vertex as usize] = k as u32;
-                let corners = mesh.vertex_corners(vertex as usize);
+            if component[vertex] == u32::MAX {
+                component[vertex] = k as u32;
+                let corners = mesh.vertex_corners(vertex);
                 front.extend(corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]));
             }
         }
@@ -67,7 +67,7 @@ pub(super) fn components(mesh: &TriangleMesh) -> Vec<u32> {
 
 /// The vertices that stay: those of the boundary, and the fixed ones.
 pub(super) fn held(mesh: &TriangleMesh, fixed: &[usize]) -> Vec<bool> {
-    let mut held: Vec<bool> = (0..mesh.n_vertices()).map(|v| mesh.is_boundary(v)).collect();
+    let mut held: Vec<bool> = Vertex::all(mesh.n_vertices()).map(|v| mesh.is_boundary(v)).collect();
     fixed.iter().for_each(|&vertex| held[vertex] = true);
     held
 }
@@ -82,14 +82,14 @@ pub(super) fn feasible(
 ) -> Result<(), Error> {
     // 1. Faces whose corners all stay, or two of which stay and coincide
     let is_lost = |face: &&usize| {
-        let kept: Vec<u32> = mesh.faces()[**face].into_iter().filter(|&v| held[v as usize]).collect();
+        let kept: Vec<Vertex> = mesh.faces()[**face].into_iter().filter(|&v| held[v]).collect();
         let pairs = [(0, 1), (0, 2), (1, 2)];
         let touch = |&(a, b): &(usize, usize)| b < kept.len() && given.coincide(kept[a], kept[b]);
         kept.len() == 3 || pairs.iter().any(touch)
     };
     if let Some(faces) = Elements::collect(folded.iter().filter(is_lost).copied()) {
         let vertices = faces.first.iter().flat_map(|&face| mesh.faces()[face]);
-        let mut vertices: Vec<usize> = vertices.map(|v| v as usize).filter(|&v| held[v]).collect();
+        let mut vertices: Vec<Vertex> = vertices.filter(|&v| held[v]).collect();
         vertices.sort_unstable();
         vertices.dedup();
         let vertices = Elements::collect(vertices).expect("such a face has vertices that stay");
@@ -98,11 +98,10 @@ pub(super) fn feasible(
     // 2. Outlines in the plane that turn too little
     let Positions::Plane(map) = given else { return Ok(()) };
     for component in 0..mesh.n_components() {
-        let of_component = |face: &&usize| components[mesh.faces()[**face][0] as usize] == component as u32;
+        let of_component = |face: &&usize| components[mesh.faces()[**face][0]] == component as u32;
         let Some(faces) = Elements::collect(folded.iter().filter(of_component).copied()) else { continue };
         let loops = mesh.boundary_loops().iter();
-        let loops: Vec<&Vec<u32>> =
-            loops.filter(|ring| components[ring[0] as usize] == component as u32).collect();
+        let loops: Vec<&Vec<Vertex>> = loops.filter(|ring| components[ring[0]] == component as u32).collect();
         if loops.is_empty() {
             let found =
                 "flat on a part without a boundary, which cannot lie in the plane without folds".into();
@@ -119,9 +118,9 @@ pub(super) fn feasible(
 }
 
 /// The counterclockwise turns of a loop; a corner at which it goes straight back counts as a half turn to the left.
-fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
+fn most_turns(ring: &[Vertex], map: &[[f64; 2]]) -> i64 {
     let edges: Vec<[f64; 2]> = (0..ring.len())
-        .map(|k| [ring[k], ring[(k + 1) % ring.len()]].map(|v| map[v as usize]))
+        .map(|k| [ring[k], ring[(k + 1) % ring.len()]].map(|v| map[v]))
         .map(|[from, to]| [to[0] - from[0], to[1] - from[1]])
         .filter(|edge| *edge != [0.0; 2])
         .collect();
@@ -136,9 +135,14 @@ fn most_turns(ring: &[u32], map: &[[f64; 2]]) -> i64 {
 }
 
 /// Vertices − edges + faces of one component.
-fn euler_characteristic(mesh: &TriangleMesh, components: &[u32], component: u32, loops: &[&Vec<u32>]) -> i64 {
+fn euler_characteristic(
+    mesh: &TriangleMesh,
+    components: &[u32],
+    component: u32,
+    loops: &[&Vec<Vertex>],
+) -> i64 {
     let vertices = components.iter().filter(|&&c| c == component).count();
-    let faces = mesh.faces().iter().filter(|face| components[face[0] as usize] == component).count();
+    let faces = mesh.faces().iter().filter(|face| components[face[0]] == component).count();
     let boundary: usize = loops.iter().map(|ring| ring.len()).sum();
     vertices as i64 - (3 * faces + boundary) as i64 / 2 + faces as i64
 }
@@ -146,12 +150,13 @@ fn euler_characteristic(mesh: &TriangleMesh, components: &[u32], component: u32,
 /// The fixed vertices within one edge of the faces, or all fixed vertices if there are none.
 pub(super) fn pins_near(mesh: &TriangleMesh, fixed: &[usize], folded: &[usize]) -> Option<Elements> {
     let corners = folded.iter().flat_map(|&face| mesh.faces()[face]);
-    let around = corners.flat_map(|vertex| mesh.vertex_corners(vertex as usize));
+    let around = corners.flat_map(|vertex| mesh.vertex_corners(vertex));
     let mut near: Vec<usize> =
-        around.flat_map(|&corner| mesh.faces()[corner as usize / 3]).map(|v| v as usize).collect();
+        around.flat_map(|&corner| mesh.faces()[corner as usize / 3]).map(|v| v.index()).collect();
     near.sort_unstable();
     near.dedup();
-    let mut pins: Vec<usize> = fixed.iter().copied().filter(|&vertex| !mesh.is_boundary(vertex)).collect();
+    let mut pins: Vec<usize> =
+        fixed.iter().copied().filter(|&vertex| !mesh.is_boundary(Vertex::new(vertex))).collect();
     pins.sort_unstable();
     pins.dedup();
     let close = Elements::collect(pins.iter().copied().filter(|pin| near.binary_search(pin).is_ok()));

@@ -97,9 +97,9 @@ fn snapped(patch: &Patch, floors: &[f64], places: Vec<[f64; 2]>) -> Vec<[f64; 2]
             (0..places.len()).map(|v| if returns[v] { patch.origin[v] } else { places[v] }).collect();
         let mut is_good = true;
         for (face, corners) in patch.faces.iter().enumerate() {
-            let is_touched = corners.iter().any(|&v| returns[v as usize]);
+            let is_touched = corners.iter().any(|&v| returns[v]);
             if is_touched && patch.ratio(&trial, face) < 0.99 * floors[face] {
-                corners.iter().for_each(|&v| returns[v as usize] = false);
+                corners.iter().for_each(|&v| returns[v] = false);
                 is_good = false;
             }
         }
@@ -120,7 +120,7 @@ impl FaceEnergy for Barrier<'_> {
             return f64::INFINITY;
         }
         let of_corner = |k: usize| {
-            let vertex = self.patch.faces[face][k] as usize;
+            let vertex = self.patch.faces[face][k];
             self.per_face[vertex] * square_distance(corners[k], self.patch.origin[vertex])
         };
         (0..3).map(of_corner).sum::<f64>() - self.weight * room.ln()
@@ -138,7 +138,7 @@ impl FaceEnergy for Barrier<'_> {
         add_less_area_curvature(&mut hessian, 0.5 * self.weight / (room * share));
         // 2. The distance
         for k in 0..6 {
-            let vertex = self.patch.faces[face][k / 2] as usize;
+            let vertex = self.patch.faces[face][k / 2];
             let factor = 2.0 * self.per_face[vertex];
             gradient[k] += factor * (corners[k / 2][k % 2] - self.patch.origin[vertex][k % 2]);
             hessian[k][k] += factor;

@@ -32,7 +32,7 @@ use ndarray::{Array2, ArrayView2};
 use crate::control::{Observer, Status, Watch};
 use crate::distortion::{Distortion, Image, OwnedImage, measure};
 use crate::error::{Elements, Error, NumericsError};
-use crate::mesh::{Surface, TriangleMesh};
+use crate::mesh::{Surface, TriangleMesh, Vertex};
 pub use options::UntangleOptions;
 use patch::Patch;
 use positions::Positions;
@@ -194,7 +194,7 @@ impl Run<'_> {
     }
 
     /// Unfolds the patch of these free vertices; returns whether it succeeded.
-    fn unfold_patch(&mut self, free: &[u32], effort: Effort, watch: &Watch<'_>) -> Result<bool, Error> {
+    fn unfold_patch(&mut self, free: &[Vertex], effort: Effort, watch: &Watch<'_>) -> Result<bool, Error> {
         let tolerance = self.options.tolerance;
         let Some(patch) = Patch::new(self.mesh, self.given, &self.now, free, tolerance) else {
             return Ok(false);

@@ -104,7 +104,7 @@ impl<'a> Newton<'a> {
         let mut gradient = vec![0.0; self.analysis.n_unknowns()];
         for (face, (slopes, _)) in self.patch.faces.iter().zip(&derivatives) {
             for (k, &slope) in slopes.iter().enumerate() {
-                let vertex = face[k / 2] as usize;
+                let vertex = face[k / 2];
                 if self.patch.is_free[vertex] {
                     gradient[self.analysis.first_unknown(vertex) + k % 2] -= slope;
                 }

@@ -4,8 +4,8 @@
 use super::positions::{Chart, Positions};
 use super::triangle::{Corners, doubled_area};
 use crate::energy::rest_cotangents;
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// Least height of a rest shape relative to its longest edge; flatter faces are fattened.
 const FLATTEST: f64 = 0.05;
@@ -17,9 +17,9 @@ pub(super) const CLOSED: f64 = 1e-9;
 #[derive(Debug)]
 pub(super) struct Patch {
     /// The vertices of the mesh, ascending.
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     /// The faces, by indices in `vertices`.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// The indices of the faces in the mesh.
     face_indices: Vec<usize>,
     /// Whether each vertex moves.
@@ -43,29 +43,31 @@ impl Patch {
         mesh: &TriangleMesh,
         given: &Positions,
         now: &Positions,
-        free: &[u32],
+        free: &[Vertex],
         tolerance: f64,
     ) -> Option<Self> {
         // 1. The faces at the free vertices, numbered anew
-        let corners = free.iter().flat_map(|&vertex| mesh.vertex_corners(vertex as usize));
+        let corners = free.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
         let mut face_indices: Vec<usize> = corners.map(|&corner| corner as usize / 3).collect();
         face_indices.sort_unstable();
         face_indices.dedup();
-        let mut vertices: Vec<u32> = face_indices.iter().flat_map(|&face| mesh.faces()[face]).collect();
+        let mut vertices: Vec<Vertex> = face_indices.iter().flat_map(|&face| mesh.faces()[face]).collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let number = |vertex: u32| vertices.binary_search(&vertex).expect("it is in the patch") as u32;
-        let faces: Vec<[u32; 3]> = face_indices.iter().map(|&face| mesh.faces()[face].map(number)).collect();
+        let number =
+            |vertex: Vertex| Vertex::new(vertices.binary_search(&vertex).expect("it is in the patch"));
+        let faces: Vec<[Vertex; 3]> =
+            face_indices.iter().map(|&face| mesh.faces()[face].map(number)).collect();
         let is_free: Vec<bool> = vertices.iter().map(|vertex| free.binary_search(vertex).is_ok()).collect();
         // 2. A chart in which the mean share is 1
-        let rim: Vec<u32> =
+        let rim: Vec<Vertex> =
             vertices.iter().zip(&is_free).filter(|(_, is_free)| !**is_free).map(|(&v, _)| v).collect();
         let chart = Chart::around(now, &rim)?;
         let flat = |positions: &Positions, chart: &Chart| -> Vec<[f64; 2]> {
             vertices.iter().map(|&vertex| chart.down(positions, vertex)).collect()
         };
         let wide = flat(now, &chart);
-        let of_face = |face: &[u32; 3]| 0.5 * doubled_area(face.map(|v| wide[v as usize])).0;
+        let of_face = |face: &[Vertex; 3]| 0.5 * doubled_area(face.map(|v| wide[v])).0;
         let (area, unsigned) =
             faces.iter().map(of_face).fold((0.0, 0.0), |(sum, all), a: f64| (sum + a, all + a.abs()));
         if !(area > 1e-12 * unsigned && area.is_finite()) {
@@ -120,18 +122,18 @@ impl Patch {
 
     /// The corners of a face.
     pub(super) fn corners(&self, places: &[[f64; 2]], face: usize) -> Corners {
-        self.faces[face].map(|vertex| places[vertex as usize])
+        self.faces[face].map(|vertex| places[vertex])
     }
 
     /// The number of faces at each vertex.
     pub(super) fn faces_per_vertex(&self) -> Vec<f64> {
         let mut counts = vec![0.0; self.vertices.len()];
-        self.faces.iter().flatten().for_each(|&vertex| counts[vertex as usize] += 1.0);
+        self.faces.iter().flatten().for_each(|&vertex| counts[vertex] += 1.0);
         counts
     }
 
     /// The faces of the mesh.
-    pub(super) fn faces_of(&self, mesh: &TriangleMesh) -> Vec<[u32; 3]> {
+    pub(super) fn faces_of(&self, mesh: &TriangleMesh) -> Vec<[Vertex; 3]> {
         self.face_indices.iter().map(|&face| mesh.faces()[face]).collect()
     }
 
@@ -154,8 +156,8 @@ pub(super) mod tests {
     /// A patch of one face that moves as a whole.
     pub(in crate::untangle) fn one_face() -> Patch {
         Patch {
-            vertices: vec![0, 1, 2],
-            faces: vec![[0, 1, 2]],
+            vertices: [0, 1, 2].map(Vertex).to_vec(),
+            faces: vec![[0, 1, 2].map(Vertex)],
             face_indices: vec![0],
             is_free: vec![true; 3],
             origin: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::positions::Positions;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// Relative difference up to which two distances of vertices from their neighbors are equal.
 const MARGIN: f64 = 1e-6;
@@ -19,7 +19,7 @@ pub(super) const EVERYTHING: u32 = 62;
 /// The vertices that may move in a round.
 pub(super) struct Around {
     /// Ascending.
-    pub free: Vec<u32>,
+    pub free: Vec<Vertex>,
     /// Whether no further round frees more.
     pub is_all: bool,
 }
@@ -43,18 +43,18 @@ pub(super) fn around(
 
 /// Free vertices that touch all folded faces: again and again those that touch the most remaining faces, and of these
 /// the ones that stick out more than those beside them. All of several equals are taken, so that no numbering decides.
-fn cover(mesh: &TriangleMesh, now: &Positions, held: &[bool], folded: &[usize]) -> Vec<u32> {
+fn cover(mesh: &TriangleMesh, now: &Positions, held: &[bool], folded: &[usize]) -> Vec<Vertex> {
     let mut remaining = folded.to_vec();
     let mut free = Vec::new();
     loop {
         let mut counts = BTreeMap::new();
         for vertex in remaining.iter().flat_map(|&face| mesh.faces()[face]) {
-            if !held[vertex as usize] {
+            if !held[vertex] {
                 *counts.entry(vertex).or_insert(0usize) += 1;
             }
         }
         let Some(&most) = counts.values().max() else { break };
-        let equals: Vec<(u32, f64)> = counts
+        let equals: Vec<(Vertex, f64)> = counts
             .iter()
             .filter(|(_, count)| **count == most)
             .map(|(&vertex, _)| (vertex, now.distance_from_neighbors(mesh, vertex)))
@@ -70,13 +70,13 @@ fn cover(mesh: &TriangleMesh, now: &Positions, held: &[bool], folded: &[usize]) 
 
 /// The vertices, of a list (ascending) with distances from the mean of their neighbors, that are no nearer to it than
 /// those beside them.
-fn sticking_out(mesh: &TriangleMesh, vertices: &[(u32, f64)]) -> Vec<u32> {
-    let distance = |vertex: u32| {
+fn sticking_out(mesh: &TriangleMesh, vertices: &[(Vertex, f64)]) -> Vec<Vertex> {
+    let distance = |vertex: Vertex| {
         let index = vertices.binary_search_by_key(&vertex, |&(listed, _)| listed);
         index.map_or(0.0, |k| vertices[k].1)
     };
-    let is_far = |&&(vertex, distance_here): &&(u32, f64)| {
-        let corners = mesh.vertex_corners(vertex as usize).iter();
+    let is_far = |&&(vertex, distance_here): &&(Vertex, f64)| {
+        let corners = mesh.vertex_corners(vertex).iter();
         let beside = corners.flat_map(|&corner| mesh.faces()[corner as usize / 3]);
         beside.map(distance).all(|beside| distance_here >= (1.0 - MARGIN) * beside)
     };
@@ -86,23 +86,23 @@ fn sticking_out(mesh: &TriangleMesh, vertices: &[(u32, f64)]) -> Vec<u32> {
 /// The free vertices within so many rings around the corners of the folded faces.
 fn within(mesh: &TriangleMesh, held: &[bool], folded: &[usize], rings: usize) -> Around {
     let mut reached = vec![false; mesh.n_vertices()];
-    let mut front: Vec<u32> = folded.iter().flat_map(|&face| mesh.faces()[face]).collect();
+    let mut front: Vec<Vertex> = folded.iter().flat_map(|&face| mesh.faces()[face]).collect();
     for ring in 0..=rings {
-        front.retain(|&vertex| !std::mem::replace(&mut reached[vertex as usize], true));
+        front.retain(|&vertex| !std::mem::replace(&mut reached[vertex], true));
         if front.is_empty() {
             break;
         }
         if ring < rings {
-            let corners = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex as usize));
+            let corners = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
             front = corners.flat_map(|&corner| mesh.faces()[corner as usize / 3]).collect();
         }
     }
-    let free = (0..mesh.n_vertices()).filter(|&v| reached[v] && !held[v]).map(|v| v as u32).collect();
+    let free = Vertex::all(mesh.n_vertices()).filter(|&v| reached[v] && !held[v]).collect();
     Around { free, is_all: front.is_empty() && rings > 0 }
 }
 
 /// The free vertices (ascending) in sets that share no face, each ascending.
-pub(super) fn separate(mesh: &TriangleMesh, free: &[u32]) -> Vec<Vec<u32>> {
+pub(super) fn separate(mesh: &TriangleMesh, free: &[Vertex]) -> Vec<Vec<Vertex>> {
     let mut is_taken = vec![false; free.len()];
     let mut sets = Vec::new();
     for first in 0..free.len() {
@@ -111,7 +111,7 @@ pub(super) fn separate(mesh: &TriangleMesh, free: &[u32]) -> Vec<Vec<u32>> {
         }
         let (mut set, mut next) = (vec![free[first]], 0);
         while next < set.len() {
-            for &corner in mesh.vertex_corners(set[next] as usize) {
+            for &corner in mesh.vertex_corners(set[next]) {
                 for vertex in mesh.faces()[corner as usize / 3] {
                     if let Ok(k) = free.binary_search(&vertex)
                         && !std::mem::replace(&mut is_taken[k], true)

@@ -5,7 +5,7 @@
 //! if it is folded on the sphere.
 
 use crate::distortion::{Image, OwnedImage, folded_in_plane, folded_on_sphere};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Least cosine of the angle between the rim of a patch on the sphere and the center of its chart.
@@ -34,7 +34,7 @@ impl Positions {
     }
 
     /// The indices of the folded faces among `faces`.
-    pub(super) fn folded(&self, faces: &[[u32; 3]]) -> Vec<usize> {
+    pub(super) fn folded(&self, faces: &[[Vertex; 3]]) -> Vec<usize> {
         match self {
             Self::Plane(map) => folded_in_plane(faces, map),
             Self::Sphere(map) => folded_on_sphere(faces, map),
@@ -46,17 +46,17 @@ impl Positions {
         let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
         let mut areas = vec![0.0; n_components];
         for face in mesh.faces() {
-            areas[components[face[0] as usize] as usize] += self.signed_area(*face);
+            areas[components[face[0]] as usize] += self.signed_area(*face);
         }
         components.iter().map(|&component| areas[component as usize] < 0.0).collect()
     }
 
     /// Twice the area of a face, with the sign of its orientation.
-    fn signed_area(&self, face: [u32; 3]) -> f64 {
+    fn signed_area(&self, face: [Vertex; 3]) -> f64 {
         match self {
-            Self::Plane(map) => super::triangle::doubled_area(face.map(|v| map[v as usize])).0,
+            Self::Plane(map) => super::triangle::doubled_area(face.map(|v| map[v])).0,
             Self::Sphere(map) => {
-                let [a, b, c] = face.map(|v| map[v as usize]);
+                let [a, b, c] = face.map(|v| map[v]);
                 a.dot(b.cross(c))
             }
         }
@@ -86,8 +86,7 @@ impl Positions {
     }
 
     /// Puts a vertex where it is in another map.
-    pub(super) fn copy(&mut self, other: &Self, vertex: u32) {
-        let vertex = vertex as usize;
+    pub(super) fn copy(&mut self, other: &Self, vertex: Vertex) {
         match (self, other) {
             (Self::Plane(here), Self::Plane(there)) => here[vertex] = there[vertex],
             (Self::Sphere(here), Self::Sphere(there)) => here[vertex] = there[vertex],
@@ -96,45 +95,45 @@ impl Positions {
     }
 
     /// The positions of some vertices.
-    pub(super) fn at(&self, vertices: &[u32]) -> Self {
+    pub(super) fn at(&self, vertices: &[Vertex]) -> Self {
         match self {
-            Self::Plane(map) => Self::Plane(vertices.iter().map(|&v| map[v as usize]).collect()),
-            Self::Sphere(map) => Self::Sphere(vertices.iter().map(|&v| map[v as usize]).collect()),
+            Self::Plane(map) => Self::Plane(vertices.iter().map(|&v| map[v]).collect()),
+            Self::Sphere(map) => Self::Sphere(vertices.iter().map(|&v| map[v]).collect()),
         }
     }
 
     /// Puts some vertices to positions that [`Self::at`] has read.
-    pub(super) fn put(&mut self, vertices: &[u32], positions: &Self) {
+    pub(super) fn put(&mut self, vertices: &[Vertex], positions: &Self) {
         match (self, positions) {
             (Self::Plane(map), Self::Plane(kept)) => {
-                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v as usize] = x);
+                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v] = x);
             }
             (Self::Sphere(map), Self::Sphere(kept)) => {
-                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v as usize] = x);
+                vertices.iter().zip(kept).for_each(|(&v, &x)| map[v] = x);
             }
             _ => {}
         }
     }
 
     /// The distance of a vertex from the mean of its neighbors, where one shared by two faces counts twice.
-    pub(super) fn distance_from_neighbors(&self, mesh: &TriangleMesh, vertex: u32) -> f64 {
-        let corners = mesh.vertex_corners(vertex as usize);
+    pub(super) fn distance_from_neighbors(&self, mesh: &TriangleMesh, vertex: Vertex) -> f64 {
+        let corners = mesh.vertex_corners(vertex);
         let ring = corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]);
         let ring = ring.filter(|&neighbor| neighbor != vertex);
         let share = 0.5 / corners.len() as f64;
-        let place = |v: u32| match self {
-            Self::Plane(map) => Vector3([map[v as usize][0], map[v as usize][1], 0.0]),
-            Self::Sphere(map) => map[v as usize],
+        let place = |v: Vertex| match self {
+            Self::Plane(map) => Vector3([map[v][0], map[v][1], 0.0]),
+            Self::Sphere(map) => map[v],
         };
         let mean = ring.fold(Vector3::ZERO, |sum, neighbor| sum + place(neighbor)) * share;
         mean.distance(place(vertex))
     }
 
     /// Whether two vertices are in the same place.
-    pub(super) fn coincide(&self, a: u32, b: u32) -> bool {
+    pub(super) fn coincide(&self, a: Vertex, b: Vertex) -> bool {
         match self {
-            Self::Plane(map) => map[a as usize] == map[b as usize],
-            Self::Sphere(map) => map[a as usize] == map[b as usize],
+            Self::Plane(map) => map[a] == map[b],
+            Self::Sphere(map) => map[a] == map[b],
         }
     }
 
@@ -187,21 +186,20 @@ impl Chart {
     }
 
     /// A chart around held vertices; `None` if there are none, or if they do not fit into a hemisphere.
-    pub(super) fn around(positions: &Positions, rim: &[u32]) -> Option<Self> {
+    pub(super) fn around(positions: &Positions, rim: &[Vertex]) -> Option<Self> {
         if rim.is_empty() {
             return None;
         }
         let share = 1.0 / rim.len() as f64;
         match positions {
             Positions::Plane(map) => {
-                let sum =
-                    rim.iter().map(|&v| map[v as usize]).fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]]);
+                let sum = rim.iter().map(|&v| map[v]).fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]]);
                 Some(Self::Plane { center: sum.map(|x| x * share), scale: 1.0 })
             }
             Positions::Sphere(map) => {
-                let directions: Vec<Vector3> = rim.iter().map(|&v| unit_vector(map[v as usize])).collect();
+                let directions: Vec<Vector3> = rim.iter().map(|&v| unit_vector(map[v])).collect();
                 let mean = directions.iter().fold(Vector3::ZERO, |sum, &x| sum + x);
-                let radius = share * rim.iter().map(|&v| map[v as usize].norm()).sum::<f64>();
+                let radius = share * rim.iter().map(|&v| map[v].norm()).sum::<f64>();
                 let radius = if (radius - 1.0).abs() < 1e-6 { 1.0 } else { radius };
                 let axes = tangent_frame(unit_vector(mean));
                 let fits = directions.iter().all(|&x| x.dot(axes[2]) > RIM);
@@ -219,14 +217,14 @@ impl Chart {
     }
 
     /// The place of a vertex in the chart.
-    pub(super) fn down(&self, positions: &Positions, vertex: u32) -> [f64; 2] {
+    pub(super) fn down(&self, positions: &Positions, vertex: Vertex) -> [f64; 2] {
         match (self, positions) {
             (Self::Plane { center, scale }, Positions::Plane(map)) => {
-                let x = map[vertex as usize];
+                let x = map[vertex];
                 [0, 1].map(|axis| scale * (x[axis] - center[axis]))
             }
             (Self::Gnomonic { axes, scale, .. }, Positions::Sphere(map)) => {
-                let x = unit_vector(map[vertex as usize]);
+                let x = unit_vector(map[vertex]);
                 let [u, v, height] = axes.map(|axis| axis.dot(x));
                 if height > HORIZON {
                     return [scale * u / height, scale * v / height];
@@ -239,15 +237,15 @@ impl Chart {
     }
 
     /// Puts a vertex to a place of the chart.
-    pub(super) fn up(&self, place: [f64; 2], positions: &mut Positions, vertex: u32) {
+    pub(super) fn up(&self, place: [f64; 2], positions: &mut Positions, vertex: Vertex) {
         match (self, positions) {
             (Self::Plane { center, scale }, Positions::Plane(map)) => {
-                map[vertex as usize] = [0, 1].map(|axis| center[axis] + place[axis] / scale);
+                map[vertex] = [0, 1].map(|axis| center[axis] + place[axis] / scale);
             }
             (Self::Gnomonic { axes, radius, scale }, Positions::Sphere(map)) => {
                 let [u, v] = place.map(|x| x / scale);
                 let x = axes[2] + (axes[0] * u + axes[1] * v);
-                map[vertex as usize] = unit_vector(x) * *radius;
+                map[vertex] = unit_vector(x) * *radius;
             }
             _ => unreachable!("a chart of the same map"),
         }

@@ -2,6 +2,7 @@
 use super::*;
 use crate::control::Silent;
 use crate::error::MapError;
+use crate::mesh::Vertex;
 
 /// A square grid of n × n vertices, one unit apart, and its places in the plane.
 fn grid(n: u32) -> (TriangleMesh, Vec<[f64; 2]>) {
@@ -55,13 +56,13 @@ fn pins_and_outline_stay_and_mirrored_maps_stay_mirrored() {
     assert!(map.distortion.folded.is_empty());
     let upright: Vec<[f64; 2]> = flat(&map).iter().map(|&[x, y]| [-x, y]).collect();
     assert!(crate::distortion::folded_in_plane(mesh.faces(), &upright).is_empty());
-    (0..81).filter(|&v| mesh.is_boundary(v)).for_each(|v| assert_eq!(flat(&map)[v], image[v]));
+    Vertex::all(81).filter(|&v| mesh.is_boundary(v)).for_each(|v| assert_eq!(flat(&map)[v], image[v]));
 }
 
 #[test]
 fn a_shuffled_interior_is_untangled() {
     let (mesh, mut image) = grid(12);
-    let interior: Vec<usize> = (0..144).filter(|&v| !mesh.is_boundary(v)).collect();
+    let interior: Vec<Vertex> = Vertex::all(144).filter(|&v| !mesh.is_boundary(v)).collect();
     let shuffled: Vec<[f64; 2]> = (0..100).map(|k| image[interior[k * 37 % 100]]).collect();
     interior.iter().zip(shuffled).for_each(|(&v, x)| image[v] = x);
     let map = solved(&mesh, &image, &[]).unwrap();

@@ -2,7 +2,7 @@
 //! Cutting along seams: what comes out, what it remembers of the input, and what is refused.
 
 use authalic::testing::TriangleMesh;
-use authalic::{Elements, Error, MeshError, Patch};
+use authalic::{Elements, Error, MeshError, Patch, Vertex};
 use std::collections::BTreeSet;
 
 use crate::common::public::{cut, faces_of, triples, vertices_of};
@@ -17,11 +17,11 @@ fn assert_round_trip(vertices: &[[f64; 3]], faces: &[[u32; 3]], patches: &[Patch
         assert_eq!(faces_of(patch).len(), patch.corner_of.nrows());
         assert!(patch.vertex_of.is_sorted() && patch.corner_of.iter().is_sorted());
         for (&v, position) in patch.vertex_of.iter().zip(vertices_of(patch)) {
-            assert_eq!(vertices[v as usize], *position);
+            assert_eq!(vertices[v], *position);
         }
         for (face, corners) in faces_of(patch).iter().zip(triples(&patch.corner_of)) {
             for (&v, &corner) in face.iter().zip(corners) {
-                rebuilt[corner as usize / 3][corner as usize % 3] = patch.vertex_of[v as usize];
+                rebuilt[corner as usize / 3][corner as usize % 3] = patch.vertex_of[v as usize].0;
             }
         }
         let used: BTreeSet<u32> = faces_of(patch).iter().flatten().copied().collect();
@@ -66,7 +66,7 @@ fn without_seams_the_components_come_out_unchanged() {
         assert_eq!(loops, test.n_loops, "{}", test.name);
         assert_eq!(patches.iter().all(|patch| patch.topology.orientable), test.genus.is_some());
         if let [patch] = &patches[..] {
-            assert_eq!((vertices_of(patch), faces_of(patch)), (&test.vertices[..], &test.faces[..]));
+            assert_eq!((vertices_of(patch), &faces_of(patch)[..]), (&test.vertices[..], &test.faces[..]));
             assert_eq!((patch.is_disk(), patch.is_closed()), (test.is_disk(), test.n_loops == 0));
             assert_eq!(patch.topology.genus, test.genus, "{}", test.name);
         }
@@ -77,7 +77,7 @@ fn without_seams_the_components_come_out_unchanged() {
 fn patches_know_the_same_topology_as_meshes() {
     for test in common::orientable() {
         for patch in cut_checked(&test, &[]) {
-            let mesh = TriangleMesh::new(vertices_of(&patch), faces_of(&patch)).unwrap();
+            let mesh = TriangleMesh::new(vertices_of(&patch), &faces_of(&patch)).unwrap();
             assert_eq!(*mesh.topology(), patch.topology, "{}", test.name);
         }
     }
@@ -113,7 +113,7 @@ fn a_path_of_two_edges_opens_a_sphere_and_one_edge_does_not() {
     let patches = cut_checked(&test, &seams);
     assert!(patches.len() == 1 && patches[0].is_disk());
     assert_eq!(patches[0].topology.boundary_loops[0].len(), 4);
-    assert_eq!(patches[0].vertex_of.iter().filter(|&&v| v == b).count(), 2);
+    assert_eq!(patches[0].vertex_of.iter().filter(|&&v| v == Vertex(b)).count(), 2);
 }
 
 #[test]
@@ -128,9 +128,9 @@ fn a_torus_opens_into_an_annulus_and_then_into_a_disk() {
     let patches = cut_checked(&test, &[around, tube].concat());
     assert!(patches.len() == 1 && patches[0].is_disk());
     assert_eq!(patches[0].topology.boundary_loops[0].len(), 2 * (7 + 9));
-    assert_eq!(patches[0].vertex_of[..4], [0; 4], "four copies where the loops cross");
+    assert_eq!(patches[0].vertex_of[..4], [Vertex(0); 4], "four copies where the loops cross");
     assert!(
-        TriangleMesh::new(vertices_of(&patches[0]), faces_of(&patches[0])).unwrap().require_disk().is_ok()
+        TriangleMesh::new(vertices_of(&patches[0]), &faces_of(&patches[0])).unwrap().require_disk().is_ok()
     );
 }
 
@@ -177,7 +177,7 @@ fn parts_that_touch_in_a_vertex_come_apart() {
     let patches = cut(&vertices, &faces, &[]).unwrap();
     assert_round_trip(&vertices, &faces, &patches);
     assert_eq!(patches.len(), 2);
-    assert_eq!([patches[0].vertex_of[0], patches[1].vertex_of[0]], [0, 0]);
+    assert_eq!([patches[0].vertex_of[0], patches[1].vertex_of[0]], [Vertex(0); 2]);
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn what_an_island_may_be_refused_for_is_accepted_here() {
     let faces = [[0, 1, 2], [0, 1, 3], [3, 1, 0]];
     let patches = cut(&vertices, &faces, &[]).unwrap();
     assert_round_trip(&vertices, &faces, &patches);
-    assert!(patches.iter().all(|patch| !patch.vertex_of.contains(&4)));
+    assert!(patches.iter().all(|patch| !patch.vertex_of.contains(&Vertex(4))));
 }
 
 #[test]
@@ -241,7 +241,7 @@ proptest! {
             let marked = |i: usize| choice[i % choice.len()] < density;
             let seams: Vec<_> = edges.iter().enumerate().filter(|(i, _)| marked(*i)).map(|(_, e)| *e).collect();
             for patch in cut_checked(&test, &seams) {
-                match TriangleMesh::new(vertices_of(&patch), faces_of(&patch)) {
+                match TriangleMesh::new(vertices_of(&patch), &faces_of(&patch)) {
                     Ok(mesh) => {
                         prop_assert_eq!(mesh.topology().euler_characteristic, patch.topology.euler_characteristic);
                         prop_assert_eq!(mesh.boundary_loops().len(), patch.topology.boundary_loops.len());
@@ -280,7 +280,7 @@ proptest! {
         assert_round_trip(&vertices, &faces, &patches);
         for patch in &patches {
             prop_assert_eq!(patch.topology.n_components(), 1);
-            match TriangleMesh::new(vertices_of(patch), faces_of(patch)) {
+            match TriangleMesh::new(vertices_of(patch), &faces_of(patch)) {
                 Ok(mesh) => prop_assert_eq!(mesh.topology(), &patch.topology),
                 Err(Error::Mesh(MeshError::DuplicateFaces { .. } | MeshError::NotOrientable { .. })) => {}
                 // Copies of one vertex coincide, but never within a face.

@@ -3,7 +3,9 @@
 
 use crate::common::public::{disk_map, planar};
 use authalic::testing::{TriangleMesh, doubled_area, folded_in_plane};
-use authalic::{Boundary, DiskMap, DiskMapOptions, DiskMethod, Error, MapError, MeshError, Silent, Status};
+use authalic::{
+    Boundary, DiskMap, DiskMapOptions, DiskMethod, Error, MapError, MeshError, Silent, Status, Vertex,
+};
 use ndarray::{aview1, aview2};
 use std::f64::consts::TAU;
 
@@ -25,7 +27,7 @@ fn assert_bijective(mesh: &TriangleMesh, map: &DiskMap) {
     assert!(planar(&map.uv).iter().all(|uv| uv[0].hypot(uv[1]) <= 1.0 + 1e-12));
     let boundary = &mesh.boundary_loops()[0];
     let angle = |k: usize| {
-        let uv = planar(&map.uv)[boundary[k % boundary.len()] as usize];
+        let uv = planar(&map.uv)[boundary[k % boundary.len()]];
         assert!((uv[0].hypot(uv[1]) - 1.0).abs() < 1e-12);
         uv[1].atan2(uv[0])
     };
@@ -70,7 +72,7 @@ fn arcs_are_proportional_to_boundary_lengths() {
     let mesh = common::bumpy_disk(8).mesh();
     let map = mapped(&mesh, DiskMapOptions { boundary: Boundary::ArcLength, ..Default::default() });
     let boundary = &mesh.boundary_loops()[0];
-    let pair = |k: usize| [boundary[k] as usize, boundary[(k + 1) % boundary.len()] as usize];
+    let pair = |k: usize| [boundary[k].index(), (boundary[(k + 1) % boundary.len()]).index()];
     let length = |k: usize| pair(k).map(|v| mesh.points()[v]);
     let lengths: Vec<f64> =
         (0..boundary.len()).map(|k| common::distance(length(k)[0], length(k)[1])).collect();
@@ -98,16 +100,13 @@ fn the_same_bits_for_any_number_of_threads() {
 #[test]
 fn a_density_is_honoured() {
     let mesh = common::bumpy_disk(16).mesh();
-    let density: Vec<f64> = mesh
-        .faces()
-        .iter()
-        .map(|face| if mesh.points()[face[0] as usize][0] > 0.0 { 3.0 } else { 1.0 })
-        .collect();
+    let density: Vec<f64> =
+        mesh.faces().iter().map(|face| if mesh.points()[face[0]][0] > 0.0 { 3.0 } else { 1.0 }).collect();
     let map = mapped(&mesh, DiskMapOptions { density: Some(aview1(&density)), ..Default::default() });
     assert!(map.distortion.area_ratio_std < 0.05);
     let area = |value: f64| -> f64 {
         let part = mesh.faces().iter().zip(&density).filter(|(_, density)| **density == value);
-        part.map(|(face, _)| 0.5 * doubled_area(face.map(|v| planar(&map.uv)[v as usize]))).sum()
+        part.map(|(face, _)| 0.5 * doubled_area(face.map(|v| planar(&map.uv)[v]))).sum()
     };
     let count = |value: f64| density.iter().filter(|density| **density == value).count() as f64;
     let ratio = (area(3.0) / count(3.0)) / (area(1.0) / count(1.0));
@@ -153,7 +152,7 @@ fn a_start_map_is_improved_and_a_folded_one_unfolded() {
         DiskMapOptions { max_iterations: Some(5), method: DiskMethod::FixedPoint, ..Default::default() };
     let first = mapped(&mesh, options);
     let mut folded = planar(&first.uv).to_vec();
-    (0..folded.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| folded[v] = [0.0, 0.0]);
+    (0..folded.len()).filter(|&v| !mesh.is_boundary(Vertex::new(v))).for_each(|v| folded[v] = [0.0, 0.0]);
     for method in METHODS {
         let further =
             mapped(&mesh, DiskMapOptions { initial: Some(first.uv.view()), method, ..Default::default() });
@@ -178,7 +177,7 @@ fn a_start_map_off_the_circle_is_refused() {
         )
         .unwrap_err()
     };
-    let on_boundary = mesh.boundary_loops()[0][0] as usize;
+    let on_boundary = mesh.boundary_loops()[0][0].index();
     assert!(matches!(
         refusal(&|map| map[on_boundary][0] *= 1.5),
         Error::Map(MapError::InitialBoundary { .. })

@@ -16,7 +16,7 @@ fn assert_is_disk(mesh: &TriangleMesh, map: &[[f64; 2]], context: &str) {
     assert_eq!(folded_in_plane(mesh.faces(), map), [0usize; 0], "{context}: folded faces");
     let boundary = &mesh.boundary_loops()[0];
     let arc = |k: usize| {
-        let [a, b] = [boundary[k], boundary[(k + 1) % boundary.len()]].map(|vertex| map[vertex as usize]);
+        let [a, b] = [boundary[k], boundary[(k + 1) % boundary.len()]].map(|vertex| map[vertex]);
         assert!((a[0].hypot(a[1]) - 1.0).abs() < 1e-14, "{context}: off the circle");
         let arc = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
         if arc > 0.0 { arc } else { arc + TAU }
@@ -139,7 +139,7 @@ fn targets_far_apart_are_embedded() {
 fn a_map_follows_its_targets() {
     // the areas of the start are within a factor of three of the targets on a good mesh
     let mesh = common::icosphere(3).mesh();
-    let height = |face: usize| mesh.faces()[face].map(|v| mesh.points()[v as usize][2]).iter().sum::<f64>();
+    let height = |face: usize| mesh.faces()[face].map(|v| mesh.points()[v][2]).iter().sum::<f64>();
     let targets: Vec<f64> =
         (0..mesh.n_faces()).map(|face| if height(face) > 0.0 { 5.0 } else { 1.0 }).collect();
     let map = progressive_sphere(&mesh, &targets, &mut Silent).unwrap();

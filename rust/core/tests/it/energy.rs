@@ -3,6 +3,7 @@
 
 use crate::common;
 use approx::assert_relative_eq;
+use authalic::Vertex;
 use authalic::testing::{Laplacian, Profile, StretchEnergy, TriangleMesh};
 use std::f64::consts::PI;
 
@@ -73,7 +74,7 @@ fn the_energy_is_half_the_quadratic_form_of_the_cotangent_laplacian() {
         let scale = value.area / targets.iter().sum::<f64>();
         let mut stretch = 0.0;
         for (face, target) in mesh.faces().iter().zip(&targets) {
-            let p = face.map(|v| map[v as usize]);
+            let p = face.map(|v| map[v]);
             for k in 0..3 {
                 let (apex, a, b) = (p[k], p[(k + 1) % 3], p[(k + 2) % 3]);
                 let [u, w] = [[a[0] - apex[0], a[1] - apex[1]], [b[0] - apex[0], b[1] - apex[1]]];
@@ -100,12 +101,7 @@ fn the_gradient_is_twice_the_laplacian_of_the_map_inside() {
         for (i, &v) in laplacian.free().iter().enumerate() {
             for axis in 0..2 {
                 let expected = 2.0 * PI / value.area * residual[axis * n + i];
-                assert_relative_eq!(
-                    gradient[v as usize][axis],
-                    expected,
-                    epsilon = 1e-9,
-                    max_relative = 1e-7
-                );
+                assert_relative_eq!(gradient[v][axis], expected, epsilon = 1e-9, max_relative = 1e-7);
             }
         }
     }
@@ -151,28 +147,28 @@ fn the_assembled_laplacian_is_that_of_its_edges() {
     for disk in common::disks() {
         let mesh = disk.mesh();
         let weights: Vec<f64> = (0..3 * mesh.n_faces()).map(|corner| 1.0 + (corner as f64).sin()).collect();
-        let mut laplacian = Laplacian::new(&mesh, |v| v % 3 != 0);
+        let mut laplacian = Laplacian::new(&mesh, |v| v.index() % 3 != 0);
         laplacian.assemble(&mesh, &weights);
         // dense, edge by edge
         let n = mesh.n_vertices();
         let mut dense = vec![0.0; n * n];
         for (corner, weight) in weights.iter().enumerate() {
             let face = mesh.faces()[corner / 3];
-            let [i, j] = [1, 2].map(|step| face[(corner + step) % 3] as usize);
+            let [i, j] = [1, 2].map(|step| (face[(corner + step) % 3]).index());
             for (r, c, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
                 dense[r * n + c] += sign * weight;
             }
         }
         let mut stored = 0;
         for (value, (row, column)) in laplacian.matrix().iter() {
-            let [r, c] = [row, column].map(|i| laplacian.free()[i] as usize);
+            let [r, c] = [row, column].map(|i| laplacian.free()[i].index());
             assert!(row <= column, "upper triangle");
             assert_relative_eq!(*value, dense[r * n + c], epsilon = 1e-12);
             stored += 1;
         }
-        let free: Vec<usize> = laplacian.free().iter().map(|&v| v as usize).collect();
+        let free: Vec<usize> = laplacian.free().iter().copied().map(Vertex::index).collect();
         let nonzero = free.iter().flat_map(|&r| free.iter().map(move |&c| (r, c)));
         assert_eq!(stored, nonzero.filter(|&(r, c)| r <= c && (r == c || dense[r * n + c] != 0.0)).count());
-        assert!(free.iter().enumerate().all(|(i, &v)| laplacian.unknown(v) == Some(i)));
+        assert!(free.iter().enumerate().all(|(i, &v)| laplacian.unknown(Vertex::new(v)) == Some(i)));
     }
 }

@@ -4,7 +4,7 @@
 use crate::common::public::{disk_map, planar, spatial, sphere_map};
 use authalic::testing::TriangleMesh;
 use authalic::{
-    Boundary, DiskMap, DiskMapOptions, DiskMethod, Silent, SphereMap, SphereMapOptions, SphereMethod,
+    Boundary, DiskMap, DiskMapOptions, DiskMethod, Silent, SphereMap, SphereMapOptions, SphereMethod, Vertex,
 };
 use ndarray::aview1;
 use std::time::Instant;
@@ -175,7 +175,7 @@ fn targets_seven_orders_of_magnitude_apart_are_mapped_one_to_one() {
         let mesh = shape.mesh();
         let density: Vec<f64> = (0..mesh.n_faces()).map(|_| random.of_any_size(1e-7, 1.0)).collect();
         check_density(&mesh, Some(&density), &format!("{}, random density", shape.name));
-        let graded = |face: &[u32; 3]| (-16.1 * (mesh.points()[face[0] as usize][0] + 0.5)).exp();
+        let graded = |face: &[Vertex; 3]| (-16.1 * (mesh.points()[face[0]][0] + 0.5)).exp();
         let density: Vec<f64> = mesh.faces().iter().map(graded).collect();
         check_density(&mesh, Some(&density), &format!("{}, graded density", shape.name));
     }

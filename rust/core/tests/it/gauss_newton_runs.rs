@@ -12,7 +12,7 @@ use crate::common::{self, TestMesh, bumpy_disk, cap, icosphere, slit_sphere};
 use authalic::testing::TriangleMesh;
 use authalic::{
     Boundary, DiskMap, DiskMapOptions, DiskMethod, Distortion, Error, History, MapError, Silent, SphereMap,
-    SphereMapOptions, SphereMethod, Status,
+    SphereMapOptions, SphereMethod, Status, Vertex,
 };
 use ndarray::{Array1, Array2, aview1, aview2};
 
@@ -235,7 +235,7 @@ fn densities_are_honoured() {
     let open = bumpy_disk(16).mesh();
     let closed = icosphere(3).mesh();
     let density = |mesh: &TriangleMesh| -> Vec<f64> {
-        let value = |face: &[u32; 3]| if mesh.points()[face[0] as usize][0] > 0.0 { 3.0 } else { 1.0 };
+        let value = |face: &[Vertex; 3]| if mesh.points()[face[0]][0] > 0.0 { 3.0 } else { 1.0 };
         mesh.faces().iter().map(value).collect()
     };
     let assert_threefold = |areas: &[f64], density: &[f64]| {
@@ -263,7 +263,9 @@ fn start_maps_of_disks_are_improved_and_folded_ones_unfolded() {
         let mut random = Random::new(11);
         let mut spoiled = |of: &dyn Fn(&mut Random) -> [f64; 2]| {
             let mut uv = planar(&first.uv).to_vec();
-            (0..uv.len()).filter(|&v| !mesh.is_boundary(v)).for_each(|v| uv[v] = of(&mut random));
+            (0..uv.len())
+                .filter(|&v| !mesh.is_boundary(Vertex::new(v)))
+                .for_each(|v| uv[v] = of(&mut random));
             uv
         };
         let folded = [

@@ -2,11 +2,11 @@
 //! What a `TriangleMesh` accepts, repairs, refuses and knows.
 
 use authalic::testing::{TriangleMesh, consistent, geometry};
-use authalic::{Elements, Error, MeshError};
+use authalic::{Elements, Error, Face, MeshError, Vertex};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
-use crate::common::{self, TestMesh, distance};
+use crate::common::{self, TestMesh, distance, faces_of_indices};
 use proptest::prelude::*;
 
 fn refusal(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Error {
@@ -35,8 +35,8 @@ fn topology_is_known_on_every_test_mesh() {
         assert_eq!(mesh.topology().is_disk(), test.is_disk(), "{}", test.name);
         assert_eq!(mesh.require_disk().is_ok(), test.is_disk(), "{}", test.name);
         assert_eq!(mesh.topology().is_closed(), test.n_loops == 0, "{}", test.name);
-        assert_eq!(mesh.flipped_faces(), [] as [u32; 0], "{}", test.name);
-        assert_eq!(mesh.faces(), test.faces, "{}", test.name);
+        assert_eq!(mesh.flipped_faces(), [] as [Face; 0], "{}", test.name);
+        assert_eq!(mesh.faces(), faces_of_indices(&test.faces), "{}", test.name);
     }
 }
 
@@ -46,14 +46,14 @@ fn angle_defects_add_up_to_the_euler_characteristic() {
         let mesh = test.mesh();
         let mut angles = vec![0.; mesh.n_vertices()];
         for (face, corner) in mesh.faces().iter().flat_map(|face| (0..3).map(move |k| (face, k))) {
-            let [a, b, c] = [0, 1, 2].map(|k| mesh.points()[face[(corner + k) % 3] as usize]);
+            let [a, b, c] = [0, 1, 2].map(|k| mesh.points()[face[(corner + k) % 3]]);
             // By the law of cosines, a route of its own.
             let [ab, ac, bc] = [distance(a, b), distance(a, c), distance(b, c)];
             let cosine = (ab * ab + ac * ac - bc * bc) / (2. * ab * ac);
-            angles[face[corner] as usize] += cosine.clamp(-1., 1.).acos();
+            angles[face[corner]] += cosine.clamp(-1., 1.).acos();
         }
         let flat = |v| if mesh.is_boundary(v) { PI } else { TAU };
-        let total: f64 = (0..mesh.n_vertices()).map(|v| flat(v) - angles[v]).sum();
+        let total: f64 = (0..mesh.n_vertices()).map(|v| flat(Vertex::new(v)) - angles[v]).sum();
         approx::assert_abs_diff_eq!(total, TAU * test.euler_characteristic as f64, epsilon = 1e-9);
     }
 }
@@ -73,15 +73,16 @@ fn corners_know_their_neighbours() {
                     assert_eq!(mesh.opposite(other), Some(corner));
                     assert_eq!(ends(other), [b, a], "{}", test.name);
                 }
-                None => assert!(mesh.is_boundary(a as usize) && mesh.is_boundary(b as usize)),
+                None => assert!(mesh.is_boundary(a) && mesh.is_boundary(b)),
             }
         }
-        let listed: Vec<u32> = (0..mesh.n_vertices()).flat_map(|v| mesh.vertex_corners(v).to_vec()).collect();
+        let listed: Vec<u32> =
+            Vertex::all(mesh.n_vertices()).flat_map(|v| mesh.vertex_corners(v).to_vec()).collect();
         assert_eq!(BTreeSet::from_iter(&listed).len(), 3 * mesh.n_faces());
-        for v in 0..mesh.n_vertices() {
+        for v in Vertex::all(mesh.n_vertices()) {
             let corners = mesh.vertex_corners(v);
             assert!(corners.is_sorted());
-            assert!(corners.iter().all(|&c| mesh.faces()[c as usize / 3][c as usize % 3] as usize == v));
+            assert!(corners.iter().all(|&c| mesh.faces()[c as usize / 3][c as usize % 3] == v));
         }
     }
 }
@@ -90,7 +91,7 @@ fn corners_know_their_neighbours() {
 fn boundary_loops_run_along_the_faces_and_start_at_their_smallest_vertex() {
     for test in common::orientable() {
         let mesh = test.mesh();
-        let half_edges: BTreeSet<[u32; 2]> =
+        let half_edges: BTreeSet<[Vertex; 2]> =
             mesh.faces().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         let mut seen = 0;
         for boundary in mesh.boundary_loops() {
@@ -103,7 +104,7 @@ fn boundary_loops_run_along_the_faces_and_start_at_their_smallest_vertex() {
         }
         let open = half_edges.iter().filter(|[a, b]| !half_edges.contains(&[*b, *a])).count();
         assert_eq!(seen, open, "{}", test.name);
-        let marked = (0..mesh.n_vertices()).filter(|&v| mesh.is_boundary(v)).count();
+        let marked = Vertex::all(mesh.n_vertices()).filter(|&v| mesh.is_boundary(v)).count();
         assert_eq!(marked, seen, "{}", test.name);
     }
 }
@@ -115,7 +116,7 @@ fn the_longest_loop_comes_first() {
     assert_eq!(sizes, [32, 10, 4]);
     // Length counts, not the number of edges: the inner circle of this ring is finer than the outer one.
     let mesh = common::annulus(11, 3).mesh();
-    let radius = |v: u32| distance(common::annulus(11, 3).vertices[v as usize], [0.; 3]);
+    let radius = |v: Vertex| distance(common::annulus(11, 3).vertices[v], [0.; 3]);
     assert!(mesh.boundary_loops()[0].iter().all(|&v| radius(v) > 1.5));
 }
 
@@ -275,7 +276,7 @@ fn what_is_no_disk_is_told_why() {
         MeshError::SeveralComponents { faces: elements(&[0, first], 2) }.into()
     );
     let mesh = common::holed_grid().mesh();
-    let starts: Vec<usize> = mesh.boundary_loops().iter().map(|l| l[0] as usize).collect();
+    let starts: Vec<usize> = mesh.boundary_loops().iter().map(|l| l[0].index()).collect();
     let expected =
         MeshError::SeveralBoundaries { vertices: elements(&starts, 3), sizes: vec![32, 10, 4] }.into();
     let error = refused(common::holed_grid());
@@ -290,8 +291,9 @@ fn flipped(faces: &[[u32; 3]], choice: &[bool]) -> Vec<[u32; 3]> {
 }
 
 /// The faces as sets of directed triangles, each starting with its smallest vertex.
-fn rotated(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let smallest_first = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap();
+fn rotated(faces: &[[Vertex; 3]]) -> Vec<[Vertex; 3]> {
+    let smallest_first =
+        |&[a, b, c]: &[Vertex; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap();
     faces.iter().map(smallest_first).collect()
 }
 
@@ -300,9 +302,9 @@ fn faces_turned_against_the_majority_are_flipped_back() {
     for test in common::orientable().iter().filter(|m| m.faces.len() > 8) {
         let choice: Vec<bool> = (0..test.faces.len()).map(|face| face % 7 == 3 || face == 0).collect();
         let mesh = TriangleMesh::new(&test.vertices, &flipped(&test.faces, &choice)).unwrap();
-        let expected: Vec<u32> = (0..choice.len() as u32).filter(|&face| choice[face as usize]).collect();
+        let expected: Vec<Face> = Face::all(choice.len()).filter(|&face| choice[face]).collect();
         assert_eq!(mesh.flipped_faces(), expected, "{}", test.name);
-        assert_eq!(rotated(mesh.faces()), rotated(&test.faces), "{}", test.name);
+        assert_eq!(rotated(mesh.faces()), rotated(&faces_of_indices(&test.faces)), "{}", test.name);
         assert_eq!(mesh.boundary_loops(), test.mesh().boundary_loops(), "{}", test.name);
     }
 }
@@ -313,8 +315,8 @@ fn at_a_tie_the_lowest_face_decides() {
     for first in [[0, 1, 2], [0, 2, 1]] {
         let second = if first[1] == 1 { [0, 3, 2] } else { [0, 2, 3] };
         let mesh = TriangleMesh::new(&vertices, &[first, second]).unwrap();
-        assert_eq!(mesh.faces()[0], first);
-        assert_eq!(mesh.flipped_faces(), [1]);
+        assert_eq!(mesh.faces()[0], first.map(Vertex));
+        assert_eq!(mesh.flipped_faces(), [Face(1)]);
     }
 }
 
@@ -326,14 +328,17 @@ fn unvalidated_faces_are_oriented_where_that_is_possible() {
     let mut faces = strip.faces.clone();
     faces.extend(common::grid(3, 3).faces.iter().map(|face| face.map(|v| v + shift)));
     faces[strip.faces.len() + 5].swap(0, 1);
-    let orientation = consistent(shift as usize + 16, &faces);
+    let orientation = consistent(shift as usize + 16, &faces_of_indices(&faces));
     assert!(orientation.conflict.is_some());
     let found: Vec<usize> = (0..faces.len()).filter(|&face| orientation.flipped[face]).collect();
     assert_eq!(found, [strip.faces.len() + 5]);
-    assert_eq!(orientation.first_faces, [0, strip.faces.len() as u32]);
+    assert_eq!(orientation.first_faces, [0, strip.faces.len()].map(Face::new));
     // Edges of three faces do not connect, a face that repeats a vertex is no neighbour of itself.
-    assert_eq!(consistent(5, &[[0, 1, 2], [0, 1, 3], [0, 1, 4]]).first_faces, [0, 1, 2]);
-    assert_eq!(consistent(3, &[[1, 1, 2], [0, 0, 0]]).flipped, [false, false]);
+    assert_eq!(
+        consistent(5, &faces_of_indices(&[[0, 1, 2], [0, 1, 3], [0, 1, 4]])).first_faces,
+        [0, 1, 2].map(Face)
+    );
+    assert_eq!(consistent(3, &faces_of_indices(&[[1, 1, 2], [0, 0, 0]])).flipped, [false, false]);
 }
 
 /// Coordinates as hostile as they come.
@@ -360,7 +365,7 @@ proptest! {
         let mesh = TriangleMesh::new(&test.vertices, &flipped(&test.faces, &choice)).unwrap();
         let inside_out = flipped(&test.faces, &vec![true; test.faces.len()]);
         let repaired = rotated(mesh.faces());
-        prop_assert!(repaired == rotated(&test.faces) || repaired == rotated(&inside_out));
+        prop_assert!(repaired == rotated(&faces_of_indices(&test.faces)) || repaired == rotated(&faces_of_indices(&inside_out)));
         prop_assert!(2 * mesh.flipped_faces().len() <= mesh.n_faces());
         prop_assert!(mesh.require_disk().is_ok());
     }
@@ -384,7 +389,7 @@ proptest! {
             prop_assert_eq!(mesh.genus(), original.genus());
             prop_assert_eq!(mesh.n_components(), original.n_components());
             let loops = |mesh: &TriangleMesh, rank: &dyn Fn(u32) -> u32| -> BTreeSet<BTreeSet<u32>> {
-                mesh.boundary_loops().iter().map(|l| l.iter().map(|&v| rank(v)).collect()).collect()
+                mesh.boundary_loops().iter().map(|l| l.iter().map(|&v| rank(v.0)).collect()).collect()
             };
             prop_assert_eq!(loops(&mesh, &|v| v), loops(&original, &rank));
         }
@@ -421,7 +426,7 @@ proptest! {
             let euler = 2 * mesh.n_components() as i64 - 2 * mesh.genus() as i64 - loops;
             prop_assert_eq!(mesh.euler_characteristic(), euler);
         }
-        let orientation = consistent(6, &faces);
+        let orientation = consistent(6, &faces_of_indices(&faces));
         prop_assert_eq!(orientation.flipped.len(), faces.len());
     }
 }

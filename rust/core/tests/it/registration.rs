@@ -5,11 +5,11 @@ use crate::common::closed::{bumpy, spheres};
 use crate::common::public::{planar, spatial, triples};
 use crate::common::public::{register_disks, register_spheres};
 use crate::common::random::Random;
-use crate::common::{self, bumpy_disk, cap, distance, ellipsoid};
+use crate::common::{self, bumpy_disk, cap, distance, ellipsoid, faces_of_indices};
 use authalic::testing::{TriangleMesh, Vector3, folded_in_plane, folded_on_sphere};
 use authalic::{
     DiskRegistration, Error, LandmarkError, Landmarks, RegistrationOptions, Silent, SphereRegistration,
-    Status,
+    Status, Vertex,
 };
 use proptest::prelude::*;
 
@@ -26,19 +26,19 @@ fn closed(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) ->
 /// `count` different vertices inside a mesh.
 fn picked(mesh: &TriangleMesh, count: usize, seed: u64) -> Vec<usize> {
     let order = Random::new(seed).permutation(mesh.n_vertices());
-    order.into_iter().map(|v| v as usize).filter(|&v| !mesh.is_boundary(v)).take(count).collect()
+    order.into_iter().map(|v| v as usize).filter(|&v| !mesh.is_boundary(Vertex::new(v))).take(count).collect()
 }
 
 /// Nothing folded in either map, locations that are places, landmarks that were not missed met.
 fn assert_sound(
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     found: &DiskRegistration,
     pairs: [&[usize]; 2],
 ) -> Result<(), TestCaseError> {
     let (registered, target_registered) = (planar(&found.registered), planar(&found.target_registered));
     let target_faces = found.correspondence.target_faces();
     prop_assert!(folded_in_plane(faces, registered).is_empty());
-    prop_assert!(folded_in_plane(triples(&target_faces), target_registered).is_empty());
+    prop_assert!(folded_in_plane(&faces_of_indices(triples(&target_faces)), target_registered).is_empty());
     for (triangle, weights) in
         found.correspondence.triangles().iter().zip(found.correspondence.barycentric().rows())
     {
@@ -92,7 +92,10 @@ fn closed_surfaces_meet_in_their_landmarks() {
     let found = closed(&source, &target, [&ours, &theirs]);
     assert!(folded_on_sphere(source.faces(), &spatial(&found.registered)).is_empty());
     let target_faces = found.correspondence.target_faces();
-    assert!(folded_on_sphere(triples(&target_faces), &spatial(&found.target_registered)).is_empty());
+    assert!(
+        folded_on_sphere(&faces_of_indices(triples(&target_faces)), &spatial(&found.target_registered))
+            .is_empty()
+    );
     let positions = spatial(&found.correspondence.positions());
     for (k, (&p, &q)) in ours.iter().zip(&theirs).enumerate() {
         let is_there = found.landmark_error[k] <= 1e-3 && distance(positions[p], target.points()[q]) < 5e-3;
@@ -108,7 +111,8 @@ fn the_inverse_exchanges_both_surfaces() {
     let back = found.inverse(&mut Silent).unwrap();
     let n_located = back.correspondence.triangles().len();
     assert_eq!((back.registered.nrows(), n_located), (target.n_vertices(), target.n_vertices()));
-    assert_sound(triples(&found.correspondence.target_faces()), &back, [&theirs, &ours]).unwrap();
+    assert_sound(&faces_of_indices(triples(&found.correspondence.target_faces())), &back, [&theirs, &ours])
+        .unwrap();
     let again = back.inverse(&mut Silent).unwrap();
     assert_eq!(again.correspondence.triangles(), found.correspondence.triangles());
     assert_eq!(again.correspondence.barycentric(), found.correspondence.barycentric());
@@ -119,7 +123,7 @@ fn the_inverse_exchanges_both_surfaces() {
 #[test]
 fn bad_landmarks_are_refused_before_any_work() {
     let mesh = bumpy_disk(5).mesh();
-    let edge = mesh.boundary_loops()[0][0] as usize;
+    let edge = mesh.boundary_loops()[0][0].index();
     let refused = |source: &[usize], target: &[usize]| {
         let mut observer = |_: f64, _: &str| panic!("something was computed");
         let landmarks = Landmarks { source, target };

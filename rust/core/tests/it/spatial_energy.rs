@@ -2,6 +2,7 @@
 //! The stretch energy of maps into space against independent formulas: cross products, cotangents, finite
 //! differences, the identities that its degree of four and its invariance under rotations imply.
 
+use authalic::Vertex;
 use authalic::testing::{Profile, SpatialStretchEnergy, StretchEnergy, TriangleMesh, Vector3};
 use std::f64::consts::PI;
 
@@ -35,8 +36,8 @@ fn difference(a: Vector3, b: Vector3) -> Vector3 {
 
 /// Image areas by Heron's formula, (m,).
 fn areas(mesh: &TriangleMesh, map: &[Vector3]) -> Vec<f64> {
-    let heron = |face: &[u32; 3]| {
-        let [p, q, r] = face.map(|v| map[v as usize]);
+    let heron = |face: &[Vertex; 3]| {
+        let [p, q, r] = face.map(|v| map[v]);
         let [a, b, c] = [common::distance(q, r), common::distance(r, p), common::distance(p, q)];
         0.25 * ((a + b + c) * (-a + b + c) * (a - b + c) * (a + b - c)).sqrt()
     };
@@ -72,7 +73,7 @@ fn laplacian_gradient(mesh: &TriangleMesh, map: &[Vector3], targets: &[f64]) -> 
     let mut gradient = vec![Vector3::ZERO; map.len()];
     for (face, target) in mesh.faces().iter().zip(targets) {
         for k in 0..3 {
-            let [apex, i, j] = [k, (k + 1) % 3, (k + 2) % 3].map(|corner| face[corner] as usize);
+            let [apex, i, j] = [k, (k + 1) % 3, (k + 2) % 3].map(|corner| face[corner].index());
             let weight = common::closed::dot(difference(map[i], map[apex]), difference(map[j], map[apex]))
                 / (4.0 * target);
             let edge = difference(map[i], map[j]);
@@ -128,7 +129,7 @@ fn the_stretch_energy_is_half_the_quadratic_form_of_the_cotangent_laplacian() {
         let weights = energy.laplacian_weights(&map);
         let mut form = 0.0;
         for (face, corners) in mesh.faces().iter().enumerate() {
-            let p = corners.map(|v| map[v as usize]);
+            let p = corners.map(|v| map[v]);
             for k in 0..3 {
                 // ω = cot θ · a_τ / (2|τ|), the angle by the law of cosines
                 let [c, a, b] = [(k + 1, k + 2), (k, k + 1), (k, k + 2)]
@@ -288,7 +289,7 @@ fn the_hessian_is_symmetric_and_couples_neighbours_only() {
         for (value, (row, column)) in hessian.iter() {
             let mirrored = hessian.get(column, row).expect("a symmetric pattern");
             assert!((value - mirrored).abs() < 1e-13 * scale);
-            let [a, b] = [row % n, column % n].map(|v| v as u32);
+            let [a, b] = [row % n, column % n].map(Vertex::new);
             assert!(mesh.faces().iter().any(|face| face.contains(&a) && face.contains(&b)));
         }
     }

@@ -347,7 +347,7 @@ impl Registration {
 /// The row of the target's data that each vertex or corner of the source takes.
 fn nearest_rows(map: &Correspondence, per: Per) -> Vec<u32> {
     match per {
-        Per::Vertex => map.nearest_vertices(),
+        Per::Vertex => map.nearest_vertices().into_iter().map(|vertex| vertex.0).collect(),
         Per::Corner => map.nearest_corners(),
     }
 }

@@ -8,11 +8,13 @@
 //! itself is not changed. A sweep over boxes finds the pairs. Cost: O(n log n) and one comparison for every two boxes
 //! that overlap in x.
 
+use crate::mesh::Vertex;
+
 /// A vertex near an edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     /// The vertex and the ends of the edge.
-    pub vertices: [u32; 3],
+    pub vertices: [Vertex; 3],
     /// d / h, below 1.
     pub gap: f64,
     /// h.

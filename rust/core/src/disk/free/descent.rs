@@ -213,7 +213,7 @@ impl<'a> Descent<'a> {
         let springs = self.springs(iterate, weight);
         for (contact, [force, _]) in iterate.contacts.iter().zip(&springs) {
             for (k, &v) in contact.vertices.iter().enumerate() {
-                (0..2).for_each(|axis| gradient[v as usize][axis] += force * contact.slopes[2 * k + axis]);
+                (0..2).for_each(|axis| gradient[v][axis] += force * contact.slopes[2 * k + axis]);
             }
         }
         let state = Linearized {

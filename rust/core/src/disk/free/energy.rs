@@ -11,8 +11,8 @@
 
 use super::face::{Element, Jacobian, STIFFENING, add_area_curvature, add_dirichlet, add_square, stiffened};
 use crate::codomain::planar::PlanarMap;
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -73,7 +73,7 @@ impl<'a> Energy<'a> {
 
     /// The entries (a, b, c, d) of a face's Jacobian in `map`.
     pub(super) fn entries(&self, map: &[[f64; 2]], face: usize) -> [f64; 4] {
-        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v as usize]);
+        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v]);
         let [_, g, h] = self.hats[face];
         let (e, f) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
         [
@@ -85,7 +85,7 @@ impl<'a> Energy<'a> {
     }
 
     fn jacobian(&self, map: &[[f64; 2]], face: usize) -> Jacobian {
-        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v as usize]);
+        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v]);
         let (left, right) = ((p[0] - o[0]) * (q[1] - o[1]), (p[1] - o[1]) * (q[0] - o[0]));
         let area = left - right;
         let is_positive = area > ROUNDING * (left.abs() + right.abs());
@@ -141,7 +141,7 @@ impl<'a> Energy<'a> {
     /// Sums over the corners of every vertex.
     pub(super) fn gathered(&self, of_corner: impl Fn(usize) -> [f64; 2] + Sync + Send) -> PlanarMap {
         parallel::map(self.mesh.n_vertices(), |v| {
-            let corners = self.mesh.vertex_corners(v).iter();
+            let corners = self.mesh.vertex_corners(Vertex::new(v)).iter();
             corners
                 .map(|&corner| of_corner(corner as usize))
                 .fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]])
@@ -235,7 +235,7 @@ mod tests {
         let mut curvature = 0.0;
         for (face, corners) in mesh.faces().iter().enumerate() {
             let element = energy.element(&map, face, &how);
-            let x: Vec<f64> = corners.iter().flat_map(|&v| along[v as usize]).collect();
+            let x: Vec<f64> = corners.iter().flat_map(|&v| along[v]).collect();
             for i in 0..6 {
                 curvature += (0..6).map(|j| x[i] * element[i][j] * x[j]).sum::<f64>();
             }

@@ -12,6 +12,7 @@ use super::energy::Energy;
 use super::face::Element;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
+use crate::mesh::Vertex;
 use crate::sparse::{Analysis, Factor, Failure};
 
 /// Inverse iterations; a few are enough for a start.
@@ -30,7 +31,7 @@ pub(super) fn spectral_conformal(
     let factor = factored(energy, analysis, watch)?;
     // 2. Inverse iteration from the outline laid around a circle
     let loops = energy.mesh.boundary_loops();
-    let boundary: Vec<usize> = loops.iter().flatten().map(|&v| v as usize).collect();
+    let boundary: Vec<Vertex> = loops.iter().flatten().copied().collect();
     let mut map = around_a_circle(energy);
     for _ in 0..ITERATIONS {
         let mean = mean(boundary.iter().map(|&v| map[v]));
@@ -80,13 +81,13 @@ fn conformal_element(energy: &Energy<'_>, face: usize, shift: f64) -> Element {
 /// The longest loop on a circle by its edge lengths, all other vertices at the origin.
 fn around_a_circle(energy: &Energy<'_>) -> PlanarMap {
     let (mesh, outline) = (energy.mesh, &energy.mesh.boundary_loops()[0]);
-    let point = |k: usize| mesh.points()[outline[k % outline.len()] as usize];
+    let point = |k: usize| mesh.points()[outline[k % outline.len()]];
     let lengths: Vec<f64> = (0..outline.len()).map(|k| point(k + 1).distance(point(k))).collect();
     let (total, mut travelled) = (lengths.iter().sum::<f64>(), 0.0);
     let mut map = vec![[0.0; 2]; mesh.n_vertices()];
     for (&v, length) in outline.iter().zip(lengths) {
         let angle = TAU * travelled / total;
-        map[v as usize] = [angle.cos(), angle.sin()];
+        map[v] = [angle.cos(), angle.sin()];
         travelled += length;
     }
     map

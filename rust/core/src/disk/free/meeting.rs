@@ -46,7 +46,7 @@ pub(super) fn first_fold(mesh: &TriangleMesh, map: &[[f64; 2]], along: &[[f64; 2
     let cross = |x: [f64; 2], y: [f64; 2]| x[0] * y[1] - x[1] * y[0];
     let first = parallel::map(mesh.n_faces(), |face| {
         let edges = |of: &[[f64; 2]]| {
-            let [o, p, q] = mesh.faces()[face].map(|v| of[v as usize]);
+            let [o, p, q] = mesh.faces()[face].map(|v| of[v]);
             [[p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]]
         };
         let ([p, q], [dp, dq]) = (edges(map), edges(along));

@@ -6,12 +6,13 @@ use super::energy::Energy;
 use super::meeting::first_meeting;
 use super::sweep::{Extent, for_each_overlap};
 use crate::codomain::planar::PlanarMap;
+use crate::mesh::Vertex;
 use crate::mesh::polygon::is_simple_outline;
 
 /// The outlines of a map: all boundary loops of its surface.
 pub(super) struct Outline {
     edges: Vec<Edge>,
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     /// The least rest height beside each of `vertices`.
     heights: Vec<f64>,
     /// The median length of the edges on their rest triangles.
@@ -21,9 +22,9 @@ pub(super) struct Outline {
 }
 
 struct Edge {
-    ends: [u32; 2],
+    ends: [Vertex; 2],
     /// The third vertex of the edge's face.
-    opposite: u32,
+    opposite: Vertex,
     /// The least rest height of the face, or the edge itself where it is shorter.
     height: f64,
 }
@@ -32,7 +33,7 @@ impl Outline {
     pub(super) fn new(energy: &Energy<'_>) -> Self {
         let mesh = energy.mesh;
         let loops = mesh.boundary_loops();
-        let vertices: Vec<u32> = loops.iter().flatten().copied().collect();
+        let vertices: Vec<Vertex> = loops.iter().flatten().copied().collect();
         let mut next = Vec::with_capacity(vertices.len());
         for vertices in loops {
             let first = next.len();
@@ -49,7 +50,7 @@ impl Outline {
                 let [face, k] = [**corner as usize / 3, **corner as usize % 3];
                 mesh.faces()[face][(k + 1) % 3] == to
             };
-            let corner = *mesh.vertex_corners(from as usize).iter().find(leaves).expect("an edge has a face");
+            let corner = *mesh.vertex_corners(from).iter().find(leaves).expect("an edge has a face");
             let (face, across) = (corner / 3, (corner + 2 - corner / 3 * 3) % 3);
             let opposite = mesh.faces()[face as usize][across as usize];
             let across = 3 * face + across;
@@ -58,9 +59,7 @@ impl Outline {
         }
         let mut heights: Vec<f64> = vertices
             .iter()
-            .map(|&v| {
-                mesh.vertex_corners(v as usize).iter().map(|c| least(c / 3)).fold(f64::INFINITY, f64::min)
-            })
+            .map(|&v| mesh.vertex_corners(v).iter().map(|c| least(c / 3)).fold(f64::INFINITY, f64::min))
             .collect();
         for (k, (_, length)) in edges.iter().enumerate() {
             [k, next[k]].into_iter().for_each(|end| heights[end] = heights[end].min(*length));
@@ -81,10 +80,9 @@ impl Outline {
         let edges: Vec<Extent> = self
             .edges
             .iter()
-            .map(|edge| Extent::of(edge.ends.iter().map(|&v| map[v as usize])).widened(range * edge.height))
+            .map(|edge| Extent::of(edge.ends.iter().map(|&v| map[v])).widened(range * edge.height))
             .collect();
-        let vertices: Vec<Extent> =
-            self.vertices.iter().map(|&v| Extent::of([map[v as usize]].into_iter())).collect();
+        let vertices: Vec<Extent> = self.vertices.iter().map(|&v| Extent::of([map[v]].into_iter())).collect();
         let mut contacts = Vec::new();
         for_each_overlap(&edges, &vertices, |edge, vertex| {
             let reach = range * self.edges[edge].height.min(self.heights[vertex]);
@@ -105,7 +103,7 @@ impl Outline {
 
     fn contact(&self, map: &[[f64; 2]], edge: usize, vertex: usize, reach: f64) -> Option<Contact> {
         let ([from, to], vertex) = (self.edges[edge].ends, self.vertices[vertex]);
-        let [a, b, x] = [from, to, vertex].map(|v| map[v as usize]);
+        let [a, b, x] = [from, to, vertex].map(|v| map[v]);
         let (along, offset) = ([b[0] - a[0], b[1] - a[1]], [x[0] - a[0], x[1] - a[1]]);
         let squared = along[0] * along[0] + along[1] * along[1];
         let t = ((offset[0] * along[0] + offset[1] * along[1]) / squared).clamp(0.0, 1.0);
@@ -130,8 +128,8 @@ impl Outline {
 
     /// The largest step up to `longest` along `direction` that takes no vertex through an edge.
     pub(super) fn longest_step(&self, map: &[[f64; 2]], direction: &[[f64; 2]], longest: f64) -> f64 {
-        let path = |v: u32| {
-            let (x, d) = (map[v as usize], direction[v as usize]);
+        let path = |v: Vertex| {
+            let (x, d) = (map[v], direction[v]);
             [x, [x[0] + longest * d[0], x[1] + longest * d[1]]]
         };
         let edges: Vec<Extent> =
@@ -142,7 +140,7 @@ impl Outline {
             if self.may_touch(edge, vertex) {
                 let [a, b] = self.edges[edge].ends;
                 let triple = [a, b, self.vertices[vertex]];
-                let [at, along] = [map, direction].map(|of| triple.map(|v| of[v as usize]));
+                let [at, along] = [map, direction].map(|of| triple.map(|v| of[v]));
                 step = step.min(first_meeting(at, along, step).unwrap_or(step));
             }
         });
@@ -151,7 +149,7 @@ impl Outline {
 
     /// True if no outline crosses or touches itself or another outline, decided exactly.
     pub(super) fn is_simple(&self, map: &[[f64; 2]]) -> bool {
-        let corners: PlanarMap = self.vertices.iter().map(|&v| map[v as usize]).collect();
+        let corners: PlanarMap = self.vertices.iter().map(|&v| map[v]).collect();
         is_simple_outline(&corners, &self.next)
     }
 }
@@ -200,7 +198,7 @@ mod tests {
             };
             let (mut slope, mut curvature) = (0.0, 0.0);
             for contact in &contacts {
-                let x: [f64; 6] = std::array::from_fn(|k| along[contact.vertices[k / 2] as usize][k % 2]);
+                let x: [f64; 6] = std::array::from_fn(|k| along[contact.vertices[k / 2]][k % 2]);
                 let dot = |form: &[f64; 6]| form.iter().zip(&x).map(|(a, b)| a * b).sum::<f64>();
                 let [first, second] = contact.derivatives(stiffness);
                 slope += first * dot(&contact.slopes);

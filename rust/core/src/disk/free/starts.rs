@@ -9,6 +9,7 @@ use super::lscm::{of_area_one, spectral_conformal};
 use super::outline::Outline;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
+use crate::mesh::Vertex;
 use crate::mesh::geometry::{area_vector, triangle};
 use crate::sparse::{Analysis, Failure};
 use crate::vector::Vector3;
@@ -79,11 +80,12 @@ fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool
     let mesh = energy.mesh;
     let angle = |corner: u32| {
         let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
-        let [o, p, q] = [0, 1, 2].map(|step| map[face[(k + step) % 3] as usize]);
+        let [o, p, q] = [0, 1, 2].map(|step| map[face[(k + step) % 3]]);
         let ([a, b], [c, d]) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
         (a * d - b * c).atan2(a * c + b * d)
     };
     crate::parallel::all(mesh.n_vertices(), |v| {
+        let v = Vertex::new(v);
         mesh.is_boundary(v)
             || mesh.vertex_corners(v).iter().map(|&corner| angle(corner)).sum::<f64>() < 1.5 * TAU
     })
@@ -94,13 +96,13 @@ fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Planar
     let mesh = energy.mesh;
     let mut pulled = map.to_vec();
     for contact in outline.contacts(map, PULL) {
-        let v = contact.vertices[0] as usize;
+        let v = contact.vertices[0];
         let corners = mesh.vertex_corners(v);
         let mut sum = [0.0; 2];
         for &corner in corners {
             let face = mesh.faces()[corner as usize / 3];
             for k in 1..3 {
-                let x = map[face[(corner as usize % 3 + k) % 3] as usize];
+                let x = map[face[(corner as usize % 3 + k) % 3]];
                 (0..2).for_each(|axis| sum[axis] += x[axis] - map[v][axis]);
             }
         }

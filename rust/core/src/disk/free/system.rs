@@ -113,7 +113,7 @@ impl<'a> System<'a> {
     fn product(&self, state: &Linearized<'_>, curvature: f64, x: &[[f64; 2]]) -> PlanarMap {
         let energy = self.energy;
         let by_face: Vec<[f64; 6]> = parallel::map(energy.mesh.n_faces(), |face| {
-            let corners = energy.mesh.faces()[face].map(|v| x[v as usize]);
+            let corners = energy.mesh.faces()[face].map(|v| x[v]);
             std::array::from_fn(|i| (0..6).map(|j| self.elements[face][i][j] * corners[j / 2][j % 2]).sum())
         });
         let mut product = energy.gathered(|corner| {
@@ -121,12 +121,12 @@ impl<'a> System<'a> {
             [of_face[2 * c], of_face[2 * c + 1]]
         });
         for (contact, [force, stiffness]) in state.contacts.iter().zip(state.springs) {
-            let motion: [f64; 6] = std::array::from_fn(|k| x[contact.vertices[k / 2] as usize][k % 2]);
+            let motion: [f64; 6] = std::array::from_fn(|k| x[contact.vertices[k / 2]][k % 2]);
             let pull = stiffness * contact.slopes.iter().zip(&motion).map(|(a, b)| a * b).sum::<f64>();
             let bent = contact.curvature(&motion);
             for k in 0..6 {
                 let of_entry = pull * contact.slopes[k] + curvature * force * bent[k];
-                product[contact.vertices[k / 2] as usize][k % 2] += of_entry;
+                product[contact.vertices[k / 2]][k % 2] += of_entry;
             }
         }
         product
@@ -177,10 +177,7 @@ fn shares(energy: &Energy<'_>, state: &Linearized<'_>) -> Vec<(u32, [f64; 3])> {
     for (contact, [_, stiffness]) in state.contacts.iter().zip(state.springs) {
         for (k, &v) in contact.vertices.iter().enumerate() {
             let [x, y] = [contact.slopes[2 * k], contact.slopes[2 * k + 1]];
-            all.push((
-                energy.mesh.vertex_corners(v as usize)[0],
-                [x * x, x * y, y * y].map(|c| stiffness * c),
-            ));
+            all.push((energy.mesh.vertex_corners(v)[0], [x * x, x * y, y * y].map(|c| stiffness * c)));
         }
     }
     // stable, so that sums have one order

@@ -36,7 +36,7 @@ fn center(map: &[[f64; 2]]) -> [f64; 2] {
 /// The map turned so that the first vertex of the longest boundary loop lies to the right of the mean of all vertices.
 pub(super) fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let mean = parallel::sums(map.len(), |v| map[v]).map(|sum| sum / map.len() as f64);
-    let first = map[mesh.boundary_loops()[0][0] as usize];
+    let first = map[mesh.boundary_loops()[0][0]];
     let [x, y] = [first[0] - mean[0], first[1] - mean[1]];
     let length = x.hypot(y);
     if length.is_nan() || length <= 0.0 {
@@ -49,7 +49,7 @@ pub(super) fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
 
 pub(super) fn signed_area(mesh: &TriangleMesh, map: &[[f64; 2]]) -> f64 {
     parallel::sum(mesh.n_faces(), |face| {
-        let [a, b, c] = mesh.faces()[face].map(|v| map[v as usize]);
+        let [a, b, c] = mesh.faces()[face].map(|v| map[v]);
         0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
     })
 }

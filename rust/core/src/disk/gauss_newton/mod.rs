@@ -20,6 +20,7 @@ use crate::codomain::{Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status};
 use crate::embedding::{Stop, progressive_disk};
 use crate::error::Error;
+use crate::mesh::Vertex;
 use crate::optimize::gauss_newton::angle_schedule::AnglePath;
 use crate::optimize::gauss_newton::area_tolerance::descend;
 use crate::optimize::gauss_newton::{GaussNewtonOptions, Problem, more_even, target_floors};
@@ -92,8 +93,8 @@ impl Run<'_> {
     fn motions(&self) -> Vec<Motion> {
         let on_boundary =
             if self.options.boundary == Boundary::Sliding { Motion::Circle } else { Motion::Held };
-        let motion = |v: usize| if self.mesh.is_boundary(v) { on_boundary } else { Motion::Plane };
-        (0..self.mesh.n_vertices()).map(motion).collect()
+        let motion = |v: Vertex| if self.mesh.is_boundary(v) { on_boundary } else { Motion::Plane };
+        Vertex::all(self.mesh.n_vertices()).map(motion).collect()
     }
 
     /// The guarded descent from a map without folds; a run already cancelled returns the map unchanged.

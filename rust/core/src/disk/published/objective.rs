@@ -17,7 +17,7 @@ use crate::disk::{boundary, certificate};
 use crate::energy::StretchEnergy;
 use crate::energy::stretch::{Profile, Value};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::optimize::published::{Energies, Objective};
 use crate::parallel;
 use crate::sparse::{Cholesky, Laplacian, solve_dirichlet};
@@ -103,7 +103,7 @@ impl<'a> DiskObjective<'a> {
         self.interior.laplacian.assemble(self.mesh, &weights);
         self.interior.factor.refactor_while(self.interior.laplacian.matrix(), watch)?;
         if let Some(SlidingBoundary { block: Block { laplacian, factor }, .. }) = &mut self.boundary {
-            let cosine = |i: usize, j: usize| map[i][0] * map[j][0] + map[i][1] * map[j][1];
+            let cosine = |i: Vertex, j: Vertex| map[i][0] * map[j][0] + map[i][1] * map[j][1];
             laplacian.assemble_scaled(self.mesh, &weights, cosine);
             factor.refactor_while(laplacian.matrix(), watch)?;
         }
@@ -116,12 +116,12 @@ impl<'a> DiskObjective<'a> {
         certificate::nearly_folded(&self.energy.areas(map), self.energy.targets())
     }
 
-    fn free(&self) -> &[u32] {
+    fn free(&self) -> &[Vertex] {
         self.interior.laplacian.free()
     }
 
     /// Vertices that slide, in the order of their angles in reduced coordinates.
-    fn sliding(&self) -> &[u32] {
+    fn sliding(&self) -> &[Vertex] {
         self.boundary.as_ref().map_or(&[], |boundary| boundary.block.laplacian.free())
     }
 
@@ -147,7 +147,7 @@ impl<'a> DiskObjective<'a> {
             return;
         };
         for (&vertex, slope) in self.mesh.boundary_loops()[0].iter().zip(boundary.barrier.slopes(&arcs)) {
-            let unknown = boundary.block.laplacian.unknown(vertex as usize);
+            let unknown = boundary.block.laplacian.unknown(vertex);
             by_angle[unknown.expect("boundary vertices slide")] += slope;
         }
     }
@@ -164,9 +164,9 @@ impl Objective for DiskObjective<'_> {
         let (value, gradient) = self.energy.gradient(map);
         let energies =
             Energies { objective: self.full_objective(map, value), authalic_energy: value.authalic_energy };
-        let free = self.free().iter().map(|&v| v as usize);
-        let along_circle = |v: &u32| {
-            let ([u, w], g) = (map[*v as usize], gradient[*v as usize]);
+        let free = self.free().iter().copied();
+        let along_circle = |&v: &Vertex| {
+            let ([u, w], g) = (map[v], gradient[v]);
             u * g[1] - w * g[0]
         };
         let plane = free.clone().map(|v| gradient[v][0]).chain(free.map(|v| gradient[v][1]));
@@ -189,14 +189,14 @@ impl Objective for DiskObjective<'_> {
         let mut moved = map.clone();
         let n = self.free().len();
         for (i, &vertex) in self.free().iter().enumerate() {
-            moved[vertex as usize][0] += step * direction[i];
-            moved[vertex as usize][1] += step * direction[n + i];
+            moved[vertex][0] += step * direction[i];
+            moved[vertex][1] += step * direction[n + i];
         }
         for (&vertex, angle) in self.sliding().iter().zip(&direction[2 * n..]) {
-            let ([u, v], (sine, cosine)) = (map[vertex as usize], (step * angle).sin_cos());
+            let ([u, v], (sine, cosine)) = (map[vertex], (step * angle).sin_cos());
             let (x, y) = (cosine * u - sine * v, sine * u + cosine * v);
             let length = x.hypot(y);
-            moved[vertex as usize] = [x / length, y / length];
+            moved[vertex] = [x / length, y / length];
         }
         moved
     }

@@ -3,6 +3,7 @@
 
 use crate::codomain::SpatialMap;
 use crate::energy::authalic::AuthalicEnergy;
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// Upper bound of an aspect and of its inverse.
@@ -13,10 +14,10 @@ pub(super) const MOST_ASPECT: f64 = 1e4;
 pub(super) fn with_best_aspect(
     energy: &AuthalicEnergy,
     map: &SpatialMap,
-    corners: [u32; 2],
+    corners: [Vertex; 2],
     relaxation: f64,
 ) -> (SpatialMap, f64) {
-    let [low, high] = corners.map(|corner| map[corner as usize]);
+    let [low, high] = corners.map(|corner| map[corner]);
     let now = ((high[0] - low[0]) / (high[1] - low[1])).ln();
     let bound = MOST_ASPECT.ln();
     let change = (now + 2.0 * relaxation * best_stretch(energy, map)).clamp(-bound, bound) - now;

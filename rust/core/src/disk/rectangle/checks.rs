@@ -6,7 +6,7 @@ use super::corners::Outline;
 use super::sides::{bounds, corners_of, sides};
 use crate::disk::options::{Boundary, DiskMapOptions};
 use crate::error::{Elements, Error, MapError};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// Refuses options that do not fit a rectangle, and options of rectangles elsewhere.
 pub(in crate::disk) fn check(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<(), Error> {
@@ -39,11 +39,10 @@ pub(in crate::disk) fn check_initial(
     let outline = Outline::new(mesh);
     let [low, high] = bounds(outline.vertices, initial);
     let size = (high[0] - low[0]).max(high[1] - low[1]);
-    let refuse =
-        |vertices: &[u32], reason: &str| match Elements::collect(vertices.iter().map(|&v| v as usize)) {
-            None => Ok(()),
-            Some(vertices) => Err(MapError::InitialBoundary { vertices, reason: reason.into() }.into()),
-        };
+    let refuse = |vertices: &[Vertex], reason: &str| match Elements::collect(vertices.iter().copied()) {
+        None => Ok(()),
+        Some(vertices) => Err(MapError::InitialBoundary { vertices, reason: reason.into() }.into()),
+    };
     if !(high[0] > low[0] && high[1] > low[1]) {
         return refuse(outline.vertices, "it must run around a rectangle");
     }
@@ -53,27 +52,27 @@ pub(in crate::disk) fn check_initial(
             "it must run counter-clockwise (mirror the map if it runs clockwise)",
         );
     }
-    let is_off = |&&v: &&u32| {
-        let on = |axis: usize, line: f64| (initial[v as usize][axis] - line).abs() <= 1e-6 * size;
+    let is_off = |&&v: &&Vertex| {
+        let on = |axis: usize, line: f64| (initial[v][axis] - line).abs() <= 1e-6 * size;
         ![0, 1].iter().any(|&axis| on(axis, low[axis]) || on(axis, high[axis]))
     };
-    let off: Vec<u32> = outline.vertices.iter().filter(is_off).copied().collect();
+    let off: Vec<Vertex> = outline.vertices.iter().filter(is_off).copied().collect();
     refuse(&off, "it must lie on the sides of an upright rectangle")?;
     let corners = corners_of(mesh, options)?;
     for (k, side) in sides(outline.vertices, &corners).iter().enumerate() {
         let (across, line) = ((k + 1) % 2, if k == 0 || k == 3 { low } else { high });
-        let off = |&&v: &&u32| (initial[v as usize][across] - line[across]).abs() > 1e-6 * size;
-        let off: Vec<u32> = side.iter().filter(off).copied().collect();
+        let off = |&&v: &&Vertex| (initial[v][across] - line[across]).abs() > 1e-6 * size;
+        let off: Vec<Vertex> = side.iter().filter(off).copied().collect();
         refuse(&off, "it must lie on the sides of an upright rectangle, the corners in its corners")?;
     }
     Ok(())
 }
 
 /// The area inside an outline, negative where it runs clockwise.
-fn signed_area(outline: &[u32], map: &[[f64; 2]]) -> f64 {
+fn signed_area(outline: &[Vertex], map: &[[f64; 2]]) -> f64 {
     let next = outline.iter().cycle().skip(1);
-    let cross = |(&a, &b): (&u32, &u32)| {
-        let ([x, y], [u, v]) = (map[a as usize], map[b as usize]);
+    let cross = |(&a, &b): (&Vertex, &Vertex)| {
+        let ([x, y], [u, v]) = (map[a], map[b]);
         x * v - u * y
     };
     0.5 * outline.iter().zip(next).map(cross).sum::<f64>()

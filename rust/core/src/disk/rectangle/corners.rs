@@ -12,8 +12,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{Elements, Error, MapError};
-use crate::mesh::TriangleMesh;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Four places along the boundary loop in cyclic order; the first goes to the lower left.
@@ -40,19 +40,19 @@ const MARGIN: f64 = 1e-7;
 /// The boundary loop of a surface.
 pub(super) struct Outline<'a> {
     mesh: &'a TriangleMesh,
-    pub vertices: &'a [u32],
+    pub vertices: &'a [Vertex],
     /// The length up to each vertex, then the total.
     lengths: Vec<f64>,
     /// Disjoint parts of the loop (first place and number of further ones) that each need a corner.
     cut_off: Vec<[usize; 2]>,
     /// The edges that cut off these parts.
-    chords: Vec<[u32; 2]>,
+    chords: Vec<[Vertex; 2]>,
 }
 
 impl<'a> Outline<'a> {
     pub(super) fn new(mesh: &'a TriangleMesh) -> Self {
         let vertices = &mesh.boundary_loops()[0][..];
-        let point = |k: usize| mesh.points()[vertices[k % vertices.len()] as usize];
+        let point = |k: usize| mesh.points()[vertices[k % vertices.len()]];
         let mut lengths = vec![0.0];
         (0..vertices.len()).for_each(|k| lengths.push(lengths[k] + point(k).distance(point(k + 1))));
         let (cut_off, chords) = smallest_parts_cut_off(mesh, vertices);
@@ -68,7 +68,7 @@ impl<'a> Outline<'a> {
             let vertices = Elements::collect(corners).expect("there are four");
             Err(MapError::NoRectangle { vertices, reason: reason.into() }.into())
         };
-        let place = |vertex: usize| self.vertices.iter().position(|&v| v as usize == vertex);
+        let place = |vertex: usize| self.vertices.iter().position(|&v| v.index() == vertex);
         let [Some(a), Some(b), Some(c), Some(d)] = corners.map(place) else {
             return refuse("corners must be vertices of the longest boundary loop");
         };
@@ -95,8 +95,8 @@ impl<'a> Outline<'a> {
     pub(super) fn found(&self, aspect: Option<f64>) -> Result<Corners, Error> {
         let n = self.vertices.len();
         if n < 4 || self.cut_off.len() > 4 {
-            let tips = self.cut_off.iter().map(|&[first, _]| self.vertices[first] as usize);
-            let all = self.vertices.iter().map(|&v| v as usize);
+            let tips = self.cut_off.iter().map(|&[first, _]| self.vertices[first]);
+            let all = self.vertices.iter().copied();
             let (vertices, reason) = if n < 4 {
                 (Elements::collect(all), "a rectangle needs a boundary of at least four edges")
             } else {
@@ -141,8 +141,8 @@ impl<'a> Outline<'a> {
     /// Refuses corners that press a face flat.
     fn check(&self, corners: &Corners) -> Result<(), Error> {
         let missed = (0..self.cut_off.len()).filter(|&k| !self.has_corner(self.cut_off[k], corners));
-        let chords: Vec<[u32; 2]> = missed.map(|k| self.chords[k]).collect();
-        match Elements::collect(chords.iter().flatten().map(|&v| v as usize)) {
+        let chords: Vec<[Vertex; 2]> = missed.map(|k| self.chords[k]).collect();
+        match Elements::collect(chords.iter().flatten().copied()) {
             None => Ok(()),
             Some(vertices) => Err(MapError::NoRectangle {
                 vertices,
@@ -162,7 +162,7 @@ impl<'a> Outline<'a> {
     fn candidates(&self) -> (Vec<usize>, Vec<f64>) {
         let n = self.vertices.len();
         let raw: Vec<f64> =
-            self.vertices.iter().map(|&v| (PI - angle_sum(self.mesh, v as usize)) / FRAC_PI_2).collect();
+            self.vertices.iter().map(|&v| (PI - angle_sum(self.mesh, v)) / FRAC_PI_2).collect();
         let (mut candidates, mut turns) = (Vec::new(), raw.clone());
         for window in WINDOWS {
             (candidates, turns) = self.sharp(&raw, window * self.lengths[n]);
@@ -281,7 +281,7 @@ impl<'a> Outline<'a> {
     }
 
     fn point(&self, place: usize) -> Vector3 {
-        self.mesh.points()[self.vertices[place] as usize]
+        self.mesh.points()[self.vertices[place]]
     }
 
     /// The corners from the lower left one, with x to the right and z up, or y where the surface lies flat; fitting a given
@@ -302,7 +302,7 @@ impl<'a> Outline<'a> {
 }
 
 /// The sum of the angles of the faces at a vertex.
-fn angle_sum(mesh: &TriangleMesh, vertex: usize) -> f64 {
+fn angle_sum(mesh: &TriangleMesh, vertex: Vertex) -> f64 {
     let angle = |&corner: &u32| {
         let (face, k) = (corner as usize / 3, corner as usize % 3);
         let corners = triangle(mesh.points(), mesh.faces()[face]);
@@ -315,15 +315,15 @@ fn angle_sum(mesh: &TriangleMesh, vertex: usize) -> f64 {
 
 /// The smallest parts of the boundary between the ends of an inner edge, these excluded, up to five of them; and the
 /// edges. They are disjoint, since such edges do not cross.
-fn smallest_parts_cut_off(mesh: &TriangleMesh, outline: &[u32]) -> (Vec<[usize; 2]>, Vec<[u32; 2]>) {
+fn smallest_parts_cut_off(mesh: &TriangleMesh, outline: &[Vertex]) -> (Vec<[usize; 2]>, Vec<[Vertex; 2]>) {
     let n = outline.len();
     let mut place = vec![usize::MAX; mesh.n_vertices()];
-    outline.iter().enumerate().for_each(|(k, &v)| place[v as usize] = k);
+    outline.iter().enumerate().for_each(|(k, &v)| place[v] = k);
     let mut parts = Vec::new();
     for corner in 0..3 * mesh.n_faces() {
         let face = mesh.faces()[corner / 3];
         let ends = [face[(corner + 1) % 3], face[(corner + 2) % 3]];
-        let [from, to] = ends.map(|v| place[v as usize]);
+        let [from, to] = ends.map(|v| place[v]);
         // each inner edge is met twice, once in each direction
         if from != usize::MAX && to != usize::MAX && mesh.opposite(corner as u32).is_some() {
             parts.push(((to + n - from) % n - 1, (from + 1) % n, ends));

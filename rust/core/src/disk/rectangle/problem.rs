@@ -6,13 +6,14 @@ use crate::codomain::motion::Motion;
 use crate::codomain::planar::PlanarMap;
 use crate::disk::certificate;
 use crate::disk::run::Run;
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// A surface with its corners.
 pub(super) struct Rectangle<'a> {
     pub run: Run<'a>,
     /// The boundary vertices of the bottom, right, top and left side, each without its last corner.
-    pub sides: [Vec<u32>; 4],
+    pub sides: [Vec<Vertex>; 4],
     /// The given aspect.
     pub aspect: Option<f64>,
 }
@@ -22,15 +23,15 @@ impl Rectangle<'_> {
     pub(super) fn motions(&self) -> Vec<Motion> {
         let mut motions = vec![Motion::Plane; self.run.mesh.n_vertices()];
         for (k, side) in self.sides.iter().enumerate() {
-            side.iter().for_each(|&vertex| motions[vertex as usize] = Motion::Side(k % 2));
-            motions[side[0] as usize] = Motion::Held;
+            side.iter().for_each(|&vertex| motions[vertex] = Motion::Side(k % 2));
+            motions[side[0]] = Motion::Held;
         }
         motions
     }
 
     /// The map with its lower left corner in (0, 0) and a longer side of 1, and the factor.
     pub(super) fn laid_out(&self, map: &SpatialMap) -> (PlanarMap, f64) {
-        let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner as usize]);
+        let [low, high] = [self.sides[0][0], self.sides[2][0]].map(|corner| map[corner]);
         let sides = [high[0] - low[0], high[1] - low[1]];
         let longer = sides[0].max(sides[1]);
         // the top and right sides exactly straight, the longer one exactly 1

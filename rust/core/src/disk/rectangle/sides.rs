@@ -4,7 +4,7 @@
 use super::corners::Outline;
 use crate::disk::options::DiskMapOptions;
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// The places of the corners along the boundary.
 pub(super) fn corners_of(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> Result<[usize; 4], Error> {
@@ -17,26 +17,26 @@ pub(super) fn corners_of(mesh: &TriangleMesh, options: &DiskMapOptions<'_>) -> R
 }
 
 /// The boundary vertices nearest to the corners of the bounding box of a map.
-fn corners_of_map(outline: &[u32], map: &[[f64; 2]]) -> [usize; 4] {
-    let place = |v: u32| map[v as usize];
+fn corners_of_map(outline: &[Vertex], map: &[[f64; 2]]) -> [usize; 4] {
+    let place = |v: Vertex| map[v];
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]: [f64; 2]| {
         let [low, high] = bounds(outline, map);
         let corner = [if x < 0.0 { low[0] } else { high[0] }, if y < 0.0 { low[1] } else { high[1] }];
-        let off = |v: u32| (place(v)[0] - corner[0]).hypot(place(v)[1] - corner[1]);
-        *outline.iter().min_by(|&&a, &&b| off(a).total_cmp(&off(b))).expect("a loop has vertices") as usize
+        let off = |v: Vertex| (place(v)[0] - corner[0]).hypot(place(v)[1] - corner[1]);
+        outline.iter().min_by(|&&a, &&b| off(a).total_cmp(&off(b))).expect("a loop has vertices").index()
     })
 }
 
 /// The lowest and highest coordinates.
-pub(super) fn bounds(outline: &[u32], map: &[[f64; 2]]) -> [[f64; 2]; 2] {
+pub(super) fn bounds(outline: &[Vertex], map: &[[f64; 2]]) -> [[f64; 2]; 2] {
     outline.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], &v| {
-        let x = map[v as usize];
+        let x = map[v];
         [[0, 1].map(|k| low[k].min(x[k])), [0, 1].map(|k| high[k].max(x[k]))]
     })
 }
 
 /// The boundary vertices of each side, from its first corner up to its last.
-pub(super) fn sides(outline: &[u32], corners: &[usize; 4]) -> [Vec<u32>; 4] {
+pub(super) fn sides(outline: &[Vertex], corners: &[usize; 4]) -> [Vec<Vertex>; 4] {
     let n = outline.len();
     [0, 1, 2, 3].map(|k| {
         let count = (corners[(k + 1) % 4] + n - corners[k]) % n;

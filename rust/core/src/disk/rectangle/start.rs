@@ -130,7 +130,7 @@ impl Rectangle<'_> {
                     _ => outline.length(corners[k], (corners[k] + step) % outline.vertices.len()) / whole,
                 };
                 // both ends share this coordinate exactly
-                map[vertex as usize] =
+                map[vertex] =
                     [0, 1].map(|c| if from[c] == to[c] { from[c] } else { from[c] + t * (to[c] - from[c]) });
             }
         }
@@ -147,9 +147,9 @@ impl Rectangle<'_> {
         let mut map: SpatialMap = initial.iter().map(|&x| Vector3([along(x, 0), along(x, 1), 1.0])).collect();
         for (k, side) in self.sides.iter().enumerate() {
             let across = (k + 1) % 2;
-            side.iter().for_each(|&v| map[v as usize][across] = boundary[side[0] as usize][across]);
-            let corner = boundary[side[0] as usize];
-            map[side[0] as usize] = Vector3([corner[0], corner[1], 1.0]);
+            side.iter().for_each(|&v| map[v][across] = boundary[side[0]][across]);
+            let corner = boundary[side[0]];
+            map[side[0]] = Vector3([corner[0], corner[1], 1.0]);
         }
         map
     }

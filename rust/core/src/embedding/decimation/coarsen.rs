@@ -10,6 +10,7 @@ use std::collections::BinaryHeap;
 
 use super::Decimation;
 use crate::control::Observer;
+use crate::mesh::Vertex;
 use crate::mesh::corners::next_corner;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -31,7 +32,7 @@ const MANY_NEIGHBORS: usize = 32;
 #[derive(PartialEq)]
 struct Candidate {
     cost: f64,
-    vertex: u32,
+    vertex: Vertex,
 }
 
 impl Eq for Candidate {}
@@ -53,7 +54,7 @@ impl PartialOrd for Candidate {
 struct Ring {
     /// The corners at the vertex whose next corners are the neighbors.
     corners: Vec<u32>,
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     points: Vec<Vector3>,
     measure: f64,
     /// The position of the apex in the ring.
@@ -114,7 +115,7 @@ impl Decimation<'_> {
             // 1. Compute the cost again; the vertex goes back if it has risen, while a fallen cost is good enough
             let (now, corner) = self.best_collapse(vertex, &mut ring);
             let Some(corner) = corner else {
-                waiting[vertex as usize] = true;
+                waiting[vertex] = true;
                 continue;
             };
             if now > cost {
@@ -124,7 +125,7 @@ impl Decimation<'_> {
             // 2. Collapse the vertex; neighbors that could not collapse go back into the queue
             self.collapse(corner);
             for &vertex in &ring.vertices {
-                if std::mem::take(&mut waiting[vertex as usize]) {
+                if std::mem::take(&mut waiting[vertex]) {
                     queue.push(Reverse(Candidate { cost: 0.0, vertex }));
                 }
             }
@@ -141,8 +142,8 @@ impl Decimation<'_> {
         let n = self.mesh.n_vertices();
         let mut candidates = Vec::with_capacity(n);
         for first in (0..n).step_by(ROUND) {
-            let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost((first + k) as u32));
-            let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: (first + k) as u32 });
+            let costs = parallel::map(ROUND.min(n - first), |k| self.first_cost(Vertex::new(first + k)));
+            let with_cost = |(k, cost)| Reverse(Candidate { cost, vertex: Vertex::new(first + k) });
             candidates.extend(costs.into_iter().enumerate().map(with_cost));
             if !observer.progress(0.0, "Coarsening") {
                 return None;
@@ -152,11 +153,11 @@ impl Decimation<'_> {
     }
 
     /// A lower bound of the cost of a vertex.
-    fn first_cost(&self, vertex: u32) -> f64 {
+    fn first_cost(&self, vertex: Vertex) -> f64 {
         let mut ring = Ring::default();
         if self.degree(vertex) > MANY_NEIGHBORS {
             self.fill_ring(vertex, &mut ring);
-            return self.tie_breakers[vertex as usize] * ring.weight() / 1.05f64.sqrt();
+            return self.tie_breakers[vertex] * ring.weight() / 1.05f64.sqrt();
         }
         let cost = self.best_collapse(vertex, &mut ring).0;
         // vertices that cannot collapse come to the front first
@@ -165,21 +166,21 @@ impl Decimation<'_> {
 
     /// The cost of a vertex, infinite where it cannot collapse, and the corner at it that is followed by the neighbor onto
     /// which it collapses.
-    fn best_collapse(&self, vertex: u32, ring: &mut Ring) -> (f64, Option<u32>) {
+    fn best_collapse(&self, vertex: Vertex, ring: &mut Ring) -> (f64, Option<u32>) {
         self.fill_ring(vertex, ring);
         let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);
-        let mut rated: Vec<(f64, u32, u32)> = (0..ring.vertices.len())
+        let mut rated: Vec<(f64, Vertex, u32)> = (0..ring.vertices.len())
             .filter(allowed)
             .map(|k| {
                 let neighbor = ring.vertices[k];
-                let shape = self.tie_breakers[neighbor as usize] * ring.shape(k, self.degree(neighbor));
+                let shape = self.tie_breakers[neighbor] * ring.shape(k, self.degree(neighbor));
                 (shape, neighbor, ring.corners[k])
             })
             .collect();
         // the link condition is the most expensive, so test the best neighbor first, then the second best
         while let Some(&best) = rated.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
             if self.keeps_the_sphere(ring, best.1) {
-                let cost = self.tie_breakers[vertex as usize] * ring.weight() * best.0.sqrt();
+                let cost = self.tie_breakers[vertex] * ring.weight() * best.0.sqrt();
                 return (cost, Some(best.2));
             }
             rated.retain(|candidate| candidate.1 != best.1);
@@ -187,12 +188,12 @@ impl Decimation<'_> {
         (f64::INFINITY, None)
     }
 
-    fn fill_ring(&self, vertex: u32, ring: &mut Ring) {
+    fn fill_ring(&self, vertex: Vertex, ring: &mut Ring) {
         ring.corners.clear();
         ring.vertices.clear();
         ring.points.clear();
         (ring.measure, ring.apex) = (0.0, None);
-        for corner in self.around(self.corners[vertex as usize]) {
+        for corner in self.around(self.corners[vertex]) {
             let neighbor = self.vertex(next_corner(corner));
             if neighbor == self.apex() {
                 ring.apex = Some(ring.vertices.len());
@@ -200,13 +201,13 @@ impl Decimation<'_> {
             ring.measure += self.faces[corner as usize / 3].target;
             ring.corners.push(corner);
             ring.vertices.push(neighbor);
-            ring.points.push(self.mesh.points().get(neighbor as usize).copied().unwrap_or_default());
+            ring.points.push(self.mesh.points().get(neighbor.index()).copied().unwrap_or_default());
         }
     }
 
     /// The link condition: exactly two common neighbors.
-    fn keeps_the_sphere(&self, ring: &Ring, onto: u32) -> bool {
-        let around = self.around(self.corners[onto as usize]);
+    fn keeps_the_sphere(&self, ring: &Ring, onto: Vertex) -> bool {
+        let around = self.around(self.corners[onto]);
         around.filter(|&corner| ring.vertices.contains(&self.vertex(next_corner(corner)))).count() == 2
     }
 }

@@ -15,10 +15,10 @@
 
 mod coarsen;
 
-use crate::mesh::TriangleMesh;
 use crate::mesh::corners::{next_corner, previous_corner};
 use crate::mesh::geometry::{area, triangle};
 use crate::mesh::ties::tie_breakers;
+use crate::mesh::{TriangleMesh, Vertex};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub(crate) struct Decimation<'a> {
 /// A face with all data for a turn around a vertex, half a cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Face {
-    vertices: [u32; 3],
+    vertices: [Vertex; 3],
     /// The corner across the edge opposite to each corner.
     twins: [u32; 3],
     target: f64,
@@ -51,9 +51,9 @@ struct Face {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Collapse {
     /// The vertex that collapsed.
-    pub vertex: u32,
+    pub vertex: Vertex,
     /// The neighbor onto which it collapsed.
-    pub onto: u32,
+    pub onto: Vertex,
 }
 
 impl<'a> Decimation<'a> {
@@ -62,7 +62,7 @@ impl<'a> Decimation<'a> {
         let n = mesh.n_vertices();
         let twin = |corner| mesh.opposite(corner).unwrap_or_default();
         let faces = mesh.faces().iter().zip(targets).zip((0..).step_by(3));
-        let face = |((&vertices, target), corner): ((&[u32; 3], f64), u32)| Face {
+        let face = |((&vertices, target), corner): ((&[Vertex; 3], f64), u32)| Face {
             vertices,
             twins: [corner, corner + 1, corner + 2].map(twin),
             target,
@@ -70,8 +70,8 @@ impl<'a> Decimation<'a> {
         let mut whole = Self {
             mesh,
             faces: faces.map(face).collect(),
-            corners: (0..n).map(|vertex| mesh.vertex_corners(vertex)[0]).collect(),
-            degrees: (0..n).map(|vertex| mesh.vertex_corners(vertex).len() as u32).collect(),
+            corners: Vertex::all(n).map(|vertex| mesh.vertex_corners(vertex)[0]).collect(),
+            degrees: Vertex::all(n).map(|vertex| mesh.vertex_corners(vertex).len() as u32).collect(),
             gone: vec![false; n],
             collapses: Vec::with_capacity(n),
             old_targets: Vec::with_capacity(6 * n),
@@ -82,7 +82,7 @@ impl<'a> Decimation<'a> {
     }
 
     /// Joins the boundary loop to the apex.
-    fn close(&mut self, boundary: &[u32]) {
+    fn close(&mut self, boundary: &[Vertex]) {
         let (apex, first) = (self.apex(), 3 * self.faces.len() as u32);
         let end = first + 3 * boundary.len() as u32;
         for (k, &vertex) in boundary.iter().enumerate() {
@@ -91,7 +91,7 @@ impl<'a> Decimation<'a> {
                 self.vertex(next_corner(corner)) == next
                     && self.mesh.opposite(previous_corner(corner)).is_none()
             };
-            let corner = self.mesh.vertex_corners(vertex as usize).iter().find(along);
+            let corner = self.mesh.vertex_corners(vertex).iter().find(along);
             let across = previous_corner(*corner.expect("the loop runs along boundary edges"));
             let face = first + 3 * k as u32;
             let [before, behind] =
@@ -99,7 +99,7 @@ impl<'a> Decimation<'a> {
             let twins = [before + 1, behind, across];
             self.faces.push(Face { vertices: [next, vertex, apex], twins, target: 0.0 });
             *self.twin_mut(across) = face + 2;
-            self.degrees[vertex as usize] += 2;
+            self.degrees[vertex] += 2;
         }
         self.corners.push(first + 2);
         self.degrees.push(boundary.len() as u32);
@@ -107,38 +107,38 @@ impl<'a> Decimation<'a> {
     }
 
     /// The tie breaker between vertices in symmetric places; larger for the preferred vertex.
-    pub(crate) fn preference(&self, vertex: u32) -> f64 {
-        self.tie_breakers[vertex as usize]
+    pub(crate) fn preference(&self, vertex: Vertex) -> f64 {
+        self.tie_breakers[vertex]
     }
 
     /// The vertex that closes a disk.
-    pub(crate) fn apex(&self) -> u32 {
-        self.mesh.n_vertices() as u32
+    pub(crate) fn apex(&self) -> Vertex {
+        Vertex::new(self.mesh.n_vertices())
     }
 
     /// The faces at a vertex, counter-clockwise, each as its two other vertices in order and its target.
-    pub(crate) fn star(&self, vertex: u32) -> impl Iterator<Item = (u32, u32, f64)> {
-        self.around(self.corners[vertex as usize]).map(|corner| {
+    pub(crate) fn star(&self, vertex: Vertex) -> impl Iterator<Item = (Vertex, Vertex, f64)> {
+        self.around(self.corners[vertex]).map(|corner| {
             let ends = [next_corner(corner), previous_corner(corner)].map(|corner| self.vertex(corner));
             (ends[0], ends[1], self.faces[corner as usize / 3].target)
         })
     }
 
     /// The number of neighbors of a vertex.
-    pub(crate) fn degree(&self, vertex: u32) -> usize {
-        self.degrees[vertex as usize] as usize
+    pub(crate) fn degree(&self, vertex: Vertex) -> usize {
+        self.degrees[vertex] as usize
     }
 
     /// True if a vertex has been collapsed.
-    pub(crate) fn is_gone(&self, vertex: u32) -> bool {
-        self.gone[vertex as usize]
+    pub(crate) fn is_gone(&self, vertex: Vertex) -> bool {
+        self.gone[vertex]
     }
 
     /// Takes the last collapse back and returns it; `None` once all are undone.
     pub(crate) fn refine(&mut self) -> Option<Collapse> {
         let collapse = self.collapses.pop()?;
         let Collapse { vertex, onto } = collapse;
-        let corner = self.corners[vertex as usize];
+        let corner = self.corners[vertex];
         // 1. Put the dead faces back between their neighbors
         for corner in self.dead_faces(corner).into_iter().flat_map(|face| 3 * face..3 * face + 3) {
             let across = self.twin(corner);
@@ -153,8 +153,8 @@ impl<'a> Decimation<'a> {
                 break;
             }
         }
-        self.corners[onto as usize] = next_corner(corner);
-        self.gone[vertex as usize] = false;
+        self.corners[onto] = next_corner(corner);
+        self.gone[vertex] = false;
         self.count_neighbors(collapse, corner, 1);
         // 3. Give the star its measure back
         let faces: Vec<u32> = self.measured_faces(corner).collect();
@@ -188,7 +188,7 @@ impl<'a> Decimation<'a> {
             *self.twin_mut(two) = one;
             for corner in [next_corner(two), previous_corner(two)] {
                 let vertex = self.vertex(corner);
-                self.corners[vertex as usize] = corner;
+                self.corners[vertex] = corner;
             }
         }
         // 3. Share the measure among the remaining faces
@@ -197,8 +197,8 @@ impl<'a> Decimation<'a> {
         dead.into_iter().for_each(|face| self.faces[face as usize].target = 0.0);
         self.share_out(heirs.into_iter().filter(|face| !dead.contains(face)), measure);
         // 4. Record the collapse
-        self.corners[collapse.vertex as usize] = corner;
-        self.gone[collapse.vertex as usize] = true;
+        self.corners[collapse.vertex] = corner;
+        self.gone[collapse.vertex] = true;
         self.collapses.push(collapse);
     }
 
@@ -216,11 +216,11 @@ impl<'a> Decimation<'a> {
 
     /// Updates the degrees of a vertex's neighbors when it comes back (`sign` 1) or collapses (−1).
     fn count_neighbors(&mut self, collapse: Collapse, corner: u32, sign: i32) {
-        let beyond = self.degrees[collapse.vertex as usize] as i32 - 4;
+        let beyond = self.degrees[collapse.vertex] as i32 - 4;
         let across = self.twin(previous_corner(corner));
         let beside = [previous_corner(corner), across].map(|corner| (self.vertex(corner), sign));
         for (vertex, change) in beside.into_iter().chain([(collapse.onto, -sign * beyond)]) {
-            let degree = &mut self.degrees[vertex as usize];
+            let degree = &mut self.degrees[vertex];
             *degree = degree.wrapping_add_signed(change);
         }
     }
@@ -259,7 +259,7 @@ impl<'a> Decimation<'a> {
         &mut self.faces[corner as usize / 3].twins[corner as usize % 3]
     }
 
-    fn vertex(&self, corner: u32) -> u32 {
+    fn vertex(&self, corner: u32) -> Vertex {
         self.faces[corner as usize / 3].vertices[corner as usize % 3]
     }
 }
@@ -289,7 +289,8 @@ mod tests {
         let measure = |now: &Decimation| now.faces.iter().map(|face| face.target).sum::<f64>();
         decimation.coarsen(&mut Silent).unwrap();
         assert!((measure(&decimation) - total).abs() < 1e-9 * total);
-        let remaining: Vec<u32> = (0..mesh.n_vertices() as u32).filter(|&v| !decimation.is_gone(v)).collect();
+        let remaining: Vec<Vertex> =
+            Vertex::all(mesh.n_vertices()).filter(|&v| !decimation.is_gone(v)).collect();
         assert_eq!(remaining.len(), left);
         assert!(remaining.iter().all(|&v| decimation.degree(v) == 3 && decimation.star(v).count() == 3));
         while let Some(Collapse { vertex, onto }) = decimation.refine() {

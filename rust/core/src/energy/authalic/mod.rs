@@ -31,7 +31,7 @@ use super::stretch::Profile;
 use crate::codomain::Codomain;
 use crate::codomain::motion::Frame;
 use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, VertexCorners};
+use crate::mesh::{TriangleMesh, Vertex, VertexCorners};
 use crate::parallel;
 use crate::vector::Vector3;
 use face::{Outer, STEEPNESS, Triangle, add_product, add_quadratic, angle_cost};
@@ -39,7 +39,7 @@ use face::{Outer, STEEPNESS, Triangle, add_product, add_quadratic, angle_cost};
 /// Energy of maps of one mesh.
 #[derive(Debug)]
 pub(crate) struct AuthalicEnergy {
-    faces: Vec<[u32; 3]>,
+    faces: Vec<[Vertex; 3]>,
     /// The corners at each vertex.
     corners: VertexCorners,
     /// Cotangents of the rest triangles, (m, 3).
@@ -113,12 +113,12 @@ impl AuthalicEnergy {
     }
 
     /// The faces, (m, 3).
-    pub(crate) fn faces(&self) -> &[[u32; 3]] {
+    pub(crate) fn faces(&self) -> &[[Vertex; 3]] {
         &self.faces
     }
 
     /// The corners at a vertex, in ascending order.
-    pub(crate) fn vertex_corners(&self, vertex: usize) -> &[u32] {
+    pub(crate) fn vertex_corners(&self, vertex: Vertex) -> &[u32] {
         self.corners.of(vertex)
     }
 
@@ -213,7 +213,7 @@ impl AuthalicEnergy {
             let (before, after) = (self.triangle(map, face), self.triangle(moved, face));
             let target = weights.scale * self.targets[face];
             let slopes = before.area_slopes(self.frames(frames, face));
-            let corners = self.faces[face].map(|vertex| direction[vertex as usize]);
+            let corners = self.faces[face].map(|vertex| direction[vertex]);
             let predicted: f64 = (0..6).map(|k| slopes[k] * corners[k / 2][k % 2]).sum();
             let missed = 0.5 * (after.doubled_area - before.doubled_area) - predicted;
             let stiffness =
@@ -288,7 +288,7 @@ impl AuthalicEnergy {
     }
 
     fn frames<'f>(&self, frames: &'f [Frame], face: usize) -> [&'f Frame; 3] {
-        self.faces[face].map(|vertex| &frames[vertex as usize])
+        self.faces[face].map(|vertex| &frames[vertex])
     }
 
     /// Sums the contributions of the faces to the unknowns of their corners.
@@ -296,7 +296,7 @@ impl AuthalicEnergy {
         let by_face = parallel::map(self.targets.len(), of_face);
         parallel::map(self.corners.len(), |vertex| {
             let mut sum = [0.0; 2];
-            for &corner in self.corners.of(vertex) {
+            for &corner in self.corners.of(Vertex::new(vertex)) {
                 let (face, k) = (corner as usize / 3, corner as usize % 3);
                 (0..2).for_each(|axis| sum[axis] += by_face[face][2 * k + axis]);
             }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::codomain::motion::{Motion, frames};
+use crate::mesh::Vertex;
 use crate::vector::coordinates;
 
 const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
@@ -55,7 +56,7 @@ fn gradient_and_exact_hessian_are_the_differences_of_the_value() {
         for face in 0..mesh.n_faces() {
             let element = energy.element(&map, &frames, &WEIGHTS, &EXACT, face);
             // a vertex that cannot leave a direction has no frame there
-            let d: Vec<f64> = mesh.faces()[face].iter().flat_map(|&v| direction[v as usize]).collect();
+            let d: Vec<f64> = mesh.faces()[face].iter().flat_map(|&v| direction[v]).collect();
             curvature += (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum::<f64>();
         }
         let difference = (there + back - 2.0 * value(0.0)) / (h * h);
@@ -86,7 +87,7 @@ fn missing_pull(
         let outer = energy.outer(&corners, face, &WEIGHTS);
         corners.slope_in_space(&outer, energy.cotangents[face], c).dot(frames[vertex].outward)
     };
-    direction[vertex][1].powi(2) * energy.corners.of(vertex).iter().map(of_corner).sum::<f64>()
+    direction[vertex][1].powi(2) * energy.corners.of(Vertex::new(vertex)).iter().map(of_corner).sum::<f64>()
 }
 
 /// dᵀ H d of a map of the plane, without damping.
@@ -99,7 +100,7 @@ fn curvature_along(
     let frames = frames(&vec![Motion::Plane; map.len()], map);
     let of_face = |face: usize| {
         let element = energy.element(map, &frames, weights, &COMPOSITE, face);
-        let d: Vec<f64> = energy.faces[face].iter().flat_map(|&v| direction[v as usize]).collect();
+        let d: Vec<f64> = energy.faces[face].iter().flat_map(|&v| direction[v]).collect();
         (0..36).map(|k| d[k / 6] * element[k / 6][k % 6] * d[k % 6]).sum::<f64>()
     };
     (0..energy.faces.len()).map(of_face).sum()

@@ -8,7 +8,7 @@
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
 use crate::error::{CurveError, Elements, Error, Side};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Face, TriangleMesh, Vertex};
 
 /// Least number of vertices of a path that counts as closed because an edge joins its ends; a shorter one may
 /// just bend around a face or two.
@@ -27,9 +27,9 @@ pub struct LandmarkCurves<'a> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CurvePair {
     /// The vertices on the source, each once.
-    pub source: Vec<u32>,
+    pub source: Vec<Vertex>,
     /// The vertices on the target, each once.
-    pub target: Vec<u32>,
+    pub target: Vec<Vertex>,
     /// Whether an edge leads from the last vertex back to the first.
     pub closed: bool,
     /// Whether both curves are boundary loops.
@@ -49,7 +49,7 @@ pub(crate) enum Gap {
 
 /// A curve as given.
 struct Path {
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     /// Whether the first vertex was repeated at the end.
     repeats_first: bool,
     /// Whether the curve is closed, or can be closed by one more edge.
@@ -108,8 +108,8 @@ fn checked(ours: &SurfaceCurves<'_>, theirs: &SurfaceCurves<'_>) -> Result<Vec<C
     // 2. Pairs, and their meetings
     let pairs = source_paths.into_iter().zip(target_paths).enumerate();
     let mut pairs: Vec<_> = pairs.map(|(curve, paths)| paired(curve, paths)).collect::<Result<_, _>>()?;
-    let source_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.source[..]).collect();
-    let target_vertices: Vec<&[u32]> = pairs.iter().map(|pair| &pair.target[..]).collect();
+    let source_vertices: Vec<&[Vertex]> = pairs.iter().map(|pair| &pair.source[..]).collect();
+    let target_vertices: Vec<&[Vertex]> = pairs.iter().map(|pair| &pair.target[..]).collect();
     ours.refuse_meetings(&source_vertices)?;
     theirs.refuse_meetings(&target_vertices)?;
     // 3. The boundary
@@ -156,10 +156,10 @@ impl SurfaceCurves<'_> {
         if let Some(place) = given.iter().position(|&vertex| vertex >= n_vertices) {
             return Err(CurveError::OutOfRange { side, curve, place, value: given[place], n_vertices }.into());
         }
-        let vertices: Vec<u32> =
-            given[..given.len() - usize::from(repeats_first)].iter().map(|&v| v as u32).collect();
+        let vertices: Vec<Vertex> =
+            given[..given.len() - usize::from(repeats_first)].iter().copied().map(Vertex::new).collect();
         self.refuse_repetitions(curve, &vertices)?;
-        let is_off = |ends: &[usize]| !is_edge(self.mesh, ends[0] as u32, ends[1] as u32);
+        let is_off = |ends: &[usize]| !is_edge(self.mesh, Vertex::new(ends[0]), Vertex::new(ends[1]));
         if let Some(place) = given.windows(2).position(is_off) {
             let vertices = Elements::collect([given[place], given[place + 1]]).expect("there are two");
             return Err(CurveError::OffEdges { side, curve, place, vertices }.into());
@@ -169,8 +169,8 @@ impl SurfaceCurves<'_> {
         Ok(Path { vertices, repeats_first, can_close })
     }
 
-    fn refuse_repetitions(&self, curve: usize, vertices: &[u32]) -> Result<(), Error> {
-        let mut places: Vec<(u32, usize)> = vertices.iter().copied().zip(0..).collect();
+    fn refuse_repetitions(&self, curve: usize, vertices: &[Vertex]) -> Result<(), Error> {
+        let mut places: Vec<(Vertex, usize)> = vertices.iter().copied().zip(0..).collect();
         places.sort_unstable();
         let twice = places.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         match twice.map(|pair| (pair[1].1, pair[0].1, pair[0].0)).min() {
@@ -179,31 +179,31 @@ impl SurfaceCurves<'_> {
                 side: self.side,
                 curve,
                 places: [first, second],
-                vertices: Elements::collect([vertex as usize]).expect("there is one"),
+                vertices: Elements::collect([vertex]).expect("there is one"),
             }
             .into()),
         }
     }
 
     /// Refuses curves that share a vertex.
-    fn refuse_meetings(&self, curves: &[&[u32]]) -> Result<(), Error> {
+    fn refuse_meetings(&self, curves: &[&[Vertex]]) -> Result<(), Error> {
         const NOBODY: usize = usize::MAX;
         let mut owner = vec![NOBODY; self.mesh.n_vertices()];
         for (curve, vertices) in curves.iter().enumerate() {
-            let met = vertices.iter().map(|&v| owner[v as usize]).find(|&owner| owner != NOBODY);
+            let met = vertices.iter().map(|&v| owner[v]).find(|&owner| owner != NOBODY);
             if let Some(met) = met {
-                let shared = vertices.iter().map(|&v| v as usize).filter(|&v| owner[v] == met);
+                let shared = vertices.iter().copied().filter(|&v| owner[v] == met);
                 let vertices = Elements::collect(shared).expect("one was found");
                 return Err(CurveError::Meet { side: self.side, curves: [met, curve], vertices }.into());
             }
-            vertices.iter().for_each(|&v| owner[v as usize] = curve);
+            vertices.iter().for_each(|&v| owner[v] = curve);
         }
         Ok(())
     }
 
     /// Whether a curve runs along a whole boundary loop; an error if it only meets the boundary.
-    fn bounds(&self, curve: usize, vertices: &[u32], closed: bool) -> Result<bool, Error> {
-        let met = vertices.iter().map(|&v| v as usize).filter(|&v| self.mesh.is_boundary(v));
+    fn bounds(&self, curve: usize, vertices: &[Vertex], closed: bool) -> Result<bool, Error> {
+        let met = vertices.iter().copied().filter(|&v| self.mesh.is_boundary(v));
         match Elements::collect(met) {
             None => Ok(false),
             Some(_) if closed && loop_along(self.mesh, vertices).is_some() => Ok(true),
@@ -225,9 +225,10 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
 
 /// Starts a closed curve at the vertex with the least coordinates, towards the lesser of its neighbors, so that
 /// the start and the direction given do not matter.
-fn start_canonically(closed: &mut [u32], mesh: &TriangleMesh) {
-    let point = |vertex: u32| mesh.points()[vertex as usize];
-    let is_less = |a: u32, b: u32| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
+fn start_canonically(closed: &mut [Vertex], mesh: &TriangleMesh) {
+    let point = |vertex: Vertex| mesh.points()[vertex];
+    let is_less =
+        |a: Vertex, b: Vertex| point(a).partial_cmp(&point(b)).is_some_and(std::cmp::Ordering::is_lt);
     let first = (1..closed.len()).fold(0, |best, k| if is_less(closed[k], closed[best]) { k } else { best });
     closed.rotate_left(first);
     if is_less(closed[closed.len() - 1], closed[1]) {
@@ -246,7 +247,7 @@ fn check_loops(source: &TriangleMesh, target: &TriangleMesh, pairs: &[CurvePair]
 }
 
 /// The boundary loop along which a closed curve runs as a whole, from any vertex and in any direction.
-pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[u32]) -> Option<usize> {
+pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[Vertex]) -> Option<usize> {
     mesh.boundary_loops().iter().position(|vertices| {
         let n = vertices.len();
         let Some(first) = vertices.iter().position(|&v| v == curve[0]).filter(|_| n == curve.len()) else {
@@ -258,14 +259,14 @@ pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[u32]) -> Option<usize> {
 }
 
 /// The face on the left of the edge from one vertex to another, if there is one.
-pub(super) fn face_on_left(mesh: &TriangleMesh, from: u32, to: u32) -> Option<u32> {
-    let corners = mesh.vertex_corners(from as usize).iter();
+pub(super) fn face_on_left(mesh: &TriangleMesh, from: Vertex, to: Vertex) -> Option<Face> {
+    let corners = mesh.vertex_corners(from).iter();
     let next = |corner: u32| mesh.faces()[corner as usize / 3][(corner as usize % 3 + 1) % 3];
-    corners.copied().find(|&corner| next(corner) == to).map(|corner| corner / 3)
+    corners.copied().find(|&corner| next(corner) == to).map(Face::of_corner)
 }
 
 /// Whether an edge joins two vertices.
-fn is_edge(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
+fn is_edge(mesh: &TriangleMesh, a: Vertex, b: Vertex) -> bool {
     face_on_left(mesh, a, b).or(face_on_left(mesh, b, a)).is_some()
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pieces of surfaces with their features: slits along landmark curves and boundary loops, each with two banks.
 
-use crate::mesh::Face;
+use crate::mesh::{Face, Vertex};
 use crate::vector::Vector3;
 
 /// A bank of a feature: vertices from its start to its end, with their parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bank {
     /// At least two vertices of the piece.
-    pub vertices: Vec<u32>,
+    pub vertices: Vec<Vertex>,
     /// The parameters of the vertices, strictly increasing from 0 to 1.
     pub parameters: Vec<f64>,
 }
@@ -34,12 +34,12 @@ impl Feature {
     }
 
     /// The first vertex.
-    pub(crate) fn start(&self) -> u32 {
+    pub(crate) fn start(&self) -> Vertex {
         self.left.vertices[0]
     }
 
     /// The last vertex.
-    pub(crate) fn end(&self) -> u32 {
+    pub(crate) fn end(&self) -> Vertex {
         self.left.vertices[self.left.vertices.len() - 1]
     }
 }
@@ -58,11 +58,11 @@ pub(crate) struct Piece {
     /// (n, 3): the vertices in space.
     pub points: Vec<Vector3>,
     /// (m, 3): the faces, oriented.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// (n, 3): the vertices on the unit sphere, source and target roughly aligned.
     pub on_sphere: Vec<Vector3>,
     /// (n,): the vertex of the surface that each vertex is.
-    pub vertex_of: Vec<u32>,
+    pub vertex_of: Vec<Vertex>,
     /// (m,): the face of the surface that each face is.
     pub face_of: Vec<Face>,
     /// The slits and all boundary loops.

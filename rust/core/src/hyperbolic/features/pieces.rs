@@ -12,7 +12,7 @@ use super::parameters::{nearest, shares};
 use super::piece::{Bank, Feature, Piece};
 use super::placement::Placement;
 use super::regions::{Divided, Regions};
-use crate::mesh::{Face, TriangleMesh};
+use crate::mesh::{Face, TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Cuts both surfaces into pieces; returns each piece of the source with its partner on the target. Features are in
@@ -42,7 +42,7 @@ pub(crate) fn pieces(
     (0..divided.source.count)
         .map(|region| {
             let partner = divided.partner[region];
-            (ours.piece(region as u32), theirs.piece(partner))
+            (ours.piece(region), theirs.piece(partner))
         })
         .collect()
 }
@@ -56,14 +56,14 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    fn piece(&self, region: u32) -> Piece {
+    fn piece(&self, region: usize) -> Piece {
         let all = Face::all(self.mesh.n_faces());
         let face_of: Vec<Face> = all.filter(|&face| self.regions.of_face[face] == region).collect();
         let (faces, vertex_of) = renumbered(self.mesh, &face_of);
-        let number = |vertex: u32| vertex_of.partition_point(|&given| given < vertex) as u32;
+        let number = |vertex: Vertex| Vertex::new(vertex_of.partition_point(|&given| given < vertex));
         let features = (0..self.features.len()).filter_map(|curve| self.seen_from(region, curve));
         let features = features.map(|feature| feature.with_vertices(number)).collect();
-        let of_vertices = |values: &[Vector3]| vertex_of.iter().map(|&v| values[v as usize]).collect();
+        let of_vertices = |values: &[Vector3]| vertex_of.iter().map(|&v| values[v]).collect();
         Piece {
             points: of_vertices(self.mesh.points()),
             on_sphere: of_vertices(self.sphere),
@@ -75,7 +75,7 @@ impl Surface<'_> {
     }
 
     /// A feature as seen from a region; `None` if it does not border the region.
-    fn seen_from(&self, region: u32, curve: usize) -> Option<Feature> {
+    fn seen_from(&self, region: usize, curve: usize) -> Option<Feature> {
         let feature = &self.features[curve];
         let first_loop = self.regions.sides.len();
         let [left, right] = match curve.checked_sub(first_loop) {
@@ -92,29 +92,28 @@ impl Surface<'_> {
     }
 
     /// The region on the left of a boundary loop, twice.
-    fn loop_sides(&self, feature: &Feature) -> [u32; 2] {
-        let corner = self.mesh.vertex_corners(feature.start() as usize)[0];
+    fn loop_sides(&self, feature: &Feature) -> [usize; 2] {
+        let corner = self.mesh.vertex_corners(feature.start())[0];
         [self.regions.of_face[Face::of_corner(corner)]; 2]
     }
 }
 
 /// The faces with their vertices renumbered in ascending order, and these vertices.
-fn renumbered(mesh: &TriangleMesh, face_of: &[Face]) -> (Vec<[u32; 3]>, Vec<u32>) {
-    const UNUSED: u32 = u32::MAX;
+fn renumbered(mesh: &TriangleMesh, face_of: &[Face]) -> (Vec<[Vertex; 3]>, Vec<Vertex>) {
+    const UNUSED: Vertex = Vertex(u32::MAX);
     let mut number = vec![UNUSED; mesh.n_vertices()];
     let given = face_of.iter().map(|&face| mesh.faces()[face]);
-    given.clone().flatten().for_each(|vertex| number[vertex as usize] = 0);
-    let vertex_of: Vec<u32> =
-        (0..mesh.n_vertices() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
-    vertex_of.iter().zip(0..).for_each(|(&vertex, new)| number[vertex as usize] = new);
-    (given.map(|face| face.map(|vertex| number[vertex as usize])).collect(), vertex_of)
+    given.clone().flatten().for_each(|vertex| number[vertex] = Vertex::default());
+    let vertex_of: Vec<Vertex> = Vertex::all(mesh.n_vertices()).filter(|&v| number[v] != UNUSED).collect();
+    vertex_of.iter().zip(Vertex::all(vertex_of.len())).for_each(|(&vertex, new)| number[vertex] = new);
+    (given.map(|face| face.map(|vertex| number[vertex])).collect(), vertex_of)
 }
 
 /// An open curve cut open.
-fn slit(vertices: &[u32], points: &[Vector3]) -> Feature {
+fn slit(vertices: &[Vertex], points: &[Vector3]) -> Feature {
     let bank = Bank {
         vertices: vertices.to_vec(),
-        parameters: shares(vertices.iter().map(|&vertex| points[vertex as usize])),
+        parameters: shares(vertices.iter().map(|&vertex| points[vertex])),
     };
     Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
@@ -148,15 +147,15 @@ fn loop_features(pair: &CurvePair, points: [&[Vector3]; 2], shift: f64) -> [Feat
 /// A closed curve from a start vertex around and back to it.
 struct Around {
     /// The first vertex again at the end.
-    vertices: Vec<u32>,
+    vertices: Vec<Vertex>,
     /// Shares of the length.
     parameters: Vec<f64>,
 }
 
 impl Around {
-    fn new(closed: &[u32], points: &[Vector3]) -> Self {
-        let vertices: Vec<u32> = closed.iter().chain(&closed[..1]).copied().collect();
-        let parameters = shares(vertices.iter().map(|&vertex| points[vertex as usize]));
+    fn new(closed: &[Vertex], points: &[Vector3]) -> Self {
+        let vertices: Vec<Vertex> = closed.iter().chain(&closed[..1]).copied().collect();
+        let parameters = shares(vertices.iter().map(|&vertex| points[vertex]));
         Self { vertices, parameters }
     }
 
@@ -188,7 +187,7 @@ impl Around {
 
     /// The curve with an end at vertex `middle`.
     fn feature(&self, middle: usize) -> Feature {
-        let bank = |vertices: &[u32], parameters: &[f64]| {
+        let bank = |vertices: &[Vertex], parameters: &[f64]| {
             let (first, last) = (parameters[0], parameters[parameters.len() - 1]);
             let inner = parameters.iter().map(|s| ((s - first) / (last - first)).clamp(0.0, 1.0));
             Bank { vertices: vertices.to_vec(), parameters: inner.collect() }
@@ -219,7 +218,7 @@ fn share_gap(features: &mut [Feature; 2], gap: Gap) {
 
 impl Feature {
     /// The feature with its vertices renumbered.
-    fn with_vertices(mut self, number: impl Fn(u32) -> u32) -> Self {
+    fn with_vertices(mut self, number: impl Fn(Vertex) -> Vertex) -> Self {
         let banks = [&mut self.left, &mut self.right];
         banks.into_iter().flat_map(|bank| &mut bank.vertices).for_each(|vertex| *vertex = number(*vertex));
         self

@@ -16,7 +16,7 @@ use crate::alignment::rotation::{best_rotation, centroid, rotate};
 use crate::control::Watch;
 use crate::disk::closed;
 use crate::error::{Elements, Error, MapError};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, Vertex};
 use crate::parallel;
 use crate::sphere::rough_conformal;
 use crate::vector::Vector3;
@@ -217,10 +217,10 @@ struct Line {
 }
 
 impl Line {
-    fn new(vertices: &[u32], closed: bool, points: &[Vector3], sphere: &[Vector3]) -> Self {
+    fn new(vertices: &[Vertex], closed: bool, points: &[Vector3], sphere: &[Vector3]) -> Self {
         let all = || vertices.iter().chain(if closed { &vertices[..1] } else { &[] });
-        let parameters = shares(all().map(|&v| points[v as usize]));
-        Self { places: all().map(|&v| sphere[v as usize]).collect(), parameters }
+        let parameters = shares(all().map(|&v| points[v]));
+        Self { places: all().map(|&v| sphere[v]).collect(), parameters }
     }
 
     /// Points at equal distances, from parameter `shift` on for a closed curve.
@@ -269,9 +269,11 @@ fn paired_loops(
         let vertices = &meshes[side].boundary_loops()[number];
         unit(middle(&Line::new(vertices, true, meshes[side].points(), spheres[side]).samples(true, 0.0)))
     };
-    let ours = divided.source.loops.iter().map(|&(number, region)| {
-        (number, divided.partner[region as usize], rotate(rotation, center(0, number)))
-    });
+    let ours = divided
+        .source
+        .loops
+        .iter()
+        .map(|&(number, region)| (number, divided.partner[region], rotate(rotation, center(0, number))));
     let ours: Vec<_> = ours.collect();
     let theirs = divided.target.loops.iter().map(|&(number, region)| (number, region, center(1, number)));
     let theirs: Vec<_> = theirs.collect();

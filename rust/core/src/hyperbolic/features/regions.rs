@@ -9,13 +9,13 @@
 
 use super::curves::{CurvePair, Gap, face_on_left, loop_along};
 use crate::error::{CurveError, Error, Side};
-use crate::mesh::TriangleMesh;
 use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
 use crate::mesh::geometry::triangle;
+use crate::mesh::{Face, TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// The region beyond the boundary, which is none.
-pub(super) const OUTSIDE: u32 = u32::MAX;
+pub(super) const OUTSIDE: usize = usize::MAX;
 
 /// Least difference, as a share of the whole area, by which areas left and right of a curve tell its sides.
 const CLEAR_SHARE: f64 = 0.02;
@@ -27,14 +27,14 @@ const OUTVOTES: f64 = 0.2;
 #[derive(Debug, Clone)]
 pub(crate) struct Regions {
     /// (m,): the region of each face, numbered by their lowest faces.
-    pub of_face: Vec<u32>,
+    pub of_face: Vec<usize>,
     /// The number of regions.
     pub count: usize,
     /// The regions on the left and right of each curve; they are equal for an open curve, [`OUTSIDE`] beyond the
     /// boundary.
-    pub sides: Vec<[u32; 2]>,
+    pub sides: Vec<[usize; 2]>,
     /// The region of each boundary loop that is no curve, with the number of the loop.
-    pub loops: Vec<(usize, u32)>,
+    pub loops: Vec<(usize, usize)>,
     /// The share of each region in the area of the surface.
     shares: Vec<f64>,
     /// The centroid of each region times its share.
@@ -51,7 +51,7 @@ pub(crate) struct Divided {
     /// The regions of the target.
     pub target: Regions,
     /// The region of the target that corresponds to each region of the source.
-    pub partner: Vec<u32>,
+    pub partner: Vec<usize>,
 }
 
 /// Divides both surfaces along closed curves and pairs their regions.
@@ -63,7 +63,7 @@ pub(crate) fn divided(
     target: &TriangleMesh,
     mut pairs: Vec<CurvePair>,
 ) -> Result<Divided, Error> {
-    let curves = |side: fn(&CurvePair) -> &Vec<u32>| pairs.iter().map(side).collect::<Vec<_>>();
+    let curves = |side: fn(&CurvePair) -> &Vec<Vertex>| pairs.iter().map(side).collect::<Vec<_>>();
     let closed: Vec<bool> = pairs.iter().map(|pair| pair.closed).collect();
     let ours = Regions::new(source, &curves(|pair| &pair.source), &closed);
     let mut theirs = Regions::new(target, &curves(|pair| &pair.target), &closed);
@@ -82,7 +82,7 @@ pub(crate) fn divided(
     let mut partner = vec![0; ours.count];
     for curve in (0..pairs.len()).filter(|&curve| closed[curve]) {
         for side in (0..2).filter(|&side| ours.sides[curve][side] != OUTSIDE) {
-            partner[ours.sides[curve][side] as usize] = theirs.sides[curve][side];
+            partner[ours.sides[curve][side]] = theirs.sides[curve][side];
         }
     }
     Ok(Divided { pairs, source: ours, target: theirs, partner })
@@ -146,15 +146,15 @@ fn check_sides(closed: usize, ours: &Regions, theirs: &Regions) -> Result<(), Er
 }
 
 impl Regions {
-    fn new(mesh: &TriangleMesh, curves: &[&Vec<u32>], closed: &[bool]) -> Self {
+    fn new(mesh: &TriangleMesh, curves: &[&Vec<Vertex>], closed: &[bool]) -> Self {
         let walls = curves.iter().zip(closed).filter(|(_, closed)| **closed).map(|(curve, _)| &curve[..]);
         let (of_face, count) = flooded(mesh, &walls_at_corners(mesh, walls));
-        let region = |face: Option<u32>| face.map_or(OUTSIDE, |face| of_face[face as usize]);
+        let region = |face: Option<Face>| face.map_or(OUTSIDE, |face| of_face[face]);
         let sides = curves.iter().map(|curve| {
             let [a, b] = [curve[0], curve[1]];
             [region(face_on_left(mesh, a, b)), region(face_on_left(mesh, b, a))]
         });
-        let sides: Vec<[u32; 2]> = sides.collect();
+        let sides: Vec<[usize; 2]> = sides.collect();
         let named: Vec<usize> = curves.iter().filter_map(|curve| loop_along(mesh, curve)).collect();
         let unnamed = (0..mesh.boundary_loops().len()).filter(|number| !named.contains(number));
         let loops = unnamed.map(|number| {
@@ -167,8 +167,8 @@ impl Regions {
         for (face, &region) in of_face.iter().enumerate() {
             let (share, [a, b, c]) =
                 (mesh.face_areas()[face] / total, triangle(mesh.points(), mesh.faces()[face]));
-            shares[region as usize] += share;
-            moments[region as usize] += (a + (b + c)) * (share / 3.0);
+            shares[region] += share;
+            moments[region] += (a + (b + c)) * (share / 3.0);
         }
         Self { of_face, count, sides, loops, shares, moments }
     }
@@ -176,20 +176,19 @@ impl Regions {
     /// A region next to a curve.
     fn region(&self, curve: usize) -> usize {
         let [left, right] = self.sides[curve];
-        left.min(right) as usize
+        left.min(right)
     }
 
     /// Whether each region lies on the left of a closed curve.
     fn on_left(&self, closed: usize) -> Vec<bool> {
         let mut on_left = vec![false; self.count];
-        if let Some(first) = on_left.get_mut(self.sides[closed][0] as usize) {
+        if let Some(first) = on_left.get_mut(self.sides[closed][0]) {
             *first = true;
         }
         let joined: Vec<[usize; 2]> = (0..self.sides.len())
             .filter(|&curve| curve != closed)
             .map(|curve| self.sides[curve])
             .filter(|sides| !sides.contains(&OUTSIDE))
-            .map(|sides| sides.map(|side| side as usize))
             .collect();
         while let Some([a, b]) = joined.iter().find(|[a, b]| on_left[*a] != on_left[*b]) {
             (on_left[*a], on_left[*b]) = (true, true);
@@ -198,7 +197,7 @@ impl Regions {
     }
 
     fn loops_in(&self, inside: &[bool]) -> usize {
-        self.loops.iter().filter(|(_, region)| inside[*region as usize]).count()
+        self.loops.iter().filter(|(_, region)| inside[*region]).count()
     }
 
     /// The vector to the centroid of some regions from that of the rest.
@@ -217,23 +216,23 @@ impl Regions {
 }
 
 /// Whether the edge opposite to each corner lies on a closed curve.
-fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [u32]>) -> Vec<bool> {
-    let mut next = vec![[u32::MAX; 2]; mesh.n_vertices()];
+fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [Vertex]>) -> Vec<bool> {
+    let mut next = vec![[Vertex(u32::MAX); 2]; mesh.n_vertices()];
     for curve in curves {
         for (k, &vertex) in curve.iter().enumerate() {
             let n = curve.len();
-            next[vertex as usize] = [curve[(k + 1) % n], curve[(k + n - 1) % n]];
+            next[vertex] = [curve[(k + 1) % n], curve[(k + n - 1) % n]];
         }
     }
     let is_wall = |corner: u32| {
         let [a, b] = [next_corner(corner), previous_corner(corner)].map(|c| vertex_at(mesh.faces(), c));
-        next[a as usize].contains(&b)
+        next[a].contains(&b)
     };
     (0..3 * mesh.n_faces() as u32).map(is_wall).collect()
 }
 
 /// The region of each face, and the number of regions.
-fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<u32>, usize) {
+fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<usize>, usize) {
     let (mut of_face, mut count) = (vec![OUTSIDE; mesh.n_faces()], 0);
     for seed in 0..mesh.n_faces() {
         if of_face[seed] != OUTSIDE {
@@ -254,5 +253,5 @@ fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<u32>, usize) {
         }
         count += 1;
     }
-    (of_face, count as usize)
+    (of_face, count)
 }

@@ -12,8 +12,7 @@ use crate::hyperbolic::moebius::{
     Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
 };
 use crate::hyperbolic::slice::Opened;
-use crate::mesh::Face;
-use crate::mesh::NO_CORNER;
+use crate::mesh::{Face, NO_CORNER};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -66,7 +65,7 @@ impl<'a> Atlas<'a> {
                 Moebius::between([from, to], [to_to, to_from])
             }
         });
-        let mu = surface.faces.iter().map(|face| face.map(|vertex| metric.mu[vertex as usize])).collect();
+        let mu = surface.faces.iter().map(|face| face.map(|vertex| metric.mu[vertex])).collect();
         Self { charts, transitions, mu, opposite }
     }
 

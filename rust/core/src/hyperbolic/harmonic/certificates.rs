@@ -77,7 +77,7 @@ pub(crate) fn folded_faces(map: &ChartMap<'_>) -> Vec<usize> {
 
 /// The image of a face in the chart of its first vertex.
 pub(crate) fn image(map: &ChartMap<'_>, net: &Net, face: usize) -> [Complex; 3] {
-    let x = net.faces[face].map(|vertex| map.places.positions[vertex as usize]);
+    let x = net.faces[face].map(|vertex| map.places.positions[vertex]);
     let [_, to_last, to_second] = [0, 1, 2].map(|k| net.transitions[3 * face + k]);
     // the edge opposite to corner 2 runs from vertex 0 to 1, that opposite to corner 1 from vertex 2 to 0
     [x[0], to_second.apply(x[1]), to_last.inverse().apply(x[2])]

@@ -6,7 +6,7 @@ use super::delaunay::{Net, Weighted, delaunay};
 use super::initial::Places;
 use crate::error::Error;
 use crate::hyperbolic::moebius::{Complex, Moebius, exponential, seen_from};
-use crate::mesh::NO_CORNER;
+use crate::mesh::{NO_CORNER, Vertex};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Order};
 
@@ -34,7 +34,7 @@ pub(crate) struct ChartMap<'a> {
 /// The pull of an edge at both ends.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pull {
-    ends: [u32; 2],
+    ends: [Vertex; 2],
     weight: f64,
     distance: f64,
     /// The unit vectors at each end towards the other.
@@ -62,7 +62,7 @@ impl<'a> ChartMap<'a> {
     /// Whether the edge of a corner counts, from this side; edges between two held vertices do not.
     fn counts(&self, corner: u32) -> bool {
         let across = self.intrinsic.opposite[corner as usize];
-        let is_held = |vertex: u32| self.places.held[vertex as usize].is_some();
+        let is_held = |vertex: Vertex| self.places.held[vertex].is_some();
         let [tail, head] = self.intrinsic.ends(corner as usize);
         (across == NO_CORNER || corner < across) && !(is_held(tail) && is_held(head))
     }
@@ -83,7 +83,7 @@ impl<'a> ChartMap<'a> {
     fn pull(&self, corner: u32, positions: &[Complex]) -> Pull {
         let corner = corner as usize;
         let ends = self.intrinsic.ends(corner);
-        let [a, x] = ends.map(|vertex| positions[vertex as usize]);
+        let [a, x] = ends.map(|vertex| positions[vertex]);
         let transition = self.intrinsic.transitions[corner];
         let b = transition.apply(x);
         let (there, back) = (seen_from(a, b), seen_from(b, a));
@@ -105,7 +105,7 @@ impl<'a> ChartMap<'a> {
         let mut gradient = vec![Complex::default(); self.places.positions.len()];
         for pull in pulls {
             for (vertex, towards) in pull.ends.into_iter().zip(pull.towards) {
-                gradient[vertex as usize] -= pull.weight * pull.distance * towards;
+                gradient[vertex] -= pull.weight * pull.distance * towards;
             }
         }
         for (slope, held) in gradient.iter_mut().zip(&self.places.held) {
@@ -124,7 +124,7 @@ impl<'a> ChartMap<'a> {
         let mut sums = vec![0.0; self.places.positions.len()];
         for &corner in &self.edges {
             let ends = self.intrinsic.ends(corner as usize);
-            ends.iter().for_each(|&vertex| sums[vertex as usize] += self.weights[corner as usize]);
+            ends.iter().for_each(|&vertex| sums[vertex] += self.weights[corner as usize]);
         }
         sums
     }
@@ -137,10 +137,10 @@ impl<'a> ChartMap<'a> {
             self.places.held.iter().map(|held| if held.is_some() { 0 } else { 2 }).collect();
         dofs.push(0);
         let clique = |&corner: &u32| match self.intrinsic.ends(corner as usize) {
-            [tail, head] if tail == head => [tail, n as u32, n as u32],
-            [tail, head] => [tail, head, n as u32],
+            [tail, head] if tail == head => [tail, Vertex::new(n), Vertex::new(n)],
+            [tail, head] => [tail, head, Vertex::new(n)],
         };
-        let cliques: Vec<[u32; 3]> = self.edges.iter().map(clique).collect();
+        let cliques: Vec<[Vertex; 3]> = self.edges.iter().map(clique).collect();
         Analysis::new(dofs.len(), &cliques, &dofs, Order::Sparse)
     }
 
@@ -193,7 +193,7 @@ impl<'a> ChartMap<'a> {
             let (faces, old) = (&net.faces, &net.transitions);
             net.transitions = parallel::map(old.len(), |corner| {
                 let face = faces[corner / 3];
-                let [tail, head] = [1, 2].map(|step| walks[face[(corner + step) % 3] as usize].motion);
+                let [tail, head] = [1, 2].map(|step| walks[face[(corner + step) % 3]].motion);
                 if tail == Moebius::default() && head == Moebius::default() {
                     old[corner]
                 } else {

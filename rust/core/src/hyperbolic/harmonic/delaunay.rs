@@ -12,7 +12,7 @@
 
 use crate::hyperbolic::moebius::Moebius;
 use crate::hyperbolic::slice::Opened;
-use crate::mesh::NO_CORNER;
+use crate::mesh::{NO_CORNER, Vertex};
 
 /// An edge is flipped if its cotangents sum to less than minus this.
 const CONVEX: f64 = 1e-9;
@@ -29,7 +29,7 @@ const LEAST_AREA: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(crate) struct Net {
     /// (m, 3): the vertices of the faces.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// (3 m,): the opposite corners.
     pub opposite: Vec<u32>,
     /// (3 m,): the isometry from the chart of an edge's head to that of its tail; its face runs from tail to head.
@@ -50,7 +50,7 @@ impl Net {
     }
 
     /// The tail and the head of the edge of a corner.
-    pub(crate) fn ends(&self, corner: usize) -> [u32; 2] {
+    pub(crate) fn ends(&self, corner: usize) -> [Vertex; 2] {
         let face = self.faces[corner / 3];
         [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v)
     }
@@ -100,10 +100,10 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
 }
 
 fn boundary_vertices(net: &Net) -> Vec<bool> {
-    let n_vertices = net.faces.iter().flatten().max().map_or(0, |&last| last as usize + 1);
+    let n_vertices = net.faces.iter().flatten().max().map_or(0, |&last| last.index() + 1);
     let mut is_boundary = vec![false; n_vertices];
     for corner in (0..net.opposite.len()).filter(|&corner| net.opposite[corner] == NO_CORNER) {
-        net.ends(corner).iter().for_each(|&vertex| is_boundary[vertex as usize] = true);
+        net.ends(corner).iter().for_each(|&vertex| is_boundary[vertex] = true);
     }
     is_boundary
 }
@@ -115,7 +115,7 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
         return false;
     }
     let across = across as usize;
-    let is_on_boundary = |corner: usize| is_boundary[net.faces[corner / 3][corner % 3] as usize];
+    let is_on_boundary = |corner: usize| is_boundary[net.faces[corner / 3][corner % 3]];
     let (ours, theirs) = (chords(lengths, corner), chords(lengths, across));
     // the cosines of the opposite angles, doubled; their sum has the sign of that of the cotangents
     let cosine = |[e, a, b]: [f64; 3]| (a * a + b * b - e * e) / (a * b);

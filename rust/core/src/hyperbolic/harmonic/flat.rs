@@ -9,7 +9,7 @@
 //!
 //! Cost: a sparse Cholesky factorization for each surface and a point location for each vertex.
 
-use crate::mesh::NO_CORNER;
+use crate::mesh::{NO_CORNER, Vertex};
 use std::f64::consts::PI;
 
 use super::certificates::PieceCertificates;
@@ -85,20 +85,20 @@ impl Laid<'_> {
         for (side, theirs) in sides.filter(|(side, _)| !side.is_arc) {
             for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
                 let (first, t) = segment(&theirs.parameters, s);
-                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[first] as usize], t);
+                copies[vertex] = Location::on_edge(corners[theirs.vertices[first]], t);
             }
         }
         let mut locations = vec![Location::default(); self.sliced.surface.vertex_of.len()];
         for (copy, vertex) in self.sliced.surface_vertices().into_iter().enumerate() {
-            locations[vertex as usize] = copies[copy];
+            locations[vertex] = copies[copy];
         }
         Ok(locations)
     }
 
     /// The sum of the signed areas of all faces.
     fn signed_area(&self) -> f64 {
-        let area = |face: &[u32; 3]| {
-            let [a, b, c] = face.map(|vertex| self.layout[vertex as usize]);
+        let area = |face: &[Vertex; 3]| {
+            let [a, b, c] = face.map(|vertex| self.layout[vertex]);
             0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
         };
         self.sliced.disk.faces.iter().map(area).sum()
@@ -110,7 +110,7 @@ impl Laid<'_> {
         let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NO_CORNER);
         let triangle = |corner: usize| {
             let face = disk.faces[corner / 3];
-            let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3] as usize]);
+            let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3]]);
             0.5 * (a[0] * b[1] - a[1] * b[0])
         };
         corners.map(triangle).sum()
@@ -130,7 +130,7 @@ fn on_polygon(source: &Sliced, target: &Sliced, layout: &[Planar]) -> Vec<Option
     held(source, |side, s| {
         let theirs = &target.sides[side];
         let (first, t) = segment(&theirs.parameters, s);
-        let [from, to] = [first, first + 1].map(|k| layout[theirs.vertices[k] as usize]);
+        let [from, to] = [first, first + 1].map(|k| layout[theirs.vertices[k]]);
         [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis])
     })
 }
@@ -139,7 +139,7 @@ fn held(sliced: &Sliced, place: impl Fn(usize, f64) -> Planar) -> Vec<Option<Pla
     let mut held = vec![None; sliced.disk.vertex_of.len()];
     for (number, side) in sliced.sides.iter().enumerate() {
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
-            held[vertex as usize] = Some(place(number, s));
+            held[vertex] = Some(place(number, s));
         }
     }
     held
@@ -154,33 +154,33 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
     let y = |side: usize| if side == 0 || side == 5 { 0.0 } else { 1.0 };
     let mut place = vec![None; surface.vertex_of.len()];
     let mut shift = vec![0.0; disk.vertex_of.len()];
-    let surface_vertex: Vec<usize> = sliced.surface_vertices().iter().map(|&v| v as usize).collect();
+    let surface_vertex = sliced.surface_vertices();
     for (number, side) in sliced.sides.iter().enumerate() {
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
             match (side.is_arc, number) {
                 (true, 1) => {}
                 // the copies on the left of the strip are one period away from those on the right
-                (true, _) => shift[vertex as usize] = -1.0,
-                (false, 0 | 5) => place[surface_vertex[vertex as usize]] = Some([x(number, s), y(number)]),
+                (true, _) => shift[vertex] = -1.0,
+                (false, 0 | 5) => place[surface_vertex[vertex]] = Some([x(number, s), y(number)]),
                 // parameters from the arc on: the second feature starts where the first ends
-                (false, _) => place[surface_vertex[vertex as usize]] = Some([x(number, 1.0 - s), y(number)]),
+                (false, _) => place[surface_vertex[vertex]] = Some([x(number, 1.0 - s), y(number)]),
             }
         }
     }
     // the tips of the arc belong to both halves and lie at ½
     for &tip in [&sliced.sides[1].vertices[0], sliced.sides[1].vertices.last().expect("an arc has vertices")]
     {
-        let place = &mut place[surface_vertex[tip as usize]];
+        let place = &mut place[surface_vertex[tip]];
         *place = place.map(|[_, y]| [0.5, y]);
     }
     // 2. Weighted means across the arc
     let is_held = place.iter().map(Option::is_some).collect();
     let mut map: Vec<Planar> = place.into_iter().map(Option::unwrap_or_default).collect();
     let jump = |face: usize, k: usize| {
-        let [i, j] = [1, 2].map(|step| shift[disk.faces[face][(k + step) % 3] as usize]);
+        let [i, j] = [1, 2].map(|step| shift[disk.faces[face][(k + step) % 3]]);
         [j - i, 0.0]
     };
-    let faces: Vec<[u32; 3]> = surface.faces.clone();
+    let faces: Vec<[Vertex; 3]> = surface.faces.clone();
     let system = Laplace::new(&faces, is_held)?;
     system.solve(&faces, &clamped_weights(sliced), jump, &mut map, watch)?;
     let layout = |map: &[Planar]| -> Vec<Planar> {
@@ -215,7 +215,7 @@ fn located(
         return Ok(locations);
     }
     let miss = |location: &Location, [x, y]: Planar| {
-        let corners = target.disk.faces[location.triangle].map(|vertex| layout[vertex as usize]);
+        let corners = target.disk.faces[location.triangle].map(|vertex| layout[vertex]);
         let coordinate =
             |axis: usize| (0..3).map(|k| location.barycentric[k] * corners[k][axis]).sum::<f64>();
         (coordinate(0) - x).hypot(coordinate(1) - y)

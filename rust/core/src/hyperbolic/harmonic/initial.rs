@@ -10,8 +10,7 @@
 //!
 //! Cost: two sparse Cholesky factorizations, a point location for each vertex and a short walk for each edge.
 
-use crate::mesh::Face;
-use crate::mesh::NO_CORNER;
+use crate::mesh::{Face, NO_CORNER, Vertex};
 use std::collections::{HashMap, VecDeque};
 use std::f64::consts::PI;
 
@@ -83,7 +82,7 @@ fn layout_on_polygon(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, 
         let backwards = number >= n_sides / 2;
         for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
             let t = if backwards { 1.0 - s } else { s };
-            held[vertex as usize] = Some([0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]));
+            held[vertex] = Some([0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]));
         }
     }
     planar_layout(sliced, &held, watch)
@@ -108,7 +107,7 @@ fn places_of_copies(
         {
             for (&vertex, &s) in ours.vertices.iter().zip(&ours.parameters) {
                 let (first, t) = segment(&theirs.parameters, s);
-                copies[vertex as usize] = Location::on_edge(corners[theirs.vertices[first] as usize], t);
+                copies[vertex] = Location::on_edge(corners[theirs.vertices[first]], t);
             }
         }
     }
@@ -133,7 +132,7 @@ pub(crate) fn segment(parameters: &[f64], s: f64) -> (usize, f64) {
 /// The master copy of each vertex, and the isometries to its chart from those of the other copies.
 struct Links {
     /// (n,): the master of each vertex of the sliced source, a vertex of the disk.
-    masters: Vec<u32>,
+    masters: Vec<Vertex>,
     /// The isometry from the chart of each vertex of the disk to its master's.
     to_master: Vec<Moebius>,
     /// (n,): whether each vertex of the sliced source lies on the boundary.
@@ -144,16 +143,17 @@ impl Links {
     fn new(source: &Sliced, target: &Sliced, atlas: &Atlas<'_>, copies: &[Location]) -> Self {
         let n = source.surface.vertex_of.len();
         let surface_vertex = source.surface_vertices();
-        let mut masters = vec![u32::MAX; n];
+        let mut masters = vec![None; n];
         // copies on the left sides, which come first, before the others
         let left = source.sides.iter().flat_map(|side| side.vertices.iter().copied());
-        for copy in left.chain(0..copies.len() as u32) {
-            let master = &mut masters[surface_vertex[copy as usize] as usize];
-            *master = if *master == u32::MAX { copy } else { *master };
+        for copy in left.chain(Vertex::all(copies.len())) {
+            masters[surface_vertex[copy]].get_or_insert(copy);
         }
+        let masters: Vec<Vertex> =
+            masters.into_iter().map(|copy| copy.expect("every vertex has a copy")).collect();
         let mut to_master = vec![Moebius::default(); copies.len()];
         for copy in 0..copies.len() {
-            let master = masters[surface_vertex[copy] as usize] as usize;
+            let master = masters[surface_vertex[copy]];
             let (from, to) = (copies[copy].triangle, copies[master].triangle);
             if from != to {
                 to_master[copy] = path(&target.surface.opposite, atlas, from, to);
@@ -162,14 +162,14 @@ impl Links {
         let mut is_boundary = vec![false; n];
         for corner in (0..3 * source.faces.len()).filter(|&c| source.surface.opposite[c] == NO_CORNER) {
             for step in [1, 2] {
-                is_boundary[source.surface.faces[corner / 3][(corner + step) % 3] as usize] = true;
+                is_boundary[source.surface.faces[corner / 3][(corner + step) % 3]] = true;
             }
         }
         Self { masters, to_master, is_boundary }
     }
 
     fn places(&self, copies: &[Location], atlas: &Atlas<'_>) -> Places {
-        let copy = |vertex: usize| copies[self.masters[vertex] as usize];
+        let copy = |vertex: usize| copies[self.masters[vertex]];
         let n = self.masters.len();
         Places {
             faces: (0..n).map(|vertex| copy(vertex).triangle).collect(),
@@ -190,7 +190,7 @@ impl Links {
         let opposite = &source.surface.opposite;
         let along = |corner: usize| {
             let face = source.disk.faces[corner / 3];
-            let [tail, head] = [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v as usize);
+            let [tail, head] = [face[(corner + 1) % 3], face[(corner + 2) % 3]];
             let there = walk(&target.disk, layout, atlas, copies[tail].triangle, copies[head].triangle);
             self.to_master[tail] * there.inverse() * self.to_master[head].inverse()
         };
@@ -211,7 +211,7 @@ impl Links {
 /// The isometry from the chart of one face to that of another, along faces of the disk between them.
 fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
     let center = |face: Face| {
-        let corners = disk.faces[face].map(|vertex| layout[vertex as usize]);
+        let corners = disk.faces[face].map(|vertex| layout[vertex]);
         [0, 1].map(|axis| (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3.0)
     };
     let goal = center(to);
@@ -236,7 +236,7 @@ fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: Face, to: Fac
 
 fn edge_of(disk: &Opened, layout: &[Planar], corner: usize) -> [Planar; 2] {
     let face = disk.faces[corner / 3];
-    [1, 2].map(|step| layout[face[(corner + step) % 3] as usize])
+    [1, 2].map(|step| layout[face[(corner + step) % 3]])
 }
 
 fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {

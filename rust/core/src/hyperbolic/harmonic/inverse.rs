@@ -14,8 +14,7 @@ use super::initial::segment;
 use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::Location;
-use crate::mesh::Face;
-use crate::mesh::NO_CORNER;
+use crate::mesh::{Face, NO_CORNER, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -33,9 +32,9 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
     for (face, vertices) in covered.iter().enumerate() {
         for &(vertex, barycentric) in vertices {
             let inside = barycentric.iter().copied().fold(1.0, f64::min);
-            if inside > depth[vertex as usize] {
-                depth[vertex as usize] = inside;
-                locations[vertex as usize] = Some(settled(Face::new(face), barycentric));
+            if inside > depth[vertex] {
+                depth[vertex] = inside;
+                locations[vertex] = Some(settled(Face::new(face), barycentric));
             }
         }
     }
@@ -45,8 +44,8 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
     for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| !side.is_arc) {
         for (&vertex, &s) in theirs.vertices.iter().zip(&theirs.parameters) {
             let (first, t) = segment(&ours.parameters, s);
-            let corner = corners[ours.vertices[first] as usize];
-            locations[surface_vertex[vertex as usize] as usize] = Some(Location::on_edge(corner, t));
+            let corner = corners[ours.vertices[first]];
+            locations[surface_vertex[vertex]] = Some(Location::on_edge(corner, t));
         }
     }
     locations
@@ -59,13 +58,13 @@ fn settled(triangle: Face, barycentric: [f64; 3]) -> Location {
 }
 
 /// The vertices of the target in the image of a face of the source, with their coordinates there.
-fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(u32, [f64; 3])> {
+fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(Vertex, [f64; 3])> {
     let corners = image(map, &map.input, face);
     // relative to the first corner, where geodesics are straight lines
     let straight = |z: Complex| to_klein(seen_from(corners[0], z));
     let triangle = corners.map(straight);
-    let mut vertices: Vec<(u32, [f64; 3])> = Vec::new();
-    let first = map.places.faces[map.input.faces[face][0] as usize];
+    let mut vertices: Vec<(Vertex, [f64; 3])> = Vec::new();
+    let first = map.places.faces[map.input.faces[face][0]];
     let mut queue = vec![(first, Moebius::default())];
     let mut visited = vec![first];
     while let Some((visited_face, motion)) = queue.pop() {

@@ -11,8 +11,8 @@ use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError};
 use crate::hyperbolic::slice::Opened;
 use crate::hyperbolic::slice::sliced::Sliced;
-use crate::mesh::NO_CORNER;
 use crate::mesh::geometry::corner_cotangents;
+use crate::mesh::{NO_CORNER, Vertex};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
@@ -81,7 +81,7 @@ pub(super) struct Laplace {
 
 impl Laplace {
     /// Analyses the pattern of `faces` for the vertices that are not held.
-    pub(super) fn new(faces: &[[u32; 3]], is_held: Vec<bool>) -> Result<Self, Error> {
+    pub(super) fn new(faces: &[[Vertex; 3]], is_held: Vec<bool>) -> Result<Self, Error> {
         let dofs: Vec<u8> = is_held.iter().map(|&held| u8::from(!held)).collect();
         let analysis = Analysis::new(dofs.len(), faces, &dofs, Order::Sparse)?;
         Ok(Self { analysis, is_held })
@@ -91,7 +91,7 @@ impl Laplace {
     /// opposite to corner k of a face goes beyond f_j by the jump. Each corner counts half the edge's weight.
     pub(super) fn solve(
         &self,
-        faces: &[[u32; 3]],
+        faces: &[[Vertex; 3]],
         weights: &[f64],
         jump: impl Fn(usize, usize) -> Planar + Sync,
         map: &mut [Planar],
@@ -115,7 +115,7 @@ impl Laplace {
             }
         })?;
         // the solution is the map with the held positions plus Newton's step from it
-        let unknown = |vertex: u32| self.analysis.first_unknown(vertex as usize);
+        let unknown = |vertex: Vertex| self.analysis.first_unknown(vertex);
         let n = self.analysis.n_unknowns();
         let mut rhs = vec![0.0; 2 * n];
         for (face, corners) in faces.iter().enumerate() {
@@ -123,9 +123,9 @@ impl Laplace {
                 let [i, j] = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
                 let (jump, weight) = (jump(face, k), 0.5 * weights[3 * face + k]);
                 for axis in 0..2 {
-                    let pull = weight * (map[i as usize][axis] - map[j as usize][axis] - jump[axis]);
+                    let pull = weight * (map[i][axis] - map[j][axis] - jump[axis]);
                     for (vertex, pull) in [(i, -pull), (j, pull)] {
-                        if !self.is_held[vertex as usize] {
+                        if !self.is_held[vertex] {
                             rhs[axis * n + unknown(vertex)] += pull;
                         }
                     }
@@ -133,8 +133,8 @@ impl Laplace {
             }
         }
         factor.solve(&self.analysis, &mut rhs);
-        for vertex in (0..map.len()).filter(|&vertex| !self.is_held[vertex]) {
-            let k = unknown(vertex as u32);
+        for vertex in Vertex::all(map.len()).filter(|&vertex| !self.is_held[vertex]) {
+            let k = unknown(vertex);
             map[vertex] = [map[vertex][0] + rhs[k], map[vertex][1] + rhs[n + k]];
         }
         Ok(())

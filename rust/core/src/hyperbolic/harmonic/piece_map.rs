@@ -18,6 +18,7 @@ use crate::hyperbolic::metric::{Metric, hyperbolic_metric};
 use crate::hyperbolic::options::{HarmonicSolver, HyperbolicOptions};
 use crate::hyperbolic::slice::sliced::{Sliced, SlicedPair};
 use crate::location::Location;
+use crate::mesh::Vertex;
 
 /// A map between two sliced pieces.
 pub(crate) struct PieceMap {
@@ -109,7 +110,7 @@ fn unfolded(
         for _ in 0..round {
             grow(&mut is_near, &map.input.faces);
         }
-        let is_kept = |face: &[u32; 3]| round == ROUNDS || face.iter().all(|&v| is_near[v as usize]);
+        let is_kept = |face: &[Vertex; 3]| round == ROUNDS || face.iter().all(|&v| is_near[v]);
         let kept: Vec<bool> = map.input.faces.iter().map(is_kept).collect();
         *map = ChartMap::by_delaunay(map.atlas, map.places.clone(), map.input.clone(), lengths, &kept);
         let again = newton(map, observer)?;
@@ -119,14 +120,14 @@ fn unfolded(
     Ok(descent)
 }
 
-fn mark(is_near: &mut [bool], face: [u32; 3]) {
-    face.iter().for_each(|&vertex| is_near[vertex as usize] = true);
+fn mark(is_near: &mut [bool], face: [Vertex; 3]) {
+    face.iter().for_each(|&vertex| is_near[vertex] = true);
 }
 
 /// Marks the neighbors of marked vertices.
-fn grow(is_near: &mut [bool], faces: &[[u32; 3]]) {
+fn grow(is_near: &mut [bool], faces: &[[Vertex; 3]]) {
     let before = is_near.to_vec();
-    let touches = |face: &&[u32; 3]| face.iter().any(|&vertex| before[vertex as usize]);
+    let touches = |face: &&[Vertex; 3]| face.iter().any(|&vertex| before[vertex]);
     faces.iter().filter(touches).for_each(|&face| mark(is_near, face));
 }
 
@@ -135,7 +136,7 @@ pub(crate) fn vertex_areas(sliced: &Sliced, metric: &Metric) -> Vec<f64> {
     let mut areas = vec![0.0; sliced.surface.vertex_of.len()];
     for (face, angles) in sliced.surface.faces.iter().zip(&metric.angles) {
         let area = std::f64::consts::PI - angles.iter().sum::<f64>();
-        face.iter().for_each(|&vertex| areas[vertex as usize] += area / 3.0);
+        face.iter().for_each(|&vertex| areas[vertex] += area / 3.0);
     }
     areas
 }

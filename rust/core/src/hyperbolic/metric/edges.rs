@@ -13,23 +13,23 @@
 //! enough for every triangle of a mesh in space hardly ever meet: I ≥ 1. Thurston's angles would then all be 0,
 //! the tangential packing, which does not depend on the surface's shape; so I is kept as it is.
 
-use crate::mesh::{EdgeTable, corner_of_entry};
+use crate::mesh::{EdgeTable, Vertex, corner_of_entry};
 use crate::parallel;
 use crate::vector::Vector3;
 
 /// The edges of the faces.
 pub(super) struct Edges {
     /// The two vertices of each edge, ascending.
-    pub ends: Vec<[u32; 2]>,
+    pub ends: Vec<[Vertex; 2]>,
     /// (m, 3): the edge opposite to each corner.
-    pub of_face: Vec<[u32; 3]>,
+    pub of_face: Vec<[usize; 3]>,
     /// (n,): whether a vertex is on the boundary, an end of an edge of only one face.
     pub on_boundary: Vec<bool>,
 }
 
 impl Edges {
     /// Numbers the edges of all faces.
-    pub(super) fn new(n_vertices: usize, faces: &[[u32; 3]]) -> Self {
+    pub(super) fn new(n_vertices: usize, faces: &[[Vertex; 3]]) -> Self {
         let mut edges = Self {
             ends: Vec::new(),
             of_face: vec![[0; 3]; faces.len()],
@@ -37,10 +37,10 @@ impl Edges {
         };
         for (ends, entries) in EdgeTable::new(n_vertices, faces).edges() {
             for corner in entries.iter().map(|entry| corner_of_entry(entry) as usize) {
-                edges.of_face[corner / 3][corner % 3] = edges.ends.len() as u32;
+                edges.of_face[corner / 3][corner % 3] = edges.ends.len();
             }
             if entries.len() == 1 {
-                ends.iter().for_each(|&end| edges.on_boundary[end as usize] = true);
+                ends.iter().for_each(|&end| edges.on_boundary[end] = true);
             }
             edges.ends.push(ends);
         }
@@ -54,18 +54,18 @@ impl Edges {
 
     /// The values at the two ends of an edge.
     pub(super) fn at_ends(&self, edge: usize, values: &[f64]) -> [f64; 2] {
-        self.ends[edge].map(|end| values[end as usize])
+        self.ends[edge].map(|end| values[end])
     }
 
     /// The values of the edges opposite to the corners of a face.
     pub(super) fn around(&self, face: usize, values: &[f64]) -> [f64; 3] {
-        self.of_face[face].map(|edge| values[edge as usize])
+        self.of_face[face].map(|edge| values[edge])
     }
 
     /// The lengths in space.
     pub(super) fn lengths(&self, points: &[Vector3]) -> Vec<f64> {
         parallel::map(self.len(), |edge| {
-            let [a, b] = self.ends[edge].map(|end| points[end as usize]);
+            let [a, b] = self.ends[edge].map(|end| points[end]);
             a.distance(b)
         })
     }
@@ -167,7 +167,7 @@ impl Packing {
         let mut radii = vec![f64::INFINITY; n_vertices];
         for (edge, ends) in edges.ends.iter().enumerate() {
             for &end in ends {
-                radii[end as usize] = radii[end as usize].min(0.5 * lengths[edge]);
+                radii[end] = radii[end].min(0.5 * lengths[edge]);
             }
         }
         let distances = parallel::map(edges.len(), |edge| {

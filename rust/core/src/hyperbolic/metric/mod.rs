@@ -24,6 +24,7 @@ use std::f64::consts::TAU;
 
 use crate::control::Watch;
 use crate::error::{Elements, Error, NumericsError};
+use crate::mesh::Vertex;
 use crate::mesh::geometry::face_areas;
 use crate::vector::Vector3;
 use edges::{Conformal, Packing, factor_of_radius, radius_of_factor};
@@ -70,7 +71,7 @@ pub struct Metric {
 /// [`NumericsError::FactorizationFailed`] if the mesh is too large, [`Error::CancelledEarly`] if cancelled.
 pub(super) fn hyperbolic_metric(
     points: &[Vector3],
-    faces: &[[u32; 3]],
+    faces: &[[Vertex; 3]],
     euler_characteristic: i64,
     method: MetricMethod,
     watch: &Watch<'_>,

@@ -22,6 +22,7 @@ use super::edges::{Conformal, Edges};
 use super::triangle::{angle_derivatives, angles, is_degenerate};
 use crate::control::Watch;
 use crate::error::Error;
+use crate::mesh::Vertex;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
@@ -48,7 +49,7 @@ const SHIFTS: [f64; 5] = [0.0, 1e-8, 1e-6, 1e-4, 1e-2];
 
 /// A surface that is to get a hyperbolic metric.
 pub(super) struct Surface<'a> {
-    pub faces: &'a [[u32; 3]],
+    pub faces: &'a [[Vertex; 3]],
     pub edges: Edges,
     /// The required angle sum at each vertex: 2π, and π on the boundary.
     pub angle_sums: Vec<f64>,
@@ -57,7 +58,7 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// Numbers the edges and analyzes the Hessian's pattern.
-    pub(super) fn new(n_vertices: usize, faces: &'a [[u32; 3]]) -> Result<Self, Error> {
+    pub(super) fn new(n_vertices: usize, faces: &'a [[Vertex; 3]]) -> Result<Self, Error> {
         let edges = Edges::new(n_vertices, faces);
         let angle_sums = edges.on_boundary.iter().map(|&is| if is { PI } else { TAU }).collect();
         let analysis = Analysis::new(n_vertices, faces, &vec![1; n_vertices], Order::Sparse)?;
@@ -88,7 +89,7 @@ impl State {
         let angles = parallel::map(surface.faces.len(), |face| angles(edges.around(face, &lengths)));
         let mut curvatures = surface.angle_sums.clone();
         for (face, angles) in surface.faces.iter().zip(&angles) {
-            (0..3).for_each(|k| curvatures[face[k] as usize] -= angles[k]);
+            (0..3).for_each(|k| curvatures[face[k]] -= angles[k]);
         }
         Self { lengths, angles, curvatures }
     }
@@ -197,7 +198,6 @@ pub(super) fn hessian(
     let by_sides = angle_derivatives(edges.around(face, &state.lengths), &state.angles[face]);
     let mut hessian = [[0.0; 3]; 3];
     for (side, &edge) in edges.of_face[face].iter().enumerate() {
-        let edge = edge as usize;
         for corner in [(side + 1) % 3, (side + 2) % 3] {
             let end = usize::from(surface.faces[face][corner] != edges.ends[edge][0]);
             (0..3).for_each(|row| hessian[row][corner] -= by_sides[row][side] * by_factors[edge][end]);

@@ -79,8 +79,7 @@ pub(super) fn bad_faces(surface: &Surface<'_>, state: &State) -> Vec<usize> {
         return thin;
     }
     let large = 0.5 * state.residual();
-    let is_curved =
-        |&face: &usize| surface.faces[face].iter().any(|&v| state.curvatures[v as usize].abs() >= large);
+    let is_curved = |&face: &usize| surface.faces[face].iter().any(|&v| state.curvatures[v].abs() >= large);
     all.filter(is_curved).collect()
 }
 
@@ -104,12 +103,12 @@ fn raise(surface: &Surface<'_>, bad: &[usize], rings: usize, levels: &mut [f64])
         }
         let mut is_touched = vec![false; surface.n_vertices()];
         let chosen = surface.faces.iter().zip(&is_chosen).filter(|&(_, &is)| is);
-        chosen.for_each(|(face, _)| face.iter().for_each(|&v| is_touched[v as usize] = true));
-        is_chosen = surface.faces.iter().map(|face| face.iter().any(|&v| is_touched[v as usize])).collect();
+        chosen.for_each(|(face, _)| face.iter().for_each(|&v| is_touched[v] = true));
+        is_chosen = surface.faces.iter().map(|face| face.iter().any(|&v| is_touched[v])).collect();
     }
     let mut is_raised = vec![false; levels.len()];
     for (edges, _) in surface.edges.of_face.iter().zip(&is_chosen).filter(|&(_, &is)| is) {
-        edges.iter().for_each(|&edge| is_raised[edge as usize] = true);
+        edges.iter().for_each(|&edge| is_raised[edge] = true);
     }
     for (level, _) in levels.iter_mut().zip(&is_raised).filter(|&(_, &is)| is) {
         *level = (*level + SHARE).min(1.0);

@@ -7,11 +7,12 @@ use std::f64::consts::{PI, TAU};
 use super::newton::{hessian, length_derivatives};
 use super::*;
 use crate::control::Silent;
+use crate::mesh::{Vertex, faces_of_indices};
 use crate::sparse::solve_positive_definite;
 
 struct Mesh {
     points: Vec<Vector3>,
-    faces: Vec<[u32; 3]>,
+    faces: Vec<[Vertex; 3]>,
 }
 
 /// An icosahedron, each face split into four `times` times, on the unit sphere.
@@ -30,7 +31,7 @@ fn icosphere(times: usize) -> Mesh {
             }
         }
     }
-    (0..times).fold(Mesh { points, faces }, |mesh, _| split(mesh))
+    (0..times).fold(Mesh { points, faces: faces_of_indices(&faces) }, |mesh, _| split(mesh))
 }
 
 fn unit(a: Vector3) -> Vector3 {
@@ -39,10 +40,10 @@ fn unit(a: Vector3) -> Vector3 {
 
 fn split(Mesh { mut points, faces }: Mesh) -> Mesh {
     let mut midpoints = BTreeMap::new();
-    let mut midpoint = |a: u32, b: u32| {
+    let mut midpoint = |a: Vertex, b: Vertex| {
         *midpoints.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            points.push(unit(points[a as usize] + points[b as usize]));
-            points.len() as u32 - 1
+            points.push(unit(points[a] + points[b]));
+            Vertex::new(points.len() - 1)
         })
     };
     let mut parts = Vec::new();
@@ -59,10 +60,11 @@ fn sphere_with_holes(times: usize, holes: u32) -> Mesh {
 }
 
 fn without(Mesh { points, faces }: Mesh, holes: u32) -> Mesh {
-    let faces: Vec<[u32; 3]> = faces.into_iter().filter(|face| face.iter().all(|&v| v >= holes)).collect();
+    let faces: Vec<[Vertex; 3]> =
+        faces.into_iter().filter(|face| face.iter().all(|&v| v.0 >= holes)).collect();
     // the centers of the holes come first
     let points = points[holes as usize..].to_vec();
-    Mesh { points, faces: faces.iter().map(|face| face.map(|v| v - holes)).collect() }
+    Mesh { points, faces: faces.iter().map(|face| face.map(|v| Vertex(v.0 - holes))).collect() }
 }
 
 /// Points moved at random by up to `amount`.
@@ -86,12 +88,12 @@ fn solve(mesh: &Mesh, holes: i64, method: MetricMethod) -> Metric {
 /// Angle sums, area and agreement of lengths across edges.
 fn check(mesh: &Mesh, holes: i64, metric: &Metric) {
     let mut sums = vec![0.0; mesh.points.len()];
-    let mut lengths: BTreeMap<[u32; 2], Vec<f64>> = BTreeMap::new();
+    let mut lengths: BTreeMap<[Vertex; 2], Vec<f64>> = BTreeMap::new();
     let mut area = 0.0;
     for (face, (angles, sides)) in mesh.faces.iter().zip(metric.angles.iter().zip(&metric.lengths)) {
         area += PI - angles.iter().sum::<f64>();
         for k in 0..3 {
-            sums[face[k] as usize] += angles[k];
+            sums[face[k]] += angles[k];
             let [a, b] = [face[(k + 1) % 3], face[(k + 2) % 3]];
             lengths.entry([a.min(b), a.max(b)]).or_default().push(sides[k]);
         }
@@ -99,10 +101,10 @@ fn check(mesh: &Mesh, holes: i64, metric: &Metric) {
         assert!((cosine / sides[0].cosh() - 1.0).abs() < 1e-12);
         assert!(angles.iter().all(|&angle| angle > 0.0));
     }
-    let on_boundary: BTreeSet<u32> =
+    let on_boundary: BTreeSet<Vertex> =
         lengths.iter().filter(|(_, sides)| sides.len() == 1).flat_map(|(ends, _)| *ends).collect();
     for (v, sum) in sums.iter().enumerate() {
-        let wanted = if on_boundary.contains(&(v as u32)) { PI } else { TAU };
+        let wanted = if on_boundary.contains(&Vertex::new(v)) { PI } else { TAU };
         assert!((sum - wanted).abs() < 1e-10, "vertex {v}: {}", sum - wanted);
     }
     assert!(lengths.values().all(|sides| sides.iter().all(|side| side.to_bits() == sides[0].to_bits())));
@@ -176,7 +178,7 @@ fn dense_hessian(surface: &Surface<'_>, conformal: &Conformal, factors: &[f64]) 
     for (face, vertices) in surface.faces.iter().enumerate() {
         let element = hessian(surface, &by_factors, &state, face);
         for row in 0..3 {
-            (0..3).for_each(|k| dense[vertices[row] as usize][vertices[k] as usize] += element[row][k]);
+            (0..3).for_each(|k| dense[vertices[row]][vertices[k]] += element[row][k]);
         }
     }
     dense

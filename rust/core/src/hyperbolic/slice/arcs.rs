@@ -16,6 +16,7 @@ use super::paths::{cheapest_path, lower_distances};
 use super::polyline::{Polyline, resampled};
 use crate::control::Watch;
 use crate::error::{CurveError, Error};
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// The angle between the points of a carried polyline.
@@ -46,7 +47,7 @@ pub(super) fn source_arcs(
     surface: &mut Cutting,
     links: &[Link],
     watch: &Watch<'_>,
-) -> Result<Vec<Vec<u32>>, Error> {
+) -> Result<Vec<Vec<Vertex>>, Error> {
     let step = median_edge(&surface.points, &surface.faces);
     let mut room = clearance(surface);
     let mut arcs = Vec::new();
@@ -62,9 +63,9 @@ pub(super) fn source_arcs(
 }
 
 /// The polylines that the arcs on the target should follow: the source's, carried over if possible.
-pub(super) fn guides(source: &Cutting, arcs: &[Vec<u32>], carry: Carry<'_>) -> Vec<Guide> {
-    let guide = |arc: &Vec<u32>| {
-        let along: Vec<Vector3> = arc.iter().map(|&vertex| source.on_sphere[vertex as usize]).collect();
+pub(super) fn guides(source: &Cutting, arcs: &[Vec<Vertex>], carry: Carry<'_>) -> Vec<Guide> {
+    let guide = |arc: &Vec<Vertex>| {
+        let along: Vec<Vector3> = arc.iter().map(|&vertex| source.on_sphere[vertex]).collect();
         let along = resampled(&along, SPACING);
         let is_line = |line: &Vec<Vector3>| line.len() >= 2 && line.iter().all(|x| x.is_finite());
         match carry(&along).filter(is_line) {
@@ -85,7 +86,7 @@ pub(super) fn target_arcs(
     links: &[Link],
     guides: Vec<Guide>,
     watch: &Watch<'_>,
-) -> Result<(Vec<Vec<u32>>, bool), Error> {
+) -> Result<(Vec<Vec<Vertex>>, bool), Error> {
     let step = median_edge(&surface.on_sphere, &surface.faces);
     let mut arcs = Vec::new();
     let mut all_followed = true;
@@ -100,17 +101,17 @@ pub(super) fn target_arcs(
 }
 
 /// The path along a guide, and whether it stays near to it and so in its class.
-fn follow(surface: &Cutting, link: &Link, guide: Guide, step: f64) -> Option<(Vec<u32>, bool)> {
+fn follow(surface: &Cutting, link: &Link, guide: Guide, step: f64) -> Option<(Vec<Vertex>, bool)> {
     let Guide { mut polyline, is_carried } = guide;
     let last = polyline.len() - 1;
-    polyline[0] = surface.on_sphere[link.from as usize];
-    polyline[last] = surface.on_sphere[link.to as usize];
+    polyline[0] = surface.on_sphere[link.from];
+    polyline[last] = surface.on_sphere[link.to];
     let line = Polyline::new(polyline);
     let mut known = vec![f64::NAN; surface.points.len()];
-    let mut strayed = |vertex: u32| {
-        let known = &mut known[vertex as usize];
+    let mut strayed = |vertex: Vertex| {
+        let known = &mut known[vertex];
         if known.is_nan() {
-            *known = line.distance(surface.on_sphere[vertex as usize]) / step;
+            *known = line.distance(surface.on_sphere[vertex]) / step;
         }
         *known
     };
@@ -127,8 +128,8 @@ fn follow(surface: &Cutting, link: &Link, guide: Guide, step: f64) -> Option<(Ve
 }
 
 /// Factor on the cost of an edge: 1 far from the cuts, 11 at a cut.
-fn narrowness(room: &[f64], a: u32, b: u32, step: f64) -> f64 {
-    let clear = 0.5 * (room[a as usize] + room[b as usize]);
+fn narrowness(room: &[f64], a: Vertex, b: Vertex, step: f64) -> f64 {
+    let clear = 0.5 * (room[a] + room[b]);
     1.0 + 3.0 * step / (0.3 * step + clear)
 }
 
@@ -139,7 +140,7 @@ fn clearance(surface: &Cutting) -> Vec<f64> {
     distances
 }
 
-fn cut(surface: &mut Cutting, arc: &[u32]) {
+fn cut(surface: &mut Cutting, arc: &[Vertex]) {
     surface.mark(arc, Seam::Arc);
     surface.split_chords(arc);
 }
@@ -153,10 +154,9 @@ fn goes_on(watch: &Watch<'_>) -> Result<(), Error> {
 }
 
 /// The median length of the faces' sides.
-fn median_edge(positions: &[Vector3], faces: &[[u32; 3]]) -> f64 {
+fn median_edge(positions: &[Vector3], faces: &[[Vertex; 3]]) -> f64 {
     let sides = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut lengths: Vec<f64> =
-        sides.map(|[a, b]| positions[a as usize].distance(positions[b as usize])).collect();
+    let mut lengths: Vec<f64> = sides.map(|[a, b]| positions[a].distance(positions[b])).collect();
     let middle = lengths.len() / 2;
     if lengths.is_empty() { 0.0 } else { *lengths.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

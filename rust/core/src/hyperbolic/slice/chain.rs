@@ -11,6 +11,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::hyperbolic::features::piece::{Feature, Piece};
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// A link from the end of a feature to the start of the next.
@@ -19,9 +20,9 @@ pub(super) struct Link {
     /// The landmark curve from which it comes; `None` for a boundary loop that is no landmark curve.
     pub curve: Option<usize>,
     /// The end of that feature.
-    pub from: u32,
+    pub from: Vertex,
     /// The start of the next feature.
-    pub to: u32,
+    pub to: Vertex,
 }
 
 /// The features in order, each with whether it is reversed; one order for both pieces.
@@ -56,7 +57,7 @@ pub(super) fn links(features: &[Feature]) -> Vec<Link> {
 type Tips = [[Vector3; 2]; 2];
 
 fn tips(piece: &Piece, feature: &Feature) -> [Vector3; 2] {
-    [feature.start(), feature.end()].map(|vertex| piece.on_sphere[vertex as usize])
+    [feature.start(), feature.end()].map(|vertex| piece.on_sphere[vertex])
 }
 
 /// The chain from a feature with a direction on to the nearest ones, and its length.
@@ -94,15 +95,17 @@ mod tests {
 
     /// Features of two vertices each, at the given angles along the equator.
     fn piece(angles: &[[f64; 2]]) -> Piece {
-        let bank =
-            |k: usize| Bank { vertices: vec![2 * k as u32, 2 * k as u32 + 1], parameters: vec![0.0, 1.0] };
+        let bank = |k: usize| Bank {
+            vertices: [2 * k, 2 * k + 1].map(Vertex::new).to_vec(),
+            parameters: vec![0.0, 1.0],
+        };
         let feature = |k: usize| Feature { left: bank(k), right: bank(k), is_loop: false, curve: Some(k) };
         let on_sphere: Vec<Vector3> =
             angles.as_flattened().iter().map(|a| Vector3([a.cos(), a.sin(), 0.0])).collect();
         Piece {
             points: on_sphere.clone(),
             faces: Vec::new(),
-            vertex_of: (0..on_sphere.len() as u32).collect(),
+            vertex_of: Vertex::all(on_sphere.len()).collect(),
             face_of: Vec::new(),
             features: (0..angles.len()).map(feature).collect(),
             on_sphere,
@@ -116,7 +119,8 @@ mod tests {
         assert_eq!(chain, [(0, false), (2, false), (1, true)]);
         let features = features(&piece, &chain);
         let links = links(&features);
-        let expected = [Link { curve: Some(0), from: 1, to: 4 }, Link { curve: Some(2), from: 5, to: 3 }];
+        let link = |curve, from, to| Link { curve: Some(curve), from: Vertex(from), to: Vertex(to) };
+        let expected = [link(0, 1, 4), link(2, 5, 3)];
         assert_eq!(links, expected);
     }
 

@@ -13,7 +13,7 @@
 
 use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
-use crate::mesh::{EdgeTable, Face, NO_CORNER, half_edge, next_corner, previous_corner, vertex_at};
+use crate::mesh::{EdgeTable, Face, NO_CORNER, Vertex, half_edge, next_corner, previous_corner, vertex_at};
 use crate::vector::Vector3;
 
 /// The reason for which an edge is cut.
@@ -35,7 +35,7 @@ pub(super) struct Cutting {
     /// (n, 3): the vertices and midpoints on the unit sphere.
     pub on_sphere: Vec<Vector3>,
     /// (m, 3): the faces, oriented.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// (3 m,): the opposite corners, [`NO_CORNER`] on the boundary of the piece.
     pub opposite: Vec<u32>,
     /// (3 m,): the seam of the edge opposite to each corner.
@@ -66,23 +66,23 @@ impl Cutting {
     }
 
     /// Whether a vertex lies on a cut.
-    pub(super) fn is_cut(&self, vertex: u32) -> bool {
-        self.is_cut[vertex as usize]
+    pub(super) fn is_cut(&self, vertex: Vertex) -> bool {
+        self.is_cut[vertex]
     }
 
     /// The vertices on cuts, in ascending order.
-    pub(super) fn cut_vertices(&self) -> Vec<u32> {
-        (0..self.points.len() as u32).filter(|&vertex| self.is_cut(vertex)).collect()
+    pub(super) fn cut_vertices(&self) -> Vec<Vertex> {
+        Vertex::all(self.points.len()).filter(|&vertex| self.is_cut(vertex)).collect()
     }
 
     /// The distance of two vertices in space.
-    pub(super) fn length(&self, a: u32, b: u32) -> f64 {
-        self.points[a as usize].distance(self.points[b as usize])
+    pub(super) fn length(&self, a: Vertex, b: Vertex) -> f64 {
+        self.points[a].distance(self.points[b])
     }
 
     /// The corners at a vertex, in the order in which they lie around it; none at a loose vertex.
-    pub(super) fn corners(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
-        let first = self.first_corner[vertex as usize];
+    pub(super) fn corners(&self, vertex: Vertex) -> impl Iterator<Item = u32> + '_ {
+        let first = self.first_corner[vertex];
         let turn = move |&corner: &u32| {
             let across = self.opposite[next_corner(corner) as usize];
             (across != NO_CORNER).then(|| next_corner(across)).filter(|&corner| corner != first)
@@ -91,24 +91,24 @@ impl Cutting {
     }
 
     /// The neighbors of a vertex; at a boundary vertex without the one before it on the boundary.
-    pub(super) fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn neighbors(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> + '_ {
         self.corners(vertex).map(|corner| vertex_at(&self.faces, next_corner(corner)))
     }
 
     /// The corner opposite to the half-edge from `a` to `b`, if there is a face on its left.
-    pub(super) fn half_edge(&self, a: u32, b: u32) -> Option<u32> {
+    pub(super) fn half_edge(&self, a: Vertex, b: Vertex) -> Option<u32> {
         let at_start = self.corners(a).find(|&corner| vertex_at(&self.faces, next_corner(corner)) == b);
         at_start.map(previous_corner)
     }
 
     /// Marks the edges of a path for cutting; returns whether it is a path of edges.
-    pub(super) fn mark(&mut self, path: &[u32], seam: Seam) -> bool {
+    pub(super) fn mark(&mut self, path: &[Vertex], seam: Seam) -> bool {
         let is_path = path.windows(2).all(|edge| self.mark_edge(edge[0], edge[1], seam));
-        path.iter().for_each(|&vertex| self.is_cut[vertex as usize] = true);
+        path.iter().for_each(|&vertex| self.is_cut[vertex] = true);
         is_path
     }
 
-    fn mark_edge(&mut self, a: u32, b: u32, seam: Seam) -> bool {
+    fn mark_edge(&mut self, a: Vertex, b: Vertex, seam: Seam) -> bool {
         let Some(corner) = self.half_edge(a, b).or_else(|| self.half_edge(b, a)) else { return false };
         self.seams[corner as usize] = seam;
         let across = self.opposite[corner as usize];
@@ -119,7 +119,7 @@ impl Cutting {
     }
 
     /// Splits the chords at `vertices`, which all lie on cuts.
-    pub(super) fn split_chords(&mut self, vertices: &[u32]) {
+    pub(super) fn split_chords(&mut self, vertices: &[Vertex]) {
         for &vertex in vertices {
             // splits keep the corners around the vertex and bring the far ends of its edges nearer
             let corners: Vec<u32> = self.corners(vertex).collect();
@@ -141,12 +141,12 @@ impl Cutting {
     /// Splits the edge opposite to a corner at its midpoint; returns the midpoint.
     ///
     /// The parts at the start of the half-edge keep the numbers of the faces; those at its end are appended.
-    pub(super) fn split(&mut self, corner: u32) -> u32 {
+    pub(super) fn split(&mut self, corner: u32) -> Vertex {
         let [start, end] = half_edge(&self.faces, corner);
         let across = self.opposite[corner as usize];
         let midpoint = self.add_midpoint(start, end, self.seams[corner as usize] != Seam::None);
         let new = self.halve(corner, true, midpoint);
-        self.first_corner[midpoint as usize] = next_corner(new);
+        self.first_corner[midpoint] = next_corner(new);
         if across != NO_CORNER {
             let new_across = self.halve(across, false, midpoint);
             self.link(new, new_across);
@@ -154,8 +154,7 @@ impl Cutting {
         midpoint
     }
 
-    fn add_midpoint(&mut self, a: u32, b: u32, is_cut: bool) -> u32 {
-        let [a, b] = [a as usize, b as usize];
+    fn add_midpoint(&mut self, a: Vertex, b: Vertex, is_cut: bool) -> Vertex {
         let on_sphere = self.on_sphere[a] + self.on_sphere[b];
         let length = on_sphere.norm();
         let antipodal = length < f64::EPSILON;
@@ -163,12 +162,12 @@ impl Cutting {
         self.points.push((self.points[a] + self.points[b]) * 0.5);
         self.is_cut.push(is_cut);
         self.first_corner.push(NO_CORNER);
-        self.points.len() as u32 - 1
+        Vertex::new(self.points.len() - 1)
     }
 
     /// Divides a face between a corner and the midpoint of the opposite edge. Keeps the half at the start of that
     /// edge, or at its end, and appends the other half; returns the corner of the latter at the dividing corner.
-    fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: u32) -> u32 {
+    fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: Vertex) -> u32 {
         let [next, previous] = [next_corner(corner), previous_corner(corner)];
         let [kept, given] = if keeps_start { [next, previous] } else { [previous, next] };
         let new = self.append_copy(corner);
@@ -193,7 +192,7 @@ impl Cutting {
 
     /// Makes `new` the first corner of its vertex if `old` was.
     fn renumber_first(&mut self, old: u32, new: u32) {
-        let first = &mut self.first_corner[vertex_at(&self.faces, new) as usize];
+        let first = &mut self.first_corner[vertex_at(&self.faces, new)];
         if *first == old {
             *first = new;
         }
@@ -211,7 +210,7 @@ impl Cutting {
     }
 
     /// Moves a corner to the midpoint of two corners of its face.
-    fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: u32) {
+    fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: Vertex) {
         let weights = &mut self.places[Face::of_corner(corner)].corners;
         let [a, b] = [a, b].map(|end| weights[end as usize % 3]);
         weights[corner as usize % 3] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
@@ -228,10 +227,10 @@ impl Cutting {
 }
 
 /// A corner at each vertex; on the boundary the one with a boundary edge behind it.
-fn first_corners(n_vertices: usize, faces: &[[u32; 3]], opposite: &[u32]) -> Vec<u32> {
+fn first_corners(n_vertices: usize, faces: &[[Vertex; 3]], opposite: &[u32]) -> Vec<u32> {
     let mut first = vec![NO_CORNER; n_vertices];
     for corner in 0..opposite.len() as u32 {
-        let slot = &mut first[vertex_at(faces, corner) as usize];
+        let slot = &mut first[vertex_at(faces, corner)];
         if *slot == NO_CORNER || opposite[previous_corner(corner) as usize] == NO_CORNER {
             *slot = corner;
         }
@@ -242,6 +241,7 @@ fn first_corners(n_vertices: usize, faces: &[[u32; 3]], opposite: &[u32]) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::faces_of_indices;
 
     /// Two triangles that share the edge from 0 to 1.
     fn two_triangles() -> Cutting {
@@ -250,9 +250,9 @@ mod tests {
         let [x, y, z] = [0, 1, 2].map(Vector3::unit);
         Cutting::new(&Piece {
             on_sphere: vec![x, y, z, -z],
-            vertex_of: (0..4).collect(),
+            vertex_of: Vertex::all(4).collect(),
             face_of: vec![Face(0), Face(1)],
-            faces: vec![[0, 1, 2], [1, 0, 3]],
+            faces: faces_of_indices(&[[0, 1, 2], [1, 0, 3]]),
             points,
             features: Vec::new(),
         })
@@ -261,7 +261,7 @@ mod tests {
     fn check(cutting: &Cutting) {
         let table = EdgeTable::new(cutting.points.len(), &cutting.faces).opposites();
         assert_eq!(cutting.opposite, table);
-        for vertex in 0..cutting.points.len() as u32 {
+        for vertex in Vertex::all(cutting.points.len()) {
             let around: Vec<u32> = cutting.corners(vertex).collect();
             assert!(around.iter().all(|&corner| vertex_at(&cutting.faces, corner) == vertex));
             let all = cutting.faces.as_flattened().iter().filter(|&&corner| corner == vertex);
@@ -271,8 +271,8 @@ mod tests {
             for (corner, weights) in face.iter().zip(place.corners) {
                 assert_eq!(weights.iter().sum::<f64>(), 1.0);
                 let whole = two_triangles().faces[place.face];
-                let terms = whole.iter().zip(weights).map(|(&v, w)| cutting.points[v as usize] * w);
-                assert_eq!(terms.sum::<Vector3>(), cutting.points[*corner as usize]);
+                let terms = whole.iter().zip(weights).map(|(&v, w)| cutting.points[v] * w);
+                assert_eq!(terms.sum::<Vector3>(), cutting.points[*corner]);
             }
         }
     }
@@ -290,9 +290,10 @@ mod tests {
     #[test]
     fn splitting_a_cut_edge_cuts_both_halves() {
         let mut cutting = two_triangles();
-        assert!(cutting.mark(&[0, 1], Seam::Feature));
-        let midpoint = cutting.split(cutting.half_edge(0, 1).unwrap());
-        for [a, b] in [[0, midpoint], [midpoint, 1], [1, midpoint], [midpoint, 0]] {
+        assert!(cutting.mark(&[0, 1].map(Vertex), Seam::Feature));
+        let [start, end] = [0, 1].map(Vertex);
+        let midpoint = cutting.split(cutting.half_edge(start, end).unwrap());
+        for [a, b] in [[start, midpoint], [midpoint, end], [end, midpoint], [midpoint, start]] {
             assert_eq!(cutting.seams[cutting.half_edge(a, b).unwrap() as usize], Seam::Feature);
         }
         assert_eq!(cutting.seams.iter().filter(|&&seam| seam == Seam::Feature).count(), 4);
@@ -302,11 +303,13 @@ mod tests {
     #[test]
     fn an_edge_between_two_cut_vertices_is_split_once() {
         let mut cutting = two_triangles();
-        assert!(cutting.mark(&[3, 0, 2], Seam::Feature) && cutting.mark(&[1], Seam::Feature));
-        cutting.split_chords(&[0, 1]);
+        assert!(
+            cutting.mark(&[3, 0, 2].map(Vertex), Seam::Feature) && cutting.mark(&[Vertex(1)], Seam::Feature)
+        );
+        cutting.split_chords(&[0, 1].map(Vertex));
         assert_eq!(cutting.points.len(), 5);
-        cutting.split_chords(&[0, 1]);
+        cutting.split_chords(&[0, 1].map(Vertex));
         assert_eq!(cutting.points.len(), 5);
-        assert!(!cutting.mark(&[2, 3], Seam::Arc));
+        assert!(!cutting.mark(&[2, 3].map(Vertex), Seam::Arc));
     }
 }

@@ -234,7 +234,7 @@ fn along(banks: [&Bank; 2], pieces: [&Piece; 2], spacing: f64) -> [Vec<Vector3>;
 
 impl Bank {
     fn places(&self, piece: &Piece) -> Vec<Vector3> {
-        self.vertices.iter().map(|&vertex| piece.on_sphere[vertex as usize]).collect()
+        self.vertices.iter().map(|&vertex| piece.on_sphere[vertex]).collect()
     }
 }
 

@@ -29,7 +29,7 @@ use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
 use crate::error;
 use crate::error::{CurveError, Error};
-use crate::mesh::NO_CORNER;
+use crate::mesh::{NO_CORNER, Vertex};
 use arcs::Carry;
 use cutting::{Cutting, Seam};
 
@@ -102,15 +102,15 @@ fn cut_features(piece: &Piece) -> Result<Cutting, Error> {
 }
 
 /// The vertices once around a feature: along its left bank and back along its right bank.
-fn outline(feature: &Feature) -> Vec<u32> {
+fn outline(feature: &Feature) -> Vec<Vertex> {
     let back = feature.right.vertices.iter().rev().skip(1);
-    let mut vertices: Vec<u32> = feature.left.vertices.iter().chain(back).copied().collect();
+    let mut vertices: Vec<Vertex> = feature.left.vertices.iter().chain(back).copied().collect();
     vertices.pop();
     vertices
 }
 
 /// Opens a surface along its features, and a copy along its arcs too.
-fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sliced, Error> {
+fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<Vertex>]) -> Result<Sliced, Error> {
     let opposite_unless = |is_open: fn(Seam) -> bool| {
         let pairs = cutting.opposite.iter().zip(&cutting.seams);
         pairs.map(|(&across, &seam)| if is_open(seam) { NO_CORNER } else { across }).collect()
@@ -131,8 +131,8 @@ fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Result<Sli
 }
 
 /// The sides in order, with their vertices before cutting.
-fn expected_sides(cutting: &Cutting, features: &[Feature], arcs: &[Vec<u32>]) -> Vec<Side> {
-    let side = |is_arc, index, vertices: &[u32], parameters: &[f64]| Side {
+fn expected_sides(cutting: &Cutting, features: &[Feature], arcs: &[Vec<Vertex>]) -> Vec<Side> {
+    let side = |is_arc, index, vertices: &[Vertex], parameters: &[f64]| Side {
         is_arc,
         index,
         vertices: vertices.to_vec(),
@@ -160,7 +160,7 @@ fn reversed(mut side: Side) -> Side {
 }
 
 /// The length of a path up to each of its vertices as a share of the whole.
-fn shares_of_length(cutting: &Cutting, path: &[u32]) -> Vec<f64> {
+fn shares_of_length(cutting: &Cutting, path: &[Vertex]) -> Vec<f64> {
     let mut so_far = vec![0.0];
     for ends in path.windows(2) {
         so_far.push(so_far[so_far.len() - 1] + cutting.length(ends[0], ends[1]));
@@ -172,12 +172,12 @@ fn shares_of_length(cutting: &Cutting, path: &[u32]) -> Vec<f64> {
 /// Replaces the vertices of the sides by those of the disk along `boundary`.
 ///
 /// The error is the feature at or after which the boundary does not run along the sides.
-fn match_sides(mut sides: Vec<Side>, boundary: &[u32], vertex_of: &[u32]) -> Result<Vec<Side>, usize> {
+fn match_sides(mut sides: Vec<Side>, boundary: &[Vertex], vertex_of: &[Vertex]) -> Result<Vec<Side>, usize> {
     let mut begin = 0;
     for side in &mut sides {
         for (place, vertex) in side.vertices.iter_mut().enumerate() {
             let disk_vertex = boundary[(begin + place) % boundary.len()];
-            if vertex_of[disk_vertex as usize] != *vertex {
+            if vertex_of[disk_vertex] != *vertex {
                 return Err(side.index);
             }
             *vertex = disk_vertex;

@@ -4,7 +4,7 @@
 use super::openings::Opened;
 use crate::hyperbolic::features::piece::Piece;
 use crate::location::Location;
-use crate::mesh::Face;
+use crate::mesh::{Face, Vertex};
 use crate::vector::Vector3;
 
 /// A piece cut along its features, and along a chain of arcs too; edges between two vertices of the cuts are split.
@@ -13,7 +13,7 @@ pub(crate) struct Sliced {
     /// (n, 3): the vertices of the piece and the midpoints of split edges, before cutting.
     pub points: Vec<Vector3>,
     /// (m, 3): the faces before cutting.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[Vertex; 3]>,
     /// (m,): where each face lies in the piece.
     pub places: Vec<Place>,
     /// Cut along the features alone.
@@ -29,22 +29,22 @@ pub(crate) struct Sliced {
 
 impl Sliced {
     /// The vertex of the surface of each vertex of the disk.
-    pub(crate) fn surface_vertices(&self) -> Vec<u32> {
-        let mut vertices = vec![0; self.disk.vertex_of.len()];
+    pub(crate) fn surface_vertices(&self) -> Vec<Vertex> {
+        let mut vertices = vec![Vertex::default(); self.disk.vertex_of.len()];
         for (disk, surface) in self.disk.faces.iter().zip(&self.surface.faces) {
-            (0..3).for_each(|k| vertices[disk[k] as usize] = surface[k]);
+            (0..3).for_each(|k| vertices[disk[k]] = surface[k]);
         }
         vertices
     }
 
     /// The points of the vertices of the sliced surface.
     pub(crate) fn surface_points(&self) -> Vec<Vector3> {
-        self.surface.vertex_of.iter().map(|&vertex| self.points[vertex as usize]).collect()
+        self.surface.vertex_of.iter().map(|&vertex| self.points[vertex]).collect()
     }
 
     /// The vertex of the whole surface that a vertex of the sliced surface copies; `None` for midpoints.
-    pub(crate) fn given_vertex(&self, piece: &Piece, copy: usize) -> Option<usize> {
-        piece.vertex_of.get(self.surface.vertex_of[copy] as usize).map(|&vertex| vertex as usize)
+    pub(crate) fn given_vertex(&self, piece: &Piece, copy: usize) -> Option<Vertex> {
+        piece.vertex_of.get(self.surface.vertex_of[copy].index()).copied()
     }
 
     /// A location on the sliced surface as a location on the whole surface.
@@ -73,7 +73,7 @@ pub(crate) struct Side {
     /// The number of the feature in the chain, or of the arc, from 0.
     pub index: usize,
     /// Vertices of the disk in the order of travel, at least two.
-    pub vertices: Vec<u32>,
+    pub vertices: Vec<Vertex>,
     /// The parameters of the vertices, increasing from 0 to 1 on the first 2B − 1 sides, decreasing from 1 to 0
     /// on the others: those of the feature on a bank, shares of the length in space on an arc.
     pub parameters: Vec<f64>,
@@ -82,7 +82,7 @@ pub(crate) struct Side {
 impl Side {
     /// The corners opposite to the edges of the side; `corners` are [`Opened::boundary_corners`] of the disk.
     pub(crate) fn opposite_corners<'a>(&'a self, corners: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-        self.vertices[..self.vertices.len() - 1].iter().map(|&vertex| corners[vertex as usize])
+        self.vertices[..self.vertices.len() - 1].iter().map(|&vertex| corners[vertex])
     }
 }
 

@@ -9,17 +9,19 @@ use super::*;
 use crate::control::Silent;
 use crate::hyperbolic::features::piece::Bank;
 use crate::mesh::geometry::{area, triangle};
-use crate::mesh::{EdgeTable, Face, NO_CORNER, VertexCorners, half_edge, next_corner, vertex_at};
+use crate::mesh::{
+    EdgeTable, Face, NO_CORNER, Vertex, VertexCorners, faces_of_indices, half_edge, next_corner, vertex_at,
+};
 
 /// The icosahedron, each face divided into 4^level.
-fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[u32; 3]>) {
+fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
     let g = f64::midpoint(1.0, 5f64.sqrt());
     let signs = [[-1.0, g], [1.0, g], [-1.0, -g], [1.0, -g]];
     let turned =
         [|[a, b]: [f64; 2]| [a, b, 0.0], |[a, b]: [f64; 2]| [0.0, a, b], |[a, b]: [f64; 2]| [b, 0.0, a]];
     let mut points: Vec<Vector3> =
         turned.iter().flat_map(|turn| signs.map(turn)).map(Vector3).map(unit).collect();
-    let mut faces: Vec<[u32; 3]> = [
+    let mut faces = faces_of_indices(&[
         [0, 11, 5],
         [0, 5, 1],
         [0, 1, 7],
@@ -40,8 +42,7 @@ fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[u32; 3]>) {
         [6, 2, 10],
         [8, 6, 7],
         [9, 8, 1],
-    ]
-    .to_vec();
+    ]);
     for _ in 0..level {
         faces = divided(&mut points, &faces);
     }
@@ -53,14 +54,14 @@ fn unit(x: Vector3) -> Vector3 {
 }
 
 /// Each face divided into four.
-fn divided(points: &mut Vec<Vector3>, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+fn divided(points: &mut Vec<Vector3>, faces: &[[Vertex; 3]]) -> Vec<[Vertex; 3]> {
     let table = EdgeTable::new(points.len(), faces);
-    let mut middles = vec![0; 3 * faces.len()];
+    let mut middles = vec![Vertex::default(); 3 * faces.len()];
     for ([a, b], _) in table.edges() {
-        table.corners([a, b]).for_each(|corner| middles[corner as usize] = points.len() as u32);
-        points.push(unit(points[a as usize] + points[b as usize]));
+        table.corners([a, b]).for_each(|corner| middles[corner as usize] = Vertex::new(points.len()));
+        points.push(unit(points[a] + points[b]));
     }
-    let four = |(face, &[a, b, c]): (usize, &[u32; 3])| {
+    let four = |(face, &[a, b, c]): (usize, &[Vertex; 3])| {
         let [x, y, z] = [0, 1, 2].map(|k| middles[3 * face + k]);
         [[a, z, y], [b, x, z], [c, y, x], [x, y, z]]
     };
@@ -73,10 +74,10 @@ fn sphere(level: usize) -> Piece {
     piece(points, faces)
 }
 
-fn piece(points: Vec<Vector3>, faces: Vec<[u32; 3]>) -> Piece {
+fn piece(points: Vec<Vector3>, faces: Vec<[Vertex; 3]>) -> Piece {
     Piece {
         on_sphere: points.clone(),
-        vertex_of: (0..points.len() as u32).collect(),
+        vertex_of: Vertex::all(points.len()).collect(),
         face_of: Face::all(faces.len()).collect(),
         points,
         faces,
@@ -84,7 +85,7 @@ fn piece(points: Vec<Vector3>, faces: Vec<[u32; 3]>) -> Piece {
     }
 }
 
-fn with_slits(mut piece: Piece, paths: &[Vec<u32>]) -> Piece {
+fn with_slits(mut piece: Piece, paths: &[Vec<Vertex>]) -> Piece {
     for path in paths {
         let curve = Some(piece.features.len());
         piece.features.push(Feature { curve, ..slit(&piece.points, path) });
@@ -92,15 +93,15 @@ fn with_slits(mut piece: Piece, paths: &[Vec<u32>]) -> Piece {
     piece
 }
 
-fn slit(points: &[Vector3], path: &[u32]) -> Feature {
+fn slit(points: &[Vector3], path: &[Vertex]) -> Feature {
     let bank = bank(points, path.to_vec());
     Feature { left: bank.clone(), right: bank, is_loop: false, curve: None }
 }
 
-fn bank(points: &[Vector3], vertices: Vec<u32>) -> Bank {
+fn bank(points: &[Vector3], vertices: Vec<Vertex>) -> Bank {
     let mut parameters = vec![0.0];
     for ends in vertices.windows(2) {
-        let [a, b] = [points[ends[0] as usize], points[ends[1] as usize]];
+        let [a, b] = [points[ends[0]], points[ends[1]]];
         parameters.push(parameters[parameters.len() - 1] + a.distance(b));
     }
     let whole = parameters[parameters.len() - 1];
@@ -108,15 +109,17 @@ fn bank(points: &[Vector3], vertices: Vec<u32>) -> Bank {
 }
 
 /// Removes the faces around some vertices; the boundary loops become features.
-fn with_holes(whole: &Piece, centers: &[u32]) -> Piece {
-    let kept = |face: &&[u32; 3]| face.iter().all(|vertex| !centers.contains(vertex));
-    let faces: Vec<[u32; 3]> = whole.faces.iter().filter(kept).copied().collect();
-    let new_number = |vertex: u32| vertex - centers.iter().filter(|&&center| center < vertex).count() as u32;
+fn with_holes(whole: &Piece, centers: &[Vertex]) -> Piece {
+    let kept = |face: &&[Vertex; 3]| face.iter().all(|vertex| !centers.contains(vertex));
+    let faces: Vec<[Vertex; 3]> = whole.faces.iter().filter(kept).copied().collect();
+    let new_number = |vertex: Vertex| {
+        Vertex::new(vertex.index() - centers.iter().filter(|&&center| center < vertex).count())
+    };
     let mut rest = piece(
         whole
             .points
             .iter()
-            .zip(0..)
+            .zip(Vertex::all(whole.points.len()))
             .filter(|(_, vertex)| !centers.contains(vertex))
             .map(|(&x, _)| x)
             .collect(),
@@ -125,7 +128,7 @@ fn with_holes(whole: &Piece, centers: &[u32]) -> Piece {
     let surface = Cutting::new(whole);
     for &center in centers {
         // seen from outside, the rim of the hole has the surface on its right
-        let mut rim: Vec<u32> = surface.neighbors(center).map(new_number).collect();
+        let mut rim: Vec<Vertex> = surface.neighbors(center).map(new_number).collect();
         if rest.faces.iter().all(|face| !is_half_edge(face, rim[0], rim[1])) {
             rim.reverse();
         }
@@ -140,16 +143,16 @@ fn with_holes(whole: &Piece, centers: &[u32]) -> Piece {
     rest
 }
 
-fn is_half_edge(face: &[u32; 3], a: u32, b: u32) -> bool {
+fn is_half_edge(face: &[Vertex; 3], a: Vertex, b: Vertex) -> bool {
     (0..3).any(|k| [face[k], face[(k + 1) % 3]] == [a, b])
 }
 
 /// The path straight on from the edge (a, b), from b, through vertices with six neighbors.
-fn straight(surface: &Cutting, a: u32, b: u32, n_edges: usize) -> Vec<u32> {
+fn straight(surface: &Cutting, a: Vertex, b: Vertex, n_edges: usize) -> Vec<Vertex> {
     let mut path = vec![a, b];
     for _ in 0..n_edges {
         let [before, last] = [path[path.len() - 2], path[path.len() - 1]];
-        let around: Vec<u32> = surface.neighbors(last).collect();
+        let around: Vec<Vertex> = surface.neighbors(last).collect();
         let from = around.iter().position(|&v| v == before).unwrap();
         path.push(around[(from + around.len() / 2) % around.len()]);
     }
@@ -157,16 +160,16 @@ fn straight(surface: &Cutting, a: u32, b: u32, n_edges: usize) -> Vec<u32> {
 }
 
 /// Slits of `n_edges` at scattered places, disjoint.
-fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Vec<Vec<u32>> {
+fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Vec<Vec<Vertex>> {
     let surface = Cutting::new(piece);
     let mut random = move |n: usize| {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as usize % n
     };
-    let mut paths: Vec<Vec<u32>> = Vec::new();
+    let mut paths: Vec<Vec<Vertex>> = Vec::new();
     while paths.len() < n_slits {
-        let a = random(piece.points.len()) as u32;
-        let around: Vec<u32> = surface.neighbors(a).collect();
+        let a = Vertex::new(random(piece.points.len()));
+        let around: Vec<Vertex> = surface.neighbors(a).collect();
         let path = straight(&surface, a, around[random(around.len())], n_edges);
         if path.iter().all(|vertex| paths.iter().all(|other| !other.contains(vertex))) {
             paths.push(path);
@@ -177,14 +180,14 @@ fn scattered(piece: &Piece, n_slits: usize, n_edges: usize, mut seed: u64) -> Ve
 
 /// A vertex that has six neighbors, as have those near it, at the middle of the first face of the
 /// icosahedron.
-fn middle_vertex(piece: &Piece) -> u32 {
-    let [a, b, c] = triangle(&piece.points, [0, 11, 5]);
+fn middle_vertex(piece: &Piece) -> Vertex {
+    let [a, b, c] = triangle(&piece.points, [0, 11, 5].map(Vertex));
     nearest(piece, unit(a + (b + c)))
 }
 
-fn nearest(piece: &Piece, x: Vector3) -> u32 {
-    let gap = |&vertex: &u32| piece.points[vertex as usize].distance(x);
-    (0..piece.points.len() as u32).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap()
+fn nearest(piece: &Piece, x: Vector3) -> Vertex {
+    let gap = |&vertex: &Vertex| piece.points[vertex].distance(x);
+    Vertex::all(piece.points.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap()
 }
 
 fn identity(line: &[Vector3]) -> Option<Vec<Vector3>> {
@@ -226,7 +229,7 @@ fn check_places(piece: &Piece, sliced: &Sliced) {
         for (corner, weights) in face.iter().zip(place.corners) {
             assert_eq!(weights.iter().sum::<f64>(), 1.0);
             let place = whole.iter().zip(weights).map(|(&x, weight)| x * weight).sum::<Vector3>();
-            assert!(place.distance(sliced.points[*corner as usize]) < 1e-15);
+            assert!(place.distance(sliced.points[*corner]) < 1e-15);
         }
         left[place.face] -= area(triangle(&sliced.points, face));
     }
@@ -235,12 +238,12 @@ fn check_places(piece: &Piece, sliced: &Sliced) {
 
 /// Adjacency, manifold fans, Euler number, number of boundary loops.
 fn check_opened(sliced: &Sliced, opened: &Opened, euler: i64, n_loops: i64) {
-    let before = |face: &[u32; 3]| face.map(|vertex| opened.vertex_of[vertex as usize]);
+    let before = |face: &[Vertex; 3]| face.map(|vertex| opened.vertex_of[vertex]);
     assert!(sliced.faces.iter().eq(opened.faces.iter().map(before).collect::<Vec<_>>().iter()));
     let n_vertices = opened.vertex_of.len();
     assert_eq!(EdgeTable::new(n_vertices, &opened.faces).opposites(), opened.opposite);
     let corners = VertexCorners::new(n_vertices, &opened.faces);
-    assert!((0..n_vertices).all(|vertex| corners.is_one_fan(vertex, &opened.opposite)));
+    assert!((0..n_vertices).all(|vertex| corners.is_one_fan(Vertex::new(vertex), &opened.opposite)));
     let boundary = boundary_corners(opened);
     let n_edges = (opened.opposite.len() + boundary.len()) / 2;
     assert_eq!(n_vertices as i64 - n_edges as i64 + opened.faces.len() as i64, euler);
@@ -266,9 +269,9 @@ fn count_loops(opened: &Opened, mut boundary: Vec<u32>) -> i64 {
 fn check_no_chords(disk: &Opened) {
     let mut on_boundary = vec![false; disk.vertex_of.len()];
     let boundary = boundary_corners(disk);
-    boundary.iter().for_each(|&corner| on_boundary[half_edge(&disk.faces, corner)[0] as usize] = true);
+    boundary.iter().for_each(|&corner| on_boundary[half_edge(&disk.faces, corner)[0]] = true);
     for corner in (0..disk.opposite.len() as u32).filter(|&c| disk.opposite[c as usize] != NO_CORNER) {
-        assert!(half_edge(&disk.faces, corner).iter().any(|&end| !on_boundary[end as usize]));
+        assert!(half_edge(&disk.faces, corner).iter().any(|&end| !on_boundary[end]));
     }
 }
 
@@ -279,7 +282,7 @@ fn check_sides(piece: &Piece, chain: &[(usize, bool)], sliced: &Sliced) {
     assert_eq!(sides.len(), 2 * (2 * n_features - 1));
     let features = chain::features(piece, chain);
     let vertex_of = &sliced.disk.vertex_of;
-    let before = |side: &Side| -> Vec<u32> { side.vertices.iter().map(|&v| vertex_of[v as usize]).collect() };
+    let before = |side: &Side| -> Vec<Vertex> { side.vertices.iter().map(|&v| vertex_of[v]).collect() };
     for (place, side) in sides.iter().enumerate() {
         let following = &sides[(place + 1) % sides.len()];
         assert_eq!(side.vertices.last(), following.vertices.first());
@@ -308,7 +311,7 @@ fn check_sides(piece: &Piece, chain: &[(usize, bool)], sliced: &Sliced) {
             );
         }
     }
-    let around: Vec<u32> = sides.iter().flat_map(|side| side.vertices[1..].iter().copied()).collect();
+    let around: Vec<Vertex> = sides.iter().flat_map(|side| side.vertices[1..].iter().copied()).collect();
     let mut different = around.clone();
     different.sort_unstable();
     different.dedup();
@@ -341,22 +344,26 @@ fn holes_and_slits() {
     for n_slits in [0, 1, 4] {
         let whole = sphere(3);
         let centers =
-            [nearest(&whole, Vector3([0.0, 0.0, 1.0])), nearest(&whole, Vector3([0.0, 1.0, 0.0])), 0];
+            [nearest(&whole, Vector3([0.0, 0.0, 1.0])), nearest(&whole, Vector3([0.0, 1.0, 0.0])), Vertex(0)];
         let open = with_holes(&whole, &centers);
-        let rims: Vec<u32> = open.features.iter().flat_map(outline).collect();
-        let is_free = |path: &Vec<u32>| path.iter().all(|vertex| !rims.contains(vertex));
+        let rims: Vec<Vertex> = open.features.iter().flat_map(outline).collect();
+        let is_free = |path: &Vec<Vertex>| path.iter().all(|vertex| !rims.contains(vertex));
         let is_inner =
-            |path: &Vec<u32>| path.iter().all(|&v| v as usize + 10 < open.points.len()) && is_free(path);
+            |path: &Vec<Vertex>| path.iter().all(|&v| v.index() + 10 < open.points.len()) && is_free(path);
         let paths = scattered_where(&open, n_slits, is_inner);
         let pair = check(&with_slits(open, &paths));
         assert_eq!(pair.source.sides.len(), 2 * (2 * (3 + n_slits) - 1));
     }
-    check(&with_holes(&sphere(1), &[3]));
-    check(&with_holes(&sphere(1), &[3, 0]));
+    check(&with_holes(&sphere(1), &[Vertex(3)]));
+    check(&with_holes(&sphere(1), &[3, 0].map(Vertex)));
 }
 
 /// Slits of three edges, each at the first place of its own part of the sphere at which `is_allowed`.
-fn scattered_where(piece: &Piece, n_slits: usize, is_allowed: impl Fn(&Vec<u32>) -> bool) -> Vec<Vec<u32>> {
+fn scattered_where(
+    piece: &Piece,
+    n_slits: usize,
+    is_allowed: impl Fn(&Vec<Vertex>) -> bool,
+) -> Vec<Vec<Vertex>> {
     let surface = Cutting::new(piece);
     let slit_near = |x: Vector3| {
         let start = nearest(piece, x);
@@ -371,11 +378,11 @@ fn slits_one_edge_apart() {
     let sphere = sphere(4);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbors(a).collect();
+    let around: Vec<Vertex> = surface.neighbors(a).collect();
     let [b, c] = [around[0], around[1]];
     let first = straight(&surface, a, b, 4);
     // beside the first, on the line through c that is parallel
-    let next: Vec<u32> = surface.neighbors(c).collect();
+    let next: Vec<Vertex> = surface.neighbors(c).collect();
     let beside = next.iter().position(|&v| v == b).unwrap();
     let second = straight(&surface, c, next[(beside + next.len() - 1) % next.len()], 4);
     let second = if second.iter().any(|v| first.contains(v)) {
@@ -415,7 +422,8 @@ fn a_spiral_around_another_slit() {
         let (colatitude, longitude) = (0.35 + 1.2 * t, 5.0 * PI * t);
         Vector3([colatitude.sin() * longitude.cos(), colatitude.sin() * longitude.sin(), colatitude.cos()])
     };
-    let mut spiral: Vec<u32> = (0..=2000).map(|i| nearest(&sphere, point(f64::from(i) / 2000.0))).collect();
+    let mut spiral: Vec<Vertex> =
+        (0..=2000).map(|i| nearest(&sphere, point(f64::from(i) / 2000.0))).collect();
     spiral.dedup();
     let surface = Cutting::new(&sphere);
     assert!(spiral.windows(2).all(|ends| surface.neighbors(ends[0]).any(|v| v == ends[1])));
@@ -435,12 +443,12 @@ fn source_and_target_of_different_resolution() {
     let target = piece(points, faces);
     let surface = Cutting::new(&target);
     let middle =
-        |a: u32, b: u32| surface.neighbors(a).find(|&v| surface.neighbors(b).any(|w| w == v)).unwrap();
-    let finer = |path: &Vec<u32>| {
+        |a: Vertex, b: Vertex| surface.neighbors(a).find(|&v| surface.neighbors(b).any(|w| w == v)).unwrap();
+    let finer = |path: &Vec<Vertex>| {
         let halves = path.windows(2).flat_map(|ends| [ends[0], middle(ends[0], ends[1])]);
-        halves.chain(path.last().copied()).collect::<Vec<u32>>()
+        halves.chain(path.last().copied()).collect::<Vec<Vertex>>()
     };
-    let finer: Vec<Vec<u32>> = paths.iter().map(finer).collect();
+    let finer: Vec<Vec<Vertex>> = paths.iter().map(finer).collect();
     let [source, target] = [with_slits(source, &paths), with_slits(target, &finer)];
     let pair = slice(&source, &target);
     let chain = chain::order(&source, &target);
@@ -450,7 +458,7 @@ fn source_and_target_of_different_resolution() {
     // the arcs of the target stay near those of the source
     for (ours, theirs) in pair.source.sides.iter().zip(&pair.target.sides).filter(|(side, _)| side.is_arc) {
         let line = |side: &Side, sliced: &Sliced| -> Vec<Vector3> {
-            side.vertices.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v as usize] as usize]).collect()
+            side.vertices.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v]]).collect()
         };
         let along = Polyline::new(line(ours, &pair.source));
         assert!(line(theirs, &pair.target).into_iter().all(|x| along.distance(x) < 0.1));
@@ -494,7 +502,7 @@ fn arcs_on_the_target_wind_as_they_are_carried() {
     assert!(pair.followed);
     let lowest = |sliced: &Sliced| {
         let arc = &sliced.sides[1].vertices;
-        arc.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v as usize] as usize][2]).fold(1.0, f64::min)
+        arc.iter().map(|&v| sliced.points[sliced.disk.vertex_of[v]][2]).fold(1.0, f64::min)
     };
     assert!(lowest(&pair.source) > -0.3 && lowest(&pair.target) < -0.95);
 }
@@ -526,11 +534,11 @@ fn features_that_touch_or_are_no_paths_are_refused() {
     let sphere = sphere(3);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbors(a).collect();
+    let around: Vec<Vertex> = surface.neighbors(a).collect();
     let first = straight(&surface, around[0], a, 3);
     let touching = straight(&surface, around[2], around[1], 2);
     let crossing = vec![around[0], a, around[3]];
-    let jump = vec![around[1], nearest(&sphere, sphere.points[a as usize] * -1.0)];
+    let jump = vec![around[1], nearest(&sphere, sphere.points[a] * -1.0)];
     for (second, is_fine) in [(touching, true), (crossing, false), (jump, false)] {
         let piece = with_slits(sphere.clone(), &[first.clone(), second]);
         let mut silent = Silent;
@@ -550,8 +558,8 @@ fn slits_that_touch_themselves_are_refused() {
     let sphere = sphere(3);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let around: Vec<u32> = surface.neighbors(a).collect();
-    let far = nearest(&sphere, sphere.points[a as usize] * -1.0);
+    let around: Vec<Vertex> = surface.neighbors(a).collect();
+    let far = nearest(&sphere, sphere.points[a] * -1.0);
     let other = straight(&surface, surface.neighbors(far).next().unwrap(), far, 3);
     let noose = vec![around[3], a, around[0], around[1], a];
     let there_and_back = vec![around[0], a, around[3], a, around[0]];

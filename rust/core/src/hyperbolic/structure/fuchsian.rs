@@ -82,9 +82,9 @@ impl<'a> Development<'a> {
         for (face, corners) in self.sliced.disk.faces.iter().enumerate() {
             let (frame, far) = (self.frames[face], self.frames[face].b.norm());
             for (k, &vertex) in corners.iter().enumerate() {
-                if far < nearest[vertex as usize] {
-                    nearest[vertex as usize] = far;
-                    positions[vertex as usize] = frame.apply(self.atlas.charts[face][k]);
+                if far < nearest[vertex] {
+                    nearest[vertex] = far;
+                    positions[vertex] = frame.apply(self.atlas.charts[face][k]);
                 }
             }
         }

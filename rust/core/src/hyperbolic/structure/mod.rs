@@ -33,7 +33,7 @@ use crate::arrays::{from_rows, from_vectors, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
 use crate::location::{Location, points_on};
-use crate::mesh::{Face, Surface, TriangleMesh};
+use crate::mesh::{Face, Surface, TriangleMesh, Vertex, index_array};
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
 use trace::closed_geodesic;
@@ -47,21 +47,21 @@ pub struct HyperbolicStructure {
     /// (n,): the locations of the vertices of the sliced surface on the given surface.
     pub(crate) vertices: Vec<Location>,
     /// (m, 3): the faces of the sliced surface; some given faces are divided.
-    pub(crate) faces: Vec<[u32; 3]>,
+    pub(crate) faces: Vec<[Vertex; 3]>,
     /// (n,): the given vertex that each vertex is; `None` for midpoints of edges.
-    pub vertex_of: Vec<Option<u32>>,
+    pub vertex_of: Vec<Option<Vertex>>,
     /// (m, 3): the faces of the disk, the surface cut along the arcs too.
-    pub(crate) disk_faces: Vec<[u32; 3]>,
+    pub(crate) disk_faces: Vec<[Vertex; 3]>,
     /// The positions of the vertices of the disk in the Poincaré disk: the fundamental domain.
     pub(crate) positions: Vec<Complex>,
     /// The vertex of the sliced surface that each vertex of the disk copies.
-    pub disk_vertex_of: Vec<u32>,
+    pub disk_vertex_of: Vec<Vertex>,
     /// (B,): the features in the order of the chain, each with whether it is reversed.
     pub chain: Vec<(usize, bool)>,
     /// (B,): left and right bank of each feature of the chain, as vertices of the disk along the chain.
-    pub banks: Vec<[Vec<u32>; 2]>,
+    pub banks: Vec<[Vec<Vertex>; 2]>,
     /// (B − 1,): left and right copy of each arc, as vertices of the disk along the chain.
-    pub arcs: Vec<[Vec<u32>; 2]>,
+    pub arcs: Vec<[Vec<Vertex>; 2]>,
     /// (B − 1,): the generators of the group; each takes the left copy of its arc to the right copy. The generator
     /// of arc k goes around the first k features of the chain.
     pub generators: Vec<Moebius>,
@@ -79,7 +79,7 @@ pub struct HyperbolicStructure {
     /// The hyperbolic area; 2π(B − 2) up to rounding.
     pub area: f64,
     surface: Surface,
-    surface_faces: Vec<[u32; 3]>,
+    surface_faces: Vec<[Vertex; 3]>,
 }
 
 impl HyperbolicStructure {
@@ -95,12 +95,12 @@ impl HyperbolicStructure {
 
     /// The faces of the sliced surface, (m, 3); some given faces are divided.
     pub fn faces(&self) -> Array2<u32> {
-        from_rows(self.faces.clone())
+        index_array(&self.faces)
     }
 
     /// The faces of the disk, (m, 3): the surface cut along the arcs too.
     pub fn disk_faces(&self) -> Array2<u32> {
-        from_rows(self.disk_faces.clone())
+        index_array(&self.disk_faces)
     }
 
     /// The positions of the vertices of the disk in the Poincaré disk, (n_disk, 2): the fundamental domain.
@@ -246,7 +246,7 @@ fn pants_curves(
 }
 
 /// Left and right copies of the banks, or of the arcs, along the chain.
-fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<u32>; 2]> {
+fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<Vertex>; 2]> {
     let half = sides.len() / 2;
     let left = (0..half).filter(|&side| sides[side].is_arc == is_arc);
     left.map(|side| {
@@ -275,13 +275,13 @@ fn vertices(piece: &Piece, sliced: &Sliced) -> Vec<Location> {
             let mut barycentric = [0.0; 3];
             barycentric[k] = 1.0;
             let place = Location { triangle: Face::new(face), barycentric };
-            vertices[vertex as usize] = sliced.given_place(piece, &place);
+            vertices[vertex] = sliced.given_place(piece, &place);
         }
     }
     vertices
 }
 
-fn vertex_of(piece: &Piece, sliced: &Sliced) -> Vec<Option<u32>> {
+fn vertex_of(piece: &Piece, sliced: &Sliced) -> Vec<Option<Vertex>> {
     let copies = 0..sliced.surface.vertex_of.len();
-    copies.map(|copy| sliced.given_vertex(piece, copy).map(|vertex| vertex as u32)).collect()
+    copies.map(|copy| sliced.given_vertex(piece, copy)).collect()
 }

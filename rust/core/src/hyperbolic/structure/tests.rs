@@ -8,9 +8,10 @@ use super::super::moebius::{distance, from_klein, to_hyperboloid};
 use super::super::sample_meshes::{circle, mesh, path, sphere};
 use super::*;
 use crate::control::Silent;
+use crate::mesh::Vertex;
 use crate::vector::{Vector3, coordinates};
 
-type Points = (Vec<Vector3>, Vec<[u32; 3]>);
+type Points = (Vec<Vector3>, Vec<[Vertex; 3]>);
 
 /// Slits spread over a sphere along a spiral.
 fn slits(ball: &Points, count: usize) -> Vec<Vec<usize>> {
@@ -44,12 +45,12 @@ fn samples() -> &'static [HyperbolicStructure] {
 }
 
 /// The edges of a side of the disk in the plane.
-fn length(structure: &HyperbolicStructure, side: &[u32]) -> f64 {
+fn length(structure: &HyperbolicStructure, side: &[Vertex]) -> f64 {
     side.windows(2).map(|ends| distance(position(structure, ends[0]), position(structure, ends[1]))).sum()
 }
 
-fn position(structure: &HyperbolicStructure, vertex: u32) -> Complex {
-    structure.positions[vertex as usize]
+fn position(structure: &HyperbolicStructure, vertex: Vertex) -> Complex {
+    structure.positions[vertex]
 }
 
 #[test]
@@ -259,13 +260,13 @@ fn the_result_is_the_same_every_time() {
 #[test]
 fn boundary_loops_are_features_named_or_not() {
     let ball = sphere(4);
-    let kept: Vec<[u32; 3]> =
-        ball.1.iter().copied().filter(|face| face.iter().all(|&v| ball.0[v as usize][2] < 0.8)).collect();
-    let used: Vec<u32> =
-        (0..ball.0.len() as u32).filter(|v| kept.iter().any(|face| face.contains(v))).collect();
-    let number = |v: u32| used.binary_search(&v).unwrap() as u32;
-    let points: Vec<Vector3> = used.iter().map(|&v| ball.0[v as usize]).collect();
-    let faces: Vec<[u32; 3]> = kept.iter().map(|face| face.map(number)).collect();
+    let kept: Vec<[Vertex; 3]> =
+        ball.1.iter().copied().filter(|face| face.iter().all(|&v| ball.0[v][2] < 0.8)).collect();
+    let used: Vec<Vertex> =
+        Vertex::all(ball.0.len()).filter(|v| kept.iter().any(|face| face.contains(v))).collect();
+    let number = |v: Vertex| Vertex::new(used.binary_search(&v).unwrap());
+    let points: Vec<Vector3> = used.iter().map(|&v| ball.0[v]).collect();
+    let faces: Vec<[Vertex; 3]> = kept.iter().map(|face| face.map(number)).collect();
     let open = (points, faces);
     let surface = TriangleMesh::new(&coordinates(open.0.clone()), &open.1).unwrap();
     let slits = [
@@ -277,7 +278,7 @@ fn boundary_loops_are_features_named_or_not() {
         |curves: &[Vec<usize>]| hyperbolic_structure(&whole, curves, MetricMethod::Newton, &mut Silent);
     let unnamed = structure(&slits).unwrap();
     assert_eq!((unnamed.boundary_lengths.len(), unnamed.pants.len()), (3, 1));
-    let around: Vec<usize> = surface.boundary_loops()[0].iter().map(|&v| v as usize).collect();
+    let around: Vec<usize> = surface.boundary_loops()[0].iter().map(|&v| v.index()).collect();
     let named = structure(&[&slits[..], std::slice::from_ref(&around)].concat()).unwrap();
     assert!((named.boundary_lengths[2] - unnamed.boundary_lengths[2]).abs() < 1e-9);
     assert_eq!(structure(&[around]).unwrap_err(), CurveError::TooFewFeatures { found: 1 }.into());

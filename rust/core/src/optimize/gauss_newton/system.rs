@@ -207,7 +207,7 @@ fn element(problem: &Problem, iterate: &Iterate<'_>, how: &Hessian, face: usize)
         let mut shift = 0.5e-10 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]).abs() + 1e-14;
         if how.curvature > 0.0 {
             // away from a stationary point, a turn of the whole has a negative curvature of the size of the gradient
-            let vertex = energy.faces()[face][c] as usize;
+            let vertex = energy.faces()[face][c];
             let [a, b] = iterate.gradient[vertex];
             shift += how.curvature * a.hypot(b) / energy.vertex_corners(vertex).len() as f64;
         }

@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::codomain::CanonicalDomain;
 use crate::control::Watch;
+use crate::mesh::Vertex;
 use crate::parallel;
 use crate::vector::Vector3;
 use field::Field;
@@ -46,7 +47,7 @@ const BREATH: usize = 512;
 pub(super) fn flow(
     domain: CanonicalDomain,
     map: Vec<Vector3>,
-    landmarks: &[u32],
+    landmarks: &[Vertex],
     places: &[Vector3],
     mended: &dyn Fn(Vec<Vector3>) -> Option<Vec<Vector3>>,
     watch: &Watch<'_>,
@@ -81,8 +82,8 @@ struct Paths {
 }
 
 impl Paths {
-    fn new(domain: CanonicalDomain, map: &[Vector3], landmarks: &[u32], places: &[Vector3]) -> Self {
-        let now: Vec<Vector3> = landmarks.iter().map(|&vertex| map[vertex as usize]).collect();
+    fn new(domain: CanonicalDomain, map: &[Vector3], landmarks: &[Vertex], places: &[Vector3]) -> Self {
+        let now: Vec<Vector3> = landmarks.iter().map(|&vertex| map[vertex]).collect();
         let ways: Vec<Vector3> = now.iter().zip(places).map(|(&x, &place)| domain.way(x, place)).collect();
         let collides =
             |i: usize| (0..now.len()).any(|j| j != i && collide([now[i], now[j]], [ways[i], ways[j]]));

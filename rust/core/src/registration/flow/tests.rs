@@ -6,25 +6,25 @@ use super::*;
 use crate::control::Silent;
 use crate::distortion::{Distortion, Image, measure};
 use crate::mesh::geometry::{face_areas, triangle};
+use crate::mesh::{Vertex, faces_of_indices};
 
-type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
+type Mesh = (Vec<Vector3>, Vec<[Vertex; 3]>);
 
 /// A sphere of 8 · 4^level faces.
 fn octasphere(level: u32) -> Mesh {
     let [x, y, z] = [0, 1, 2].map(Vector3::unit);
     let mut points = vec![x, y, -x, -y, z, -z];
-    let mut faces: Vec<[u32; 3]> = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect();
+    let quarters = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]);
+    let mut faces: Vec<_> = quarters.map(|face| face.map(Vertex)).collect();
     for _ in 0..level {
         let mut middles = BTreeMap::new();
-        let mut middle = |a: u32, b: u32| {
+        let mut middle = |a: Vertex, b: Vertex| {
             *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                points.push(
-                    CanonicalDomain::Sphere.settled(Vector3::ZERO, points[a as usize] + points[b as usize]),
-                );
-                points.len() as u32 - 1
+                points.push(CanonicalDomain::Sphere.settled(Vector3::ZERO, points[a] + points[b]));
+                Vertex::new(points.len() - 1)
             })
         };
-        let split = |&[a, b, c]: &[u32; 3]| {
+        let split = |&[a, b, c]: &[Vertex; 3]| {
             let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         };
@@ -51,7 +51,7 @@ fn disk(rings: u32) -> Mesh {
             }
         }
     }
-    (points, faces)
+    (points, faces_of_indices(&faces))
 }
 
 /// Numbers in [0, 1) that look random.
@@ -71,10 +71,10 @@ fn landmarks(
     count: usize,
     motion: f64,
     seed: u64,
-) -> (Vec<u32>, Vec<Vector3>) {
+) -> (Vec<Vertex>, Vec<Vector3>) {
     let mut random = Random(seed);
     let apart = 0.8 / (count as f64).sqrt();
-    let (mut vertices, mut places): (Vec<u32>, Vec<Vector3>) = (Vec::new(), Vec::new());
+    let (mut vertices, mut places): (Vec<Vertex>, Vec<Vector3>) = (Vec::new(), Vec::new());
     while vertices.len() < count {
         let vertex = (random.next() * points.len() as f64) as usize;
         let (x, angle) = (points[vertex], TAU * random.next());
@@ -83,28 +83,25 @@ fn landmarks(
         let place = domain.on_path(x, way, 1.0).0;
         let inside = |Vector3([u, v, _]): Vector3| domain == CanonicalDomain::Sphere || u * u + v * v < 0.9;
         let far = |from: Vector3, others: &[Vector3]| others.iter().all(|&y| from.distance(y) > apart);
-        let starts: Vec<Vector3> = vertices.iter().map(|&v| points[v as usize]).collect();
+        let starts: Vec<Vector3> = vertices.iter().map(|&v| points[v]).collect();
         if inside(x) && inside(place) && far(x, &starts) && far(place, &places) {
-            vertices.push(vertex as u32);
+            vertices.push(Vertex::new(vertex));
             places.push(place);
         }
     }
     (vertices, places)
 }
 
-fn folded(map: &[Vector3], faces: &[[u32; 3]]) -> usize {
-    let is_folded = |&face: &[u32; 3]| {
+fn folded(map: &[Vector3], faces: &[[Vertex; 3]]) -> usize {
+    let is_folded = |&face: &[Vertex; 3]| {
         let [a, b, c] = triangle(map, face);
         a.dot((b - a).cross(c - a)) <= 0.0
     };
     faces.iter().filter(|face| is_folded(face)).count()
 }
 
-fn gap(map: &[Vector3], landmarks: &[u32], places: &[Vector3]) -> f64 {
-    landmarks
-        .iter()
-        .zip(places)
-        .fold(0.0, |most, (&v, &place)| f64::max(most, map[v as usize].distance(place)))
+fn gap(map: &[Vector3], landmarks: &[Vertex], places: &[Vector3]) -> f64 {
+    landmarks.iter().zip(places).fold(0.0, |most, (&v, &place)| f64::max(most, map[v].distance(place)))
 }
 
 fn figures(domain: CanonicalDomain, (points, faces): &Mesh, map: &[Vector3]) -> Distortion {
@@ -119,7 +116,7 @@ fn small(domain: CanonicalDomain) -> Mesh {
     if domain == CanonicalDomain::Sphere { octasphere(4) } else { disk(20) }
 }
 
-fn flowed(domain: CanonicalDomain, mesh: &Mesh, landmarks: &[u32], places: &[Vector3]) -> Vec<Vector3> {
+fn flowed(domain: CanonicalDomain, mesh: &Mesh, landmarks: &[Vertex], places: &[Vector3]) -> Vec<Vector3> {
     let mut silent = Silent;
     let watch = Watch::new(&mut silent, 0.0, "");
     let mended = |map: Vec<Vector3>| (folded(&map, &mesh.1) == 0).then_some(map);
@@ -131,7 +128,7 @@ fn fields_have_the_wanted_velocities_and_no_divergence() {
     for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         let (points, _) = small(domain);
         let (vertices, places) = landmarks(domain, &points, 12, 0.2, 3);
-        let now: Vec<Vector3> = vertices.iter().map(|&v| points[v as usize]).collect();
+        let now: Vec<Vector3> = vertices.iter().map(|&v| points[v]).collect();
         let ways: Vec<Vector3> = now.iter().zip(&places).map(|(&x, &place)| domain.way(x, place)).collect();
         let field = Field::through(domain, domain.reach(), &now, &ways).unwrap();
         for (&x, &way) in now.iter().zip(&ways) {
@@ -197,10 +194,10 @@ fn area_distortion_vanishes_under_refinement() {
         let (vertices, places) = landmarks(domain, &coarse.0, 4, 0.2, 2);
         let nearest = |x: Vector3| {
             let near = |a: &usize, b: &usize| fine.0[*a].distance(x).total_cmp(&fine.0[*b].distance(x));
-            (0..fine.0.len()).min_by(near).unwrap() as u32
+            (0..fine.0.len()).min_by(near).map(Vertex::new).unwrap()
         };
-        let same: Vec<u32> = vertices.iter().map(|&v| nearest(coarse.0[v as usize])).collect();
-        let energy = |mesh: &Mesh, vertices: &[u32]| {
+        let same: Vec<Vertex> = vertices.iter().map(|&v| nearest(coarse.0[v])).collect();
+        let energy = |mesh: &Mesh, vertices: &[Vertex]| {
             figures(domain, mesh, &flowed(domain, mesh, vertices, &places)).authalic_energy
         };
         let [before, after] = [energy(&coarse, &vertices), energy(&fine, &same)];
@@ -241,7 +238,7 @@ fn landmarks_in_place_leave_the_very_same_map() {
     for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         let mesh = small(domain);
         let places = [3, 9, 14].map(|v| mesh.0[v]);
-        assert_eq!(flowed(domain, &mesh, &[3, 9, 14], &places), mesh.0);
+        assert_eq!(flowed(domain, &mesh, &[3, 9, 14].map(Vertex), &places), mesh.0);
         assert_eq!(flowed(domain, &mesh, &[], &[]), mesh.0);
     }
 }
@@ -251,12 +248,12 @@ fn what_cannot_be_followed_ends_at_an_accepted_map() {
     for domain in [CanonicalDomain::Sphere, CanonicalDomain::Disk] {
         // two landmarks that change places meet halfway
         let mesh = small(domain);
-        let map = flowed(domain, &mesh, &[1, 4], &[4, 1].map(|v: usize| mesh.0[v]));
+        let map = flowed(domain, &mesh, &[1, 4].map(Vertex), &[4, 1].map(|v: usize| mesh.0[v]));
         assert_eq!(folded(&map, &mesh.1), 0);
         assert!(map.iter().all(|x| x.is_finite()));
     }
     let mesh = octasphere(3);
-    let map = flowed(CanonicalDomain::Sphere, &mesh, &[7], &[mesh.0[7] * -1.0]);
+    let map = flowed(CanonicalDomain::Sphere, &mesh, &[Vertex(7)], &[mesh.0[7] * -1.0]);
     assert!(map[7].distance(mesh.0[7] * -1.0) < 1e-8, "antipodes can be reached");
 }
 
@@ -266,6 +263,6 @@ fn cancelling_returns_the_map_so_far() {
     let mut observer = |_: f64, _: &str| false;
     let watch = Watch::new(&mut observer, 0.0, "");
     while watch.goes_on() {}
-    let map = flow(CanonicalDomain::Sphere, mesh.0.clone(), &[0], &[mesh.0[5]], &Some, &watch);
+    let map = flow(CanonicalDomain::Sphere, mesh.0.clone(), &[Vertex(0)], &[mesh.0[5]], &Some, &watch);
     assert_eq!(map, mesh.0);
 }

@@ -7,9 +7,8 @@
 
 use super::{interpolated, rows};
 use crate::location::{Location, Locator, determinant};
-use crate::mesh::Face;
-use crate::mesh::VertexCorners;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{Face, Vertex, VertexCorners};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -28,9 +27,9 @@ const ROUNDING: f64 = 1e-6;
 pub fn pull_corners(
     values: &[f64],
     width: usize,
-    source_faces: &[[u32; 3]],
+    source_faces: &[[Vertex; 3]],
     registered: &[Vector3],
-    target_faces: &[[u32; 3]],
+    target_faces: &[[Vertex; 3]],
     target_registered: &[Vector3],
     locations: &[Location],
 ) -> Vec<f64> {
@@ -44,7 +43,7 @@ pub fn pull_corners(
         let corners = triangle(registered, vertices);
         let centroid = corners.into_iter().sum::<Vector3>() * (1.0 / 3.0);
         let start = target.locator.locate(centroid).triangle;
-        std::array::from_fn(|k| target.reached(start, centroid, corners[k], locations[vertices[k] as usize]))
+        std::array::from_fn(|k| target.reached(start, centroid, corners[k], locations[vertices[k]]))
     });
     let places = places.as_flattened();
     rows(places.len(), width, |row, column| {
@@ -57,7 +56,7 @@ pub fn pull_corners(
 struct Target<'a> {
     values: &'a [f64],
     width: usize,
-    faces: &'a [[u32; 3]],
+    faces: &'a [[Vertex; 3]],
     positions: &'a [Vector3],
     corners: VertexCorners,
     locator: Locator<'a>,
@@ -97,7 +96,7 @@ impl Target<'_> {
         // in the adjacent face the edge runs the other way
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
-        let across = *self.corners.of(end as usize).iter().find(|&&corner| vertex(after(corner)) == start)?;
+        let across = *self.corners.of(end).iter().find(|&&corner| vertex(after(corner)) == start)?;
         let agrees = |k: usize, corner: u32| self.agree(face.corner(k), corner as usize);
         (agrees(j, across) && agrees(i, after(across))).then_some(Face::of_corner(across))
     }

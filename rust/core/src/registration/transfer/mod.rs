@@ -10,6 +10,7 @@
 mod corners;
 
 use crate::location::{Location, Locator};
+use crate::mesh::Vertex;
 use crate::mesh::geometry::triangle;
 use crate::parallel;
 use crate::vector::Vector3;
@@ -27,17 +28,22 @@ const INWARD: f64 = 1e-2;
 ///
 /// # Panics
 /// If there are too few `values` for the indices in `faces`.
-pub fn pull_vertices(values: &[f64], width: usize, faces: &[[u32; 3]], locations: &[Location]) -> Vec<f64> {
+pub fn pull_vertices(
+    values: &[f64],
+    width: usize,
+    faces: &[[Vertex; 3]],
+    locations: &[Location],
+) -> Vec<f64> {
     rows(locations.len(), width, |row, column| {
         let location = locations[row];
         let face = faces[location.triangle];
-        interpolated(location, |corner| values[face[corner] as usize * width + column])
+        interpolated(location, |corner| values[face[corner].index() * width + column])
     })
 }
 
 /// The vertex of the target nearest to each vertex of the source, (n,): the one of the largest weight in the triangle,
 /// the first of equals.
-pub fn nearest_vertices(faces: &[[u32; 3]], locations: &[Location]) -> Vec<u32> {
+pub fn nearest_vertices(faces: &[[Vertex; 3]], locations: &[Location]) -> Vec<Vertex> {
     parallel::map(locations.len(), |vertex| {
         let location = locations[vertex];
         faces[location.triangle][heaviest(location)]
@@ -65,9 +71,9 @@ pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[u32]) -> Vec<T> {
 /// `registered` and `target_registered` are the vertices of both in the domain, either on the unit sphere or in the
 /// plane z = 1, and `locations` (n,) those of the source vertices in the target. Cost: O(log m) for a corner.
 pub fn corner_sides(
-    source_faces: &[[u32; 3]],
+    source_faces: &[[Vertex; 3]],
     registered: &[Vector3],
-    target_faces: &[[u32; 3]],
+    target_faces: &[[Vertex; 3]],
     target_registered: &[Vector3],
     locations: &[Location],
 ) -> Vec<Location> {
@@ -77,7 +83,7 @@ pub fn corner_sides(
         let corners = triangle(registered, source_faces[face]);
         let centroid = corners.into_iter().sum::<Vector3>() * (1.0 / 3.0);
         let vertices = source_faces[face];
-        std::array::from_fn(|k| corner_side(&target, locations[vertices[k] as usize], corners[k], centroid))
+        std::array::from_fn(|k| corner_side(&target, locations[vertices[k]], corners[k], centroid))
     });
     sides.into_flattened()
 }

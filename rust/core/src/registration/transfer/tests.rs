@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::location::tests::{Map, number, octasphere, rings};
-use crate::mesh::Face;
+use crate::mesh::{Face, Vertex};
 
 fn located(target: &Map, points: &[Vector3]) -> Vec<Location> {
     let locator = Locator::new(&target.0, &target.1);
@@ -32,7 +32,7 @@ fn turned_rings(n: u32) -> Map {
     )
 }
 
-fn by_corner(faces: &[[u32; 3]], value: impl Fn(u32) -> f64) -> Vec<f64> {
+fn by_corner(faces: &[[Vertex; 3]], value: impl Fn(Vertex) -> f64) -> Vec<f64> {
     faces.as_flattened().iter().map(|&vertex| value(vertex)).collect()
 }
 
@@ -47,11 +47,10 @@ fn linear_functions_are_reproduced() {
         (0..2).for_each(|k| assert!((pulled[2 * vertex + k] - linear(x)[k]).abs() < 1e-14));
     }
     // data by corner without a seam are the same
-    let corners: Vec<f64> =
-        target.1.as_flattened().iter().flat_map(|&v| linear(target.0[v as usize])).collect();
+    let corners: Vec<f64> = target.1.as_flattened().iter().flat_map(|&v| linear(target.0[v])).collect();
     let pulled_corners = self::corners(&corners, 2, &target, &source);
     for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
-        let at_vertex = &pulled[2 * vertex as usize..][..2];
+        let at_vertex = &pulled[2 * vertex.index()..][..2];
         (0..2).for_each(|k| assert!((pulled_corners[2 * corner + k] - at_vertex[k]).abs() < 1e-14));
     }
     assert_eq!(
@@ -70,7 +69,7 @@ fn a_mesh_gets_its_own_data_back_to_the_bit() {
         assert_eq!(corners(&values, 1, &map, &map), values);
         let own: Vec<u32> = (0..3 * map.1.len() as u32).collect();
         assert_eq!(nearest_corners(&sides), own);
-        let vertices: Vec<u32> = (0..map.0.len() as u32).collect();
+        let vertices: Vec<Vertex> = Vertex::all(map.0.len()).collect();
         assert_eq!(nearest_vertices(&map.1, &locations), vertices);
     }
 }
@@ -79,11 +78,12 @@ fn a_mesh_gets_its_own_data_back_to_the_bit() {
 fn the_side_of_a_seam_is_that_of_the_face() {
     // the line v = 0 is a chain of edges in both, but of edges of different lengths; above it the data jump by 10
     let (target, source) = (rings(6), rings(4));
-    let is_above =
-        |points: &[Vector3], face: [u32; 3]| triangle(points, face).iter().map(|x| x[1]).sum::<f64>() > 0.0;
+    let is_above = |points: &[Vector3], face: [Vertex; 3]| {
+        triangle(points, face).iter().map(|x| x[1]).sum::<f64>() > 0.0
+    };
     let on_target = |face: usize| if is_above(&target.0, target.1[face]) { 10.0 } else { 0.0 };
     let values: Vec<f64> = (0..3 * target.1.len())
-        .map(|corner| on_target(corner / 3) + target.0[target.1.as_flattened()[corner] as usize][0])
+        .map(|corner| on_target(corner / 3) + target.0[target.1.as_flattened()[corner]][0])
         .collect();
     // and a little noise: registrations are not exact
     for noise in [0.0, 1e-9, 1e-7] {
@@ -99,9 +99,9 @@ fn the_side_of_a_seam_is_that_of_the_face() {
         for (corner, &vertex) in source.1.as_flattened().iter().enumerate() {
             let above = is_above(&source.0, source.1[corner / 3]);
             assert_eq!(pulled_labels[corner], u8::from(above));
-            let expected = if above { 10.0 } else { 0.0 } + source.0[vertex as usize][0];
+            let expected = if above { 10.0 } else { 0.0 } + source.0[vertex][0];
             // beyond the chords the nearest point of the rim counts
-            let inside = source.0[vertex as usize].norm() < 1.4;
+            let inside = source.0[vertex].norm() < 1.4;
             assert!((pulled[corner] - expected).abs() < if inside { 1e-6 } else { 1e-2 });
         }
     }
@@ -142,19 +142,28 @@ fn no_face_is_smeared_over_a_seam() {
 
 #[test]
 fn labels_come_from_the_nearest_corner() {
-    let target: Map =
-        (vec![Vector3([0., 0., 1.]), Vector3([1., 0., 1.]), Vector3([0., 1., 1.])], vec![[0, 1, 2]]);
+    let target: Map = (
+        vec![Vector3([0., 0., 1.]), Vector3([1., 0., 1.]), Vector3([0., 1., 1.])],
+        vec![[0, 1, 2].map(Vertex)],
+    );
     let locations =
         located(&target, &[Vector3([0.6, 0.3, 1.0]), Vector3([0.1, 0.7, 1.0]), Vector3([0.5, 0.0, 1.0])]);
     let nearest = nearest_vertices(&target.1, &locations);
-    assert_eq!(nearest, [1, 2, 0]);
-    assert_eq!(pull_rows(&["a", "b", "c", "d", "e", "f"], 2, &nearest), ["c", "d", "e", "f", "a", "b"]);
+    assert_eq!(nearest, [1, 2, 0].map(Vertex));
+    assert_eq!(
+        pull_rows(
+            &["a", "b", "c", "d", "e", "f"],
+            2,
+            &nearest.iter().map(|vertex| vertex.0).collect::<Vec<_>>()
+        ),
+        ["c", "d", "e", "f", "a", "b"]
+    );
 }
 
 #[test]
 fn a_value_that_is_not_finite_stays_where_it_is() {
     let target = rings(1);
-    let mut values = by_corner(&[[0, 1, 2]], f64::from);
+    let mut values = by_corner(&[[0, 1, 2].map(Vertex)], |vertex| f64::from(vertex.0));
     values.extend([4.0, 5.0, 6.0, f64::NAN]);
     let locations = located(&target, &target.0[..6]);
     assert_eq!(pull_vertices(&values, 1, &target.1, &locations), [0.0, 1.0, 2.0, 4.0, 5.0, 6.0]);
@@ -163,5 +172,5 @@ fn a_value_that_is_not_finite_stays_where_it_is() {
 #[test]
 fn a_vertex_takes_the_weighted_mean_of_its_triangle() {
     let middle = Location { triangle: Face(0), barycentric: [0.5, 0.25, 0.25] };
-    assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2]], &[middle]), [2.5]);
+    assert_eq!(pull_vertices(&[1.0, 2.0, 6.0], 1, &[[0, 1, 2].map(Vertex)], &[middle]), [2.5]);
 }

@@ -24,6 +24,7 @@ mod solve;
 use super::faer::{Scalar, minimum_degree};
 use crate::control::Watch;
 use crate::error::Error;
+use crate::mesh::Vertex;
 pub(crate) use dense::Failure;
 use elimination::Elimination;
 pub(super) use fronts::Element;
@@ -48,10 +49,12 @@ pub(crate) enum Order {
 /// # Errors
 /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for
 /// 32-bit indices.
-pub(crate) fn elimination_order(n_vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<u32>, Error> {
-    let graph = Graph::of_cliques(n_vertices, faces);
+pub(crate) fn elimination_order(n_vertices: usize, faces: &[[Vertex; 3]]) -> Result<Vec<Vertex>, Error> {
+    let cliques: Vec<_> = faces.iter().map(|face| face.map(|vertex| vertex.0)).collect();
+    let graph = Graph::of_cliques(n_vertices, &cliques);
     let order = fill_reducing_order(&graph)?;
-    Ok(Elimination::new(&graph, &order, &vec![1; n_vertices]).order)
+    let tree = Elimination::new(&graph, &order, &vec![1; n_vertices]);
+    Ok(tree.order.into_iter().map(Vertex).collect())
 }
 
 /// The pattern of the factor for one mesh and the unknowns of its vertices.
@@ -72,7 +75,7 @@ impl Analysis {
     /// 32-bit indices.
     pub(crate) fn new(
         n_vertices: usize,
-        faces: &[[u32; 3]],
+        faces: &[[Vertex; 3]],
         dofs: &[u8],
         order: Order,
     ) -> Result<Self, Error> {
@@ -87,8 +90,7 @@ impl Analysis {
                 node_dofs.push(dofs[vertex]);
             }
         }
-        let cliques: Vec<[u32; 3]> =
-            faces.iter().map(|face| face.map(|vertex| node_of[vertex as usize])).collect();
+        let cliques: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|vertex| node_of[vertex])).collect();
         Ok(Self { first_unknown, symbolic: Symbolic::new(&cliques, &node_dofs, order)? })
     }
 
@@ -98,8 +100,8 @@ impl Analysis {
     }
 
     /// The first unknown of a vertex; that of the next vertex where it has none.
-    pub(crate) fn first_unknown(&self, vertex: usize) -> usize {
-        self.first_unknown[vertex] as usize
+    pub(crate) fn first_unknown(&self, vertex: impl Into<usize>) -> usize {
+        self.first_unknown[vertex.into()] as usize
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::control::Silent;
+use crate::mesh::faces_of_indices;
 
 /// A grid of n × n vertices, its squares cut into two faces.
 pub(super) fn grid(n: usize) -> (usize, Vec<[u32; 3]>) {
@@ -32,6 +33,10 @@ fn element(face: usize) -> [[f64; 6]; 6] {
             (0..6).map(|k| root[k][i] * root[k][j]).sum::<f64>() + if i == j { 0.3 } else { 0.0 }
         })
     })
+}
+
+fn analyzed(n: usize, faces: &[[u32; 3]], dofs: &[u8], order: Order) -> Analysis {
+    Analysis::new(n, &faces_of_indices(faces), dofs, order).unwrap()
 }
 
 /// 0, 1 or 2 unknowns at each vertex.
@@ -70,7 +75,7 @@ fn residual<T: Scalar>(n: usize, faces: &[[u32; 3]], dofs: &[u8]) -> f64 {
 }
 
 fn residual_in<T: Scalar>(order: Order, n: usize, faces: &[[u32; 3]], dofs: &[u8]) -> f64 {
-    let analysis = Analysis::new(n, faces, dofs, order).unwrap();
+    let analysis = analyzed(n, faces, dofs, order);
     let factor = factored::<T>(&analysis);
     let b: [Vec<f64>; 2] = [1, 2].map(|k| (0..analysis.n_unknowns()).map(|i| noise(i, k)).collect());
     let mut x = b.concat();
@@ -113,7 +118,7 @@ fn bits<T: Scalar>(analysis: &Analysis, threads: usize) -> (Vec<u64>, Vec<u64>) 
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
     let (n, faces) = grid(150);
-    let analysis = Analysis::new(n, &faces, &mixed_dofs(n), Order::Sparse).unwrap();
+    let analysis = analyzed(n, &faces, &mixed_dofs(n), Order::Sparse);
     let (double, single) = (bits::<f64>(&analysis, 1), bits::<f32>(&analysis, 1));
     for threads in [2, 2, 2, 7, 7] {
         assert!(bits::<f64>(&analysis, threads) == double);
@@ -141,16 +146,16 @@ fn tiny_systems_and_none_at_all_are_solved() {
         assert!(residual::<f64>(3, &face, &dofs) < 1e-12, "{dofs:?}");
     }
     assert_eq!(residual::<f64>(0, &[], &[]), 0.0);
-    let analysis = Analysis::new(3, &face, &[1, 0, 2], Order::Sparse).unwrap();
+    let analysis = analyzed(3, &face, &[1, 0, 2], Order::Sparse);
     assert_eq!(analysis.n_unknowns(), 3);
-    assert_eq!([0, 1, 2].map(|vertex| analysis.first_unknown(vertex)), [0, 1, 1]);
+    assert_eq!([0usize, 1, 2].map(|vertex| analysis.first_unknown(vertex)), [0, 1, 1]);
 }
 
 #[test]
 fn indefinite_singular_and_broken_matrices_are_refused() {
     for size in [2, 60] {
         let (n, faces) = grid(size);
-        let analysis = Analysis::new(n, &faces, &vec![2; n], Order::Sparse).unwrap();
+        let analysis = analyzed(n, &faces, &vec![2; n], Order::Sparse);
         // the only face of one corner of the grid
         let lonely = 2 * (size - 2);
         for wrong in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
@@ -171,7 +176,7 @@ fn indefinite_singular_and_broken_matrices_are_refused() {
 #[test]
 fn a_factorization_can_be_cancelled_and_done_again() {
     let (n, faces) = grid(400);
-    let analysis = Analysis::new(n, &faces, &vec![2; n], Order::Sparse).unwrap();
+    let analysis = analyzed(n, &faces, &vec![2; n], Order::Sparse);
     let mut factor = Factor::<f64>::new(&analysis);
     let mut asked: Option<std::time::Instant> = None;
     let mut cancel = |_: f64, _: &str| {
@@ -195,7 +200,7 @@ fn times() {
     let (n, faces) = read_obj(&path);
     for dofs in [1_u8, 2] {
         let began = std::time::Instant::now();
-        let analysis = Analysis::new(n, &faces, &vec![dofs; n], Order::Sparse).unwrap();
+        let analysis = analyzed(n, &faces, &vec![dofs; n], Order::Sparse);
         let fronts = &analysis.symbolic.fronts;
         let largest = (0..fronts.len()).map(|f| fronts.front(f).height()).max().unwrap();
         println!(

@@ -4,7 +4,7 @@
 
 use super::public::sphere_map;
 use authalic::testing::TriangleMesh;
-use authalic::{Error, LineSearch, Silent, SphereMap, SphereMapOptions, SphereMethod};
+use authalic::{Error, LineSearch, Silent, SphereMap, SphereMapOptions, SphereMethod, Vertex};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
@@ -168,13 +168,13 @@ pub fn assert_bijective(mesh: &TriangleMesh, map: &[impl Coordinates], context: 
         assert!((distance(x, [0.0; 3]) - 1.0).abs() < 1e-14, "{context}: a row of another length than 1");
     }
     assert_eq!(folded(mesh, map), [0usize; 0], "{context}: folded faces");
-    let covered: f64 = mesh.faces().iter().map(|face| solid_angle(face.map(|v| map[v as usize]))).sum();
+    let covered: f64 = mesh.faces().iter().map(|face| solid_angle(face.map(|v| map[v]))).sum();
     assert!((covered - 4.0 * PI).abs() < 1e-9, "{context}: covers {covered} instead of 4π");
 }
 
 /// Faces whose determinant is not positive, in exact arithmetic.
 pub fn folded(mesh: &TriangleMesh, map: &[impl Coordinates]) -> Vec<usize> {
-    let is_folded = |face: &usize| !is_positive(mesh.faces()[*face].map(|v| map[v as usize].into()));
+    let is_folded = |face: &usize| !is_positive(mesh.faces()[*face].map(|v| map[v].into()));
     (0..mesh.n_faces()).filter(is_folded).collect()
 }
 
@@ -241,8 +241,8 @@ pub fn energies(map: &SphereMap) -> Vec<f64> {
 
 /// Areas of the image's flat faces.
 pub fn image_areas(mesh: &TriangleMesh, map: &[impl Coordinates]) -> Vec<f64> {
-    let area = |face: &[u32; 3]| {
-        let [a, b, c] = face.map(|v| map[v as usize]);
+    let area = |face: &[Vertex; 3]| {
+        let [a, b, c] = face.map(|v| map[v]);
         let [p, q, r] = [distance(b, c), distance(c, a), distance(a, b)];
         0.25 * ((p + q + r) * (-p + q + r) * (p - q + r) * (p + q - r)).max(0.0).sqrt()
     };

@@ -6,6 +6,7 @@ pub mod planar;
 pub mod public;
 pub mod random;
 
+use authalic::Vertex;
 use authalic::testing::TriangleMesh;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -297,6 +298,16 @@ fn subdivided(vertices: &mut Vec<[f64; 3]>, faces: &[[u32; 3]]) -> Vec<[u32; 3]>
 
 fn triples(n: u32) -> impl Iterator<Item = [u32; 3]> {
     (0..n).flat_map(move |a| (a + 1..n).flat_map(move |b| (b + 1..n).map(move |c| [a, b, c])))
+}
+
+/// Faces of the vertices with these indices.
+pub fn faces_of_indices(rows: &[[u32; 3]]) -> Vec<[Vertex; 3]> {
+    rows.iter().map(|row| row.map(Vertex)).collect()
+}
+
+/// The indices of the vertices of faces.
+pub fn indices(faces: &[[Vertex; 3]]) -> Vec<[u32; 3]> {
+    faces.iter().map(|face| face.map(|vertex| vertex.0)).collect()
 }
 
 /// A point as an array or a vector.

@@ -13,11 +13,11 @@ type Point = [f64; 2];
 /// of it without meeting itself.
 pub fn assert_one_to_one(mesh: &TriangleMesh, uv: &[Point], boundary: Boundary, context: &str) {
     assert_eq!(uv.len(), mesh.n_vertices());
-    let corners = |face: usize| mesh.faces()[face].map(|v| uv[v as usize]);
+    let corners = |face: usize| mesh.faces()[face].map(|v| uv[v]);
     let folded: Vec<usize> = (0..mesh.n_faces()).filter(|&face| side(corners(face)) <= 0).collect();
     assert_eq!(folded, [0usize; 0], "{context}: folded faces");
     assert!(uv.iter().all(|x| x[0].hypot(x[1]) <= 1.0 + 1e-12), "{context}: outside of the disk");
-    let outline: Vec<Point> = mesh.boundary_loops()[0].iter().map(|&v| uv[v as usize]).collect();
+    let outline: Vec<Point> = mesh.boundary_loops()[0].iter().map(|&v| uv[v]).collect();
     match boundary {
         Boundary::Free => assert_eq!(crossing(&outline), None, "{context}: edges of the outline that meet"),
         _ => assert_once_around(&outline, context),
@@ -77,7 +77,7 @@ pub fn signed_area(corners: &[Point]) -> f64 {
 
 /// The areas of the faces.
 pub fn areas(mesh: &TriangleMesh, uv: &[Point]) -> Vec<f64> {
-    mesh.faces().iter().map(|face| signed_area(&face.map(|v| uv[v as usize]))).collect()
+    mesh.faces().iter().map(|face| signed_area(&face.map(|v| uv[v]))).collect()
 }
 
 /// E_A of a map to `targets`, rescaled to its area.

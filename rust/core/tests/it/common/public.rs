@@ -12,7 +12,7 @@ use ndarray::{Array2, aview2};
 /// The surface of a mesh.
 pub fn surface(mesh: &TriangleMesh) -> Surface {
     let vertices: Vec<[f64; 3]> = mesh.points().iter().map(|&point| point.into()).collect();
-    Surface::new(aview2(&vertices), aview2(mesh.faces())).expect("a mesh is a surface")
+    Surface::new(aview2(&vertices), aview2(&super::indices(mesh.faces()))).expect("a mesh is a surface")
 }
 
 pub fn disk_map(
@@ -92,6 +92,6 @@ pub fn vertices_of(patch: &Patch) -> &[[f64; 3]] {
 }
 
 /// The faces of a patch.
-pub fn faces_of(patch: &Patch) -> &[[u32; 3]] {
-    rows(patch.surface.faces())
+pub fn faces_of(patch: &Patch) -> Vec<[u32; 3]> {
+    triples(&patch.surface.faces()).to_vec()
 }

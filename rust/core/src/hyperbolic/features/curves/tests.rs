@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
+use crate::mesh::Vertex;
 use crate::vector::{Vector3, coordinates};
 
 const X: Vector3 = Vector3([1.0, 0.0, 0.0]);
@@ -32,7 +33,7 @@ fn message(mesh: &TriangleMesh, curves: &[Vec<usize>]) -> String {
 fn open_curves_are_pairs_as_given() {
     let (whole, arc) = (whole(), path(&sphere(3), X, Y));
     let pairs = check([&whole, &whole], std::slice::from_ref(&arc), std::slice::from_ref(&arc)).unwrap();
-    let vertices: Vec<u32> = arc.iter().map(|&v| v as u32).collect();
+    let vertices: Vec<Vertex> = arc.iter().copied().map(Vertex::new).collect();
     let expected = CurvePair {
         source: vertices.clone(),
         target: vertices,
@@ -110,7 +111,7 @@ fn bad_curves_are_refused_by_argument_number_and_place() {
 #[test]
 fn the_boundary_is_met_by_whole_loops_only() {
     let open = cap_removed();
-    let rim: Vec<usize> = open.boundary_loops()[0].iter().map(|&v| v as usize).collect();
+    let rim: Vec<usize> = open.boundary_loops()[0].iter().map(|&v| v.index()).collect();
     let n = rim.len();
     let backwards: Vec<usize> = (0..=n).map(|k| rim[(5 + n - k) % n]).collect();
     let pairs = check([&open, &open], std::slice::from_ref(&rim), std::slice::from_ref(&backwards)).unwrap();
@@ -129,8 +130,8 @@ fn surfaces_must_be_one_piece_without_handles() {
     let (points, faces) = sphere(1);
     let shifted: Vec<Vector3> = points.iter().map(|&x| x + Vector3([5.0, 0.0, 0.0])).collect();
     let n = points.len() as u32;
-    let other = faces.iter().map(|face| face.map(|v| v + n));
-    let both: Vec<[u32; 3]> = faces.iter().copied().chain(other).collect();
+    let other = faces.iter().map(|face| face.map(|v| Vertex(v.0 + n)));
+    let both: Vec<[Vertex; 3]> = faces.iter().copied().chain(other).collect();
     let two = TriangleMesh::new(&coordinates([points, shifted].concat()), &both).unwrap();
     let error = check([&whole(), &two], &[vec![0, 1]], &[vec![0, 1]]).unwrap_err();
     assert!(error.to_string().starts_with("the target: the mesh is 2 separate pieces"), "{error}");

@@ -6,6 +6,7 @@ use crate::hyperbolic::features::curves::{LandmarkCurves, face_on_left};
 use crate::hyperbolic::features::placement::placed;
 use crate::hyperbolic::features::regions::divided;
 use crate::hyperbolic::sample_meshes::{circle, mesh, path, sphere, without};
+use crate::mesh::Vertex;
 use crate::vector::coordinates;
 
 const Z: Vector3 = Vector3([0.0, 0.0, 1.0]);
@@ -38,7 +39,7 @@ fn check(piece: &Piece) {
             assert!(parameters.windows(2).all(|ends| ends[0] < ends[1]));
             assert!(bank.vertices[0] == feature.start() && bank.vertices.last() == Some(&feature.end()));
         }
-        let left = |[a, b]: [u32; 2]| face_on_left(&mesh, a, b).is_some();
+        let left = |[a, b]: [Vertex; 2]| face_on_left(&mesh, a, b).is_some();
         for ends in feature.left.vertices.windows(2) {
             assert!(left([ends[0], ends[1]]) && left([ends[1], ends[0]]) != feature.is_loop);
         }
@@ -72,7 +73,7 @@ fn without_closed_curves_the_piece_is_the_whole_surface() {
     assert_eq!((&ours.points[..], &ours.faces[..]), (surface.points(), surface.faces()));
     assert_eq!(ours.features, theirs.features);
     assert!(!ours.features[0].is_loop && ours.features[1].is_loop);
-    assert_eq!(ours.features[0].left.vertices, arc.iter().map(|&v| v as u32).collect::<Vec<_>>());
+    assert_eq!(ours.features[0].left.vertices, arc.iter().copied().map(Vertex::new).collect::<Vec<_>>());
 }
 
 #[test]
@@ -86,8 +87,7 @@ fn nested_and_disjoint_circles_bound_pieces_with_the_same_parameters_on_both_sid
         check(ours);
         assert_eq!((&ours.vertex_of, &ours.face_of), (&theirs.vertex_of, &theirs.face_of));
         assert_eq!(ours.features, theirs.features);
-        let on_surface =
-            ours.features.iter().map(|f| f.clone().with_vertices(|v| ours.vertex_of[v as usize]));
+        let on_surface = ours.features.iter().map(|f| f.clone().with_vertices(|v| ours.vertex_of[v]));
         loops.extend(on_surface.filter(|feature| feature.is_loop));
     }
     assert_eq!(loops.len(), 6);
@@ -146,14 +146,16 @@ fn the_edge_that_closes_a_curve_belongs_to_one_edge() {
     let mut turned = open.clone();
     [1, 2, 3].into_iter().for_each(|curve| turned[curve].reverse());
     for theirs in [open.clone(), turned] {
-        let ends: Vec<[u32; 2]> =
-            [1, 2, 3].iter().map(|&k| [theirs[k][theirs[k].len() - 1] as u32, theirs[k][0] as u32]).collect();
+        let ends: Vec<[Vertex; 2]> = [1, 2, 3]
+            .iter()
+            .map(|&k| [theirs[k][theirs[k].len() - 1], theirs[k][0]].map(Vertex::new))
+            .collect();
         for (our, their) in cut(&surface, &open, &theirs).unwrap() {
             check(&our);
             check(&their);
             for (ours, theirs) in our.features.iter().zip(&their.features).filter(|(_, their)| their.is_loop)
             {
-                let inner_ends = |bank: &Bank| [1, 0].map(|k| their.vertex_of[bank.vertices[k] as usize]);
+                let inner_ends = |bank: &Bank| [1, 0].map(|k| their.vertex_of[bank.vertices[k]]);
                 let bank = [&theirs.left, &theirs.right].map(|bank| ends.contains(&inner_ends(bank)));
                 assert!(bank[0] != bank[1], "the gap leads into the start");
                 let [of_ours, of_theirs] = [ours, theirs].map(|f| if bank[0] { &f.left } else { &f.right });

@@ -22,6 +22,7 @@ CORE_ROOMS = (
     {"energy", "embedding", "alignment"},
     {"optimize"},
     {"disk", "sphere", "untangle"},
+    {"layout"},
     {"registration"},
     {"hyperbolic"},
     {"testing"},
@@ -41,7 +42,7 @@ HYPERBOLIC_ROOMS = (
 ADDON_ROOMS = (
     {"messages"},
     {"surfaces"},
-    {"blender", "sphere_layout"},
+    {"blender"},
     {"landmarks"},
     {"overlay", "registration"},
     {"bridge"},
@@ -53,7 +54,7 @@ ADDON_ROOMS = (
 ADDON_RANK = {room: rank for rank, rooms in enumerate(ADDON_ROOMS) for room in rooms}
 
 # Python code that knows nothing of Blender.
-WITHOUT_BLENDER = {"messages", "surfaces", "sphere_layout", "registration", "bridge"}
+WITHOUT_BLENDER = {"messages", "surfaces", "registration", "bridge"}
 BLENDER_MODULES = {"bpy", "bmesh", "mathutils", "gpu", "blf", "bpy_extras", "gpu_extras"}
 
 # Names by which Blender's meshes give and take their data, and which nothing else in the add-on has.

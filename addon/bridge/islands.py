@@ -9,15 +9,13 @@ import numpy as np
 
 import authalic
 
-from .. import messages
 from ..messages import problems
-from ..sphere_layout import projection
 from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
 from .patches import checked, cut
-from .progress import Progress, keep_going, one_by_one
+from .progress import Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import Island, Mapping, Refusal
 from .settings import UnwrapSettings
 from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
@@ -29,6 +27,16 @@ _NOT_FREE = f"set Outline to Free, or {_CUT}"
 _OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
 # Where the slider has to stand for shapes that a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
+# The pole and, where the angle of the seam is 0, the direction of the seam.
+_AXES = {
+    "X": ((1, 0, 0), (0, 1, 0)),
+    "Y": ((0, 1, 0), (0, 0, -1)),
+    "Z": ((0, 0, 1), (0, 1, 0)),
+}
+# The part of the time that a sphere map takes, before it is laid flat.
+_SPHERE = 0.9
+# The vertices that a layout needs for its poles, at most.
+_POLES = 4
 
 
 def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Progress = keep_going) -> Mapping:
@@ -119,40 +127,53 @@ def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Isl
 
 def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
     """By the sphere map asked for, or by one with better shapes where its faces are too thin to lay flat."""
+    solver = settings.solver
     try:
-        return _laid_flat(piece, settings, settings.solver, progress)
-    except projection.CannotProject as problem:
-        if settings.solver.method == "GAUSS_NEWTON" and settings.solver.angle_weight < _FIT_TO_LAY_FLAT:
-            with suppress(projection.CannotProject):
-                solver = replace(settings.solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
+        return _laid_flat(piece, settings, solver, progress)
+    except authalic.SolverError as problem:
+        if problem.kind != "layout_fold":
+            raise
+        if solver.method == "GAUSS_NEWTON" and solver.angle_weight < _FIT_TO_LAY_FLAT:
+            solver = replace(solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
+            with suppress(authalic.SolverError):
                 return _laid_flat(piece, settings, solver, progress)
-        raise Unsuitable(
-            f"{messages.count(problem.count, 'triangle')} would fold over when its sphere is laid flat; try "
-            "another Layout, Pole Axis or Angle Weight, poke its n-gons, subdivide the mesh or mark seams"
-        ) from problem
+        raise
 
 
 def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
-    found, positions, turned = sphere_map(checked(piece.patch, piece.points), solver, progress)
-    uv = projection.project(
-        positions,
-        np.where(turned[:, None], faces[:, ::-1], faces),
-        polygons=piece.polygons,
-        areas=triangulation.areas(piece.points[faces]),
-        movable=piece.vertices >= 0,
-        layout=settings.layout,
-        axis=settings.pole_axis,
-        seam=settings.seam_direction,
-    )
-    uv = np.where(turned[:, None, None], uv[:, ::-1], uv)
-    first, corner_point = triangulation.welded(faces, uv)
-    uv, points = uv.reshape(-1, 2)[first], faces.ravel()[first]
+    native = checked(piece.patch, piece.points)
+    found, over, turned = sphere_map(native, solver, share_of(progress, 0.0, _SPHERE))
+    layout = _layout(found, over, piece, settings, share_of(progress, _SPHERE, 1.0 - _SPHERE))
+    # the map has some faces turned over: corners in the order of the mesh
+    order = (np.asarray(found.faces)[:, None, :] == faces[:, :, None]).argmax(axis=2)
+    corner_point = np.take_along_axis(np.asarray(layout.faces), order, axis=1)
+    points, uv = np.asarray(layout.vertex_of), np.asarray(layout.points, float)
     native = authalic.Surface(piece.points[points], corner_point)
     island = _island(piece, native, uv, corner_point, turned, points)
     figures = authalic.distortion(native, island.uv)
     island.shortfall = shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
     return island
+
+
+def _layout(
+    found: authalic.SphereMap, over: Floats, piece: _Piece, settings: UnwrapSettings, progress: Progress
+) -> authalic.Layout:
+    """A sphere map laid out by the settings, whose axes are the surface's; `over` lays it over that."""
+    pole, start = np.array(_AXES[settings.pole_axis], float)
+    angle = settings.seam_direction
+    seam = np.cos(angle) * start + np.sin(angle) * np.cross(pole, start)
+    real = piece.vertices >= 0
+    return found.layout(
+        "lambert" if settings.layout == "LAMBERT" else "octahedral",
+        pole=over @ pole,
+        seam=over @ seam,
+        polygons=piece.polygons,
+        candidates=real if np.count_nonzero(real) >= _POLES else None,
+        precision="float32",
+        # a map that ended early has to be laid flat nevertheless
+        progress=to_the_end(progress),
+    )
 
 
 def _island(

@@ -66,6 +66,21 @@ def one_by_one(
         done += share
 
 
+def share_of(progress: Progress, start: float, share: float) -> Progress:
+    """A part of the whole as a progress callback."""
+    return lambda fraction, message: progress(start + share * fraction, message)
+
+
+def to_the_end(progress: Progress) -> Progress:
+    """The progress callback for what has to be finished: it is told, but only an exception ends it."""
+
+    def tell(fraction: float, message: str) -> bool:
+        progress(fraction, message)
+        return True
+
+    return tell
+
+
 def _noting_the_end(progress: Progress, result: Result) -> Progress:
     """The progress callback, which also notes in a `Mapping` that it was asked to end."""
 
@@ -77,5 +92,5 @@ def _noting_the_end(progress: Progress, result: Result) -> Progress:
 
 
 def _sub_progress(progress: Progress, start: float, share: float, name: str) -> Progress:
-    """A part of the whole as a progress callback of its own."""
-    return lambda fraction, message: progress(start + share * fraction, f"{name}: {message}")
+    """A part of the whole as a progress callback that names it."""
+    return share_of(lambda fraction, message: progress(fraction, f"{name}: {message}"), start, share)

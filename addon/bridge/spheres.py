@@ -36,12 +36,12 @@ def sphere_shape(
         suitability.check_closed_mesh(used, len(surface.positions), patches)
         # one piece of all vertices: numbered as the mesh is
         native = checked(patches[0], mesh.positions)
-        found, positions, turned = sphere_map(native, solver, progress)
+        found, over, turned = sphere_map(native, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
         raise Unsuitable(problems.in_words(error, mesh.polygons, vertices)) from error
     centre = spherical.centroid(mesh.positions, mesh.triangles)
     radius = spherical.radius(mesh.positions, mesh.triangles)
-    written = (centre + radius * positions).astype(np.float32)
+    written = (centre + radius * (np.asarray(found.positions) @ over)).astype(np.float32)
     faces = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
     # a mesh whose faces look inwards lies mirrored on the sphere
     outward = -1 if spherical.volume(mesh.positions, faces) < 0 else 1
@@ -71,14 +71,14 @@ def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch
 def sphere_map(
     surface: authalic.Surface, solver: Solver, progress: Progress
 ) -> tuple[authalic.SphereMap, Floats, Booleans]:
-    """A sphere map, its positions laid over the surface, and which faces (m,) it has turned over."""
+    """A sphere map, the matrix that lays it over the surface, and which faces (m,) it has turned over."""
     found = authalic.sphere_map(surface, progress=progress, **solver.sphere_options())
     is_poor = found.status == "stalled" and solver.puts_areas_first
     if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
         start = authalic.sphere_map(surface, method="fixed_point", max_iterations=0)
         found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
     oriented = np.asarray(found.faces)
-    over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.array(found.positions))
+    over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.asarray(found.positions))
     return found, over, spherical.turned(np.asarray(surface.faces), oriented)
 
 

@@ -21,8 +21,8 @@ class Cancelled(Exception):
 class Job(Generic[Computed, Result]):
     """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
 
-    `work` must not touch bpy; `progress(fraction, message)` is False once the job is to end. What `work`
-    returns then counts if the job was to end early, and not if it was cancelled.
+    `work` must not touch bpy; `progress(fraction, message)` is False once the job is to end early, when what
+    `work` returns counts. It raises `Cancelled` once the job is cancelled.
     """
 
     def __init__(
@@ -82,5 +82,7 @@ class Job(Generic[Computed, Result]):
             self._error = error
 
     def _report(self, fraction: float, message: str) -> bool:
+        if self._cancel.is_set():
+            raise Cancelled("cancelled, nothing was changed")
         self._state = (fraction, message)
         return not self._end.is_set()

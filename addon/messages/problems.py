@@ -7,6 +7,7 @@ The library's own messages are not read: each kind of error and of warning has i
 from collections.abc import Sequence
 from typing import Protocol
 
+from . import count as counted
 from . import elements
 from .elements import Index, Numbers
 
@@ -48,6 +49,10 @@ ERRORS = {
     "fixed_fold": "{its.faces} cannot be unfolded, because vertices around them stay; unpin some",
     "outline_fold": "{its.faces} cannot be unfolded without moving the outline; unwrap them again",
     "still_folded": "{its.faces} could not be unfolded; smooth the outline there or unwrap them again",
+    "layout_fold": (
+        "{its.triangles} would fold over when its sphere is laid flat; try another Layout, Pole Axis or "
+        "Angle Weight, poke its n-gons, subdivide the mesh or mark seams"
+    ),
     "no_embedding": (
         "no map without folds was found in double precision, left over: {its.faces}; cut the long thin parts "
         "there open by seams, or remesh them"
@@ -166,6 +171,10 @@ class _Terms:
     @property
     def faces(self) -> str:
         return elements.phrase("face", self._problem.indices, self.count, self._polygons)
+
+    @property
+    def triangles(self) -> str:
+        return counted(self.count, "triangle")
 
     @property
     def vertices(self) -> str:

@@ -28,20 +28,19 @@ def volume(points: Floats, faces: Integers) -> float:
 
 
 def over_surface(points: Floats, faces: Integers, positions: Floats) -> Floats:
-    """A map `positions` (n, 3), outward-oriented by a closed surface's `faces` (m, 3), laid over the surface.
+    """The matrix (3, 3) by which `positions @ matrix` lays a map over its surface.
 
-    On a surface whose faces look inward such a map is turned inside out: it is mirrored, so that faces look
-    inward on the sphere as well.
+    The map (n, 3) is oriented outward by a closed surface's `faces` (m, 3). On a surface whose faces look
+    inward it is turned inside out: it is mirrored, so that faces look inward on the sphere as well.
     """
     points = points - centroid(points, faces)
     if volume(points, faces) >= 0:
-        return positions
-    positions = -positions
+        return np.eye(3)
     corner = np.repeat(triangulation.areas(points[faces]), 3)
     weights = np.bincount(faces.ravel(), corner, len(points))
-    u, _, vt = np.linalg.svd((weights[:, None] * positions).T @ points)
+    u, _, vt = np.linalg.svd((weights[:, None] * -positions).T @ points)
     u[:, -1] *= np.sign(np.linalg.det(u @ vt))
-    return positions @ (u @ vt)
+    return -(u @ vt)
 
 
 def is_thin(positions: Floats, faces: Integers) -> bool:

@@ -164,15 +164,45 @@ def octahedron(radii=(1.0, 1.0, 1.0)):
 
 def ball(level=3):
     """An octahedron with every face split in four `level` times, its vertices on the unit sphere."""
-    vertices, faces = octahedron()
+    mesh = octahedron()
     for _ in range(level):
-        edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-        ends, middle = np.unique(edges, axis=0, return_inverse=True)
-        (a, b, c), (ab, bc, ca) = faces.T, (len(vertices) + middle.reshape(-1, 3)).T
-        vertices = np.vstack([vertices, vertices[ends].mean(axis=1)])
-        split = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-        faces = np.concatenate([np.stack(corners, axis=1) for corners in split])
-    return Mesh(vertices / np.linalg.norm(vertices, axis=1)[:, None], faces)
+        mesh = split_in_four(mesh)
+    return on_the_sphere(mesh)
+
+
+def icosphere(level=3, turned=None):
+    """An icosahedron with every face split in four `level` times on the unit sphere, turned by a seed."""
+    golden = (1 + 5**0.5) / 2
+    corners = np.array([(0, a, b * golden) for a in (-1, 1) for b in (-1, 1)])
+    vertices = np.concatenate([np.roll(corners, k, axis=1) for k in range(3)])
+    near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 2.1
+    faces = [(i, j, k) for i in range(12) for j in range(i + 1, 12) for k in range(i + 1, 12) if j != k]
+    faces = np.array([(i, j, k) for i, j, k in faces if near[i, j] and near[j, k] and near[i, k]])
+    mesh = on_the_sphere(Mesh(vertices, faces[np.linalg.det(vertices[faces]) > 0]))
+    for _ in range(level):
+        mesh = on_the_sphere(split_in_four(mesh))
+    return mesh if turned is None else Mesh(mesh.vertices @ rotation(turned).T, mesh.faces)
+
+
+def rotation(seed):
+    """Some rotation (3, 3)."""
+    matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return matrix * np.linalg.det(matrix)
+
+
+def split_in_four(mesh):
+    """Every face split in four at the midpoints of its edges."""
+    vertices, faces = mesh
+    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    ends, middle = np.unique(edges, axis=0, return_inverse=True)
+    (a, b, c), (ab, bc, ca) = faces.T, (len(vertices) + middle.reshape(-1, 3)).T
+    split = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    faces = np.concatenate([np.stack(corners, axis=1) for corners in split])
+    return Mesh(np.vstack([vertices, vertices[ends].mean(axis=1)]), faces)
+
+
+def on_the_sphere(mesh):
+    return Mesh(mesh.vertices / np.linalg.norm(mesh.vertices, axis=1)[:, None], mesh.faces)
 
 
 def radial(radius, level=3):

@@ -20,6 +20,7 @@ NAMES = {
     "DiskMap",
     "Distortion",
     "HyperbolicStructure",
+    "Layout",
     "MeshError",
     "Pants",
     "Patch",
@@ -214,6 +215,7 @@ def test_every_attribute_of_the_results_is_documented():
     for kind in (
         *maps,
         authalic.Untangled,
+        authalic.Layout,
         authalic.Distortion,
         authalic.Surface,
         authalic.Patch,
@@ -232,7 +234,9 @@ def test_the_errors_are_of_the_builtin_kinds():
 
 
 def test_a_map_has_the_attributes_of_the_contract(any_result):
-    special = {authalic.DiskMap: {"uv"}, authalic.SphereMap: {"positions", "refinement"}}[type(any_result)]
+    special = {authalic.DiskMap: {"uv"}, authalic.SphereMap: {"positions", "refinement", "layout"}}[
+        type(any_result)
+    ]
     assert public_attributes(any_result) == {
         *(*special, "faces", "status", "iterations", "history", "distortion", "seconds")
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangulated spheres as arrays, and their figures by spherical trigonometry."""
+"""Triangulated spheres as arrays, and folds in exact arithmetic."""
 
 from fractions import Fraction
 
@@ -40,22 +40,6 @@ def rotation(seed: int) -> Array:
     """A random rotation (3, 3)."""
     matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     return matrix * np.linalg.det(matrix)
-
-
-def uneven(vertices: Array, strength: float = 0.4) -> Array:
-    """Points of the sphere pulled toward one side, smoothly and without a fold."""
-    return unit(vertices + strength * np.array([0.3, 0.5, 0.8]))
-
-
-def areas(triangles: Array) -> Array:
-    """The areas (t,) of triangles (t, 3, 3) of great arcs, by the theorem of L'Huilier."""
-    a, b, c = (
-        2 * np.arcsin(np.linalg.norm(triangles[:, i] - triangles[:, j], axis=1) / 2)
-        for i, j in ((1, 2), (2, 0), (0, 1))
-    )
-    s = (a + b + c) / 2
-    product = np.tan(s / 2) * np.tan((s - a) / 2) * np.tan((s - b) / 2) * np.tan((s - c) / 2)
-    return 4 * np.arctan(np.sqrt(np.maximum(product, 0)))
 
 
 def exactly_folded(uv: Array) -> list[int]:

@@ -153,13 +153,36 @@ def test_corners_of_a_polygon_keep_together(layout: str) -> None:
     assert np.linalg.norm(uv - np.roll(uv, 1, axis=1), axis=2).max() < 0.25
 
 
-def test_inside_out_mesh_has_no_flips() -> None:
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_inside_out_mesh_has_no_flips(layout: str) -> None:
     obj = meshes.bumpy(meshes.icosphere(4))
     obj.data.flip_normals()
+    assert unwrap(sphere_layout=layout) == {"FINISHED"}
+    assert_sound(obj, 0.2)
+    position, uv = corner_positions(obj), meshes.uv(obj)
+    if layout == "LAMBERT":
+        assert np.corrcoef(spheres.unit(position)[:, 2], uv[:, 1])[0, 1] > 0.8
+    else:
+        assert np.linalg.norm(uv[spheres.unit(position)[:, 2] > 0.95] - 0.5, axis=1).max() < 0.3
+
+
+def test_a_uv_sphere_has_straight_rings_and_rows_of_equal_area() -> None:
+    segments, rings = 64, 32
+    obj = meshes.uv_sphere(segments, rings)
     assert unwrap() == {"FINISHED"}
     assert_sound(obj, 0.2)
-    position, v = corner_positions(obj), meshes.uv(obj)[:, 1]
-    assert np.corrcoef(spheres.unit(position)[:, 2], v)[0, 1] > 0.8
+    uv, height = meshes.uv(obj).astype(float), corner_positions(obj)[:, 2].round(4)
+    for ring in np.unique(height):
+        assert np.ptp(uv[height == ring, 1]) < 2e-5
+    corners, polygons, points = meshes.triangles(obj)
+    image = np.bincount(polygons, meshes.uv_areas(uv[corners]))
+    ratios = image / np.bincount(polygons, meshes.surface_areas(points))
+    ratios /= ratios.mean()
+    assert ratios.min() > 0.99
+    assert ratios.max() < 1.01
+    at_pole = np.bincount(polygons) == 1
+    assert at_pole.sum() == 2 * segments
+    assert np.ptp(ratios[at_pole]) < 1e-3
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

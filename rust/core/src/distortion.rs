@@ -338,7 +338,7 @@ pub(crate) fn targets<'a>(
 /// # Errors
 /// [`Error::InvalidArray`] for another length, [`MapError::Density`] for values that are not positive and
 /// finite.
-fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
+pub(crate) fn normalized_density(density: &[f64], n_faces: usize) -> Result<Vec<f64>, Error> {
     if density.len() != n_faces {
         let (found, expected) =
             (format!("of shape ({},)", density.len()), format!("of shape ({n_faces},), one value per face"));

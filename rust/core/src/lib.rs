@@ -3,7 +3,8 @@
 //!
 //! An authalic map preserves areas: a face that covers one percent of the surface covers one percent of the image.
 //! [`disk_map`] maps a surface with one boundary to the unit disk or onto a rectangle, [`sphere_map`] a closed surface
-//! onto the unit sphere. No result has a folded face, which exact predicates decide. [`register_disks`] and
+//! onto the unit sphere, which [`SphereMap::layout`] lays out in the plane. No result has a folded face, which exact
+//! predicates decide. [`register_disks`] and
 //! [`register_spheres`] map one surface onto another by landmark points, [`register_hyperbolic`] by landmark curves.
 //! [`untangle()`] removes the folds of a given map, [`distortion()`] measures any map.
 //!
@@ -124,6 +125,7 @@ mod embedding;
 mod energy;
 mod error;
 mod hyperbolic;
+mod layout;
 mod location;
 mod mesh;
 mod optimize;
@@ -149,6 +151,7 @@ pub use hyperbolic::{
     HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants, RoughSphere,
     Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
 };
+pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, layout};
 pub use mesh::{Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
 pub use registration::{

@@ -16,6 +16,7 @@ __all__ = [
     "DiskMap",
     "Distortion",
     "HyperbolicStructure",
+    "Layout",
     "MeshError",
     "Pants",
     "Patch",
@@ -187,6 +188,31 @@ class SphereMap:
     def distortion(self) -> Distortion: ...
     @property
     def refinement(self) -> Refinement | None: ...
+    @property
+    def seconds(self) -> float: ...
+    def layout(
+        self,
+        kind: Literal["lambert", "octahedral"] = "lambert",
+        *,
+        pole: Literal["x", "y", "z"] | ArrayLike = "z",
+        seam: float | ArrayLike = 0.0,
+        polygons: ArrayLike | None = None,
+        density: ArrayLike | None = None,
+        candidates: ArrayLike | None = None,
+        precision: Literal["float64", "float32"] = "float64",
+        progress: _Progress | None = None,
+    ) -> Layout: ...
+
+@final
+class Layout:
+    @property
+    def points(self) -> NDArray[np.float64] | NDArray[np.float32]: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def vertex_of(self) -> _Indices: ...
+    @property
+    def status(self) -> Literal["converged", "stalled", "cancelled"]: ...
     @property
     def seconds(self) -> float: ...
 

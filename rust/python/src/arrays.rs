@@ -56,14 +56,30 @@ pub fn index_list(
     noun: &str,
     n_vertices: usize,
 ) -> PyResult<Vec<usize>> {
-    let array = as_array(object, name)?;
-    let &[length] = array.shape() else {
-        let found = shape_words(array.shape());
-        return Err(bad_array(object.py(), name, found, "of shape (k,), vertex indices".into()));
-    };
-    let column = array.call_method1(intern!(object.py(), "reshape"), ((length, 1),))?;
-    let narrowed = narrow(object.py(), name, noun, &integers::<1>(&column, name)?, n_vertices)?;
+    let column = integer_column(object, name, "of shape (k,), vertex indices")?;
+    let narrowed = narrow(object.py(), name, noun, &column, n_vertices)?;
     Ok(narrowed.iter().map(|&vertex| vertex as usize).collect())
+}
+
+/// Labels of faces: integers of shape (m,).
+pub fn labels(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<i64>> {
+    Ok(integer_column(object, name, "of shape (m,), one number per face")?.into_iter().collect())
+}
+
+/// The indices of vertices that are given as indices, or as one truth value per vertex.
+pub fn vertex_set(object: &Bound<'_, PyAny>, name: &'static str, n_vertices: usize) -> PyResult<Vec<usize>> {
+    let py = object.py();
+    let array = as_array(object, name)?;
+    if kind(&array)? != "b" {
+        return index_list(object, name, "entry", n_vertices);
+    }
+    if array.shape() != [n_vertices] {
+        let expected = format!("of shape ({n_vertices},), one truth value per vertex, or of indices");
+        return Err(bad_array(py, name, shape_words(array.shape()), expected));
+    }
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let indices = numpy.call_method1(intern!(py, "flatnonzero"), (array,))?;
+    index_list(&indices, name, "entry", n_vertices)
 }
 
 /// Data of any kind and shape.
@@ -178,6 +194,15 @@ fn table<T: numpy::Element + Copy + Default, const N: usize>(
         [0] => Ok(Array2::default((0, N))),
         shape => Err(bad_array(object.py(), name, shape_words(shape), format!("of shape (n, {N})"))),
     }
+}
+
+/// Integers of shape (k,) as one column.
+fn integer_column(object: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Array2<i64>> {
+    let array = as_array(object, name)?;
+    let &[length] = array.shape() else {
+        return Err(bad_array(object.py(), name, shape_words(array.shape()), expected.into()));
+    };
+    integers::<1>(&array.call_method1(intern!(object.py(), "reshape"), ((length, 1),))?, name)
 }
 
 /// Integers, or reals that are whole numbers, of shape (n, N).

@@ -7,6 +7,7 @@ mod disk;
 mod distortion;
 mod errors;
 mod hessian;
+mod layout;
 mod options;
 mod registration;
 mod run;
@@ -27,6 +28,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<disk::DiskMap>()?;
     module.add_class::<sphere::SphereMap>()?;
     module.add_class::<sphere::Refinement>()?;
+    module.add_class::<layout::Layout>()?;
     module.add_class::<registration::Registration>()?;
     module.add_class::<registration::Certificates>()?;
     module.add_class::<structure::HyperbolicStructure>()?;

@@ -2,60 +2,79 @@
 //! Bindings of `authalic::sphere_map`.
 
 use authalic::{LineSearch, SphereMapOptions, SphereMethod};
-use numpy::ndarray::ArrayView2;
+use numpy::ndarray::{ArrayView2, Axis, concatenate};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, from_index_list, from_indices, real_table, reals};
+use crate::arrays::{from_array, from_index_list, from_indices, index_table, labels, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
+use crate::layout::{Arguments, Layout, Sphere, layout};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
 /// A one-to-one map of a closed surface to the unit sphere.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, module = "authalic")]
 pub struct SphereMap {
     /// (n, 3) float64: the image of each vertex, unit rows; faces are seen counter-clockwise from outside.
+    #[pyo3(get)]
     positions: Py<PyArray2<f64>>,
     /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
+    #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
     /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case. A converged map need not be
     /// even, see `distortion.area_ratio_std`; on long limbs `refine` makes it even.
+    #[pyo3(get)]
     status: &'static str,
     /// Iterations done, fixed-point steps included.
+    #[pyo3(get)]
     iterations: usize,
     /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds: one
     /// record per iteration, the start first, and one of step 0 where a mended map replaced a folded one. gradient_norm is
     /// √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's metric; 0 for a start that "gauss_newton" keeps. With
     /// `refine`, the records of all descents, even discarded ones.
+    #[pyo3(get)]
     history: Py<PyAny>,
     /// The figures of the map. The image of a split face consists of those of its parts: its area is their sum, its angle
     /// distortion their mean, and it is folded if one of them is.
+    #[pyo3(get)]
     distortion: Py<Distortion>,
     /// The split faces, with `refine`; else None.
+    #[pyo3(get)]
     refinement: Option<Py<Refinement>>,
     /// Wall time of the call.
+    #[pyo3(get)]
     seconds: f64,
+    /// (m,): the target measure of each face, for layouts.
+    targets: Vec<f64>,
 }
 
 /// The faces of a surface, some of them split, and the split points.
 ///
 /// Split points are numbered on from the vertices: the first has the number n.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, module = "authalic")]
 pub struct Refinement {
     /// (k, 2) int64: the ends of the edge that each split point halves: vertices, or earlier split points.
+    #[pyo3(get)]
     parents: Py<PyArray2<i64>>,
     /// (k, 3) float64: the split points on the surface, in the unit of the vertices.
+    #[pyo3(get)]
     vertices: Py<PyArray2<f64>>,
     /// (k, 3) float64: the images of the split points, unit rows.
+    #[pyo3(get)]
     positions: Py<PyArray2<f64>>,
     /// (m', 3) int64: the faces between vertices and split points, oriented as the faces of the map.
+    #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
     /// (m',) int64: the given face that each of `faces` is a part of, ascending.
+    #[pyo3(get)]
     face_of: Py<PyArray1<i64>>,
     /// The figures of these faces.
+    #[pyo3(get)]
     distortion: Py<Distortion>,
+    /// (m',): the target measure of each of them, for layouts.
+    targets: Vec<f64>,
 }
 
 impl Refinement {
@@ -67,6 +86,7 @@ impl Refinement {
             faces: from_indices(py, refinement.faces.view()),
             face_of: from_index_list(py, refinement.face_of.into_iter()),
             distortion: Py::new(py, Distortion::new(py, refinement.distortion))?,
+            targets: refinement.targets,
         })
     }
 }
@@ -95,12 +115,114 @@ impl SphereMap {
             distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             refinement: None,
             seconds: map.seconds,
+            targets: map.targets,
+        })
+    }
+
+    /// What of the map is laid out: the parts of its faces where some are split.
+    fn to_lay_out(&self, py: Python<'_>) -> PyResult<Sphere> {
+        let positions = real_table::<3>(self.positions.bind(py), "positions")?;
+        let n_vertices = positions.nrows();
+        let Some(refinement) = &self.refinement else {
+            let faces = index_table::<3>(self.faces.bind(py), "faces", n_vertices)?;
+            return Ok(Sphere { positions, faces, targets: self.targets.clone(), face_of: None, n_vertices });
+        };
+        let refinement = refinement.get();
+        let of_split_points = real_table::<3>(refinement.positions.bind(py), "positions")?;
+        let positions = concatenate![Axis(0), positions, of_split_points];
+        let face_of = labels(refinement.face_of.bind(py), "face_of")?;
+        Ok(Sphere {
+            faces: index_table::<3>(refinement.faces.bind(py), "faces", positions.nrows())?,
+            positions,
+            targets: refinement.targets.clone(),
+            face_of: Some(face_of.iter().map(|&face| face as usize).collect()),
+            n_vertices,
         })
     }
 }
 
 #[pymethods]
 impl SphereMap {
+    /// Lays the map out in the plane, cut open along a seam: areas are kept, no face is folded.
+    ///
+    /// A vertex is moved onto each singular point of the layout, the images of the faces are put next to each other, and
+    /// what straight edges do to areas near poles and across creases is evened out by Levenberg–Marquardt steps on the
+    /// areas. Exact predicates decide that no face is folded, on points rounded
+    /// to the precision asked for. A map that was refined is laid out with the parts of its faces.
+    ///
+    /// Parameters
+    /// ----------
+    /// kind : {"lambert", "octahedral"}
+    ///     "lambert": Lambert's cylindrical equal-area projection (1772), (λ, z) of longitude λ and height z. About 2π wide,
+    ///     2 high; faces on the seam stand out on the right, either pole is drawn out to a line. "octahedral": the equal-area
+    ///     octahedral map (Clarberg 2008), r (1 − 2φ/π, 2φ/π) with r = √(1 − |z|) in each octant. A square of side √(4π)
+    ///     around the origin, the pole in its middle, the other one in its four corners; each side fits itself, turned
+    ///     around.
+    /// pole : {"x", "y", "z"} or (3,) real array
+    ///     The direction, in the coordinates of `positions`, that comes to lie at the top or in the middle. Default "z".
+    /// seam : float or (3,) real array
+    ///     Where a Lambert layout begins on the left, and what lies at the upper side of the square: a direction, of which
+    ///     what is perpendicular to the pole counts, or an angle about the pole, in radians, counter-clockwise seen from
+    ///     outside above it. Angles begin at +y, for poles within 45° of ±y at −z. Default 0.
+    /// polygons : (m,) integer array, optional
+    ///     The polygon of each face, any numbers: faces with one number that meet at an edge are not cut apart, areas are
+    ///     those of polygons, and rows of quads stay rows. Default: each face by itself.
+    /// density : (m,) real array, optional
+    ///     Positive target measure of each face, on any scale. Default: that of the map, its density or the areas of the
+    ///     surface.
+    /// candidates : (k,) integer or (n,) bool array, optional
+    ///     The vertices that may be moved onto singular points: the two poles of "lambert", four points of the equator, at
+    ///     the middles of the sides, for "octahedral". Default: all.
+    /// precision : {"float64", "float32"}
+    ///     The precision of the points, in which no face is folded. "float32" for programs that keep UVs so.
+    /// progress : callable(fraction, message) -> bool, optional
+    ///     Called between and within steps; False cancels. A layout is returned where nothing is folded by then.
+    ///
+    /// Returns
+    /// -------
+    /// Layout
+    ///     `points` (k, 2), `faces` (m, 3) between them and `vertex_of` (k,), the vertex of each point. A corner at a pole of
+    ///     "lambert" lies in the middle of the other corners of its polygon.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     An array does not fit; nothing was computed.
+    /// ValueError
+    ///     An option out of its range.
+    /// SolverError
+    ///     Faces would fold over wherever the singular points are put, as on a tetrahedron: `indices` names the first few,
+    ///     `count` says how many at best. Or the call was cancelled before there was a layout without folds.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import authalic
+    /// >>> points = [[3, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]
+    /// >>> upper, lower = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2]], [[1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+    /// >>> layout = authalic.sphere_map(points, upper + lower).layout("lambert", precision="float32")
+    /// >>> layout.faces.shape, layout.points.dtype.name, len(layout.vertex_of) == len(layout.points)
+    /// ((8, 3), 'float32', True)
+    #[pyo3(signature = (kind="lambert", *, pole=None, seam=None, polygons=None, density=None, candidates=None,
+                        precision="float64", progress=None),
+           text_signature = "($self, kind=\"lambert\", *, pole=\"z\", seam=0.0, polygons=None, density=None, \
+                             candidates=None, precision=\"float64\", progress=None)")]
+    #[allow(clippy::too_many_arguments)] // keyword arguments of the Python method
+    fn layout(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        pole: Option<&Bound<'_, PyAny>>,
+        seam: Option<&Bound<'_, PyAny>>,
+        polygons: Option<&Bound<'_, PyAny>>,
+        density: Option<&Bound<'_, PyAny>>,
+        candidates: Option<&Bound<'_, PyAny>>,
+        precision: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Layout> {
+        let arguments = Arguments { kind, pole, seam, polygons, density, candidates, precision, progress };
+        layout(py, self.to_lay_out(py)?, &arguments)
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "SphereMap({} vertices, {} after {} iterations, {:.2} s, {})",

@@ -5,12 +5,10 @@ use std::time::Instant;
 
 use authalic::UntangleOptions;
 use numpy::PyArray1;
-use pyo3::intern;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Reals, from_array, from_index_list, index_list};
+use crate::arrays::{self, Reals, from_array, from_index_list, vertex_set};
 use crate::distortion::Distortion;
-use crate::errors::bad_array;
 use crate::run::run;
 use crate::surface::Given;
 
@@ -109,7 +107,7 @@ pub fn untangle(
     let began = Instant::now();
     let given = Given::pair(surface, ["surface", "surface vertices", "surface faces"])?;
     let image = arrays::image(image)?;
-    let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, given.n_vertices()))?;
+    let fixed = fixed.map_or(Ok(Vec::new()), |fixed| vertex_set(fixed, "fixed", given.n_vertices()))?;
     // 2. The run
     let map = run(py, progress, move |observer| {
         let options = UntangleOptions { fixed: &fixed, tolerance };
@@ -124,24 +122,4 @@ pub fn untangle(
         distortion: Py::new(py, Distortion::new(py, map.distortion))?,
         seconds: began.elapsed().as_secs_f64(),
     })
-}
-
-/// The indices of vertices that are given as indices, or as one truth value per vertex.
-fn vertex_set(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<usize>> {
-    let (py, name) = (object.py(), "fixed");
-    let numpy = py.import(intern!(py, "numpy"))?;
-    let array = numpy
-        .call_method1(intern!(py, "asarray"), (object,))
-        .map_err(|error| bad_array(py, name, error.value(py).to_string(), "an array of vertices".into()))?;
-    let kind: String = array.getattr(intern!(py, "dtype"))?.getattr(intern!(py, "kind"))?.extract()?;
-    if kind != "b" {
-        return index_list(object, name, "entry", n_vertices);
-    }
-    let shape: Vec<usize> = array.getattr(intern!(py, "shape"))?.extract()?;
-    if shape != [n_vertices] {
-        let expected = format!("of shape ({n_vertices},), one truth value per vertex, or of indices");
-        return Err(bad_array(py, name, format!("of shape {shape:?}"), expected));
-    }
-    let indices = numpy.call_method1(intern!(py, "flatnonzero"), (array,))?;
-    index_list(&indices, name, "entry", n_vertices)
 }

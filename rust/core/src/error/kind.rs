@@ -136,6 +136,8 @@ kinds! {
         NoEmbedding = "no_embedding",
         /// Folds could not be removed: faces.
         StillFolded = "still_folded",
+        /// A layout of a sphere would fold: faces.
+        LayoutFold = "layout_fold",
         /// The run was cancelled before there was a map.
         Cancelled = "cancelled",
         /// A fault of the library itself.

@@ -51,6 +51,19 @@ pub enum NumericsError {
         /// The faces that stayed folded.
         folded: Elements,
     },
+
+    /// A layout of a sphere folds faces, wherever its singular points are put.
+    #[error(
+        "{} would fold in a layout in {precision}: try another kind, pole or seam, subdivide the mesh there, or map it with \
+         a larger angle_weight",
+        .faces.named("face")
+    )]
+    LayoutFolds {
+        /// The faces that fold in the best attempt.
+        faces: Elements,
+        /// The precision asked for.
+        precision: &'static str,
+    },
 }
 
 impl NumericsError {
@@ -61,6 +74,7 @@ impl NumericsError {
             Self::NoHyperbolicMetric { .. } => ErrorKind::NoHyperbolicMetric,
             Self::StillFolded { .. } => ErrorKind::StillFolded,
             Self::NoEmbedding { .. } => ErrorKind::NoEmbedding,
+            Self::LayoutFolds { .. } => ErrorKind::LayoutFold,
         }
     }
 
@@ -70,7 +84,8 @@ impl NumericsError {
             Self::FactorizationFailed { .. } => {}
             Self::NoHyperbolicMetric { faces }
             | Self::StillFolded { folded: faces, .. }
-            | Self::NoEmbedding { folded: faces } => {
+            | Self::NoEmbedding { folded: faces }
+            | Self::LayoutFolds { faces, .. } => {
                 faces.first.iter_mut().for_each(|face| *face = face_of(*face));
             }
         }
@@ -81,7 +96,7 @@ impl NumericsError {
     pub fn elements(&self) -> Option<&Elements> {
         match self {
             Self::FactorizationFailed { .. } => None,
-            Self::NoHyperbolicMetric { faces } => Some(faces),
+            Self::NoHyperbolicMetric { faces } | Self::LayoutFolds { faces, .. } => Some(faces),
             Self::StillFolded { folded, .. } | Self::NoEmbedding { folded } => Some(folded),
         }
     }

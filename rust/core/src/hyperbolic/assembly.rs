@@ -71,6 +71,8 @@ pub struct CurveMap {
 pub struct RoughSphere {
     /// (n, 3): the vertices on the unit sphere.
     pub positions: Array2<f64>,
+    /// (m,): the areas of the faces.
+    pub targets: Vec<f64>,
     /// The figures of the map to the sphere.
     pub distortion: Distortion,
 }
@@ -89,7 +91,8 @@ impl RoughSphere {
     fn new(mesh: &TriangleMesh, positions: &[Vector3]) -> Result<Self, Error> {
         let image = Image::Sphere(positions);
         let distortion = measure(mesh.points(), mesh.faces(), image, mesh.face_areas())?;
-        Ok(Self { positions: from_vectors(positions.to_vec()), distortion })
+        let targets = mesh.face_areas().to_vec();
+        Ok(Self { positions: from_vectors(positions.to_vec()), targets, distortion })
     }
 }
 

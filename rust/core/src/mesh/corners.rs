@@ -3,6 +3,8 @@
 //!
 //! Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
 
+use std::ops::Range;
+
 use super::Vertex;
 
 /// The entry of a boundary edge in a table of opposite corners.
@@ -141,7 +143,17 @@ impl VertexCorners {
 
     /// The corners at a vertex.
     pub(crate) fn of(&self, vertex: Vertex) -> &[u32] {
-        &self.corners[self.start[vertex] as usize..self.start[vertex.index() + 1] as usize]
+        &self.corners[self.range(vertex)]
+    }
+
+    /// The positions in [`Self::all`] of the corners at a vertex.
+    pub(crate) fn range(&self, vertex: Vertex) -> Range<usize> {
+        self.start[vertex] as usize..self.start[vertex.index() + 1] as usize
+    }
+
+    /// The corners at all vertices, in the order of the vertices.
+    pub(crate) fn all(&self) -> &[u32] {
+        &self.corners
     }
 
     /// Whether the corners at a vertex form one fan, for consistently oriented faces.

@@ -51,6 +51,8 @@ pub struct SphereMap {
     pub history: History,
     /// The distortion of the map, by signed areas. The image of a split face consists of those of its parts.
     pub distortion: Distortion,
+    /// (m,): the target measure of each face, on some scale.
+    pub targets: Vec<f64>,
     /// The split faces, with [`SphereMapOptions::refine`].
     pub refinement: Option<Box<Refinement>>,
     /// Wall time of the whole call.
@@ -141,6 +143,7 @@ pub(crate) fn map_sphere(
         seconds: history.seconds(),
         history,
         distortion,
+        targets: targets.into_owned(),
         refinement,
     })
 }

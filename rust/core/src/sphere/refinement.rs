@@ -59,6 +59,8 @@ pub struct Refinement {
     pub faces: Array2<u32>,
     /// (m',): the given face that each of `faces` is a part of, ascending.
     pub face_of: Vec<usize>,
+    /// (m',): the target measure of each of them, on the scale of the map's.
+    pub targets: Vec<f64>,
     /// The distortion of these faces.
     pub distortion: Distortion,
 }
@@ -211,6 +213,7 @@ impl Refined {
             positions: from_vectors(positions),
             faces: index_array(self.mesh.faces()),
             face_of: self.face_of.into_iter().map(Face::index).collect(),
+            targets: self.targets,
             distortion,
         }
     }

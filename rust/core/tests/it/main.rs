@@ -10,6 +10,7 @@ mod energy;
 mod gauss_newton;
 mod gauss_newton_runs;
 mod hyperbolic;
+mod layout;
 mod mesh;
 mod optimize;
 mod registration;

@@ -222,6 +222,7 @@ fn without_iterations(sphere: &RoughSphere) -> SphereMap {
         status: Status::Converged,
         history: History::start(),
         distortion: sphere.distortion.clone(),
+        targets: sphere.targets.clone(),
         refinement: None,
         seconds: 0.0,
     }

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Lays a map onto the sphere out in the plane, by a projection that keeps areas: [`SphereMap::layout`].
+//!
+//! 1. A layout has singular points: the poles of Lambert's cylinder ([`lambert`]), four points of the equator for the
+//!    octahedral square ([`octahedral`]). A face with one inside would fold over, so that first a vertex is moved onto each
+//!    of them by motions of the sphere that keep areas ([`singular_points`], [`twist`]).
+//! 2. The mesh is laid out face by face ([`development`]). The images of one point differ by isometries of the plane
+//!    ([`isometry`]), so that vertices can be moved in the plane without tearing the layout.
+//! 3. What straight edges do to areas, near poles and across creases, is evened out in the plane ([`relaxation`]), and what
+//!    they fold unfolded ([`unfolding`]).
+//! 4. Vertices on the seam become several points ([`seam`]). Exact predicates decide, on points in the precision asked for,
+//!    what is folded ([`certificate`]): there is a layout without folds or an error.
+//!
+//! Input: a map of a closed surface without folds. Cost: a few hundred passes over the faces near singular points and creases,
+//! an eighth of the map's time as a rule.
+
+mod area_system;
+mod attempts;
+mod certificate;
+mod chart;
+mod development;
+mod isometry;
+mod lambert;
+mod octahedral;
+mod options;
+mod patch;
+mod polygons;
+mod projection;
+mod relaxation;
+#[cfg(test)]
+mod sample_spheres;
+mod seam;
+mod singular_points;
+mod sphere_faces;
+mod twist;
+mod unfolding;
+
+use ndarray::{Axis, concatenate};
+
+use crate::control::Observer;
+use crate::error::Error;
+use crate::mesh::Surface;
+use crate::parallel;
+use crate::sphere::SphereMap;
+use attempts::Run;
+pub use certificate::Precision;
+use lambert::Lambert;
+use octahedral::Octahedral;
+pub use options::{LayoutKind, LayoutOptions, Seam};
+pub use seam::Layout;
+pub use sphere_faces::SphereFaces;
+
+impl SphereMap {
+    /// Lays the map out in the plane, cut open along a seam, so that areas are kept and no face is folded.
+    ///
+    /// `surface` is the surface that was mapped. Where its faces were split, their parts are laid out.
+    ///
+    /// # Errors
+    /// Arrays of the wrong length and options out of range.
+    /// [`NumericsError::LayoutFolds`](crate::NumericsError::LayoutFolds) if faces fold wherever the singular points are
+    /// put; [`Error::CancelledEarly`] if the observer ended the run before there was a layout without folds.
+    ///
+    /// ```
+    /// use authalic::{LayoutOptions, Silent, SphereMapOptions, Surface, sphere_map};
+    /// use ndarray::array;
+    ///
+    /// let vertices = array![[3., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+    /// let faces = array![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+    /// let surface = Surface::new(vertices, faces)?;
+    /// let map = sphere_map(&surface, &SphereMapOptions::default(), &mut Silent)?;
+    /// let layout = map.layout(&surface, &LayoutOptions::default(), &mut Silent)?;
+    /// assert_eq!(layout.faces.dim(), (8, 3));
+    /// assert!(layout.points.nrows() > 6, "vertices on the seam are points on either side of it");
+    /// # Ok::<(), authalic::Error>(())
+    /// ```
+    pub fn layout(
+        &self,
+        surface: &Surface,
+        options: &LayoutOptions<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<Layout, Error> {
+        let n_vertices = self.positions.nrows();
+        let Some(refinement) = &self.refinement else {
+            let image = Surface::new(&self.positions, surface.oriented_faces()?)?;
+            let sphere = SphereFaces { image: &image, targets: &self.targets, face_of: None, n_vertices };
+            return layout(sphere, options, observer);
+        };
+        let positions = concatenate![Axis(0), self.positions, refinement.positions];
+        let sphere = SphereFaces {
+            image: &Surface::new(positions, &refinement.faces)?,
+            targets: &refinement.targets,
+            face_of: Some(&refinement.face_of),
+            n_vertices,
+        };
+        layout(sphere, options, observer)
+    }
+}
+
+/// Lays any map onto the sphere out in the plane, as [`SphereMap::layout`] does.
+///
+/// # Errors
+/// As [`SphereMap::layout`].
+pub fn layout(
+    sphere: SphereFaces<'_>,
+    options: &LayoutOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Layout, Error> {
+    parallel::install(|| match options.kind {
+        LayoutKind::Lambert => Run::<Lambert>::new(sphere, options)?.laid_out(observer),
+        LayoutKind::Octahedral => Run::<Octahedral>::new(sphere, options)?.laid_out(observer),
+    })
+}

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Evens out the area errors that straight edges make near poles and across creases.
+//!
+//! Levenberg–Marquardt steps lower a sum of squares of area errors over the places of the vertices ([`AreaSystem`]). The
+//! damping rises only at vertices where a step has raised the sum. A step moves only vertices near faces whose areas are off, so that most of a fine mesh stays as
+//! the projection has it. Vertices of faces that would fold move less far.
+//!
+//! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have by
+//! then, so that rows of quads stay rows.
+//!
+//! Cost: per step about forty passes over the faces near those that are off.
+
+use super::area_system::{AreaSystem, residual};
+use super::certificate::nearly_folded;
+use super::chart::{Chart, Point, signed_areas};
+use super::patch::Patch;
+use super::polygons::Polygons;
+use super::projection::Projection;
+use crate::control::{Observer, Status, Watch};
+use crate::mesh::Vertex;
+use crate::mesh::corners::VertexCorners;
+use crate::parallel;
+
+/// What the observer is told.
+const MESSAGE: &str = "Evening out areas";
+
+/// The number of steps towards targets of triangles.
+const FIRST_STEPS: usize = 3;
+
+/// Limit on the work of all further steps: the faces of their patches, as a multiple of all faces.
+const WORK: usize = 4;
+
+/// The least such limit, in faces, so that coarse meshes converge.
+const LEAST_WORK: usize = 400_000;
+
+/// Relative decrease of the energy below which a step counts as without effect.
+const LITTLE: f64 = 2e-3;
+
+/// The number of rings of faces, around those that are off, whose vertices move at first.
+const RINGS: usize = 2;
+
+/// The least damping, also that of the first step.
+const LEAST_DAMPING: f64 = 1e-2;
+
+/// Factors of the damping of vertices where a rejected step raises the energy, and of all vertices after an accepted one.
+const DAMPING_FACTORS: [f64; 2] = [10.0, 1.0 / 3.0];
+
+/// The number of rejected steps in a row after which the relaxation stops.
+const REJECTIONS: usize = 8;
+
+/// How often a step is shortened at faces that would fold; in the second half their vertices do not move at all.
+const SHORTENINGS: usize = 20;
+
+/// The least area of a face, as a fraction of its target.
+const LEAST_AREA: f64 = 0.4;
+
+/// The least area of a face that is smaller already, as a fraction of its present area.
+const LEAST_SHRINKING: f64 = 0.9;
+
+/// Bounds of the share that a triangle keeps of its polygon, as multiples of its share on the surface.
+const SHARES: [f64; 2] = [0.6, 1.6];
+
+/// The targets of a relaxation.
+#[derive(Clone, Copy)]
+pub(super) struct Goal<'a> {
+    /// (m,): target areas in the plane.
+    pub targets: &'a [f64],
+    /// (n,): whether each vertex stays.
+    pub fixed: &'a [bool],
+    /// The corners at each vertex.
+    pub corners: &'a VertexCorners,
+    /// Relative deviation from its target above which the area of a face is off.
+    pub tolerance: f64,
+    /// Bound of the rounding of coordinates in the precision asked for.
+    pub rounding: f64,
+}
+
+/// Moves vertices so that the areas of triangles approach their targets. Folded faces may unfold; no other face folds.
+pub(super) fn relax<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'_>, watch: &Watch<'_>) {
+    let mut relaxation = Relaxation::new(chart, *goal);
+    for _ in 0..FIRST_STEPS {
+        if relaxation.off.is_empty() || !watch.goes_on() || relaxation.descend(RINGS, watch).gain <= 0.0 {
+            return;
+        }
+    }
+}
+
+/// Moves vertices on from [`relax`] until the areas of polygons are proportional to their targets, with adaptive damping.
+///
+/// Converged if no area is off in the end.
+pub(super) fn even_out<P: Projection>(
+    chart: &mut Chart<'_, P>,
+    polygons: &Polygons,
+    goal: &Goal<'_>,
+    observer: &mut dyn Observer,
+) -> Status {
+    let targets = shared_out(&signed_areas(&chart.images()), goal.targets, polygons);
+    let mut relaxation = Relaxation::new(chart, Goal { targets: &targets, ..*goal });
+    let (mut rings, mut rejections) = (RINGS, 0);
+    let (mut work, enough) = (0, LEAST_WORK.max(WORK * targets.len()));
+    while work < enough && rejections < REJECTIONS {
+        if relaxation.off.is_empty() {
+            return Status::Converged;
+        }
+        let fraction = work as f64 / enough as f64;
+        if !observer.progress(fraction, MESSAGE) {
+            return Status::Cancelled;
+        }
+        let watch = Watch::new(observer, fraction, MESSAGE);
+        let step = relaxation.descend(rings, &watch);
+        work += step.n_faces;
+        rejections = if step.gain > 0.0 { 0 } else { rejections + 1 };
+        if rejections == 0 && step.gain < LITTLE {
+            // the areas within a patch add up to too much or too little for its border
+            if step.n_faces == targets.len() {
+                break;
+            }
+            rings *= 2;
+        }
+    }
+    Status::Stalled
+}
+
+/// Targets with the total of `areas`: each polygon has its share of it, and each triangle its present share of its polygon.
+fn shared_out(areas: &[f64], targets: &[f64], polygons: &Polygons) -> Vec<f64> {
+    let scale = areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
+    let [mut wanted, mut kept] = [vec![0.0; polygons.count], vec![0.0; polygons.count]];
+    let share = |face: usize| {
+        let target = scale * targets[face];
+        areas[face].clamp(SHARES[0] * target, SHARES[1] * target)
+    };
+    for (face, &polygon) in polygons.of.iter().enumerate() {
+        wanted[polygon as usize] += scale * targets[face];
+        kept[polygon as usize] += share(face);
+    }
+    parallel::map(areas.len(), |face| {
+        let polygon = polygons.of[face] as usize;
+        share(face) * wanted[polygon] / kept[polygon]
+    })
+}
+
+/// The outcome of a step.
+struct Step {
+    /// Relative decrease of the energy of the faces looked at; 0 if the step was rejected.
+    gain: f64,
+    /// The number of faces looked at.
+    n_faces: usize,
+}
+
+/// A chart that is being relaxed.
+struct Relaxation<'a, 'c, P> {
+    chart: &'a mut Chart<'c, P>,
+    goal: Goal<'a>,
+    /// (m,): the areas of the faces.
+    areas: Vec<f64>,
+    /// (n,): the damping of each vertex.
+    damping: Vec<f64>,
+    /// The faces that are off, ascending.
+    off: Vec<u32>,
+}
+
+impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
+    fn new(chart: &'a mut Chart<'c, P>, goal: Goal<'a>) -> Self {
+        let areas = signed_areas(&chart.images());
+        let off = (0..areas.len() as u32).filter(|&face| goal.is_off(face, areas[face as usize])).collect();
+        let damping = vec![LEAST_DAMPING; chart.places.len()];
+        Self { chart, goal, areas, damping, off }
+    }
+
+    /// Takes one step with the vertices within some rings around faces that are off, if it lowers the energy.
+    fn descend(&mut self, rings: usize, watch: &Watch<'_>) -> Step {
+        // 1. Where
+        let patch = Patch::around(self.chart, self.goal.corners, self.goal.fixed, &self.off, rings);
+        let targets = patch.of_faces(self.goal.targets);
+        let images = patch.images(self.chart);
+        let areas = signed_areas(&images);
+        // 2. The step
+        let damping = patch.of_vertices(&self.damping);
+        let step = AreaSystem::new(self.chart, &patch, &images, &areas, &targets).step(&damping, watch);
+        let start = patch.of_vertices(&self.chart.places);
+        let limits = Limits::new(&images, &areas, &targets, self.goal.rounding);
+        let moved = limits.moved(self.chart, &patch, &start, &step);
+        // 3. Accepted or rejected
+        let energies = |areas: &[f64]| -> Vec<f64> {
+            parallel::map(areas.len(), |face| residual(areas[face], targets[face])[0].powi(2))
+        };
+        let before = energies(&areas);
+        let after = energies(&moved);
+        let total = |energies: &[f64]| parallel::sum(energies.len(), |face| energies[face]);
+        let gain = (1.0 - total(&after) / total(&before)).max(0.0);
+        if gain > 0.0 {
+            self.accept(&patch, &moved);
+        } else {
+            patch.put(self.chart, &start);
+            self.damp(&patch, &before, &after);
+        }
+        Step { gain, n_faces: patch.faces.len() }
+    }
+
+    /// Takes note of the areas after a step, and damps the next one less.
+    fn accept(&mut self, patch: &Patch, areas: &[f64]) {
+        for (&face, &area) in patch.faces.iter().zip(areas) {
+            self.areas[face as usize] = area;
+        }
+        let is_off = |face: &u32| self.goal.is_off(*face, self.areas[*face as usize]);
+        self.off = patch.faces.iter().copied().filter(is_off).collect();
+        for &vertex in &patch.vertices {
+            let damping = &mut self.damping[vertex];
+            *damping = (*damping * DAMPING_FACTORS[1]).max(LEAST_DAMPING);
+        }
+    }
+
+    /// Damps the vertices at which a step has raised the energy of the faces.
+    fn damp(&mut self, patch: &Patch, before: &[f64], after: &[f64]) {
+        for (index, &vertex) in patch.vertices.iter().enumerate() {
+            let faces = patch.corners.of(Vertex::new(index)).iter().map(|&corner| corner as usize / 3);
+            if faces.map(|face| after[face] - before[face]).sum::<f64>() >= 0.0 {
+                self.damping[vertex] *= DAMPING_FACTORS[0];
+            }
+        }
+    }
+}
+
+impl Goal<'_> {
+    /// Whether this area of a face is off its target.
+    fn is_off(&self, face: u32, area: f64) -> bool {
+        let target = self.targets[face as usize];
+        (area - target).abs() > self.tolerance * target
+    }
+}
+
+/// Limits on the areas of a patch during a step.
+struct Limits {
+    was_folded: Vec<bool>,
+    /// The least area of each face, −∞ for faces that were folded.
+    least: Vec<f64>,
+    rounding: f64,
+}
+
+impl Limits {
+    fn new(images: &[[Point; 3]], areas: &[f64], targets: &[f64], rounding: f64) -> Self {
+        let was_folded = nearly_folded(images, rounding);
+        let least = parallel::map(areas.len(), |face| {
+            if was_folded[face] {
+                f64::NEG_INFINITY
+            } else {
+                (LEAST_AREA * targets[face]).min(LEAST_SHRINKING * areas[face])
+            }
+        });
+        Self { was_folded, least, rounding }
+    }
+
+    /// Moves the vertices of a patch by a step, shortened at faces that would fold, and returns the areas. Nothing moves if no
+    /// shortening helps.
+    fn moved<P: Projection>(
+        &self,
+        chart: &mut Chart<'_, P>,
+        patch: &Patch,
+        start: &[Point],
+        step: &[[f64; 2]],
+    ) -> Vec<f64> {
+        let mut lengths = vec![1.0; start.len()];
+        for shortening in 0..SHORTENINGS {
+            let places = parallel::map(start.len(), |vertex| {
+                let ([x, y], [u, v], length) = (start[vertex], step[vertex], lengths[vertex]);
+                [x + length * u, y + length * v]
+            });
+            patch.put(chart, &places);
+            // 1. Faces that have become too small, vertices that have left the layout
+            let images = patch.images(chart);
+            let is_folded = nearly_folded(&images, self.rounding);
+            let areas = signed_areas(&images);
+            let is_bad = parallel::map(areas.len(), |face| {
+                areas[face] < self.least[face] || (is_folded[face] && !self.was_folded[face])
+            });
+            let leaves = |vertex: usize| lengths[vertex] > 0.0 && !P::is_within(places[vertex]);
+            let leaving = parallel::map(places.len(), leaves);
+            if !is_bad.contains(&true) && !leaving.contains(&true) {
+                return areas;
+            }
+            // 2. Their vertices go less far
+            let factor = if shortening < SHORTENINGS / 2 { 0.5 } else { 0.0 };
+            parallel::fill_with_old(&mut lengths, |vertex, length| {
+                let at_bad_face = patch.corners.of(Vertex::new(vertex)).iter().any(|&corner| is_bad[corner as usize / 3]);
+                match (leaving[vertex], at_bad_face) {
+                    (true, _) => 0.0,
+                    (false, true) => factor * length,
+                    (false, false) => length,
+                }
+            });
+        }
+        patch.put(chart, start);
+        signed_areas(&patch.images(chart))
+    }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Spheres for the tests.
+
+use crate::mesh::Vertex;
+use std::collections::BTreeMap;
+
+use crate::vector::Vector3;
+
+/// An octahedron turned somehow, with every face split in four `level` times on the unit sphere.
+pub(super) fn turned_ball(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
+    let mut points: Vec<Vector3> =
+        (0..3).map(Vector3::unit).chain((0..3).map(|k| -Vector3::unit(k))).collect();
+    let upper = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2]];
+    let mut faces: Vec<[Vertex; 3]> = upper.into_iter().chain(upper.map(|[a, b, _]| [b, a, 5])).collect();
+    for _ in 0..level {
+        faces = split_in_four(&mut points, &faces);
+    }
+    (points.into_iter().map(turned).collect(), faces)
+}
+
+/// Random triangles of the sphere, of sides 10⁻⁴, away from the planes of the axes.
+pub(super) fn small_triangles() -> impl Iterator<Item = [Vector3; 3]> {
+    let bases = (0..3000).map(|k| {
+        let t = f64::from(k);
+        unit(Vector3([(1.3 * t).sin(), (2.1 * t).cos(), (0.7 * t).sin()]))
+    });
+    bases.filter(|base| base.0.iter().all(|x| x.abs() > 0.01)).map(|base| {
+        let across = unit(base.cross(Vector3([0.3, -0.2, 0.9])));
+        [across, base.cross(across), -across].map(|side| unit(base + side * 1e-4))
+    })
+}
+
+fn split_in_four(points: &mut Vec<Vector3>, faces: &[[Vertex; 3]]) -> Vec<[Vertex; 3]> {
+    let mut middles: BTreeMap<[Vertex; 2], Vertex> = BTreeMap::new();
+    let mut middle = |a: Vertex, b: Vertex| {
+        *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            points.push(unit(points[a] + points[b]));
+            Vertex::new(points.len() - 1)
+        })
+    };
+    let mut split = Vec::new();
+    for &[a, b, c] in faces {
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        split.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    split
+}
+
+fn turned(Vector3([x, y, z]): Vector3) -> Vector3 {
+    let ([sine, cosine], [s, c]) = ([0.4f64.sin(), 0.4f64.cos()], [1.1f64.sin(), 1.1f64.cos()]);
+    let [y, z] = [cosine * y - sine * z, sine * y + cosine * z];
+    Vector3([c * x - s * y, s * x + c * y, z])
+}
+
+fn unit(v: Vector3) -> Vector3 {
+    v * (1.0 / v.norm())
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The points of a layout: one per vertex, or one per image of a vertex on the seam.
+
+use ndarray::Array2;
+
+use super::chart::Point;
+use crate::control::Status;
+use crate::mesh::Vertex;
+use crate::mesh::corners::VertexCorners;
+
+/// A map onto the sphere laid out in the plane, cut open along a seam.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    /// (k, 2): the points, in the order of their vertices. The whole image has the area of the sphere. In single precision
+    /// all of them are numbers of that.
+    pub points: Array2<f64>,
+    /// (m, 3): the faces between points, counter-clockwise; face by face those of the map, or of its refinement.
+    pub faces: Array2<u32>,
+    /// (k,): the vertex of each point, ascending; split points are numbered on from the vertices.
+    pub vertex_of: Vec<Vertex>,
+    /// [`Status::Converged`] where areas are as even as asked for; [`Status::Stalled`] where they hardly get more even;
+    /// [`Status::Cancelled`] where the observer ended that. No face is folded in any case.
+    pub status: Status,
+    /// Wall time of the whole call.
+    pub seconds: f64,
+}
+
+/// Points, and faces between them.
+pub(super) struct Split {
+    /// (k, 2), in the order of their vertices.
+    pub points: Vec<Point>,
+    /// (m, 3): the points at their corners.
+    pub faces: Vec<[Vertex; 3]>,
+    /// (k,): the vertex of each point.
+    pub vertex_of: Vec<Vertex>,
+}
+
+/// Joins the corners of each vertex that have the same image.
+pub(super) fn split_along_seam(corners: &VertexCorners, images: &[[Point; 3]]) -> Split {
+    let mut split = Split { points: Vec::new(), faces: vec![[Vertex::default(); 3]; images.len()], vertex_of: Vec::new() };
+    for vertex in Vertex::all(corners.len()) {
+        let first = split.points.len();
+        for &corner in corners.of(vertex) {
+            let (face, corner) = (corner as usize / 3, corner as usize % 3);
+            let image = images[face][corner];
+            let known = split.points[first..].iter().position(|&point| point == image);
+            let index = known.map_or(split.points.len(), |k| first + k);
+            if known.is_none() {
+                split.points.push(image);
+                split.vertex_of.push(vertex);
+            }
+            split.faces[face][corner] = Vertex::new(index);
+        }
+    }
+    split
+}

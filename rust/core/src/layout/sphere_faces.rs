@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A map onto the sphere as a surface; checks of the options that are arrays.
+
+use std::f64::consts::PI;
+
+use ndarray::ArrayView1;
+
+use crate::codomain::spherical::onto_sphere;
+use crate::distortion::normalized_density;
+use crate::error::{Elements, Error, MapError};
+use crate::mesh::Surface;
+use crate::mesh::geometry::{area, triangle};
+use crate::parallel;
+use crate::vector::Vector3;
+
+/// A map onto the sphere as it is laid out: faces between vertices, or the parts of split faces.
+#[derive(Debug, Clone, Copy)]
+pub struct SphereFaces<'a> {
+    /// The image: vertices on the unit sphere, faces counter-clockwise seen from outside.
+    pub image: &'a Surface,
+    /// (m,): the target measure of each face, positive, on any scale.
+    pub targets: &'a [f64],
+    /// (m,): the face of the map that each of them is a part of, ascending; all whole where `None`.
+    pub face_of: Option<&'a [usize]>,
+    /// The number of vertices of the map; the vertices of `image` after these are split points.
+    pub n_vertices: usize,
+}
+
+impl SphereFaces<'_> {
+    /// Checks that the arrays fit each other.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArray`] where they do not.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let n_points = self.image.n_vertices();
+        if self.n_vertices > n_points {
+            let expected = format!("at least {} rows, one per vertex", self.n_vertices);
+            return Err(Error::InvalidArray { name: "image", found: n_points.to_string(), expected });
+        }
+        let Some(face_of) = self.face_of else { return Ok(()) };
+        check_length("face_of", face_of.len(), self.image.n_faces(), "one face per part")?;
+        if face_of.is_sorted() {
+            return Ok(());
+        }
+        let (found, expected) = ("in another order".into(), "ascending".into());
+        Err(Error::InvalidArray { name: "face_of", found, expected })
+    }
+
+    /// The positions, exactly on the unit sphere.
+    pub(super) fn unit_positions(&self) -> Result<Vec<Vector3>, Error> {
+        let positions = self.image.vertex_rows();
+        let unit = parallel::map(positions.len(), |vertex| onto_sphere(Vector3(positions[vertex])));
+        match Elements::collect((0..unit.len()).filter(|&vertex| unit[vertex].is_none())) {
+            Some(vertices) => Err(MapError::NoDirection { name: "positions", vertices }.into()),
+            None => Ok(unit.into_iter().flatten().collect()),
+        }
+    }
+
+    /// How many faces the map has, which may be split.
+    fn n_whole_faces(&self) -> usize {
+        let last = self.face_of.and_then(|face_of| face_of.last());
+        self.face_of.map_or(self.image.n_faces(), |_| last.map_or(0, |&face| face + 1))
+    }
+
+    /// The label of the polygon of each face; the parts of a face have one.
+    pub(super) fn labels(&self, polygons: Option<&[usize]>) -> Result<Option<Vec<usize>>, Error> {
+        if let Some(polygons) = polygons {
+            check_length("polygons", polygons.len(), self.n_whole_faces(), "one number per face")?;
+        }
+        Ok(match (polygons, self.face_of) {
+            (Some(polygons), Some(face_of)) => Some(face_of.iter().map(|&face| polygons[face]).collect()),
+            (Some(polygons), None) => Some(polygons.to_vec()),
+            (None, face_of) => face_of.map(<[usize]>::to_vec),
+        })
+    }
+
+    /// The areas wanted, with the sum of the sphere's; the parts of a face share its density in proportion to their targets.
+    pub(super) fn areas(&self, density: Option<ArrayView1<'_, f64>>) -> Result<Vec<f64>, Error> {
+        let mut areas = normalized_density(self.targets, self.image.n_faces())?;
+        if let Some(density) = density {
+            let density = normalized_density(&density.to_vec(), self.n_whole_faces())?;
+            let whole = |part: usize| self.face_of.map_or(part, |face_of| face_of[part]);
+            let mut sums = vec![0.0; density.len()];
+            (0..areas.len()).for_each(|part| sums[whole(part)] += areas[part]);
+            areas =
+                (0..areas.len()).map(|part| areas[part] / sums[whole(part)] * density[whole(part)]).collect();
+        }
+        let scale = 4.0 * PI / areas.iter().sum::<f64>();
+        Ok(areas.iter().map(|area| scale * area).collect())
+    }
+
+    /// √(Σ (A − a)²/a), the flat areas A of the map's faces at unit `positions` against `targets` a, over that of Σ a.
+    pub(super) fn deviation(&self, positions: &[Vector3], targets: &[f64]) -> f64 {
+        let area = |face: usize| area(triangle(positions, self.image.face_rows()[face]));
+        let scale = targets.iter().sum::<f64>() / parallel::sum(targets.len(), area);
+        let energy = |face: usize| (scale * area(face) - targets[face]).powi(2) / targets[face];
+        (parallel::sum(targets.len(), energy) / targets.iter().sum::<f64>()).sqrt()
+    }
+
+    /// Which vertices may be moved onto singular points; split points may not.
+    pub(super) fn candidates(
+        &self,
+        candidates: Option<&[bool]>,
+        needed: usize,
+    ) -> Result<Option<Vec<bool>>, Error> {
+        let Some(candidates) = candidates else { return Ok(None) };
+        check_length("candidates", candidates.len(), self.n_vertices, "one truth value per vertex")?;
+        let n_candidates = candidates.iter().filter(|&&may_move| may_move).count();
+        if n_candidates < needed {
+            let expected = format!("at least {needed} vertices, one for each singular point");
+            return Err(Error::InvalidArray {
+                name: "candidates",
+                found: n_candidates.to_string(),
+                expected,
+            });
+        }
+        let mut all = candidates.to_vec();
+        all.resize(self.image.n_vertices(), false);
+        Ok(Some(all))
+    }
+}
+
+fn check_length(name: &'static str, found: usize, expected: usize, what: &str) -> Result<(), Error> {
+    if found == expected {
+        return Ok(());
+    }
+    let expected = format!("of shape ({expected},), {what}");
+    Err(Error::InvalidArray { name, found: format!("of shape ({found},)"), expected })
+}

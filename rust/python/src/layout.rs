@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Bindings of `authalic::layout`.
+
+use authalic::{LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, Surface};
+use numpy::ndarray::Array2;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Values, from_array, from_index_list, from_indices, labels, reals, vertex_set};
+use crate::errors::{bad_array, bad_option};
+use crate::run::run;
+
+/// A map onto the sphere laid out in the plane, cut open along a seam, without folds.
+#[pyclass(frozen, get_all, module = "authalic")]
+pub struct Layout {
+    /// (k, 2) float64 or float32, as asked for: the points in the order of their vertices. The whole image has the area of
+    /// the unit sphere.
+    points: Py<PyAny>,
+    /// (m, 3) int64: the faces between points, counter-clockwise; row by row those of the map, or of its refinement.
+    faces: Py<PyArray2<i64>>,
+    /// (k,) int64: the vertex of each point, ascending; a vertex on the seam has several. Split points of a refinement are
+    /// numbered on from the vertices.
+    vertex_of: Py<PyArray1<i64>>,
+    /// "converged" where areas are as even as they should be, "stalled" where they hardly get more even, "cancelled". No
+    /// face is folded whatever it says.
+    status: &'static str,
+    /// Wall time of the call.
+    seconds: f64,
+}
+
+#[pymethods]
+impl Layout {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!(
+            "Layout({} points, {} faces, {}, {:.2} s)",
+            self.points.bind(py).len()?,
+            self.faces.bind(py).len()?,
+            self.status,
+            self.seconds,
+        ))
+    }
+}
+
+/// The keyword arguments of `SphereMap.layout` as they are given.
+pub struct Arguments<'a, 'py> {
+    pub kind: &'a str,
+    pub pole: Option<&'a Bound<'py, PyAny>>,
+    pub seam: Option<&'a Bound<'py, PyAny>>,
+    pub polygons: Option<&'a Bound<'py, PyAny>>,
+    pub density: Option<&'a Bound<'py, PyAny>>,
+    pub candidates: Option<&'a Bound<'py, PyAny>>,
+    pub precision: &'a str,
+    pub progress: Option<&'a Bound<'py, PyAny>>,
+}
+
+/// `SphereMap.layout`.
+pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> PyResult<Layout> {
+    // 1. Arguments to plain data
+    let (kind, precision) = (parse_kind(arguments.kind)?, parse_precision(arguments.precision)?);
+    let pole = arguments.pole.map_or(Ok([0.0, 0.0, 1.0]), parse_pole)?;
+    let seam = arguments.seam.map_or(Ok(Seam::Angle(0.0)), parse_seam)?;
+    let polygons = arguments.polygons.map(|polygons| labels(polygons, "polygons")).transpose()?;
+    // labels are compared only, so that what is negative may wrap
+    let polygons: Option<Vec<usize>> =
+        polygons.map(|labels| labels.into_iter().map(|label| label as usize).collect());
+    let density = arguments.density.map(|density| reals(density, "density")).transpose()?;
+    let candidates = match arguments.candidates {
+        Some(given) => {
+            let mut mask = vec![false; sphere.n_vertices];
+            for vertex in vertex_set(given, "candidates", sphere.n_vertices)? {
+                mask[vertex] = true;
+            }
+            Some(mask)
+        }
+        None => None,
+    };
+    // 2. The run
+    let layout = run(py, arguments.progress, move |observer| {
+        let options = LayoutOptions {
+            kind,
+            pole,
+            seam,
+            polygons: polygons.as_deref(),
+            density: density.as_ref().map(|density| density.view()),
+            candidates: candidates.as_deref(),
+            precision,
+        };
+        let image = Surface::new(sphere.positions, sphere.faces)?;
+        let sphere = SphereFaces {
+            image: &image,
+            targets: &sphere.targets,
+            face_of: sphere.face_of.as_deref(),
+            n_vertices: sphere.n_vertices,
+        };
+        authalic::layout(sphere, &options, observer)
+    })?;
+    // 3. The result
+    Ok(Layout {
+        points: match precision {
+            Precision::Double => from_array(py, layout.points).into_any(),
+            Precision::Single => from_array(py, layout.points.mapv(|x| x as f32)).into_any(),
+        },
+        faces: from_indices(py, layout.faces.view()),
+        vertex_of: from_index_list(py, layout.vertex_of.iter().map(|vertex| vertex.index())),
+        status: layout.status.as_str(),
+        seconds: layout.seconds,
+    })
+}
+
+/// What of a map is laid out, copied so that the run needs no Python.
+pub struct Sphere {
+    /// (n, 3): the images of the vertices, then those of split points.
+    pub positions: Array2<f64>,
+    /// (m, 3): the faces, or their parts.
+    pub faces: Array2<u32>,
+    /// (m,): the target measure of each of them.
+    pub targets: Vec<f64>,
+    /// (m,): the face of the map that each is a part of, if they are parts.
+    pub face_of: Option<Vec<usize>>,
+    /// How many positions are those of vertices.
+    pub n_vertices: usize,
+}
+
+fn parse_kind(kind: &str) -> PyResult<LayoutKind> {
+    match kind {
+        "lambert" => Ok(LayoutKind::Lambert),
+        "octahedral" => Ok(LayoutKind::Octahedral),
+        other => {
+            let message = format!("kind must be \"lambert\" or \"octahedral\", but is {other:?}");
+            Err(bad_option(message))
+        }
+    }
+}
+
+fn parse_precision(precision: &str) -> PyResult<Precision> {
+    match precision {
+        "float64" => Ok(Precision::Double),
+        "float32" => Ok(Precision::Single),
+        other => {
+            let message = format!("precision must be \"float64\" or \"float32\", but is {other:?}");
+            Err(bad_option(message))
+        }
+    }
+}
+
+/// The name of an axis or a direction.
+fn parse_pole(pole: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    let Ok(name) = pole.extract::<String>() else { return direction(pole, "pole") };
+    match name.as_str() {
+        "x" => Ok([1.0, 0.0, 0.0]),
+        "y" => Ok([0.0, 1.0, 0.0]),
+        "z" => Ok([0.0, 0.0, 1.0]),
+        other => {
+            let message = format!("pole must be \"x\", \"y\", \"z\" or a direction, but is {other:?}");
+            Err(bad_option(message))
+        }
+    }
+}
+
+/// An angle or a direction.
+fn parse_seam(seam: &Bound<'_, PyAny>) -> PyResult<Seam> {
+    match seam.extract::<f64>() {
+        Ok(angle) => Ok(Seam::Angle(angle)),
+        Err(_) => Ok(Seam::Direction(direction(seam, "seam")?)),
+    }
+}
+
+fn direction(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<[f64; 3]> {
+    let given = Values::new(object, name)?;
+    let expected = "of shape (3,), a direction";
+    if given.shape() != [3] {
+        return Err(bad_array(object.py(), name, given.shape_words(), expected.into()));
+    }
+    let reals = given.reals(expected)?;
+    Ok([reals[0], reals[1], reals[2]])
+}

@@ -236,11 +236,11 @@ def test_areas_are_those_of_the_density_given(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_map_is_laid_out_about_as_even_as_it_is(kind):
     mesh = meshes.bumpy_ball(5)
-    found = authalic.sphere_map(*mesh)
-    layout = found.layout(kind)
+    sphere_map = authalic.sphere_map(*mesh)
+    layout = sphere_map.layout(kind)
     ratios = area_ratios(layout, mesh)
     assert oracle.folded(layout.points, layout.faces) == []
-    assert ratios.std() < found.distortion.area_ratio_std + 0.01
+    assert ratios.std() < sphere_map.distortion.area_ratio_std + 0.01
     assert ratios.min() > 0.9
     assert ratios.max() < 1.1
 
@@ -268,13 +268,13 @@ def test_pole_axis_and_seam_direction(axis, angle):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("axis", AXES)
 def test_names_and_angles_are_directions(kind, axis):
-    found = map_of(meshes.icosphere(3, turned=6))
+    sphere_map = map_of(meshes.icosphere(3, turned=6))
     pole = np.eye(3)["xyz".index(axis)]
-    named = found.layout(kind, pole=axis, seam=0.0)
-    given = found.layout(kind, pole=4 * pole, seam=2 * np.array(AXES[axis]))
+    named = sphere_map.layout(kind, pole=axis, seam=0.0)
+    given = sphere_map.layout(kind, pole=4 * pole, seam=2 * np.array(AXES[axis]))
     assert (named.points == given.points).all()
     # what is not perpendicular to the pole does not count
-    slanted = found.layout(kind, pole=pole, seam=np.array(AXES[axis]) + 4 * pole)
+    slanted = sphere_map.layout(kind, pole=pole, seam=np.array(AXES[axis]) + 4 * pole)
     np.testing.assert_allclose(slanted.points, named.points, atol=1e-9)
 
 
@@ -315,9 +315,9 @@ def test_coarse_spheres(kind, level):
 def test_maps_of_surfaces_of_all_kinds(kind, name):
     """Laid out without folds, or refused by naming those of its faces that would fold."""
     mesh = meshes.SPHERES[name]
-    found = authalic.sphere_map(*mesh)
+    sphere_map = authalic.sphere_map(*mesh)
     try:
-        layout = found.layout(kind)
+        layout = sphere_map.layout(kind)
     except authalic.SolverError as problem:
         assert problem.kind == "layout_fold"
         assert 0 < problem.count <= len(mesh.faces)
@@ -325,7 +325,7 @@ def test_maps_of_surfaces_of_all_kinds(kind, name):
         assert set(problem.indices) <= set(range(len(mesh.faces)))
         assert name in {"tetrahedron", "octahedron", "hedgehog", "capsule", "spiky_ball"}
     else:
-        assert (layout.vertex_of[layout.faces] == found.faces).all()
+        assert (layout.vertex_of[layout.faces] == sphere_map.faces).all()
         assert oracle.folded(layout.points, layout.faces) == []
 
 
@@ -349,9 +349,9 @@ def test_inconsistent_faces_are_laid_out_as_the_map_has_them(kind):
     vertices, faces = meshes.bumpy_ball(3)
     faces = faces.copy()
     faces[[5, 50]] = faces[[5, 50], ::-1]
-    found = authalic.sphere_map(vertices, faces)
-    layout = found.layout(kind)
-    assert (layout.vertex_of[layout.faces] == found.faces).all()
+    sphere_map = authalic.sphere_map(vertices, faces)
+    layout = sphere_map.layout(kind)
+    assert (layout.vertex_of[layout.faces] == sphere_map.faces).all()
     assert oracle.folded(layout.points, layout.faces) == []
 
 
@@ -401,12 +401,12 @@ def pairs(faces):
 
 def test_labels_of_polygons_are_any_integers():
     mesh = meshes.icosphere(2, turned=9)
-    polygons, found = pairs(mesh.faces), map_of(mesh)
-    layout = found.layout(polygons=polygons)
+    polygons, sphere_map = pairs(mesh.faces), map_of(mesh)
+    layout = sphere_map.layout(polygons=polygons)
     for labels in (polygons * 10**12, -polygons, polygons.astype(np.int32), polygons.astype(float)):
-        assert (found.layout(polygons=labels).points == layout.points).all()
+        assert (sphere_map.layout(polygons=labels).points == layout.points).all()
     # a label of faces that do not meet joins nothing
-    assert (found.layout(polygons=np.arange(len(mesh.faces))).points == found.layout().points).all()
+    assert (sphere_map.layout(polygons=np.arange(len(mesh.faces))).points == sphere_map.layout().points).all()
 
 
 @pytest.mark.parametrize(("stacks", "slices"), [(8, 16), (12, 24), (32, 64)])
@@ -454,14 +454,14 @@ def test_a_uv_sphere_keeps_its_poles():
 def test_vertices_that_are_no_candidates_are_at_no_pole():
     mesh = meshes.icosphere(2)
     may = mesh.vertices[:, 2] < 0.9
-    found = map_of(mesh)
-    layout = found.layout(candidates=may)
+    sphere_map = map_of(mesh)
+    layout = sphere_map.layout(candidates=may)
     at_pole = np.unique(layout.vertex_of[np.abs(layout.points[:, 1]) == 1])
     assert len(at_pole) == 2
     assert may[at_pole].all()
-    by_index = found.layout(candidates=np.flatnonzero(may))
+    by_index = sphere_map.layout(candidates=np.flatnonzero(may))
     assert (by_index.points == layout.points).all()
-    free = found.layout()
+    free = sphere_map.layout()
     at_pole = np.unique(free.vertex_of[np.abs(free.points[:, 1]) == 1])
     assert not may[at_pole].all()
 
@@ -472,24 +472,26 @@ def test_vertices_that_are_no_candidates_are_at_no_pole():
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_refined_map_is_laid_out_with_the_parts_of_its_faces(kind):
     mesh = meshes.limbed_ball(3, 4.0)
-    found = authalic.sphere_map(*mesh, refine=True)
-    parts = found.refinement
+    sphere_map = authalic.sphere_map(*mesh, refine=True)
+    parts = sphere_map.refinement
     assert len(parts.parents) > 0
-    layout = found.layout(kind)
+    layout = sphere_map.layout(kind)
     assert (layout.vertex_of[layout.faces] == parts.faces).all()
     assert oracle.folded(layout.points, layout.faces) == []
     surface = np.vstack([mesh.vertices, parts.vertices])
     whole = np.bincount(parts.face_of, oracle.signed_areas(layout.points, layout.faces))
     wanted = np.bincount(parts.face_of, oracle.face_areas(surface, parts.faces))
     ratios = whole / wanted * (wanted.sum() / whole.sum())
-    assert ratios.std() < found.distortion.area_ratio_std + 0.02
+    assert ratios.std() < sphere_map.distortion.area_ratio_std + 0.02
     # options that are arrays speak of the faces and vertices of the map
     polygons = np.arange(len(mesh.faces))
-    assert (found.layout(kind, polygons=polygons).points == layout.points).all()
-    again = found.layout(kind, density=oracle.face_areas(*mesh), candidates=np.ones(len(mesh.vertices), bool))
+    assert (sphere_map.layout(kind, polygons=polygons).points == layout.points).all()
+    again = sphere_map.layout(
+        kind, density=oracle.face_areas(*mesh), candidates=np.ones(len(mesh.vertices), bool)
+    )
     assert oracle.folded(again.points, again.faces) == []
     with pytest.raises(authalic.MeshError, match="polygons must be of shape"):
-        found.layout(kind, polygons=parts.face_of)
+        sphere_map.layout(kind, polygons=parts.face_of)
 
 
 def test_maps_of_a_registration_are_laid_out():
@@ -498,10 +500,10 @@ def test_maps_of_a_registration_are_laid_out():
     registered = authalic.register_spheres(
         source, target, source_landmarks=landmarks, target_landmarks=landmarks
     )
-    for found, mesh in ((registered.source_map, source), (registered.target_map, target)):
-        layout = found.layout("octahedral")
+    for sphere_map, mesh in ((registered.source_map, source), (registered.target_map, target)):
+        layout = sphere_map.layout("octahedral")
         assert oracle.folded(layout.points, layout.faces) == []
-        assert area_ratios(layout, mesh).std() < found.distortion.area_ratio_std + 0.02
+        assert area_ratios(layout, mesh).std() < sphere_map.distortion.area_ratio_std + 0.02
 
 
 # Runs
@@ -521,15 +523,15 @@ def test_progress_grows_from_0_to_1_with_messages():
 
 
 def test_listening_changes_no_bit():
-    found = authalic.sphere_map(*meshes.bumpy_ball(4))
-    silent, heard = found.layout(), found.layout(progress=lambda fraction, message: True)
+    sphere_map = authalic.sphere_map(*meshes.bumpy_ball(4))
+    silent, heard = sphere_map.layout(), sphere_map.layout(progress=lambda fraction, message: True)
     assert (silent.points == heard.points).all()
     assert (silent.faces == heard.faces).all()
 
 
 @pytest.mark.parametrize("last", range(8))
 def test_a_false_answer_cancels_and_leaves_a_sound_layout_or_none(last):
-    found = authalic.sphere_map(*meshes.bumpy_ball(5))
+    sphere_map = authalic.sphere_map(*meshes.bumpy_ball(5))
     heard = []
 
     def progress(fraction, message):
@@ -537,7 +539,7 @@ def test_a_false_answer_cancels_and_leaves_a_sound_layout_or_none(last):
         return len(heard) <= last
 
     try:
-        layout = found.layout("octahedral", progress=progress)
+        layout = sphere_map.layout("octahedral", progress=progress)
     except authalic.SolverError as problem:
         assert problem.kind == "cancelled"
         assert last < 3
@@ -559,10 +561,10 @@ DIGEST = """
 import hashlib, numpy as np, authalic
 from api import meshes
 for mesh in (meshes.bumpy_ball(5), meshes.SPHERES["parallels"]):
-    found = authalic.sphere_map(*mesh)
+    sphere_map = authalic.sphere_map(*mesh)
     for kind in ("lambert", "octahedral"):
         for options in ({}, {"precision": "float32"}, {"polygons": np.arange(len(mesh.faces)) // 2}):
-            layout = found.layout(kind, **options)
+            layout = sphere_map.layout(kind, **options)
             for array in (layout.points, layout.faces, layout.vertex_of):
                 print(hashlib.sha256(array.tobytes()).hexdigest())
 """
@@ -580,7 +582,7 @@ from api import meshes
 # a shell's background job inherits SIGINT ignored, and Python then installs no handler of its own
 signal.signal(signal.SIGINT, signal.default_int_handler)
 mesh = meshes.bumpy_ball(7)
-found = authalic.sphere_map(
+sphere_map = authalic.sphere_map(
     *mesh, method="fixed_point", max_iterations=0, initial=meshes.ball(7).vertices, unfold=False
 )
 sent, asked = [], []
@@ -591,7 +593,7 @@ def progress(fraction, message):
     return not sent
 threading.Timer({delay}, stop).start()
 try:
-    outcome = found.layout("octahedral", progress={progress}).status
+    outcome = sphere_map.layout("octahedral", progress={progress}).status
 except KeyboardInterrupt:
     outcome = "interrupted"
 except authalic.SolverError as problem:
@@ -609,9 +611,9 @@ print(json.dumps([outcome, time.perf_counter() - sent[0]]))
 def test_a_run_on_a_hundred_thousand_faces_ends_at_once(run_python, delay, stop, progress, outcome):
     """0.2 s is promised; the bound leaves room for a busy machine."""
     code = INTERRUPT.format(delay=delay, stop=stop, progress=progress)
-    found, latency = json.loads(run_python(code))
+    result, latency = json.loads(run_python(code))
     print(f"{outcome} after {delay} s was answered after {latency:.3f} s")
-    assert found == outcome
+    assert result == outcome
     assert latency < 1.0
 
 
@@ -686,15 +688,15 @@ def test_an_option_of_the_wrong_type_is_a_type_error(options):
 
 
 def test_positions_that_were_spoiled_are_refused():
-    found = map_of(meshes.ball(2))
-    found.positions[5, 1] = np.nan
+    sphere_map = map_of(meshes.ball(2))
+    sphere_map.positions[5, 1] = np.nan
     with pytest.raises(authalic.MeshError, match="coordinates at vertex 5") as refusal:
-        found.layout()
+        sphere_map.layout()
     assert refusal.value.indices == (5,)
-    found = map_of(meshes.ball(2))
-    found.faces[7, 1] = 1000
+    sphere_map = map_of(meshes.ball(2))
+    sphere_map.faces[7, 1] = 1000
     with pytest.raises(authalic.MeshError, match="faces must be indices of the 66 vertices"):
-        found.layout()
+        sphere_map.layout()
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -717,10 +719,10 @@ def test_spoiled_maps_never_crash(kind):
         lambda positions: np.tile(positions[:1], (len(positions), 1)),
         lambda positions: positions * [1, 1, 1e-12],
     ):
-        found = map_of(meshes.ball(2))
-        found.positions[:] = spoil(np.array(found.positions))
+        sphere_map = map_of(meshes.ball(2))
+        sphere_map.positions[:] = spoil(np.array(sphere_map.positions))
         try:
-            layout = found.layout(kind)
+            layout = sphere_map.layout(kind)
         except (authalic.SolverError, authalic.MeshError) as problem:
             assert problem.kind in {"layout_fold", "no_direction"}, str(problem)
         else:
@@ -742,7 +744,7 @@ def test_a_sphere_of_a_cortex(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_cow(kind):
     mesh = real_meshes.load(real_meshes.file("sphere/spot_2930.npz"))
-    found = authalic.sphere_map(*mesh)
-    layout = found.layout(kind, precision="float32")
+    sphere_map = authalic.sphere_map(*mesh)
+    layout = sphere_map.layout(kind, precision="float32")
     assert all(oracle.exact_area(triangle) > 0 for triangle in layout.points[layout.faces])
-    assert area_ratios(layout, mesh).std() < found.distortion.area_ratio_std + 0.02
+    assert area_ratios(layout, mesh).std() < sphere_map.distortion.area_ratio_std + 0.02

@@ -19,8 +19,8 @@ use super::unfolding::unfold;
 use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status, Watch};
 use crate::error::{Elements, Error, NumericsError};
-use crate::mesh::index_array;
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::index_array;
 use crate::parallel;
 use crate::vector::Vector3;
 

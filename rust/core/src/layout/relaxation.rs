@@ -281,7 +281,8 @@ impl Limits {
             // 2. Their vertices go less far
             let factor = if shortening < SHORTENINGS / 2 { 0.5 } else { 0.0 };
             parallel::fill_with_old(&mut lengths, |vertex, length| {
-                let at_bad_face = patch.corners.of(Vertex::new(vertex)).iter().any(|&corner| is_bad[corner as usize / 3]);
+                let at_bad_face =
+                    patch.corners.of(Vertex::new(vertex)).iter().any(|&corner| is_bad[corner as usize / 3]);
                 match (leaving[vertex], at_bad_face) {
                     (true, _) => 0.0,
                     (false, true) => factor * length,

@@ -6,12 +6,15 @@ use std::collections::BTreeMap;
 
 use crate::vector::Vector3;
 
-/// An octahedron turned somehow, with every face split in four `level` times on the unit sphere.
+/// An icosahedron turned somehow, with every face split in four `level` times on the unit sphere.
 pub(super) fn turned_ball(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
-    let mut points: Vec<Vector3> =
-        (0..3).map(Vector3::unit).chain((0..3).map(|k| -Vector3::unit(k))).collect();
-    let upper = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2]];
-    let mut faces: Vec<[Vertex; 3]> = upper.into_iter().chain(upper.map(|[a, b, _]| [b, a, 5])).collect();
+    let golden = 0.5 + 1.25f64.sqrt();
+    let quarters = [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]];
+    let mut points: Vec<Vector3> = (0..3)
+        .flat_map(|axis| quarters.map(|[a, b]| Vector3::unit(axis) * a + Vector3::unit((axis + 1) % 3) * b))
+        .map(unit)
+        .collect();
+    let mut faces = faces_of_icosahedron(&points);
     for _ in 0..level {
         faces = split_in_four(&mut points, &faces);
     }
@@ -28,6 +31,21 @@ pub(super) fn small_triangles() -> impl Iterator<Item = [Vector3; 3]> {
         let across = unit(base.cross(Vector3([0.3, -0.2, 0.9])));
         [across, base.cross(across), -across].map(|side| unit(base + side * 1e-4))
     })
+}
+
+/// The triangles of sides of the least length, counter-clockwise seen from outside.
+fn faces_of_icosahedron(points: &[Vector3]) -> Vec<[Vertex; 3]> {
+    let is_side = |a: usize, b: usize| points[a].distance(points[b]) < 1.1;
+    let mut faces = Vec::new();
+    for a in 0..points.len() {
+        for b in (a + 1..points.len()).filter(|&b| is_side(a, b)) {
+            for c in (b + 1..points.len()).filter(|&c| is_side(a, c) && is_side(b, c)) {
+                let is_outward = points[a].cross(points[b]).dot(points[c]) > 0.0;
+                faces.push((if is_outward { [a, b, c] } else { [a, c, b] }).map(Vertex::new));
+            }
+        }
+    }
+    faces
 }
 
 fn split_in_four(points: &mut Vec<Vector3>, faces: &[[Vertex; 3]]) -> Vec<[Vertex; 3]> {

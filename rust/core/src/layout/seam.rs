@@ -37,7 +37,11 @@ pub(super) struct Split {
 
 /// Joins the corners of each vertex that have the same image.
 pub(super) fn split_along_seam(corners: &VertexCorners, images: &[[Point; 3]]) -> Split {
-    let mut split = Split { points: Vec::new(), faces: vec![[Vertex::default(); 3]; images.len()], vertex_of: Vec::new() };
+    let mut split = Split {
+        points: Vec::new(),
+        faces: vec![[Vertex::default(); 3]; images.len()],
+        vertex_of: Vec::new(),
+    };
     for vertex in Vertex::all(corners.len()) {
         let first = split.points.len();
         for &corner in corners.of(vertex) {

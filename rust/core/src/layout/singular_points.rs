@@ -131,7 +131,8 @@ impl Neighborhood {
         let faces: Vec<[Vertex; 3]> =
             of_mesh.iter().map(|&face| mesh.faces[face].map(|v| Vertex(number[v]))).collect();
         let labels: Vec<usize> = of_mesh.iter().map(|&face| mesh.polygons.of[face] as usize).collect();
-        let may_move = |&v: &Vertex| !is_singular[v] && mesh.candidates.is_none_or(|candidates| candidates[v]);
+        let may_move =
+            |&v: &Vertex| !is_singular[v] && mesh.candidates.is_none_or(|candidates| candidates[v]);
         Self {
             points: vertices.iter().map(|&vertex| points[vertex]).collect(),
             distances: vertices.iter().map(|&vertex| distances[vertex]).collect(),

@@ -140,7 +140,7 @@ mod tests {
     use crate::mesh::geometry::{area, triangle};
 
     fn assert_unfolds_and_leaves_the_rest<P: Projection>() {
-        let (points, faces) = turned_ball(4);
+        let (points, faces) = turned_ball(3);
         let corners = VertexCorners::new(points.len(), &faces);
         let polygons = Polygons::new(&faces, None);
         let areas: Vec<f64> = faces.iter().map(|&face| area(triangle(&points, face))).collect();

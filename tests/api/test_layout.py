@@ -667,7 +667,7 @@ def test_an_option_out_of_range_is_a_plain_value_error(options, words):
         ({"density": np.full(128, np.nan)}, "density must be positive, finite"),
         ({"candidates": [0, 66]}, "candidates must be indices of the 66 vertices"),
         ({"candidates": [-1, 0]}, "candidates must be indices of the 66 vertices"),
-        ({"candidates": np.ones(5, bool)}, "candidates must be of shape (66,) where it is of truth values"),
+        ({"candidates": np.ones(5, bool)}, "candidates must be of shape (66,), one truth value per vertex"),
         (
             {"candidates": [3]},
             "candidates must be at least 2 vertices, one for each singular point, but is 1",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""UVs for the islands of surfaces: each by a map onto a disk or, where it is closed, onto a sphere."""
+"""UVs for the islands of surfaces: by a map onto a disk or, for closed islands, onto a sphere."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -25,24 +25,24 @@ from .spheres import sphere_map
 _CUT = "cut its long parts open by seams"
 _NOT_FREE = f"set Outline to Free, or {_CUT}"
 _OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
-# Where the slider has to stand for shapes that a layout of the sphere does not fold.
+# A slider position whose shapes a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
-# The pole and, where the angle of the seam is 0, the direction of the seam.
+# The directions of the pole, and of the seam at the angle 0.
 _AXES = {
     "X": ((1, 0, 0), (0, 1, 0)),
     "Y": ((0, 1, 0), (0, 0, -1)),
     "Z": ((0, 0, 1), (0, 1, 0)),
 }
-# The part of the time that a sphere map takes, before it is laid flat.
+# The part of the time that the sphere map takes; the layout takes the rest.
 _SPHERE = 0.9
-# The vertices that a layout needs for its poles, at most.
+# The most vertices that a layout needs for its poles.
 _POLES = 4
 
 
 def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Progress = keep_going) -> Mapping:
-    """Maps every island of every surface (`Surface`) to UVs of its own, by a disk or by a sphere.
+    """Maps every island of every surface (`Surface`) to UVs, by a disk or by a sphere.
 
-    When `progress` returns False the island at hand is kept as it is by then, and later ones are refused.
+    When `progress` returns False, the current island keeps its best map so far, and later ones are refused.
     Islands that cannot be mapped are refused, not raised.
     """
     result = Mapping()
@@ -57,7 +57,7 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
 
 @dataclass
 class _Piece:
-    """A patch of a surface, with what leads back from its numbers to those of the mesh."""
+    """A patch of a surface, with the mesh's numbers for its corners, faces and vertices."""
 
     name: str
     index: int
@@ -74,14 +74,14 @@ class _Piece:
 
 
 def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterator[_Piece]:
-    """The islands of a surface; one that cannot be cut at all is refused as a whole."""
+    """The islands of a surface; a surface that cannot be cut is refused as a whole."""
     surface = surfaces[index]
     mesh = triangulation.sound(surface)
     used, faces = np.unique(mesh.triangles, return_inverse=True)
     faces, points = faces.reshape(-1, 3), mesh.positions[used]
     number = np.full(len(mesh.positions), -1)
     number[used] = np.arange(len(used))
-    # The centre of a divided polygon is no vertex of the mesh.
+    # The center of a divided polygon is no vertex of the mesh.
     vertices = np.where(used < len(surface.positions), used, -1)
     try:
         patches = cut(points, faces, seams=number[surface.seams])
@@ -104,7 +104,7 @@ def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterato
 
 
 def _map(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
-    """The UVs of one island, counter-clockwise as most of its faces are wound."""
+    """The UVs of one island; most of its faces are counter-clockwise."""
     if piece.pinned:
         raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
     domain = suitability.choose(piece.patch, settings.domain, settings.fill_holes)
@@ -113,20 +113,20 @@ def _map(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
 
 def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
     native = checked(piece.patch, piece.points)
-    found = authalic.disk_map(
+    disk_map = authalic.disk_map(
         native, fill_holes=settings.fill_holes, progress=progress, **settings.solver.disk_options()
     )
     faces = np.asarray(piece.patch.faces)
-    turned = spherical.turned(faces, np.asarray(found.faces))
-    island = _island(piece, native, np.array(found.uv), faces, turned, np.arange(len(piece.points)))
+    turned = spherical.turned(faces, np.asarray(disk_map.faces))
+    island = _island(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
     remedy = _CUT if settings.solver.is_free else _NOT_FREE
-    island.shortfall = shortfall(found.status, found.distortion, settings.solver, UNEVEN_DISK, remedy)
+    island.shortfall = shortfall(disk_map.status, disk_map.distortion, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
 
 
 def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
-    """By the sphere map asked for, or by one with better shapes where its faces are too thin to lay flat."""
+    """Lays the sphere map flat; if its faces are too thin for that, one with better shapes."""
     solver = settings.solver
     try:
         return _laid_flat(piece, settings, solver, progress)
@@ -143,35 +143,35 @@ def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> I
 def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
     native = checked(piece.patch, piece.points)
-    found, over, turned = sphere_map(native, solver, share_of(progress, 0.0, _SPHERE))
-    layout = _layout(found, over, piece, settings, share_of(progress, _SPHERE, 1.0 - _SPHERE))
-    # the map has some faces turned over: corners in the order of the mesh
-    order = (np.asarray(found.faces)[:, None, :] == faces[:, :, None]).argmax(axis=2)
+    sphere, over, turned = sphere_map(native, solver, share_of(progress, 0.0, _SPHERE))
+    layout = _layout(sphere, over, piece, settings, share_of(progress, _SPHERE, 1.0 - _SPHERE))
+    # the map has turned some faces over: back to the order of the mesh
+    order = (np.asarray(sphere.faces)[:, None, :] == faces[:, :, None]).argmax(axis=2)
     corner_point = np.take_along_axis(np.asarray(layout.faces), order, axis=1)
     points, uv = np.asarray(layout.vertex_of), np.asarray(layout.points, float)
     native = authalic.Surface(piece.points[points], corner_point)
     island = _island(piece, native, uv, corner_point, turned, points)
     figures = authalic.distortion(native, island.uv)
-    island.shortfall = shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
+    island.shortfall = shortfall(sphere.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
     return island
 
 
 def _layout(
-    found: authalic.SphereMap, over: Floats, piece: _Piece, settings: UnwrapSettings, progress: Progress
+    sphere: authalic.SphereMap, over: Floats, piece: _Piece, settings: UnwrapSettings, progress: Progress
 ) -> authalic.Layout:
-    """A sphere map laid out by the settings, whose axes are the surface's; `over` lays it over that."""
+    """The layout of a sphere map by the settings; `over` lays the map over the surface, whose axes count."""
     pole, start = np.array(_AXES[settings.pole_axis], float)
     angle = settings.seam_direction
     seam = np.cos(angle) * start + np.sin(angle) * np.cross(pole, start)
     real = piece.vertices >= 0
-    return found.layout(
+    return sphere.layout(
         "lambert" if settings.layout == "LAMBERT" else "octahedral",
         pole=over @ pole,
         seam=over @ seam,
         polygons=piece.polygons,
         candidates=real if np.count_nonzero(real) >= _POLES else None,
         precision="float32",
-        # a map that ended early has to be laid flat nevertheless
+        # a map that ended early has to be laid flat, too
         progress=to_the_end(progress),
     )
 
@@ -184,7 +184,7 @@ def _island(
     turned: Booleans,
     points: Integers,
 ) -> Island:
-    """An `Island` of the piece's points (n,) with UVs (n, 2), its triangles `faces` between these."""
+    """An `Island` of the piece's points (n,) with UVs (n, 2) and triangles `faces`."""
     real = piece.corners >= 0
     return Island(
         name=piece.name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pieces that are computed one by one: the progress of the whole, and pieces that are refused."""
+"""Islands that are computed one by one: the progress of the whole, and refusals."""
 
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
@@ -12,13 +12,13 @@ from ..surfaces.suitability import Unsuitable
 from .results import Refusal
 
 Progress = Callable[[float, str], bool | None]
-"""Is told the fraction done and a message; False asks the computation to end."""
+"""A callback with the fraction done and a message; False asks the computation to end."""
 
 NOT_REACHED = "was not reached before the end"
 
 
 class Piece(Protocol):
-    """What is computed on its own, with the polygons and vertices of the mesh for its faces and vertices."""
+    """An island to compute, with the mesh's polygons and vertices for its faces and vertices."""
 
     name: str
     polygons: Integers
@@ -29,7 +29,7 @@ class Piece(Protocol):
 
 
 class Result(Protocol):
-    """What the pieces make up."""
+    """The result of all islands together."""
 
     refusals: list[Refusal]
     ended_early: bool
@@ -45,7 +45,7 @@ def keep_going(_fraction: float, _message: str) -> bool:
 def one_by_one(
     pieces: Sequence[SomePiece], do: Callable[[SomePiece, Progress], None], result: Result, progress: Progress
 ) -> None:
-    """Calls `do(piece, progress)` for every piece; one that it raises for is refused in the result."""
+    """Calls `do(piece, progress)` for every piece; if that raises, the piece is refused in the result."""
     total = sum(len(piece.polygons) for piece in pieces)
     done = 0
     listen = _noting_the_end(progress, result)
@@ -67,12 +67,12 @@ def one_by_one(
 
 
 def share_of(progress: Progress, start: float, share: float) -> Progress:
-    """A part of the whole as a progress callback."""
+    """A progress callback for a part of the whole."""
     return lambda fraction, message: progress(start + share * fraction, message)
 
 
 def to_the_end(progress: Progress) -> Progress:
-    """The progress callback for what has to be finished: it is told, but only an exception ends it."""
+    """A progress callback for work that has to be finished: only an exception ends it."""
 
     def tell(fraction: float, message: str) -> bool:
         progress(fraction, message)
@@ -82,7 +82,7 @@ def to_the_end(progress: Progress) -> Progress:
 
 
 def _noting_the_end(progress: Progress, result: Result) -> Progress:
-    """The progress callback, which also notes in a `Mapping` that it was asked to end."""
+    """The progress callback, which also notes in the result that it was asked to end."""
 
     def listen(fraction: float, message: str) -> bool:
         result.ended_early |= progress(fraction, message) is False
@@ -92,5 +92,5 @@ def _noting_the_end(progress: Progress, result: Result) -> Progress:
 
 
 def _sub_progress(progress: Progress, start: float, share: float, name: str) -> Progress:
-    """A part of the whole as a progress callback that names it."""
+    """A progress callback for a part of the whole, with its name."""
     return share_of(lambda fraction, message: progress(fraction, f"{name}: {message}"), start, share)

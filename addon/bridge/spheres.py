@@ -23,10 +23,10 @@ _OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (pok
 def sphere_shape(
     surface: Surface, solver: Solver | None = None, progress: Progress = keep_going
 ) -> SphereShape:
-    """The vertices of a closed mesh (`Surface`) on the sphere of its area, about its area's centre.
+    """The vertices of a closed mesh (`Surface`) on the sphere of its area, about the center of its area.
 
-    When `progress` returns False, as they are by then. Raises `Unsuitable`, in the words of an artist, where
-    there is no such map.
+    When `progress` returns False, the map is the best so far. Raises `Unsuitable`, in the words of an artist,
+    if there is no such map.
     """
     solver = solver or Solver()
     mesh = triangulation.sound(surface)
@@ -34,18 +34,18 @@ def sphere_shape(
     try:
         used, patches = _whole(mesh)
         suitability.check_closed_mesh(used, len(surface.positions), patches)
-        # one piece of all vertices: numbered as the mesh is
+        # one piece of all vertices has the numbers of the mesh
         native = checked(patches[0], mesh.positions)
-        found, over, turned = sphere_map(native, solver, progress)
+        sphere, over, turned = sphere_map(native, solver, progress)
     except (authalic.MeshError, authalic.SolverError) as error:
         raise Unsuitable(problems.in_words(error, mesh.polygons, vertices)) from error
-    centre = spherical.centroid(mesh.positions, mesh.triangles)
+    center = spherical.centroid(mesh.positions, mesh.triangles)
     radius = spherical.radius(mesh.positions, mesh.triangles)
-    written = (centre + radius * (np.asarray(found.positions) @ over)).astype(np.float32)
+    written = (center + radius * (np.asarray(sphere.positions) @ over)).astype(np.float32)
     faces = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    # a mesh whose faces look inwards lies mirrored on the sphere
+    # a mesh whose faces look inward lies mirrored on the sphere
     outward = -1 if spherical.volume(mesh.positions, faces) < 0 else 1
-    figures = authalic.distortion(native, outward * (written - centre))
+    figures = authalic.distortion(native, outward * (written - center))
     if len(figures.folded):
         raise Unsuitable(
             f"{messages.count(len(figures.folded), 'triangle')} would fold over in the precision of "
@@ -57,13 +57,13 @@ def sphere_shape(
         deviation=float(figures.area_ratio_std),
         flips=len(figures.folded),
         angle=float(figures.angle_distortion_mean),
-        shortfall=shortfall(found.status, figures, solver, UNEVEN_SPHERE, _OF_A_KEY),
-        ended_early=found.status == "cancelled",
+        shortfall=shortfall(sphere.status, figures, solver, UNEVEN_SPHERE, _OF_A_KEY),
+        ended_early=sphere.status == "cancelled",
     )
 
 
 def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch]]:
-    """The vertices (u,) that have triangles, and the pieces that these make up."""
+    """The vertices (u,) that have triangles, and the pieces of the mesh."""
     used, faces = np.unique(mesh.triangles, return_inverse=True)
     return used, cut(mesh.positions[used], faces.reshape(-1, 3))
 
@@ -71,16 +71,16 @@ def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch
 def sphere_map(
     surface: authalic.Surface, solver: Solver, progress: Progress
 ) -> tuple[authalic.SphereMap, Floats, Booleans]:
-    """A sphere map, the matrix that lays it over the surface, and which faces (m,) it has turned over."""
-    found = authalic.sphere_map(surface, progress=progress, **solver.sphere_options())
-    is_poor = found.status == "stalled" and solver.puts_areas_first
-    if is_poor or _is_thin(found):  # coarse meshes may come out worse than the start
+    """A sphere map, the matrix that lays it over the surface, and a mask (m,) of the faces it has turned."""
+    sphere = authalic.sphere_map(surface, progress=progress, **solver.sphere_options())
+    is_poor = sphere.status == "stalled" and solver.puts_areas_first
+    if is_poor or _is_thin(sphere):  # coarse meshes may come out worse than the start
         start = authalic.sphere_map(surface, method="fixed_point", max_iterations=0)
-        found = min(found, start, key=lambda map_: (_is_thin(map_), map_.distortion.authalic_energy))
-    oriented = np.asarray(found.faces)
-    over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.asarray(found.positions))
-    return found, over, spherical.turned(np.asarray(surface.faces), oriented)
+        sphere = min(sphere, start, key=lambda each: (_is_thin(each), each.distortion.authalic_energy))
+    oriented = np.asarray(sphere.faces)
+    over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.asarray(sphere.positions))
+    return sphere, over, spherical.turned(np.asarray(surface.faces), oriented)
 
 
-def _is_thin(found: authalic.SphereMap) -> bool:
-    return spherical.is_thin(np.asarray(found.positions), np.asarray(found.faces))
+def _is_thin(sphere: authalic.SphereMap) -> bool:
+    return spherical.is_thin(np.asarray(sphere.positions), np.asarray(sphere.faces))

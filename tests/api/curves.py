@@ -118,10 +118,10 @@ def fibonacci(count):
 def arcs(count, length=0.55, seed=2):
     """The ends of `count` arcs of great circles that stay apart from each other, (count, 2, 3)."""
     middle = fibonacci(count)
-    towards = np.cross(middle, np.random.default_rng(seed).standard_normal((count, 3)))
-    towards /= np.linalg.norm(towards, axis=1)[:, None]
+    tangent = np.cross(middle, np.random.default_rng(seed).standard_normal((count, 3)))
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
     half = length * np.sqrt(4 * np.pi / count) / 2
-    return np.stack([middle - np.tan(half) * towards, middle + np.tan(half) * towards], axis=1)
+    return np.stack([middle - np.tan(half) * tangent, middle + np.tan(half) * tangent], axis=1)
 
 
 def drawn(mesh, lines):

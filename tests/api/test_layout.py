@@ -36,12 +36,12 @@ def corners(layout):
 
 
 def uneven(mesh, strength=0.4):
-    """A mesh of the sphere pulled towards one side, smoothly and without a fold."""
+    """A mesh of the sphere pulled toward one side, smoothly and without a fold."""
     return meshes.on_the_sphere(meshes.Mesh(mesh.vertices + strength * np.array([0.3, 0.5, 0.8]), mesh.faces))
 
 
 def area_ratios(layout, mesh, polygons=None):
-    """Image area over the area on the surface, of each polygon, over the mean of all."""
+    """The area ratio of each polygon, image over surface, scaled to the mean 1."""
     image, surface = oracle.signed_areas(layout.points, layout.faces), oracle.face_areas(*mesh)
     if polygons is not None:
         image, surface = np.bincount(polygons, image), np.bincount(polygons, surface)
@@ -58,7 +58,7 @@ def uv_sphere(stacks, slices):
 
 
 def edge_images(layout, mesh):
-    """The (start, end) of the two images of each edge, (e, 2) each, in one and in the other face."""
+    """The starts and ends, (e, 2) each, of the two images of each edge, in either face."""
     ends = np.stack([mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()])
     image = corners(layout)
     images = np.stack([image.reshape(-1, 2), np.roll(image, -1, axis=1).reshape(-1, 2)])
@@ -273,7 +273,7 @@ def test_names_and_angles_are_directions(kind, axis):
     named = sphere_map.layout(kind, pole=axis, seam=0.0)
     given = sphere_map.layout(kind, pole=4 * pole, seam=2 * np.array(AXES[axis]))
     assert (named.points == given.points).all()
-    # what is not perpendicular to the pole does not count
+    # only the component perpendicular to the pole counts
     slanted = sphere_map.layout(kind, pole=pole, seam=np.array(AXES[axis]) + 4 * pole)
     np.testing.assert_allclose(slanted.points, named.points, atol=1e-9)
 
@@ -313,7 +313,7 @@ def test_coarse_spheres(kind, level):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", sorted(meshes.SPHERES))
 def test_maps_of_surfaces_of_all_kinds(kind, name):
-    """Laid out without folds, or refused by naming those of its faces that would fold."""
+    """Maps are laid out without folds, or refused by naming the faces that would fold."""
     mesh = meshes.SPHERES[name]
     sphere_map = authalic.sphere_map(*mesh)
     try:
@@ -338,7 +338,7 @@ def test_a_tetrahedron_is_refused(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_surface_that_looks_inwards_has_no_folds(kind):
+def test_a_surface_that_looks_inward_has_no_folds(kind):
     vertices, faces = meshes.bumpy_ball(4)
     layout = authalic.sphere_map(vertices, faces[:, ::-1]).layout(kind)
     assert oracle.folded(layout.points, layout.faces) == []
@@ -389,13 +389,13 @@ def test_polygons_keep_together(kind):
 
 
 def pairs(faces):
-    """Numbers (m,), negative ones among them, that two neighbouring triangles share wherever possible."""
+    """Numbers (m,), negative ones among them, that two neighboring triangles share wherever possible."""
     owner, partner = {}, np.full(len(faces), -1)
     for face, (a, b, c) in enumerate(faces):
         for edge in ((a, b), (b, c), (c, a)):
-            neighbour = owner.setdefault(tuple(sorted(edge)), face)
-            if neighbour != face and partner[neighbour] < 0 and partner[face] < 0:
-                partner[[neighbour, face]] = face
+            neighbor = owner.setdefault(tuple(sorted(edge)), face)
+            if neighbor != face and partner[neighbor] < 0 and partner[face] < 0:
+                partner[[neighbor, face]] = face
     return np.where(partner < 0, np.arange(len(faces)), partner) - 100
 
 

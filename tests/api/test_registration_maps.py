@@ -156,9 +156,9 @@ def test_landmarks_that_would_fold_faces_are_missed_and_named(pair):
 
 
 AWKWARD = {
-    "disk_neighbours_swapped": with_marks(CAP, [100, 101], [101, 100]),
-    "sphere_neighbours_swapped": with_marks(BALL, BALL.faces[100][:2], BALL.faces[100][1::-1]),
-    "sphere_neighbours_swapped_and_more": with_marks(
+    "disk_neighbors_swapped": with_marks(CAP, [100, 101], [101, 100]),
+    "sphere_neighbors_swapped": with_marks(BALL, BALL.faces[100][:2], BALL.faces[100][1::-1]),
+    "sphere_neighbors_swapped_and_more": with_marks(
         BALL, [*BALL.faces[100][:2], 0, 1, 2], [*BALL.faces[100][1::-1], 0, 1, 2]
     ),
     "beside_the_boundary": with_marks(CAP, range(360, 390, 3), np.roll(range(360, 390, 3), 1)),

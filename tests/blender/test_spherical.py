@@ -11,7 +11,7 @@ def test_map_of_an_inside_out_surface_lies_over_it() -> None:
     spherical = part("surfaces.spherical")
     vertices, faces = spheres.icosphere(3)
     surface = vertices * [1, 2, 3] + [5, 6, 7]
-    # Outward-oriented for faces that look inwards, so that it is turned inside out, and somehow rotated.
+    # Oriented outward for faces that look inward, so it is turned inside out, and rotated at random.
     positions = vertices * [1, 1, -1] @ spheres.rotation(2).T
     over = positions @ spherical.over_surface(surface, faces[:, ::-1], positions)
     assert (np.linalg.det(over[faces]) > 0).all()

@@ -13,16 +13,16 @@ use crate::run::run;
 /// A map onto the sphere laid out in the plane, cut open along a seam, without folds.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Layout {
-    /// (k, 2) float64 or float32, as asked for: the points in the order of their vertices. The whole image has the area of
+    /// (k, 2) float64 or float32, as requested: the points in the order of their vertices. The whole image has the area of
     /// the unit sphere.
     points: Py<PyAny>,
-    /// (m, 3) int64: the faces between points, counter-clockwise; row by row those of the map, or of its refinement.
+    /// (m, 3) int64: the faces of the map, or of its refinement, between points, counter-clockwise.
     faces: Py<PyArray2<i64>>,
     /// (k,) int64: the vertex of each point, ascending; a vertex on the seam has several. Split points of a refinement are
     /// numbered on from the vertices.
     vertex_of: Py<PyArray1<i64>>,
-    /// "converged" where areas are as even as they should be, "stalled" where they hardly get more even, "cancelled". No
-    /// face is folded whatever it says.
+    /// "converged" if areas are as even as they should be, "stalled" if they hardly get more even, "cancelled". No face is
+    /// folded in any case.
     status: &'static str,
     /// Wall time of the call.
     seconds: f64,
@@ -41,7 +41,7 @@ impl Layout {
     }
 }
 
-/// The keyword arguments of `SphereMap.layout` as they are given.
+/// The arguments of `SphereMap.layout` as given.
 pub struct Arguments<'a, 'py> {
     pub kind: &'a str,
     pub pole: Option<&'a Bound<'py, PyAny>>,
@@ -60,7 +60,7 @@ pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> 
     let pole = arguments.pole.map_or(Ok([0.0, 0.0, 1.0]), parse_pole)?;
     let seam = arguments.seam.map_or(Ok(Seam::Angle(0.0)), parse_seam)?;
     let polygons = arguments.polygons.map(|polygons| labels(polygons, "polygons")).transpose()?;
-    // labels are compared only, so that what is negative may wrap
+    // labels are only compared, so negative ones may wrap
     let polygons: Option<Vec<usize>> =
         polygons.map(|labels| labels.into_iter().map(|label| label as usize).collect());
     let density = arguments.density.map(|density| reals(density, "density")).transpose()?;
@@ -107,17 +107,17 @@ pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> 
     })
 }
 
-/// What of a map is laid out, copied so that the run needs no Python.
+/// The parts of a map that are laid out, copied so that the run needs no Python.
 pub struct Sphere {
     /// (n, 3): the images of the vertices, then those of split points.
     pub positions: Array2<f64>,
     /// (m, 3): the faces, or their parts.
     pub faces: Array2<u32>,
-    /// (m,): the target measure of each of them.
+    /// (m,): the target measure of each face or part.
     pub targets: Vec<f64>,
-    /// (m,): the face of the map that each is a part of, if they are parts.
+    /// (m,): the face of the map that each part belongs to, if they are parts.
     pub face_of: Option<Vec<usize>>,
-    /// How many positions are those of vertices.
+    /// The number of vertices.
     pub n_vertices: usize,
 }
 
@@ -125,8 +125,8 @@ fn parse_kind(kind: &str) -> PyResult<LayoutKind> {
     match kind {
         "lambert" => Ok(LayoutKind::Lambert),
         "octahedral" => Ok(LayoutKind::Octahedral),
-        other => {
-            let message = format!("kind must be \"lambert\" or \"octahedral\", but is {other:?}");
+        unknown => {
+            let message = format!("kind must be \"lambert\" or \"octahedral\", but is {unknown:?}");
             Err(bad_option(message))
         }
     }
@@ -136,8 +136,8 @@ fn parse_precision(precision: &str) -> PyResult<Precision> {
     match precision {
         "float64" => Ok(Precision::Double),
         "float32" => Ok(Precision::Single),
-        other => {
-            let message = format!("precision must be \"float64\" or \"float32\", but is {other:?}");
+        unknown => {
+            let message = format!("precision must be \"float64\" or \"float32\", but is {unknown:?}");
             Err(bad_option(message))
         }
     }
@@ -150,8 +150,8 @@ fn parse_pole(pole: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
         "x" => Ok([1.0, 0.0, 0.0]),
         "y" => Ok([0.0, 1.0, 0.0]),
         "z" => Ok([0.0, 0.0, 1.0]),
-        other => {
-            let message = format!("pole must be \"x\", \"y\", \"z\" or a direction, but is {other:?}");
+        unknown => {
+            let message = format!("pole must be \"x\", \"y\", \"z\" or a direction, but is {unknown:?}");
             Err(bad_option(message))
         }
     }

@@ -73,7 +73,7 @@ pub struct Refinement {
     /// The figures of these faces.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// (m',): the target measure of each of them, for layouts.
+    /// (m',): the target measure of each face, for layouts.
     targets: Vec<f64>,
 }
 
@@ -119,7 +119,7 @@ impl SphereMap {
         })
     }
 
-    /// What of the map is laid out: the parts of its faces where some are split.
+    /// The map for a layout, with the parts of its faces if some are split.
     fn to_lay_out(&self, py: Python<'_>) -> PyResult<Sphere> {
         let positions = real_table::<3>(self.positions.bind(py), "positions")?;
         let n_vertices = positions.nrows();
@@ -143,56 +143,54 @@ impl SphereMap {
 
 #[pymethods]
 impl SphereMap {
-    /// Lays the map out in the plane, cut open along a seam: areas are kept, no face is folded.
+    /// Lays the map out in the plane, cut open along a seam: areas are preserved, no face is folded.
     ///
-    /// A vertex is moved onto each singular point of the layout, the images of the faces are put next to each other, and
-    /// what straight edges do to areas near poles and across creases is evened out by Levenberg–Marquardt steps on the
-    /// areas. Exact predicates decide that no face is folded, on points rounded
-    /// to the precision asked for. A map that was refined is laid out with the parts of its faces.
+    /// A vertex is moved onto each singular point of the layout, the images of the faces are joined in the plane, and
+    /// Levenberg–Marquardt steps even out the areas, which straight edges change near poles and across creases. Exact
+    /// predicates on the rounded points decide that no face is folded. A refined map is laid out with the parts of its
+    /// faces.
     ///
     /// Parameters
     /// ----------
     /// kind : {"lambert", "octahedral"}
     ///     "lambert": Lambert's cylindrical equal-area projection (1772), (λ, z) of longitude λ and height z. About 2π wide,
-    ///     2 high; faces on the seam stand out on the right, either pole is drawn out to a line. "octahedral": the equal-area
+    ///     2 high; faces on the seam extend beyond the right side, and each pole becomes a line. "octahedral": the equal-area
     ///     octahedral map (Clarberg 2008), r (1 − 2φ/π, 2φ/π) with r = √(1 − |z|) in each octant. A square of side √(4π)
-    ///     around the origin, the pole in its middle, the other one in its four corners; each side fits itself, turned
-    ///     around.
+    ///     around the origin, with the pole in its middle and the opposite pole in its corners; the half turn about the middle
+    ///     of a side glues the side to itself.
     /// pole : {"x", "y", "z"} or (3,) real array
-    ///     The direction, in the coordinates of `positions`, that comes to lie at the top or in the middle. Default "z".
+    ///     The direction, in the coordinates of `positions`, of the top or the middle of the layout. Default "z".
     /// seam : float or (3,) real array
-    ///     Where a Lambert layout begins on the left, and what lies at the upper side of the square: a direction, of which
-    ///     what is perpendicular to the pole counts, or an angle about the pole, in radians, counter-clockwise seen from
-    ///     outside above it. Angles begin at +y, for poles within 45° of ±y at −z. Default 0.
+    ///     The left side of a Lambert layout, or the upper side of the square: a direction, whose component perpendicular to
+    ///     the pole counts, or an angle about the pole in radians, counter-clockwise seen from outside above the pole. Angles
+    ///     begin at +y, for poles within 45° of ±y at −z. Default 0.
     /// polygons : (m,) integer array, optional
-    ///     The polygon of each face, any numbers: faces with one number that meet at an edge are not cut apart, areas are
-    ///     those of polygons, and rows of quads stay rows. Default: each face by itself.
+    ///     The number of each face's polygon: faces with one number that meet at an edge are not cut apart, areas are those
+    ///     of polygons, and rows of quads stay rows. Default: each face is a polygon.
     /// density : (m,) real array, optional
-    ///     Positive target measure of each face, on any scale. Default: that of the map, its density or the areas of the
-    ///     surface.
+    ///     Positive target measure of each face, on any scale. Default: the measure of the map.
     /// candidates : (k,) integer or (n,) bool array, optional
     ///     The vertices that may be moved onto singular points: the two poles of "lambert", four points of the equator, at
     ///     the middles of the sides, for "octahedral". Default: all.
     /// precision : {"float64", "float32"}
-    ///     The precision of the points, in which no face is folded. "float32" for programs that keep UVs so.
+    ///     The precision of the points, in which no face is folded; "float32" for programs with such UVs.
     /// progress : callable(fraction, message) -> bool, optional
-    ///     Called between and within steps; False cancels. A layout is returned where nothing is folded by then.
+    ///     Called between and within steps; False cancels, and the layout is returned if it has no folds.
     ///
     /// Returns
     /// -------
     /// Layout
-    ///     `points` (k, 2), `faces` (m, 3) between them and `vertex_of` (k,), the vertex of each point. A corner at a pole of
-    ///     "lambert" lies in the middle of the other corners of its polygon.
+    ///     A corner at a pole of "lambert" lies in the middle of the other corners of its polygon.
     ///
     /// Raises
     /// ------
     /// MeshError
-    ///     An array does not fit; nothing was computed.
+    ///     An array does not fit. Nothing is computed.
     /// ValueError
-    ///     An option out of its range.
+    ///     An option is out of its range.
     /// SolverError
-    ///     Faces would fold over wherever the singular points are put, as on a tetrahedron: `indices` names the first few,
-    ///     `count` says how many at best. Or the call was cancelled before there was a layout without folds.
+    ///     Faces would fold wherever the singular points are put, as on a tetrahedron; then `indices` has the first few faces
+    ///     and `count` their number. Or the call was cancelled before there was a layout without folds.
     ///
     /// Examples
     /// --------

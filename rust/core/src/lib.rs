@@ -9,7 +9,7 @@
 //! [`untangle()`] removes the folds of a given map, [`distortion()`] measures any map.
 //!
 //! All of them take a [`Surface`]: vertices (n, 3) and faces (m, 3) as arrays of the crate [`ndarray`], checked once and
-//! never copied again. Results are arrays too.
+//! never copied again. Results are arrays too; lists of vertices are of [`Vertex`], which converts to its index.
 //!
 //! # A disk
 //!
@@ -152,7 +152,7 @@ pub use hyperbolic::{
     Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
 };
 pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, layout};
-pub use mesh::{Face, Patch, Surface, Topology, Vertex};
+pub use mesh::{Corner, Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
 pub use registration::{
     Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,

@@ -109,13 +109,13 @@ impl<'py> Values<'py> {
     }
 
     /// The given rows, in the same dtype, as an array of shape `shape`. The first `axes` axes number the rows.
-    pub fn taken(&self, axes: usize, rows: &[u32], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
+    pub fn taken(&self, axes: usize, rows: &[usize], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
         let py = self.array.py();
         let (first, rest) = self.array.shape().split_at(axes);
         let by_row: Vec<usize> =
             std::iter::once(first.iter().product()).chain(rest.iter().copied()).collect();
         let reshape = intern!(py, "reshape");
-        let indices = PyArray1::from_iter(py, rows.iter().map(|&row| i64::from(row)));
+        let indices = PyArray1::from_iter(py, rows.iter().map(|&row| row as i64));
         let table = self.array.call_method1(reshape, (PyTuple::new(py, by_row)?,))?;
         let taken = table.call_method1(intern!(py, "take"), (indices, 0))?;
         Ok(taken.call_method1(reshape, (PyTuple::new(py, shape)?,))?.unbind())

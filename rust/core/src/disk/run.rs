@@ -7,8 +7,8 @@ use super::options::DiskMapOptions;
 use crate::codomain::planar::PlanarMap;
 use crate::control::{Observer, Silent, Status, Watch};
 use crate::error::Error;
-use crate::mesh::TriangleMesh;
 use crate::mesh::renumbering::Renumbered;
+use crate::mesh::{Face, TriangleMesh};
 use crate::sparse::elimination_order;
 
 /// A cancelled run without a map still computes one on surfaces of up to this many vertices.
@@ -55,7 +55,8 @@ impl Run<'_> {
     /// The given face that stands for `face`: itself, or for a face that fills a hole its neighbor across the hole's edge.
     pub(super) fn given_face(&self, face: usize) -> usize {
         // the third corner of a fan's face is its apex, which faces the edge
-        let beside = || self.mesh.opposite(3 * face as u32 + 2).map_or(0, |corner| corner as usize / 3);
+        let beside =
+            || self.mesh.opposite(Face::new(face).corner(2)).map_or(0, |corner| corner.face().index());
         if face < self.n_given_faces { face } else { beside() }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;
-use crate::mesh::Vertex;
+use crate::mesh::{Corner, Vertex};
 use crate::vector::Vector3;
 
 /// Landmark vertices with the places where they should lie.
@@ -17,7 +17,7 @@ pub(crate) struct LandmarkPenalty {
     vertices: Vec<Vertex>,
     places: Vec<Vector3>,
     /// One corner of each landmark, to which its Hessian is added, with the landmark's number; ascending.
-    corners: Vec<(u32, u32)>,
+    corners: Vec<(Corner, usize)>,
 }
 
 impl LandmarkPenalty {
@@ -28,9 +28,8 @@ impl LandmarkPenalty {
         places: Vec<Vector3>,
         weight: f64,
     ) -> Self {
-        let corner =
-            |(landmark, &vertex): (usize, &Vertex)| (energy.vertex_corners(vertex)[0], landmark as u32);
-        let mut corners: Vec<(u32, u32)> = vertices.iter().enumerate().map(corner).collect();
+        let corner = |(landmark, &vertex): (usize, &Vertex)| (energy.vertex_corners(vertex)[0], landmark);
+        let mut corners: Vec<(Corner, usize)> = vertices.iter().enumerate().map(corner).collect();
         corners.sort_unstable();
         Self { weight, vertices, places, corners }
     }
@@ -62,11 +61,11 @@ impl LandmarkPenalty {
 
     /// Adds the Hessian of the landmarks at corners of a face to its element.
     pub(crate) fn add_element(&self, map: &[Vector3], frames: &[Frame], face: usize, element: &mut Element) {
-        let first = self.corners.partition_point(|&(corner, _)| (corner as usize) < 3 * face);
-        let here = self.corners[first..].iter().take_while(|&&(corner, _)| (corner as usize) < 3 * face + 3);
+        let first = self.corners.partition_point(|(corner, _)| corner.face().index() < face);
+        let here = self.corners[first..].iter().take_while(|(corner, _)| corner.face().index() == face);
         for &(corner, landmark) in here {
-            let (k, vertex) = (corner as usize % 3, self.vertices[landmark as usize]);
-            let away = map[vertex] - self.places[landmark as usize];
+            let (k, vertex) = (corner.place(), self.vertices[landmark]);
+            let away = map[vertex] - self.places[landmark];
             let bend = 1.0 - away.dot(frames[vertex].outward);
             let curvature = 2.0 * self.weight * bend.max(0.0);
             (0..2).for_each(|axis| element[2 * k + axis][2 * k + axis] += curvature);

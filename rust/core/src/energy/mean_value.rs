@@ -34,7 +34,7 @@ pub(crate) fn free_within(
         front.retain(|&vertex| !std::mem::replace(&mut reached[vertex], true));
         if ring < rings {
             let one_rings = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
-            front = one_rings.flat_map(|&corner| mesh.faces()[corner as usize / 3]).collect();
+            front = one_rings.flat_map(|&corner| mesh.faces()[corner.face()]).collect();
         }
     }
     Vertex::all(mesh.n_vertices()).filter(|&v| reached[v] && is_free(v)).collect()
@@ -91,7 +91,7 @@ fn uniform_weights(mesh: &TriangleMesh, vertex: Vertex) -> Vec<(Vertex, f64)> {
     let corners = mesh.vertex_corners(vertex);
     let weight = 0.5 / corners.len() as f64;
     let neighbors = corners.iter().flat_map(|&corner| {
-        let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
+        let (face, k) = (mesh.faces()[corner.face()], corner.place());
         [1, 2].map(|step| face[(k + step) % 3])
     });
     neighbors.map(|neighbor| (neighbor, weight)).collect()
@@ -101,7 +101,7 @@ fn uniform_weights(mesh: &TriangleMesh, vertex: Vertex) -> Vec<(Vertex, f64)> {
 fn mean_value_weights(mesh: &TriangleMesh, map: &[[f64; 2]], vertex: Vertex) -> Vec<(Vertex, f64)> {
     let mut weights = Vec::with_capacity(16);
     for &corner in mesh.vertex_corners(vertex) {
-        let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
+        let (face, k) = (mesh.faces()[corner.face()], corner.place());
         let [one, two] = [1, 2].map(|step| face[(k + step) % 3]);
         let [a, b] = [one, two].map(|v| [map[v][0] - map[vertex][0], map[v][1] - map[vertex][1]]);
         // a collapsed edge or an angle of 180° gets a large weight, not an infinite one

@@ -158,7 +158,7 @@ impl<'a> SpatialStretchEnergy<'a> {
         parallel::map(map.len(), |vertex| {
             let mut sum = Vector3::ZERO;
             for &corner in self.mesh.vertex_corners(Vertex::new(vertex)) {
-                let (face, k) = (corner as usize / 3, corner as usize % 3);
+                let (face, k) = (corner.face().index(), corner.place());
                 let points = self.corners(map, face);
                 let force = (points[(k + 1) % 3] - points[(k + 2) % 3]).cross(pull[face]);
                 sum += force;

@@ -172,7 +172,7 @@ impl<'a> StretchEnergy<'a> {
         parallel::map(map.len(), |vertex| {
             let mut sum = [0.0; 2];
             for &corner in self.mesh.vertex_corners(Vertex::new(vertex)) {
-                let (face, k) = (corner as usize / 3, corner as usize % 3);
+                let (face, k) = (corner.face().index(), corner.place());
                 let points = self.corners(map, face);
                 let (from, to) = (points[(k + 1) % 3], points[(k + 2) % 3]);
                 sum[0] += 0.5 * by_area[face] * (from[1] - to[1]);

@@ -21,7 +21,7 @@ use super::sample_meshes::{mesh, path, sphere};
 use super::slice::slice_pair;
 use super::slice::sliced::{Sliced, SlicedPair};
 use crate::control::{Silent, Status, Watch};
-use crate::mesh::{Face, NO_CORNER};
+use crate::mesh::{Corner, Face};
 use crate::vector::Vector3;
 
 /// Ends of four curves on the sphere.
@@ -85,9 +85,9 @@ fn charts_have_the_lengths_of_the_metric_and_fit_together() {
         for k in 0..3 {
             let length = distance(chart[(k + 1) % 3], chart[(k + 2) % 3]);
             assert!((length - metric.lengths[face][k]).abs() < 1e-12);
-            let across = sliced.surface.opposite[3 * face + k];
-            if across != NO_CORNER {
-                let there_and_back = atlas.transitions[across as usize] * atlas.transitions[3 * face + k];
+            let corner = Face::new(face).corner(k);
+            if let Some(across) = sliced.surface.opposite[corner] {
+                let there_and_back = atlas.transitions[across] * atlas.transitions[corner];
                 assert!(is_identity(there_and_back));
             }
         }
@@ -99,18 +99,18 @@ fn coordinates_on_a_face_come_back_and_agree_across_edges() {
     let sliced = slit_spheres(3).target;
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
-    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
-        let (face, k) = (Face::new(corner / 3), corner % 3);
+    for corner in Corner::all(atlas.charts.len()) {
+        let Some(across) = sliced.surface.opposite[corner] else { continue };
+        let (face, k) = (corner.face(), corner.place());
         let back = atlas.barycentric(face, atlas.at(face, [0.2, 0.5, 0.3]));
         assert!((back[0] - 0.2).abs() + (back[1] - 0.5).abs() + (back[2] - 0.3).abs() < 1e-9);
-        let across = sliced.surface.opposite[corner] as usize;
         let on_edge = |k: usize, t: f64| {
             let mut weights = [0.0; 3];
             (weights[(k + 1) % 3], weights[(k + 2) % 3]) = (1.0 - t, t);
             weights
         };
         let ours = atlas.transitions[corner].apply(atlas.at(face, on_edge(k, 0.3)));
-        let theirs = atlas.at(Face::new(across / 3), on_edge(across % 3, 0.7));
+        let theirs = atlas.at(across.face(), on_edge(across.place(), 0.7));
         assert!(distance(ours, theirs) < 1e-10, "{}", distance(ours, theirs));
     }
 }
@@ -121,11 +121,11 @@ fn walks_end_where_they_should() {
     let metric = metric(&sliced);
     let atlas = Atlas::new(&sliced.surface, &metric);
     // from each face to the middles of its neighbors, as seen from it
-    for corner in (0..3 * atlas.charts.len()).filter(|&corner| sliced.surface.opposite[corner] != NO_CORNER) {
-        let across = Face::of_corner(sliced.surface.opposite[corner]);
+    for corner in Corner::all(atlas.charts.len()) {
+        let Some(across) = sliced.surface.opposite[corner].map(Corner::face) else { continue };
         let middle = atlas.at(across, [0.3, 0.4, 0.3]);
         let seen = atlas.transitions[corner].inverse().apply(middle);
-        let walk = atlas.walk(Face::new(corner / 3), seen);
+        let walk = atlas.walk(corner.face(), seen);
         assert!(walk.face == across && distance(walk.x, middle) < 1e-9 && !walk.is_outside);
         assert!(distance(walk.motion.apply(seen), walk.x) < 1e-9);
     }
@@ -160,9 +160,9 @@ fn flips_end_in_a_delaunay_triangulation_with_the_same_area() {
         delaunay(net.clone(), &ours.lengths, &vec![false; sliced.faces.len()]);
     assert!(weights.iter().all(|&weight| weight > 0.0));
     assert_ne!(flipped.faces, net.faces, "something was flipped");
-    for corner in (0..flipped.opposite.len()).filter(|&corner| flipped.opposite[corner] != NO_CORNER) {
-        let across = flipped.opposite[corner] as usize;
-        assert_eq!(flipped.opposite[across] as usize, corner);
+    for corner in Corner::all(flipped.faces.len()) {
+        let Some(across) = flipped.opposite[corner] else { continue };
+        assert_eq!(flipped.opposite[across], Some(corner));
         let [tail, head] = flipped.ends(corner);
         assert_eq!(flipped.ends(across), [head, tail]);
         assert_eq!(weights[corner], weights[across]);
@@ -268,8 +268,9 @@ fn the_inverse_finds_every_vertex_where_the_map_has_put_it() {
 }
 
 fn is_boundary(sliced: &Sliced, vertex: usize) -> bool {
-    let corners = (0..3 * sliced.faces.len()).filter(|&corner| sliced.surface.opposite[corner] == NO_CORNER);
-    corners.map(|corner| sliced.surface.faces[corner / 3][(corner + 1) % 3]).any(|v| v.index() == vertex)
+    let crate::hyperbolic::slice::Opened { faces, opposite, .. } = &sliced.surface;
+    let corners = Corner::all(faces.len()).filter(|&corner| opposite[corner].is_none());
+    corners.map(|corner| corner.next().vertex(faces)).any(|v| v.index() == vertex)
 }
 
 #[test]

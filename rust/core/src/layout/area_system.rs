@@ -16,7 +16,7 @@ use super::chart::{Chart, Point};
 use super::patch::Patch;
 use super::projection::Projection;
 use crate::control::Watch;
-use crate::mesh::Vertex;
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 
 /// Iteration limit.
@@ -37,7 +37,7 @@ pub(super) struct AreaSystem<'a> {
     /// J at the corners of each face; 0 at vertices that stay.
     slopes: Vec<[[f64; 2]; 3]>,
     /// J in the order of the vertices, with the face of each, so that gathering reads memory in order.
-    slopes_by_vertex: Vec<(u32, [f64; 2])>,
+    slopes_by_vertex: Vec<(Face, [f64; 2])>,
     /// D.
     diagonal: Step,
     /// The right-hand side.
@@ -57,7 +57,7 @@ impl<'a> AreaSystem<'a> {
         let mut slopes = parallel::map(images.len(), |face| area_slopes(images[face]));
         add_slopes_of_polar_corners(&patch.polar, &mut slopes);
         parallel::fill_with_old(&mut slopes, |face, slopes| {
-            let isometries = chart.isometries[patch.faces[face] as usize];
+            let isometries = chart.isometries[patch.faces[face]];
             std::array::from_fn(|corner| {
                 let is_fixed = !patch.moves(face, corner);
                 let scale = if is_fixed { 0.0 } else { isometries[corner].sign() * residuals[face][1] };
@@ -67,8 +67,8 @@ impl<'a> AreaSystem<'a> {
         let residual: Vec<f64> = parallel::map(areas.len(), |face| -residuals[face][0]);
         let corners = patch.corners.all();
         let slopes_by_vertex = parallel::map(corners.len(), |index| {
-            let (face, corner) = (corners[index] / 3, corners[index] as usize % 3);
-            (face, slopes[face as usize][corner])
+            let (face, corner) = (corners[index].face(), corners[index].place());
+            (face, slopes[face][corner])
         });
         let (diagonal, right) = (Vec::new(), Vec::new());
         let mut system = Self { patch, slopes, slopes_by_vertex, diagonal, right };
@@ -129,13 +129,13 @@ impl<'a> AreaSystem<'a> {
     /// The entry at a vertex of Jᵀ times one value per face.
     fn gathered(&self, values: &[f64], vertex: usize) -> [f64; 2] {
         self.slopes_at(vertex).iter().fold([0.0; 2], |[u, v], &(face, [x, y])| {
-            let value = values[face as usize];
+            let value = values[face];
             [u + x * value, v + y * value]
         })
     }
 
     /// The faces at a vertex, with their J there.
-    fn slopes_at(&self, vertex: usize) -> &[(u32, [f64; 2])] {
+    fn slopes_at(&self, vertex: usize) -> &[(Face, [f64; 2])] {
         &self.slopes_by_vertex[self.patch.corners.range(Vertex::new(vertex))]
     }
 
@@ -179,9 +179,9 @@ fn area_slopes([a, b, c]: [Point; 3]) -> [[f64; 2]; 3] {
 }
 
 /// Adds the slopes of corners at poles, which move with the middle of the other corners.
-fn add_slopes_of_polar_corners(polar: &[Vec<u32>], slopes: &mut [[[f64; 2]; 3]]) {
+fn add_slopes_of_polar_corners(polar: &[Vec<Corner>], slopes: &mut [[[f64; 2]; 3]]) {
     for &corner in polar.iter().flatten() {
-        let (face, corner) = (corner as usize / 3, corner as usize % 3);
+        let (face, corner) = (corner.face(), corner.place());
         let slope = slopes[face][corner][0];
         for k in [(corner + 1) % 3, (corner + 2) % 3] {
             slopes[face][k][0] += 0.5 * slope;

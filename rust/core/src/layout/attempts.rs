@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Computes a layout: tries choices of vertices for the singular points until one leaves no folds.
 
-use crate::mesh::Vertex;
 use std::marker::PhantomData;
 use std::time::Instant;
 
@@ -20,7 +19,7 @@ use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status, Watch};
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::corners::VertexCorners;
-use crate::mesh::index_array;
+use crate::mesh::{Vertex, index_array};
 use crate::parallel;
 use crate::vector::Vector3;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A mesh of the sphere developed into the plane, face by face.
 
-use crate::mesh::Vertex;
 use std::marker::PhantomData;
 
 use super::isometry::Isometry;
 use super::projection::Projection;
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 
 /// A point of the plane.
@@ -22,7 +22,7 @@ pub(super) struct Chart<'a, P> {
     /// (m, 3): the isometry of each corner.
     pub isometries: Vec<[Isometry; 3]>,
     /// The corners at poles, grouped by polygon and pole. They lie in the middle of the other corners of their polygon.
-    pub polar: Vec<Vec<u32>>,
+    pub polar: Vec<Vec<Corner>>,
     /// (m,): false if a face winds around a singular point, so that its corners do not fit together.
     pub is_closed: Vec<bool>,
     pub projection: PhantomData<P>,
@@ -31,13 +31,13 @@ pub(super) struct Chart<'a, P> {
 impl<P: Projection> Chart<'_, P> {
     /// The images of all corners, (m, 3).
     pub fn images(&self) -> Vec<[Point; 3]> {
-        let mut images = parallel::map(self.faces.len(), |face| self.corner_images(face));
+        let mut images = parallel::map(self.faces.len(), |face| self.corner_images(Face::new(face)));
         center_polar_corners(&self.polar, &mut images);
         images
     }
 
     /// The images of the corners of a face, except those at poles.
-    pub fn corner_images(&self, face: usize) -> [Point; 3] {
+    pub fn corner_images(&self, face: Face) -> [Point; 3] {
         std::array::from_fn(|corner| {
             let place = self.places[self.faces[face][corner]];
             self.isometries[face][corner].image(P::PERIODS, place)
@@ -45,24 +45,24 @@ impl<P: Projection> Chart<'_, P> {
     }
 
     /// The image of a corner that is not at a pole.
-    pub fn image(&self, corner: u32) -> Point {
-        self.corner_images(corner as usize / 3)[corner as usize % 3]
+    pub fn image(&self, corner: Corner) -> Point {
+        self.corner_images(corner.face())[corner.place()]
     }
 }
 
 /// Centers the corners at poles between the other corners of their polygons.
-pub(super) fn center_polar_corners(polar: &[Vec<u32>], images: &mut [[Point; 3]]) {
+pub(super) fn center_polar_corners(polar: &[Vec<Corner>], images: &mut [[Point; 3]]) {
     for group in polar {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for &corner in group {
-            let (face, polar) = (corner as usize / 3, corner as usize % 3);
+            let (face, polar) = (corner.face(), corner.place());
             for k in [(polar + 1) % 3, (polar + 2) % 3] {
                 low = low.min(images[face][k][0]);
                 high = high.max(images[face][k][0]);
             }
         }
         for &corner in group {
-            images[corner as usize / 3][corner as usize % 3][0] = 0.5 * (low + high);
+            images[corner.face()][corner.place()][0] = 0.5 * (low + high);
         }
     }
 }

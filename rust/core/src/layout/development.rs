@@ -5,14 +5,13 @@
 //! start. Composed along the edges of a polygon, these isometries join its corners. Then the polygon as a whole is moved into
 //! the layout.
 
-use crate::mesh::Vertex;
 use std::marker::PhantomData;
 
 use super::chart::Chart;
 use super::isometry::Isometry;
 use super::polygons::{Diagonal, Polygons};
 use super::projection::{Extent, Projection, is_singular};
-use crate::mesh::corners::vertex_at;
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -61,7 +60,7 @@ fn move_polygons<P: Projection>(
 ) {
     let moves: Vec<Isometry> = extents(chart, singular, polygons).iter().map(by).collect();
     parallel::fill_with_old(&mut chart.isometries, |face, isometries| {
-        isometries.map(|isometry| moves[polygons.of[face] as usize].after(isometry))
+        isometries.map(|isometry| moves[polygons.of[face]].after(isometry))
     });
 }
 
@@ -104,12 +103,10 @@ impl Triangle {
 }
 
 /// The corners at poles, by polygon and pole.
-fn polar_corners(faces: &[[Vertex; 3]], singular: &[bool], polygons: &Polygons) -> Vec<Vec<u32>> {
-    let flat = faces.as_flattened();
-    let mut corners: Vec<(u32, Vertex, u32)> = (0..flat.len())
-        .filter(|&corner| singular[flat[corner]])
-        .map(|corner| (polygons.of[corner / 3], flat[corner], corner as u32))
-        .collect();
+fn polar_corners(faces: &[[Vertex; 3]], singular: &[bool], polygons: &Polygons) -> Vec<Vec<Corner>> {
+    let corners = Corner::all(faces.len()).filter(|corner| singular[corner.vertex(faces)]);
+    let mut corners: Vec<(usize, Vertex, Corner)> =
+        corners.map(|corner| (polygons.of[corner.face()], corner.vertex(faces), corner)).collect();
     corners.sort_unstable();
     corners
         .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
@@ -122,40 +119,40 @@ fn join_polygons<P: Projection>(chart: &mut Chart<'_, P>, singular: &[bool], pol
     for &joint in &polygons.joints {
         let joint = from_regular_end(chart.faces, singular, joint);
         let whole = fitting(chart, singular, joint);
-        let face = joint.there[0] as usize / 3;
+        let face = joint.there[0].face();
         chart.isometries[face] = chart.isometries[face].map(|isometry| whole.after(isometry));
     }
     let mut is_torn = vec![false; polygons.count];
     for diagonal in polygons.joints.iter().chain(&polygons.loops) {
         let fits = (0..2).all(|end| {
-            let is_pole = !P::HAS_CONES && singular[vertex_at(chart.faces, diagonal.here[end])];
+            let is_pole = !P::HAS_CONES && singular[diagonal.here[end].vertex(chart.faces)];
             is_pole || is_same_place(chart.image(diagonal.here[end]), chart.image(diagonal.there[end]))
         });
         if !fits {
-            is_torn[polygons.of[diagonal.here[0] as usize / 3] as usize] = true;
+            is_torn[polygons.of[diagonal.here[0].face()]] = true;
         }
     }
     for (face, is_closed) in chart.is_closed.iter_mut().enumerate() {
-        *is_closed &= !is_torn[polygons.of[face] as usize];
+        *is_closed &= !is_torn[polygons.of[face]];
     }
 }
 
 /// The diagonal with a regular end first, if it has one.
 fn from_regular_end(faces: &[[Vertex; 3]], singular: &[bool], diagonal: Diagonal) -> Diagonal {
-    if singular[vertex_at(faces, diagonal.here[0])] { diagonal.reversed() } else { diagonal }
+    if singular[diagonal.here[0].vertex(faces)] { diagonal.reversed() } else { diagonal }
 }
 
 /// The isometry that puts the second triangle of a diagonal to the first.
 fn fitting<P: Projection>(chart: &Chart<'_, P>, singular: &[bool], diagonal: Diagonal) -> Isometry {
-    let isometry = |corner: u32| chart.isometries[corner as usize / 3][corner as usize % 3];
+    let isometry = |corner: Corner| chart.isometries[corner.face()][corner.place()];
     let [here, there] = [diagonal.here[0], diagonal.there[0]];
     let whole = isometry(here).after(isometry(there).inverse());
-    if !singular[vertex_at(chart.faces, here)] {
+    if !singular[here.vertex(chart.faces)] {
         return whole;
     }
     // both ends are singular: the joint may need another half turn about the first
     let [_, second] = diagonal.there;
-    let vertex = vertex_at(chart.faces, second);
+    let vertex = second.vertex(chart.faces);
     let image = whole.after(isometry(second)).image(P::PERIODS, chart.places[vertex]);
     if is_same_place(image, chart.image(diagonal.here[1])) {
         return whole;
@@ -168,8 +165,8 @@ fn fitting<P: Projection>(chart: &Chart<'_, P>, singular: &[bool], diagonal: Dia
 fn extents<P: Projection>(chart: &Chart<'_, P>, singular: &[bool], polygons: &Polygons) -> Vec<Extent> {
     let mut extents = vec![Extent { low: [f64::INFINITY; 2], center: [0.0; 2] }; polygons.count];
     let mut counts = vec![0.0; polygons.count];
-    for (face, vertices) in chart.faces.iter().enumerate() {
-        let polygon = polygons.of[face] as usize;
+    for (face, vertices) in Face::all(chart.faces.len()).zip(chart.faces) {
+        let polygon = polygons.of[face];
         let all_singular = vertices.iter().all(|&vertex| singular[vertex]);
         let images = chart.corner_images(face);
         for (&vertex, image) in vertices.iter().zip(images) {

@@ -3,8 +3,8 @@
 
 use super::chart::{Chart, Point, center_polar_corners};
 use super::projection::Projection;
-use crate::mesh::Vertex;
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 
 /// Vertices that move and the faces around them, with numbers of their own.
@@ -12,13 +12,13 @@ pub(super) struct Patch {
     /// The vertices that move, ascending.
     pub vertices: Vec<Vertex>,
     /// The faces around them, ascending.
-    pub faces: Vec<u32>,
+    pub faces: Vec<Face>,
     /// (faces, 3): positions in `vertices`; `vertices.len()` for every vertex that stays.
     pub corners_of_faces: Vec<[Vertex; 3]>,
     /// The corners of these faces at each vertex that moves.
     pub corners: VertexCorners,
     /// The corners at poles, as in [`Chart::polar`].
-    pub polar: Vec<Vec<u32>>,
+    pub polar: Vec<Vec<Corner>>,
 }
 
 impl Patch {
@@ -27,7 +27,7 @@ impl Patch {
         chart: &Chart<'_, P>,
         corners: &VertexCorners,
         fixed: &[bool],
-        chosen: &[u32],
+        chosen: &[Face],
         rings: usize,
     ) -> Self {
         // 1. Vertices, ring by ring
@@ -38,40 +38,40 @@ impl Patch {
         for _ in 0..=rings {
             while let Some(&face) = faces.list.get(next_face) {
                 next_face += 1;
-                chart.faces[face as usize].iter().for_each(|&vertex| vertices.add(vertex.0));
+                chart.faces[face].iter().for_each(|&vertex| vertices.add(vertex));
             }
             let border = next_vertex..vertices.list.len();
             next_vertex = border.end;
             for k in border {
-                corners.of(Vertex(vertices.list[k])).iter().for_each(|&corner| faces.add(corner / 3));
+                corners.of(vertices.list[k]).iter().for_each(|&corner| faces.add(corner.face()));
             }
         }
         // 2. Faces that share a corner at a pole
         for group in &chart.polar {
-            if group.iter().any(|&corner| faces.is_marked[corner as usize / 3]) {
-                group.iter().for_each(|&corner| faces.add(corner / 3));
+            if group.iter().any(|&corner| faces.is_marked[corner.face()]) {
+                group.iter().for_each(|&corner| faces.add(corner.face()));
             }
         }
-        vertices.list.retain(|&vertex| !fixed[vertex as usize]);
+        vertices.list.retain(|&vertex| !fixed[vertex]);
         Self::of(chart, vertices.list, faces.list)
     }
 
     /// The patch of these vertices and faces.
-    fn of<P: Projection>(chart: &Chart<'_, P>, mut vertices: Vec<u32>, mut faces: Vec<u32>) -> Self {
+    fn of<P: Projection>(chart: &Chart<'_, P>, mut vertices: Vec<Vertex>, mut faces: Vec<Face>) -> Self {
         vertices.sort_unstable();
         faces.sort_unstable();
         let none = Vertex::new(vertices.len());
         let vertex_number = numbers(&vertices, chart.places.len());
         let face_number = numbers(&faces, chart.faces.len());
         let corners_of_faces = parallel::map(faces.len(), |index| {
-            chart.faces[faces[index] as usize].map(|vertex| Vertex(vertex_number[vertex]).min(none))
+            chart.faces[faces[index]].map(|vertex| Vertex(vertex_number[vertex]).min(none))
         });
-        let in_patch = |&corner: &u32| 3 * face_number[corner as usize / 3] + corner % 3;
-        let polar = chart.polar.iter().filter(|group| face_number[group[0] as usize / 3] != u32::MAX);
+        let in_patch = |corner: &Corner| Face(face_number[corner.face()]).corner(corner.place());
+        let polar = chart.polar.iter().filter(|group| face_number[group[0].face()] != u32::MAX);
         Self {
             corners: VertexCorners::new(vertices.len() + 1, &corners_of_faces),
             polar: polar.map(|group| group.iter().map(in_patch).collect()).collect(),
-            vertices: vertices.into_iter().map(Vertex).collect(),
+            vertices,
             faces,
             corners_of_faces,
         }
@@ -79,15 +79,14 @@ impl Patch {
 
     /// The images of the faces.
     pub fn images<P: Projection>(&self, chart: &Chart<'_, P>) -> Vec<[Point; 3]> {
-        let mut images =
-            parallel::map(self.faces.len(), |index| chart.corner_images(self.faces[index] as usize));
+        let mut images = parallel::map(self.faces.len(), |index| chart.corner_images(self.faces[index]));
         center_polar_corners(&self.polar, &mut images);
         images
     }
 
     /// Picks the values of the patch's faces out of one value per face of the chart.
     pub fn of_faces(&self, values: &[f64]) -> Vec<f64> {
-        self.faces.iter().map(|&face| values[face as usize]).collect()
+        self.faces.iter().map(|&face| values[face]).collect()
     }
 
     /// Picks the values of the patch's vertices out of one value per vertex of the chart.
@@ -109,28 +108,26 @@ impl Patch {
 }
 
 /// A growing list of distinct indices.
-struct Marked {
-    list: Vec<u32>,
+struct Marked<T> {
+    list: Vec<T>,
     is_marked: Vec<bool>,
 }
 
-impl Marked {
+impl<T: Copy + Into<usize>> Marked<T> {
     fn new(count: usize) -> Self {
         Self { list: Vec::new(), is_marked: vec![false; count] }
     }
 
-    fn add(&mut self, index: u32) {
-        if !std::mem::replace(&mut self.is_marked[index as usize], true) {
+    fn add(&mut self, index: T) {
+        if !std::mem::replace(&mut self.is_marked[index.into()], true) {
             self.list.push(index);
         }
     }
 }
 
 /// The position of each index in a list, `u32::MAX` if it is not in it.
-fn numbers(list: &[u32], count: usize) -> Vec<u32> {
+fn numbers(list: &[impl Copy + Into<usize>], count: usize) -> Vec<u32> {
     let mut number = vec![u32::MAX; count];
-    for (position, &index) in list.iter().enumerate() {
-        number[index as usize] = position as u32;
-    }
+    list.iter().zip(0..).for_each(|(&index, position)| number[index.into()] = position);
     number
 }

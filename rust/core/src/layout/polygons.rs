@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Groups of triangles that make up polygons, which a layout does not cut.
 
-use crate::mesh::Vertex;
 use std::collections::VecDeque;
 
-use crate::mesh::corners::{next_corner, vertex_at};
+use crate::mesh::{Corner, Face, Vertex};
 
 /// The polygon of each face, and the edges along which faces of one polygon meet.
 pub(super) struct Polygons {
     /// (m,): the polygon of each face, numbered in the order of their first faces.
-    pub of: Vec<u32>,
+    pub of: Vec<usize>,
     /// The number of polygons.
     pub count: usize,
     /// Diagonals that join the faces of each polygon to its first face, outwards from there.
@@ -22,9 +21,9 @@ pub(super) struct Polygons {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Diagonal {
     /// The ends as corners of the first triangle.
-    pub here: [u32; 2],
+    pub here: [Corner; 2],
     /// The ends, in the same order, as corners of the second triangle.
-    pub there: [u32; 2],
+    pub there: [Corner; 2],
 }
 
 impl Polygons {
@@ -40,22 +39,22 @@ impl Polygons {
     fn joined(n_faces: usize, diagonals: &[Diagonal]) -> Self {
         let of_face = diagonals_of_faces(n_faces, diagonals);
         let mut polygons =
-            Self { of: vec![u32::MAX; n_faces], count: 0, joints: Vec::new(), loops: Vec::new() };
+            Self { of: vec![usize::MAX; n_faces], count: 0, joints: Vec::new(), loops: Vec::new() };
         let mut is_joint = vec![false; diagonals.len()];
         let mut border = VecDeque::new();
-        for first in 0..n_faces {
-            if polygons.of[first] != u32::MAX {
+        for first in Face::all(n_faces) {
+            if polygons.of[first] != usize::MAX {
                 continue;
             }
-            let polygon = polygons.count as u32;
+            let polygon = polygons.count;
             polygons.of[first] = polygon;
             polygons.count += 1;
             border.push_back(first);
             while let Some(face) = border.pop_front() {
-                for &index in of_face.get(face).map_or(&[][..], Vec::as_slice) {
+                for &index in of_face.get(face.index()).map_or(&[][..], Vec::as_slice) {
                     let diagonal = diagonals[index].seen_from(face);
-                    let next = diagonal.there[0] as usize / 3;
-                    if polygons.of[next] == u32::MAX {
+                    let next = diagonal.there[0].face();
+                    if polygons.of[next] == usize::MAX {
                         polygons.of[next] = polygon;
                         polygons.joints.push(diagonal);
                         is_joint[index] = true;
@@ -72,9 +71,9 @@ impl Polygons {
 
 impl Diagonal {
     /// The diagonal that begins at these corners of its triangles.
-    fn new(faces: &[[Vertex; 3]], here: u32, there: u32) -> Self {
-        let is_aligned = vertex_at(faces, here) == vertex_at(faces, there);
-        let (here, there) = ([here, next_corner(here)], [there, next_corner(there)]);
+    fn new(faces: &[[Vertex; 3]], here: Corner, there: Corner) -> Self {
+        let is_aligned = here.vertex(faces) == there.vertex(faces);
+        let (here, there) = ([here, here.next()], [there, there.next()]);
         Self { here, there: if is_aligned { there } else { [there[1], there[0]] } }
     }
 
@@ -86,8 +85,8 @@ impl Diagonal {
     }
 
     /// The diagonal with `face` as its first triangle.
-    fn seen_from(self, face: usize) -> Self {
-        if self.here[0] as usize / 3 == face { self } else { Self { here: self.there, there: self.here } }
+    fn seen_from(self, face: Face) -> Self {
+        if self.here[0].face() == face { self } else { Self { here: self.there, there: self.here } }
     }
 }
 
@@ -99,10 +98,10 @@ fn diagonals(faces: &[[Vertex; 3]], labels: &[usize]) -> Vec<Diagonal> {
     let repeats: Vec<usize> =
         sorted.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
     let mut edges = Vec::new();
-    for (face, label) in labels.iter().enumerate() {
+    for (face, label) in Face::all(faces.len()).zip(labels) {
         if repeats.binary_search(label).is_ok() {
-            edges.extend((0..3).map(|k| 3 * face as u32 + k).map(|corner| {
-                let (a, b) = (vertex_at(faces, corner), vertex_at(faces, next_corner(corner)));
+            edges.extend(face.corners().map(|corner| {
+                let (a, b) = (corner.vertex(faces), corner.next().vertex(faces));
                 (*label, a.min(b), a.max(b), corner)
             }));
         }
@@ -117,8 +116,8 @@ fn diagonals(faces: &[[Vertex; 3]], labels: &[usize]) -> Vec<Diagonal> {
 fn diagonals_of_faces(n_faces: usize, diagonals: &[Diagonal]) -> Vec<Vec<usize>> {
     let mut of_face = vec![Vec::new(); if diagonals.is_empty() { 0 } else { n_faces }];
     for (index, diagonal) in diagonals.iter().enumerate() {
-        of_face[diagonal.here[0] as usize / 3].push(index);
-        of_face[diagonal.there[0] as usize / 3].push(index);
+        of_face[diagonal.here[0].face()].push(index);
+        of_face[diagonal.there[0].face()].push(index);
     }
     of_face
 }
@@ -138,7 +137,7 @@ mod tests {
         let polygons = Polygons::new(&fan(), Some(&[7, 7, 3, 5]));
         assert_eq!((polygons.of.as_slice(), polygons.count), (&[0, 0, 1, 2][..], 3));
         let [joint] = polygons.joints[..] else { panic!("one diagonal") };
-        assert_eq!(joint.here.map(|c| vertex_at(&fan(), c)), joint.there.map(|c| vertex_at(&fan(), c)));
+        assert_eq!(joint.here.map(|c| c.vertex(&fan())), joint.there.map(|c| c.vertex(&fan())));
         assert!(polygons.loops.is_empty());
     }
 

@@ -17,8 +17,8 @@ use super::patch::Patch;
 use super::polygons::Polygons;
 use super::projection::Projection;
 use crate::control::{Observer, Status, Watch};
-use crate::mesh::Vertex;
 use crate::mesh::corners::VertexCorners;
+use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
 /// What the observer is told.
@@ -130,11 +130,11 @@ fn shared_out(areas: &[f64], targets: &[f64], polygons: &Polygons) -> Vec<f64> {
         areas[face].clamp(SHARES[0] * target, SHARES[1] * target)
     };
     for (face, &polygon) in polygons.of.iter().enumerate() {
-        wanted[polygon as usize] += scale * targets[face];
-        kept[polygon as usize] += share(face);
+        wanted[polygon] += scale * targets[face];
+        kept[polygon] += share(face);
     }
     parallel::map(areas.len(), |face| {
-        let polygon = polygons.of[face] as usize;
+        let polygon = polygons.of[face];
         share(face) * wanted[polygon] / kept[polygon]
     })
 }
@@ -156,13 +156,13 @@ struct Relaxation<'a, 'c, P> {
     /// (n,): the damping of each vertex.
     damping: Vec<f64>,
     /// The faces that are off, ascending.
-    off: Vec<u32>,
+    off: Vec<Face>,
 }
 
 impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
     fn new(chart: &'a mut Chart<'c, P>, goal: Goal<'a>) -> Self {
         let areas = signed_areas(&chart.images());
-        let off = (0..areas.len() as u32).filter(|&face| goal.is_off(face, areas[face as usize])).collect();
+        let off = Face::all(areas.len()).filter(|&face| goal.is_off(face, areas[face])).collect();
         let damping = vec![LEAST_DAMPING; chart.places.len()];
         Self { chart, goal, areas, damping, off }
     }
@@ -200,9 +200,9 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
     /// Takes note of the areas after a step, and damps the next one less.
     fn accept(&mut self, patch: &Patch, areas: &[f64]) {
         for (&face, &area) in patch.faces.iter().zip(areas) {
-            self.areas[face as usize] = area;
+            self.areas[face] = area;
         }
-        let is_off = |face: &u32| self.goal.is_off(*face, self.areas[*face as usize]);
+        let is_off = |face: &Face| self.goal.is_off(*face, self.areas[*face]);
         self.off = patch.faces.iter().copied().filter(is_off).collect();
         for &vertex in &patch.vertices {
             let damping = &mut self.damping[vertex];
@@ -213,7 +213,7 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
     /// Damps the vertices at which a step has raised the energy of the faces.
     fn damp(&mut self, patch: &Patch, before: &[f64], after: &[f64]) {
         for (index, &vertex) in patch.vertices.iter().enumerate() {
-            let faces = patch.corners.of(Vertex::new(index)).iter().map(|&corner| corner as usize / 3);
+            let faces = patch.corners.of(Vertex::new(index)).iter().map(|&corner| corner.face());
             if faces.map(|face| after[face] - before[face]).sum::<f64>() >= 0.0 {
                 self.damping[vertex] *= DAMPING_FACTORS[0];
             }
@@ -223,8 +223,8 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
 
 impl Goal<'_> {
     /// Whether this area of a face is off its target.
-    fn is_off(&self, face: u32, area: f64) -> bool {
-        let target = self.targets[face as usize];
+    fn is_off(&self, face: Face, area: f64) -> bool {
+        let target = self.targets[face];
         (area - target).abs() > self.tolerance * target
     }
 }
@@ -282,7 +282,7 @@ impl Limits {
             let factor = if shortening < SHORTENINGS / 2 { 0.5 } else { 0.0 };
             parallel::fill_with_old(&mut lengths, |vertex, length| {
                 let at_bad_face =
-                    patch.corners.of(Vertex::new(vertex)).iter().any(|&corner| is_bad[corner as usize / 3]);
+                    patch.corners.of(Vertex::new(vertex)).iter().any(|&corner| is_bad[corner.face()]);
                 match (leaving[vertex], at_bad_face) {
                     (true, _) => 0.0,
                     (false, true) => factor * length,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Spheres for the tests.
 
-use crate::mesh::Vertex;
 use std::collections::BTreeMap;
 
+use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
 /// An icosahedron turned somehow, with every face split in four `level` times on the unit sphere.

@@ -45,7 +45,7 @@ pub(super) fn split_along_seam(corners: &VertexCorners, images: &[[Point; 3]]) -
     for vertex in Vertex::all(corners.len()) {
         let first = split.points.len();
         for &corner in corners.of(vertex) {
-            let (face, corner) = (corner as usize / 3, corner as usize % 3);
+            let (face, corner) = (corner.face(), corner.place());
             let image = images[face][corner];
             let known = split.points[first..].iter().position(|&point| point == image);
             let index = known.map_or(split.points.len(), |k| first + k);

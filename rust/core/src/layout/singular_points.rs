@@ -119,18 +119,19 @@ impl Neighborhood {
         let within = distances.iter().filter(|&&distance| distance < FAR).count();
         let vertices = nearest(&distances, within.clamp(FEWEST, NEIGHBORHOOD));
         // 2. The faces between them
-        let mut number = vec![u32::MAX; points.len()];
+        const OUTSIDE: Vertex = Vertex(u32::MAX);
+        let mut number = vec![OUTSIDE; points.len()];
         for (index, &vertex) in vertices.iter().enumerate() {
-            number[vertex] = index as u32;
+            number[vertex] = Vertex::new(index);
         }
         let corners = vertices.iter().flat_map(|&vertex| mesh.corners.of(vertex));
-        let mut of_mesh: Vec<usize> = corners.map(|&corner| corner as usize / 3).collect();
+        let mut of_mesh: Vec<usize> = corners.map(|corner| corner.face().index()).collect();
         of_mesh.sort_unstable();
         of_mesh.dedup();
-        of_mesh.retain(|&face| mesh.faces[face].iter().all(|&v| number[v] != u32::MAX));
+        of_mesh.retain(|&face| mesh.faces[face].iter().all(|&v| number[v] != OUTSIDE));
         let faces: Vec<[Vertex; 3]> =
-            of_mesh.iter().map(|&face| mesh.faces[face].map(|v| Vertex(number[v]))).collect();
-        let labels: Vec<usize> = of_mesh.iter().map(|&face| mesh.polygons.of[face] as usize).collect();
+            of_mesh.iter().map(|&face| mesh.faces[face].map(|v| number[v])).collect();
+        let labels: Vec<usize> = of_mesh.iter().map(|&face| mesh.polygons.of[face]).collect();
         let may_move =
             |&v: &Vertex| !is_singular[v] && mesh.candidates.is_none_or(|candidates| candidates[v]);
         Self {

@@ -5,7 +5,6 @@
 //! vertex in turn moves to the place that maximizes the least area of its faces, relative to their targets. The area of a
 //! face is linear in the place of a vertex, so the least area is concave, and a pattern search finds its maximum.
 
-use crate::mesh::Vertex;
 use std::f64::consts::PI;
 
 use super::certificate::nearly_folded;
@@ -13,6 +12,7 @@ use super::chart::{Chart, Point, center_polar_corners, signed_area};
 use super::projection::Projection;
 use super::relaxation::Goal;
 use crate::control::Watch;
+use crate::mesh::{Corner, Vertex};
 
 /// Least area relative to the target from which a vertex stays.
 const GOOD: f64 = 0.25;
@@ -64,7 +64,7 @@ fn vertices_of(faces: &[[Vertex; 3]], chosen: &[usize]) -> Vec<Vertex> {
 
 fn faces_around(vertices: &[Vertex], goal: &Goal<'_>) -> Vec<usize> {
     let corners = vertices.iter().flat_map(|&vertex| goal.corners.of(vertex));
-    let mut faces: Vec<usize> = corners.map(|&corner| corner as usize / 3).collect();
+    let mut faces: Vec<usize> = corners.map(|corner| corner.face().index()).collect();
     faces.sort_unstable();
     faces.dedup();
     faces
@@ -78,13 +78,13 @@ fn improve<P: Projection>(
     vertex: Vertex,
 ) {
     let corners = goal.corners.of(vertex);
-    let split = |corner: u32| (corner as usize / 3, corner as usize % 3);
+    let split = |corner: Corner| (corner.face(), corner.place());
     // 1. The search
     let worst = |place: Point| {
         if !P::is_within(place) {
             return f64::NEG_INFINITY;
         }
-        let share = |&corner: &u32| {
+        let share = |&corner: &Corner| {
             let (face, k) = split(corner);
             let mut triangle = images[face];
             triangle[k] = chart.isometries[face][k].image(P::PERIODS, place);
@@ -96,7 +96,7 @@ fn improve<P: Projection>(
     if best.0 >= GOOD {
         return;
     }
-    let opposite_edge = |&corner: &u32| {
+    let opposite_edge = |&corner: &Corner| {
         let (face, k) = split(corner);
         let [a, b] = [images[face][(k + 1) % 3], images[face][(k + 2) % 3]];
         (a[0] - b[0]).hypot(a[1] - b[1])

@@ -16,7 +16,7 @@ use robust::{Coord3D, orient3d};
 
 use crate::control::Watch;
 use crate::mesh::geometry::{determinant_rounding, triangle};
-use crate::mesh::{Face, Vertex};
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 use bvh::{Bounds, Tree};
@@ -36,11 +36,11 @@ pub struct Location {
 impl Location {
     /// The place at the parameter `t` of the edge opposite to a corner, which runs from the next corner to the one
     /// after that.
-    pub(crate) fn on_edge(corner: u32, t: f64) -> Self {
+    pub(crate) fn on_edge(corner: Corner, t: f64) -> Self {
         let mut barycentric = [0.0; 3];
-        let k = corner as usize % 3;
+        let k = corner.place();
         (barycentric[(k + 1) % 3], barycentric[(k + 2) % 3]) = (1.0 - t, t);
-        Self { triangle: Face::of_corner(corner), barycentric }
+        Self { triangle: corner.face(), barycentric }
     }
 
     /// The point of the place, given the corners of its face.

@@ -84,21 +84,21 @@ struct Midpoints {
 impl Midpoints {
     fn new(mesh: &TriangleMesh, marked: &[bool], longest: &[usize]) -> Self {
         let mut midpoints = Self { parents: Vec::new(), of_corner: vec![None; 3 * mesh.n_faces()] };
-        let mut waiting: Vec<usize> = (0..mesh.n_faces()).filter(|&face| marked[face]).collect();
+        let mut waiting: Vec<Face> = Face::all(mesh.n_faces()).filter(|&face| marked[face]).collect();
         waiting.reverse();
         while let Some(face) = waiting.pop() {
-            let corner = (3 * face + longest[face]) as u32;
-            if midpoints.of_corner[corner as usize].is_some() {
+            let corner = face.corner(longest[face]);
+            if midpoints.of_corner[corner].is_some() {
                 continue;
             }
             let middle = Vertex::new(mesh.n_vertices() + midpoints.parents.len());
             let ends = [1, 2].map(|k| mesh.faces()[face][(longest[face] + k) % 3]);
             midpoints.parents.push(ends);
-            midpoints.of_corner[corner as usize] = Some(middle);
+            midpoints.of_corner[corner] = Some(middle);
             if let Some(across) = mesh.opposite(corner) {
-                midpoints.of_corner[across as usize] = Some(middle);
+                midpoints.of_corner[across] = Some(middle);
                 // the face beyond is halved at its own longest edge first
-                waiting.push(across as usize / 3);
+                waiting.push(across.face());
             }
         }
         midpoints

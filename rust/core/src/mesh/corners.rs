@@ -1,108 +1,122 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Corners and half-edges of faces: their opposites across edges, and the corners around a vertex.
-//!
-//! Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
+//! The corners opposite to each other across edges, and the corners around a vertex.
 
 use std::ops::Range;
 
-use super::Vertex;
+use super::{Corner, Vertex};
 
-/// The entry of a boundary edge in a table of opposite corners.
-pub(crate) const NO_CORNER: u32 = u32::MAX;
-
-/// The next corner of the same face.
-pub(crate) fn next_corner(corner: u32) -> u32 {
-    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
+/// Items at every vertex.
+#[derive(Debug, Clone)]
+struct ByVertex<T> {
+    /// The start of each vertex's items, then the end of the last ones.
+    start: Vec<u32>,
+    items: Vec<T>,
 }
 
-/// The previous corner of the same face.
-pub(crate) fn previous_corner(corner: u32) -> u32 {
-    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
-}
+impl<T: Copy + Default> ByVertex<T> {
+    /// Sorts items by vertex, in a given order at each vertex.
+    fn new(n_vertices: usize, items: impl ExactSizeIterator<Item = (Vertex, T)> + Clone) -> Self {
+        let mut start = vec![0u32; n_vertices + 1];
+        items.clone().for_each(|(vertex, _)| start[vertex.index() + 1] += 1);
+        for v in 0..n_vertices {
+            start[v + 1] += start[v];
+        }
+        let mut free = start.clone();
+        let mut sorted = vec![T::default(); items.len()];
+        for (vertex, item) in items {
+            sorted[free[vertex] as usize] = item;
+            free[vertex] += 1;
+        }
+        Self { start, items: sorted }
+    }
 
-/// The vertex at a corner.
-pub(crate) fn vertex_at(faces: &[[Vertex; 3]], corner: u32) -> Vertex {
-    faces[corner as usize / 3][corner as usize % 3]
-}
+    fn n_vertices(&self) -> usize {
+        self.start.len() - 1
+    }
 
-/// The directed edge opposite to a corner.
-pub(crate) fn half_edge(faces: &[[Vertex; 3]], corner: u32) -> [Vertex; 2] {
-    [vertex_at(faces, next_corner(corner)), vertex_at(faces, previous_corner(corner))]
+    fn range(&self, vertex: Vertex) -> Range<usize> {
+        self.start[vertex] as usize..self.start[vertex.index() + 1] as usize
+    }
+
+    fn of(&self, vertex: Vertex) -> &[T] {
+        &self.items[self.range(vertex)]
+    }
 }
 
 /// Every edge with the corners opposite to it.
 pub(crate) struct EdgeTable {
-    /// The start of each lower vertex's edges in `entries`.
-    start: Vec<u32>,
-    /// Higher vertex (upper half) and corner (lower half), sorted for each lower vertex.
-    entries: Vec<u64>,
+    /// At the lower vertex of each edge, ascending.
+    entries: ByVertex<EdgeCorner>,
+}
+
+/// A corner with the higher vertex of the edge opposite to it; ordered by that vertex, then by the corner.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(crate) struct EdgeCorner(
+    /// The vertex in the upper half, the corner in the lower: one comparison orders both.
+    u64,
+);
+
+impl EdgeCorner {
+    fn new(high: Vertex, corner: Corner) -> Self {
+        Self(u64::from(high.0) << 32 | corner.index() as u64)
+    }
+
+    fn high(self) -> Vertex {
+        Vertex((self.0 >> 32) as u32)
+    }
+
+    /// The corner.
+    pub(crate) fn corner(self) -> Corner {
+        Corner::new(self.0 as u32 as usize)
+    }
 }
 
 impl EdgeTable {
     /// Sorts the edges of all faces: by buckets of the lower vertex, then within each.
     pub(crate) fn new(n_vertices: usize, faces: &[[Vertex; 3]]) -> Self {
-        let edges = || (0..3 * faces.len() as u32).map(|corner| (corner, sorted(half_edge(faces, corner))));
-        let mut start = vec![0u32; n_vertices + 1];
-        for (_, [low, _]) in edges() {
-            start[low.index() + 1] += 1;
+        let entry = |corner: Corner| {
+            let [low, high] = sorted(corner.half_edge(faces));
+            (low, EdgeCorner::new(high, corner))
+        };
+        let mut entries = ByVertex::new(n_vertices, Corner::all(faces.len()).map(entry));
+        for low in Vertex::all(n_vertices) {
+            let bucket = entries.range(low);
+            entries.items[bucket].sort_unstable();
         }
-        for v in 0..n_vertices {
-            start[v + 1] += start[v];
-        }
-        let mut free = start.clone();
-        let mut entries = vec![0u64; 3 * faces.len()];
-        for (corner, [low, high]) in edges() {
-            entries[free[low] as usize] = u64::from(high.0) << 32 | u64::from(corner);
-            free[low] += 1;
-        }
-        for v in 0..n_vertices {
-            entries[start[v] as usize..start[v + 1] as usize].sort_unstable();
-        }
-        Self { start, entries }
+        Self { entries }
     }
 
-    /// Every edge with its entries, in ascending order; [`corner_of_entry`] reads an entry.
-    pub(crate) fn edges(&self) -> impl Iterator<Item = ([Vertex; 2], &[u64])> {
-        Vertex::all(self.start.len() - 1).flat_map(move |low| {
-            let same_edge = |a: &u64, b: &u64| a >> 32 == b >> 32;
-            self.bucket(low)
-                .chunk_by(same_edge)
-                .map(move |entries| ([low, Vertex((entries[0] >> 32) as u32)], entries))
+    /// Every edge with the corners opposite to it, in ascending order.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = ([Vertex; 2], &[EdgeCorner])> {
+        Vertex::all(self.entries.n_vertices()).flat_map(move |low| {
+            let same_edge = |a: &EdgeCorner, b: &EdgeCorner| a.high() == b.high();
+            self.entries.of(low).chunk_by(same_edge).map(move |entries| ([low, entries[0].high()], entries))
         })
     }
 
     /// The corners opposite to an edge; none if there is no such edge.
-    pub(crate) fn corners(&self, edge: [Vertex; 2]) -> impl Iterator<Item = u32> {
+    pub(crate) fn corners(&self, edge: [Vertex; 2]) -> impl Iterator<Item = Corner> {
         let [low, high] = sorted(edge);
-        let bucket = self.bucket(low);
-        let begin = bucket.partition_point(|entry| entry >> 32 < u64::from(high.0));
-        bucket[begin..].iter().take_while(move |&entry| entry >> 32 == u64::from(high.0)).map(corner_of_entry)
+        let bucket = self.entries.of(low);
+        let begin = bucket.partition_point(|entry| entry.high() < high);
+        bucket[begin..].iter().take_while(move |entry| entry.high() == high).map(|entry| entry.corner())
     }
 
-    /// The opposite corner of every corner: [`NO_CORNER`] unless exactly two faces share the edge.
-    pub(crate) fn opposites(&self) -> Vec<u32> {
-        let mut opposite = vec![NO_CORNER; self.entries.len()];
+    /// The opposite corner of every corner: `None` unless exactly two faces share the edge.
+    pub(crate) fn opposites(&self) -> Vec<Option<Corner>> {
+        let mut opposite = vec![None; self.entries.items.len()];
         for (_, entries) in self.edges() {
             if let [a, b] = entries {
-                let [a, b] = [corner_of_entry(a), corner_of_entry(b)];
+                let [a, b] = [a.corner(), b.corner()];
                 // a face that repeats a vertex meets itself; it is no neighbor of its own
-                if a / 3 != b / 3 {
-                    opposite[a as usize] = b;
-                    opposite[b as usize] = a;
+                if a.face() != b.face() {
+                    opposite[a] = Some(b);
+                    opposite[b] = Some(a);
                 }
             }
         }
         opposite
     }
-
-    fn bucket(&self, low: Vertex) -> &[u64] {
-        &self.entries[self.start[low] as usize..self.start[low.index() + 1] as usize]
-    }
-}
-
-/// The corner in an entry of an [`EdgeTable`].
-pub(crate) fn corner_of_entry(entry: &u64) -> u32 {
-    *entry as u32
 }
 
 /// An edge with its lower vertex first.
@@ -112,77 +126,59 @@ fn sorted([a, b]: [Vertex; 2]) -> [Vertex; 2] {
 
 /// The corners at every vertex, in ascending order.
 #[derive(Debug, Clone)]
-pub(crate) struct VertexCorners {
-    start: Vec<u32>,
-    corners: Vec<u32>,
-}
+pub(crate) struct VertexCorners(ByVertex<Corner>);
 
 impl VertexCorners {
     /// Sorts the corners of all faces by vertex.
     pub(crate) fn new(n_vertices: usize, faces: &[[Vertex; 3]]) -> Self {
-        let mut start = vec![0u32; n_vertices + 1];
-        for &v in faces.as_flattened() {
-            start[v.index() + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            start[v + 1] += start[v];
-        }
-        let mut free = start.clone();
-        let mut corners = vec![0u32; 3 * faces.len()];
-        for (corner, &v) in faces.as_flattened().iter().enumerate() {
-            corners[free[v] as usize] = corner as u32;
-            free[v] += 1;
-        }
-        Self { start, corners }
+        let vertices = faces.as_flattened().iter().copied();
+        Self(ByVertex::new(n_vertices, vertices.zip(Corner::all(faces.len()))))
     }
 
     /// The number of vertices.
     pub(crate) fn len(&self) -> usize {
-        self.start.len() - 1
+        self.0.n_vertices()
     }
 
     /// The corners at a vertex.
-    pub(crate) fn of(&self, vertex: Vertex) -> &[u32] {
-        &self.corners[self.range(vertex)]
+    pub(crate) fn of(&self, vertex: Vertex) -> &[Corner] {
+        self.0.of(vertex)
     }
 
     /// The positions in [`Self::all`] of the corners at a vertex.
     pub(crate) fn range(&self, vertex: Vertex) -> Range<usize> {
-        self.start[vertex] as usize..self.start[vertex.index() + 1] as usize
+        self.0.range(vertex)
     }
 
     /// The corners at all vertices, in the order of the vertices.
-    pub(crate) fn all(&self) -> &[u32] {
-        &self.corners
+    pub(crate) fn all(&self) -> &[Corner] {
+        &self.0.items
     }
 
     /// Whether the corners at a vertex form one fan, for consistently oriented faces.
-    pub(crate) fn is_one_fan(&self, vertex: Vertex, opposite: &[u32]) -> bool {
+    pub(crate) fn is_one_fan(&self, vertex: Vertex, opposite: &[Option<Corner>]) -> bool {
         let corners = self.of(vertex);
         let Some(&first) = corners.first() else {
             return true;
         };
-        let (mut count, closed) = fan(first, opposite, next_corner);
+        let (mut count, closed) = fan(first, opposite, Corner::next);
         if !closed {
-            count += fan(first, opposite, previous_corner).0 - 1;
+            count += fan(first, opposite, Corner::previous).0 - 1;
         }
         count == corners.len()
     }
 }
 
 /// Turns about the vertex of a corner; returns the number of corners met, and whether they close a circle.
-fn fan(first: u32, opposite: &[u32], turn: fn(u32) -> u32) -> (usize, bool) {
+fn fan(first: Corner, opposite: &[Option<Corner>], turn: fn(Corner) -> Corner) -> (usize, bool) {
     let mut corner = first;
     let mut count = 1;
-    loop {
-        let across = opposite[turn(corner) as usize];
-        if across == NO_CORNER {
-            return (count, false);
-        }
+    while let Some(across) = opposite[turn(corner)] {
         corner = turn(across);
         if corner == first {
             return (count, true);
         }
         count += 1;
     }
+    (count, false)
 }

@@ -14,10 +14,10 @@
 
 use ndarray::{Array2, CowArray, Ix2};
 
-use super::corners::{EdgeTable, NO_CORNER, VertexCorners, next_corner, previous_corner, vertex_at};
+use super::corners::{EdgeTable, VertexCorners};
 use super::orientation::Orientation;
 use super::topology::Topology;
-use super::{Surface, Vertex, geometry, validate};
+use super::{Corner, Face, Surface, Vertex, geometry, validate};
 use crate::arrays::{from_rows, rows_of};
 use crate::error::{Elements, Error, MeshError};
 
@@ -109,33 +109,34 @@ fn check_range(n_vertices: usize, seams: &[[Vertex; 2]]) -> Result<(), MeshError
 }
 
 /// Disconnects the faces on both sides of the seams.
-fn open_seams(table: &EdgeTable, seams: &[[Vertex; 2]], opposite: &mut [u32]) -> Result<(), MeshError> {
+fn open_seams(
+    table: &EdgeTable,
+    seams: &[[Vertex; 2]],
+    opposite: &mut [Option<Corner>],
+) -> Result<(), MeshError> {
     let mut unknown = Vec::new();
     for &seam in seams {
         let mut corners = table.corners(seam).peekable();
         if corners.peek().is_none() {
             unknown.push(seam);
         }
-        corners.for_each(|corner| opposite[corner as usize] = NO_CORNER);
+        corners.for_each(|corner| opposite[corner] = None);
     }
     validate::refuse(Elements::edges(unknown), |seams| MeshError::SeamNotEdge { seams })
 }
 
 /// Joins the corners at both ends of every edge between neighbors.
-fn join_corners(faces: &[[Vertex; 3]], opposite: &[u32]) -> UnionFind {
-    let mut joined = UnionFind::new(opposite.len());
-    for corner in 0..opposite.len() as u32 {
-        let across = opposite[corner as usize];
+fn join_corners(faces: &[[Vertex; 3]], opposite: &[Option<Corner>]) -> UnionFind {
+    let mut joined = UnionFind::new(faces.len());
+    for corner in Corner::all(faces.len()) {
         // each pair once
-        if across == NO_CORNER || across < corner {
-            continue;
-        }
-        let [mut first, mut second] = [next_corner(across), previous_corner(across)];
-        if vertex_at(faces, next_corner(corner)) != vertex_at(faces, first) {
+        let Some(across) = opposite[corner].filter(|&across| across > corner) else { continue };
+        let [mut first, mut second] = [across.next(), across.previous()];
+        if corner.next().vertex(faces) != first.vertex(faces) {
             [first, second] = [second, first];
         }
-        joined.join(next_corner(corner), first);
-        joined.join(previous_corner(corner), second);
+        joined.join(corner.next(), first);
+        joined.join(corner.previous(), second);
     }
     joined
 }
@@ -153,48 +154,48 @@ fn number_vertices(
     let mut numbers = vec![UNNUMBERED; 3 * faces.len()];
     for (v, &position) in Vertex::all(vertices.len()).zip(vertices) {
         for &corner in corners.of(v) {
-            let root = joined.root(corner) as usize;
+            let root = joined.root(corner);
             if numbers[root] == UNNUMBERED {
-                let draft = &mut drafts[patch_of[corner as usize / 3] as usize];
+                let draft = &mut drafts[patch_of[corner.face()] as usize];
                 numbers[root] = Vertex::new(draft.vertices.len());
                 draft.vertices.push(position);
                 draft.vertex_of.push(v);
             }
-            numbers[corner as usize] = numbers[root];
+            numbers[corner] = numbers[root];
         }
     }
     numbers
 }
 
 fn collect_faces(numbers: Vec<Vertex>, patch_of: &[u32], drafts: &mut [Draft]) {
-    for (face, (corners, &patch)) in numbers.as_chunks::<3>().0.iter().zip(patch_of).enumerate() {
-        let draft = &mut drafts[patch as usize];
-        draft.faces.push(*corners);
-        draft.corner_of.push([0, 1, 2].map(|k| 3 * face as u32 + k));
+    for face in Face::all(patch_of.len()) {
+        let draft = &mut drafts[patch_of[face] as usize];
+        draft.faces.push(face.corners().map(|corner| numbers[corner]));
+        draft.corner_of.push(face.corners().map(|corner| corner.index() as u32));
     }
 }
 
-/// Disjoint sets of numbers; the root of a set is its smallest member.
+/// Disjoint sets of corners; the root of a set is its smallest member.
 struct UnionFind {
-    parent: Vec<u32>,
+    parent: Vec<Corner>,
 }
 
 impl UnionFind {
-    fn new(n: usize) -> Self {
-        Self { parent: (0..n as u32).collect() }
+    fn new(n_faces: usize) -> Self {
+        Self { parent: Corner::all(n_faces).collect() }
     }
 
-    fn root(&mut self, mut item: u32) -> u32 {
-        while self.parent[item as usize] != item {
-            let grandparent = self.parent[self.parent[item as usize] as usize];
-            self.parent[item as usize] = grandparent;
-            item = grandparent;
+    fn root(&mut self, mut corner: Corner) -> Corner {
+        while self.parent[corner] != corner {
+            let grandparent = self.parent[self.parent[corner]];
+            self.parent[corner] = grandparent;
+            corner = grandparent;
         }
-        item
+        corner
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    fn join(&mut self, a: Corner, b: Corner) {
         let [a, b] = [self.root(a), self.root(b)];
-        self.parent[a.max(b) as usize] = a.min(b);
+        self.parent[a.max(b)] = a.min(b);
     }
 }

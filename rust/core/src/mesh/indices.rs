@@ -2,6 +2,7 @@
 //! Types of indices, which index slices.
 
 use std::fmt;
+use std::num::NonZeroU32;
 use std::ops::{Index, IndexMut};
 
 use ndarray::Array2;
@@ -69,8 +70,18 @@ pub struct Vertex(pub u32);
 #[repr(transparent)]
 pub struct Face(pub u32);
 
+/// A corner of a face: corner `3 * face + k` is that at vertex `k` of the face. It also stands for the edge opposite to
+/// that vertex.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Corner(
+    /// The index plus 1, so that an `Option<Corner>` is no larger.
+    NonZeroU32,
+);
+
 index_slices!(Vertex);
 index_slices!(Face);
+index_slices!(Corner);
 
 impl Vertex {
     /// The vertex of an index below 2³².
@@ -111,19 +122,73 @@ impl Face {
         (0..n).map(Self::new)
     }
 
-    /// The face of a corner, an index `3 * face + k`.
-    pub const fn of_corner(corner: u32) -> Self {
-        Self(corner / 3)
+    /// The face's corner at vertex `k`.
+    pub const fn corner(self, k: usize) -> Corner {
+        Corner::new(3 * self.index() + k)
     }
 
-    /// The index of the face's corner at vertex `k`.
-    pub const fn corner(self, k: usize) -> usize {
-        3 * self.index() + k
-    }
-
-    /// The indices of the face's three corners.
-    pub const fn corners(self) -> [usize; 3] {
+    /// The face's three corners.
+    pub const fn corners(self) -> [Corner; 3] {
         [self.corner(0), self.corner(1), self.corner(2)]
+    }
+}
+
+impl Corner {
+    /// The corner of an index below 2³² − 1.
+    pub const fn new(index: usize) -> Self {
+        Self(NonZeroU32::MIN.saturating_add(index as u32))
+    }
+
+    /// The index of the corner.
+    pub const fn index(self) -> usize {
+        (self.0.get() - 1) as usize
+    }
+
+    /// The corners of the first `n_faces` faces.
+    pub fn all(n_faces: usize) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
+        (0..3 * n_faces).map(Self::new)
+    }
+
+    /// The face of the corner.
+    pub const fn face(self) -> Face {
+        Face((self.0.get() - 1) / 3)
+    }
+
+    /// The place of the corner in its face: 0, 1 or 2.
+    pub const fn place(self) -> usize {
+        self.index() % 3
+    }
+
+    /// The next corner of the same face.
+    pub const fn next(self) -> Self {
+        Self::new(if self.place() == 2 { self.index() - 2 } else { self.index() + 1 })
+    }
+
+    /// The previous corner of the same face.
+    pub const fn previous(self) -> Self {
+        Self::new(if self.place() == 0 { self.index() + 2 } else { self.index() - 1 })
+    }
+
+    /// Where the corner comes to lie when corners 1 and 2 of its face change places.
+    pub const fn mirrored(self) -> Self {
+        self.face().corner((3 - self.place()) % 3)
+    }
+
+    /// The vertex at the corner.
+    pub fn vertex(self, faces: &[[Vertex; 3]]) -> Vertex {
+        faces[self.face()][self.place()]
+    }
+
+    /// The edge opposite to the corner, in the direction of its face.
+    pub fn half_edge(self, faces: &[[Vertex; 3]]) -> [Vertex; 2] {
+        [self.next().vertex(faces), self.previous().vertex(faces)]
+    }
+}
+
+/// Corner 0.
+impl Default for Corner {
+    fn default() -> Self {
+        Self::new(0)
     }
 }
 
@@ -143,19 +208,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn corners_belong_to_their_face() {
+    fn corners_run_around_their_face() {
         for face in Face::all(5) {
-            assert_eq!(face.corners(), [0, 1, 2].map(|k| face.corner(k)));
-            assert!(face.corners().iter().all(|&corner| Face::of_corner(corner as u32) == face));
+            let [a, b, c] = face.corners();
+            assert_eq!([a.next(), b.next(), c.next()], [b, c, a]);
+            assert_eq!([a.previous(), b.previous(), c.previous()], [c, a, b]);
+            assert_eq!([a.mirrored(), b.mirrored(), c.mirrored()], [a, c, b]);
+            assert_eq!([a.place(), b.place(), c.place()], [0, 1, 2]);
+            assert!([a, b, c].iter().all(|corner| corner.face() == face));
+            assert_eq!(c.index(), 3 * face.index() + 2);
         }
-        assert_eq!(Face(4).corners(), [12, 13, 14]);
+        assert!(Corner::all(5).eq(Face::all(5).flat_map(Face::corners)));
+    }
+
+    #[test]
+    fn corners_have_a_vertex_and_an_opposite_edge() {
+        let faces = faces_of_indices(&[[0, 1, 2], [2, 1, 3]]);
+        let corner = Face::new(1).corner(2);
+        assert_eq!(corner.vertex(&faces), Vertex(3));
+        assert_eq!(corner.half_edge(&faces), [Vertex(2), Vertex(1)]);
+    }
+
+    #[test]
+    fn the_largest_corner_fits_and_an_option_takes_no_more_memory() {
+        let last = u32::MAX as usize - 1;
+        assert_eq!(Corner::new(last).index(), last);
+        assert_eq!(size_of::<Option<Corner>>(), size_of::<u32>());
     }
 
     #[test]
     fn indices_read_and_write_slices_and_print_as_numbers() {
         let mut values = vec![1, 2, 3];
         values[Face(1)] += 10;
-        assert_eq!((values[Vertex(1)], values.as_slice()[Face::new(2)]), (12, 3));
+        assert_eq!((values[Vertex(1)], values.as_slice()[Face(0).corner(2)]), (12, 3));
         assert_eq!(format!("{} {:?}", Vertex(7), Face(8)), "7 8");
     }
 }

@@ -19,14 +19,12 @@ pub(crate) mod topology;
 mod triangle_mesh;
 mod validate;
 
-pub(crate) use corners::{
-    EdgeTable, NO_CORNER, VertexCorners, corner_of_entry, half_edge, next_corner, previous_corner, vertex_at,
-};
+pub(crate) use corners::{EdgeTable, VertexCorners};
 pub use cut::Patch;
 #[cfg(test)]
 pub(crate) use indices::faces_of_indices;
 pub(crate) use indices::index_array;
-pub use indices::{Face, Vertex};
+pub use indices::{Corner, Face, Vertex};
 pub use orientation::consistent;
 pub use surface::Surface;
 pub use topology::Topology;

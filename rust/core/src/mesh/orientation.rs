@@ -4,8 +4,8 @@
 //! The orientation that most faces of a component already have wins; at a tie that of its lowest face.
 //! Edges of three or more faces do not connect. Linear in the number of faces.
 
-use super::corners::{EdgeTable, NO_CORNER, half_edge};
-use super::{Face, Vertex};
+use super::corners::EdgeTable;
+use super::{Corner, Face, Vertex};
 
 /// The faces to flip, and the components.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub fn consistent(n_vertices: usize, faces: &[[Vertex; 3]]) -> Orientation {
 
 impl Orientation {
     /// Orients faces across the pairs of corners in `opposite`.
-    pub(crate) fn propagate(faces: &[[Vertex; 3]], opposite: &[u32]) -> Self {
+    pub(crate) fn propagate(faces: &[[Vertex; 3]], opposite: &[Option<Corner>]) -> Self {
         let mut walk = Self {
             flipped: vec![false; faces.len()],
             conflict: None,
@@ -52,7 +52,12 @@ impl Orientation {
     }
 
     /// Orients a component like its seed; returns the first edge that contradicts.
-    fn flood(&mut self, faces: &[[Vertex; 3]], opposite: &[u32], seed: Face) -> Option<[Vertex; 2]> {
+    fn flood(
+        &mut self,
+        faces: &[[Vertex; 3]],
+        opposite: &[Option<Corner>],
+        seed: Face,
+    ) -> Option<[Vertex; 2]> {
         let label = self.first_faces.len() as u32;
         self.first_faces.push(seed);
         self.component[seed] = label;
@@ -62,13 +67,10 @@ impl Orientation {
             let [a, b, c] = faces[face];
             let flipped = self.flipped[face];
             for (side, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
-                let across = opposite[face.corner(side)];
-                if across == NO_CORNER {
-                    continue;
-                }
-                let agree = half_edge(faces, across)[0] != from;
+                let Some(across) = opposite[face.corner(side)] else { continue };
+                let agree = across.half_edge(faces)[0] != from;
                 let wanted = flipped ^ !agree;
-                let neighbor = Face::of_corner(across);
+                let neighbor = across.face();
                 if self.component[neighbor] == u32::MAX {
                     self.component[neighbor] = label;
                     self.flipped[neighbor] = wanted;
@@ -99,25 +101,21 @@ impl Orientation {
     }
 
     /// Flips the faces: the first corner stays, the other two change places; `opposite` follows.
-    pub(crate) fn apply(&self, faces: &mut [[Vertex; 3]], opposite: &mut [u32]) {
+    pub(crate) fn apply(&self, faces: &mut [[Vertex; 3]], opposite: &mut [Option<Corner>]) {
         if !self.flipped.contains(&true) {
             return;
         }
-        for (face, _) in self.flipped.iter().enumerate().filter(|(_, flipped)| **flipped) {
+        for face in Face::all(faces.len()).filter(|&face| self.flipped[face]) {
             faces[face].swap(1, 2);
-            opposite.swap(3 * face + 1, 3 * face + 2);
+            opposite.swap(face.corner(1).index(), face.corner(2).index());
         }
-        for corner in opposite.iter_mut().filter(|corner| **corner != NO_CORNER) {
+        for corner in opposite.iter_mut().flatten() {
             *corner = self.moved(*corner);
         }
     }
 
     /// The corner after [`Self::apply`] of a corner of the faces as given.
-    fn moved(&self, corner: u32) -> u32 {
-        match (self.flipped[Face::of_corner(corner)], corner % 3) {
-            (true, 1) => corner + 1,
-            (true, 2) => corner - 1,
-            _ => corner,
-        }
+    fn moved(&self, corner: Corner) -> Corner {
+        if self.flipped[corner.face()] { corner.mirrored() } else { corner }
     }
 }

@@ -4,9 +4,9 @@
 //! In this order neighbors in space are neighbors in memory: every pass over the faces of a large mesh runs several
 //! times faster, and no later system has to be ordered again.
 
-use super::corners::{NO_CORNER, VertexCorners};
+use super::corners::VertexCorners;
 use super::triangle_mesh::mark_boundary;
-use super::{Face, TriangleMesh, Vertex};
+use super::{Corner, Face, TriangleMesh, Vertex};
 use crate::parallel;
 
 /// A renumbered mesh with its given numbers.
@@ -59,10 +59,7 @@ impl Renumbered {
 fn renumbered(mesh: &TriangleMesh, vertices: &[Vertex], place: &[Vertex], faces: &[Face]) -> TriangleMesh {
     let mut new_face = vec![Face::default(); faces.len()];
     faces.iter().zip(Face::all(faces.len())).for_each(|(&given, new)| new_face[given] = new);
-    let corner = |corner: u32| match corner {
-        NO_CORNER => NO_CORNER,
-        corner => new_face[Face::of_corner(corner)].corner(corner as usize % 3) as u32,
-    };
+    let corner = |corner: Corner| new_face[corner.face()].corner(corner.place());
     let new_faces = parallel::map(faces.len(), |face| mesh.faces[faces[face]].map(|v| place[v]));
     let mut topology = mesh.topology.clone();
     topology.boundary_loops.iter_mut().flatten().for_each(|vertex| *vertex = place[*vertex]);
@@ -72,7 +69,7 @@ fn renumbered(mesh: &TriangleMesh, vertices: &[Vertex], place: &[Vertex], faces:
         scale: mesh.scale,
         flipped: mesh.flipped.iter().map(|&face| new_face[face]).collect(),
         areas: parallel::map(faces.len(), |face| mesh.areas[faces[face]]),
-        opposite: parallel::map(3 * faces.len(), |k| corner(mesh.opposite[faces[k / 3].corner(k % 3)])),
+        opposite: parallel::map(3 * faces.len(), |k| mesh.opposite[faces[k / 3].corner(k % 3)].map(corner)),
         corners: VertexCorners::new(vertices.len(), &new_faces),
         on_boundary: mark_boundary(vertices.len(), &topology.boundary_loops),
         in_elimination_order: true,

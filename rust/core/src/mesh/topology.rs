@@ -5,9 +5,9 @@
 //! vertex `k + 1` to vertex `k + 2`. Two corners are opposite if their edges are equal. Edges are matched by
 //! sorting, never by hashing, so that the order of results never changes from run to run.
 
-use super::corners::{EdgeTable, NO_CORNER, half_edge};
+use super::corners::EdgeTable;
 use super::orientation::Orientation;
-use super::{Face, Vertex, geometry};
+use super::{Corner, Face, Vertex, geometry};
 use crate::vector::Vector3;
 
 /// The topology of a surface.
@@ -57,12 +57,12 @@ impl Topology {
     pub(crate) fn of_oriented(
         points: &[Vector3],
         faces: &[[Vertex; 3]],
-        opposite: &[u32],
+        opposite: &[Option<Corner>],
         orientation: Orientation,
     ) -> Self {
-        let boundary: Vec<[Vertex; 2]> = (0..opposite.len() as u32)
-            .filter(|&corner| opposite[corner as usize] == NO_CORNER)
-            .map(|corner| half_edge(faces, corner))
+        let boundary: Vec<[Vertex; 2]> = Corner::all(faces.len())
+            .filter(|&corner| opposite[corner].is_none())
+            .map(|corner| corner.half_edge(faces))
             .collect();
         let n_edges = (opposite.len() + boundary.len()) / 2;
         let euler_characteristic = points.len() as i64 - n_edges as i64 + faces.len() as i64;

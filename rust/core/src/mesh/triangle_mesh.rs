@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The validated triangle mesh.
 
-use super::corners::{EdgeTable, NO_CORNER, VertexCorners};
+use super::corners::{EdgeTable, VertexCorners};
 use super::orientation::Orientation;
 use super::topology::Topology;
-use super::{Face, Vertex, geometry, validate};
+use super::{Corner, Face, Vertex, geometry, validate};
 use crate::error::{Elements, Error, MeshError};
 use crate::parallel;
 use crate::vector::Vector3;
@@ -14,11 +14,12 @@ use crate::vector::Vector3;
 /// Corner `3 * face + k` is vertex `k` of a face; it also stands for the edge opposite to that vertex.
 ///
 /// ```
+/// use authalic::Vertex;
 /// use authalic::testing::TriangleMesh;
 ///
 /// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 /// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]])?;
-/// assert_eq!(mesh.boundary_loops(), [vec![0, 1, 2, 3]]);
+/// assert_eq!(mesh.boundary_loops(), [[0, 1, 2, 3].map(Vertex)]);
 /// assert!(mesh.require_disk().is_ok());
 /// # Ok::<(), authalic::Error>(())
 /// ```
@@ -29,7 +30,7 @@ pub struct TriangleMesh {
     pub(super) faces: Vec<[Vertex; 3]>,
     pub(super) flipped: Vec<Face>,
     pub(super) areas: Vec<f64>,
-    pub(super) opposite: Vec<u32>,
+    pub(super) opposite: Vec<Option<Corner>>,
     pub(super) corners: VertexCorners,
     pub(super) on_boundary: Vec<bool>,
     pub(super) topology: Topology,
@@ -100,14 +101,10 @@ impl TriangleMesh {
 
     /// The surface with the opposite orientation: corners 1 and 2 of every face change places.
     pub(crate) fn turned_over(&self) -> Self {
-        let corner = |corner: u32| match (corner, corner % 3) {
-            (NO_CORNER, _) | (_, 0) => corner,
-            (_, k) => corner - k + 3 - k,
-        };
         let faces: Vec<[Vertex; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
-        let mut opposite = vec![NO_CORNER; self.opposite.len()];
-        for (old, &across) in self.opposite.iter().enumerate() {
-            opposite[corner(old as u32) as usize] = corner(across);
+        let mut opposite = vec![None; self.opposite.len()];
+        for corner in Corner::all(faces.len()) {
+            opposite[corner.mirrored()] = self.opposite[corner].map(Corner::mirrored);
         }
         let mut topology = self.topology.clone();
         topology.boundary_loops.iter_mut().for_each(|vertices| vertices[1..].reverse());
@@ -153,23 +150,19 @@ impl TriangleMesh {
     }
 
     /// The corner across the edge opposite to a corner, or `None` on the boundary.
-    pub fn opposite(&self, corner: u32) -> Option<u32> {
-        let across = self.opposite[corner as usize];
-        (across != NO_CORNER).then_some(across)
+    pub fn opposite(&self, corner: Corner) -> Option<Corner> {
+        self.opposite[corner]
     }
 
     /// The measure of each vertex, (n,): a third of the `measure` (m,) of each of its faces.
     pub(crate) fn vertex_shares(&self, measure: &[f64]) -> Vec<f64> {
         parallel::map(self.n_vertices(), |vertex| {
-            self.vertex_corners(Vertex::new(vertex))
-                .iter()
-                .map(|&corner| measure[Face::of_corner(corner)] / 3.0)
-                .sum()
+            self.vertex_corners(Vertex::new(vertex)).iter().map(|&corner| measure[corner.face()] / 3.0).sum()
         })
     }
 
     /// The corners at a vertex, in ascending order.
-    pub fn vertex_corners(&self, vertex: Vertex) -> &[u32] {
+    pub fn vertex_corners(&self, vertex: Vertex) -> &[Corner] {
         self.corners.of(vertex)
     }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The checks of a mesh; each error names the elements at fault.
 
-use super::corners::{EdgeTable, VertexCorners, corner_of_entry, vertex_at};
+use super::corners::{EdgeTable, VertexCorners};
 use super::geometry::triangle;
-use super::{Face, Vertex, geometry};
+use super::{Corner, Vertex, geometry};
 use crate::error::{Elements, MeshError};
 use crate::vector::Vector3;
 
@@ -58,7 +58,9 @@ pub(super) fn no_duplicates(faces: &[[Vertex; 3]], table: &EdgeTable) -> Result<
     let mut apexes = Vec::new();
     for ([_, high], entries) in table.edges().filter(|(_, entries)| entries.len() > 1) {
         apexes.clear();
-        apexes.extend(entries.iter().map(corner_of_entry).map(|c| (vertex_at(faces, c), Face::of_corner(c))));
+        apexes.extend(
+            entries.iter().map(|entry| entry.corner()).map(|corner| (corner.vertex(faces), corner.face())),
+        );
         apexes.sort_unstable();
         let same = apexes.windows(2).filter(|pair| pair[0].0 == pair[1].0);
         // Each face is looked at once, from the edge of its two lower vertices.
@@ -112,7 +114,7 @@ pub(super) fn manifold_edges(table: &EdgeTable) -> Result<(), MeshError> {
 pub(super) fn manifold_vertices(
     corners: &VertexCorners,
     n: usize,
-    opposite: &[u32],
+    opposite: &[Option<Corner>],
 ) -> Result<(), MeshError> {
     let pinched = Elements::collect(Vertex::all(n).filter(|&v| !corners.is_one_fan(v, opposite)));
     refuse(pinched, |vertices| MeshError::NonManifoldVertices { vertices })?;

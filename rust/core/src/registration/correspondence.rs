@@ -16,7 +16,7 @@ use crate::arrays::{from_rows, from_vectors, rows, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{Error, Side};
 use crate::location::{Location, Locator, points_on};
-use crate::mesh::{Surface, TriangleMesh, Vertex, index_array};
+use crate::mesh::{Corner, Surface, TriangleMesh, Vertex, index_array};
 use crate::vector::Vector3;
 
 /// A one-to-one map g of a source surface onto a target.
@@ -154,7 +154,7 @@ impl Correspondence {
 
     /// The corner of the target, 3 × face + corner as given, nearest to each corner of the source, (3 m,), on that side of
     /// a seam on which its face lies.
-    pub fn nearest_corners(&self) -> Vec<u32> {
+    pub fn nearest_corners(&self) -> Vec<Corner> {
         nearest_given_corners(&self.source.given_faces(), &self.target.given_faces(), &self.locations)
     }
 

@@ -3,7 +3,7 @@
 
 use super::transfer::{corner_sides, nearest_corners, pull_corners, pull_rows};
 use crate::location::Location;
-use crate::mesh::Vertex;
+use crate::mesh::{Corner, Vertex};
 use crate::vector::Vector3;
 
 /// A registered surface with its faces as given, whose corners the data follow.
@@ -18,14 +18,14 @@ pub struct GivenFaces<'a> {
 }
 
 impl GivenFaces<'_> {
-    /// The corner given, 3 × face + corner, that has become each corner as oriented, (3 m,).
-    fn given_corners(&self) -> Vec<u32> {
-        let given = |corner: usize| {
-            let (face, vertex) = (corner / 3, self.oriented[corner / 3][corner % 3]);
+    /// The corner given that has become each corner as oriented, (3 m,).
+    fn given_corners(&self) -> Vec<Corner> {
+        let given = |corner: Corner| {
+            let (face, vertex) = (corner.face(), corner.vertex(self.oriented));
             let place = self.given[face].iter().position(|&given| given == vertex);
-            (3 * face + place.expect("a face keeps its vertices")) as u32
+            face.corner(place.expect("a face keeps its vertices"))
         };
-        (0..3 * self.oriented.len()).map(given).collect()
+        Corner::all(self.oriented.len()).map(given).collect()
     }
 }
 
@@ -39,13 +39,13 @@ pub fn nearest_given_corners(
     source: &GivenFaces<'_>,
     target: &GivenFaces<'_>,
     locations: &[Location],
-) -> Vec<u32> {
+) -> Vec<Corner> {
     let sides =
         corner_sides(source.oriented, source.registered, target.oriented, target.registered, locations);
     let (nearest, target_corners) = (nearest_corners(&sides), target.given_corners());
-    let mut rows = vec![0; nearest.len()];
-    for (corner, given) in source.given_corners().into_iter().enumerate() {
-        rows[given as usize] = target_corners[nearest[corner] as usize];
+    let mut rows = vec![Corner::default(); nearest.len()];
+    for (given, nearest) in source.given_corners().into_iter().zip(nearest) {
+        rows[given] = target_corners[nearest];
     }
     rows
 }
@@ -71,9 +71,12 @@ pub fn pull_given_corners(
         target.registered,
         locations,
     );
-    let mut oriented_corners = vec![0; 3 * source.oriented.len()];
-    source.given_corners().iter().enumerate().for_each(|(corner, &given)| {
-        oriented_corners[given as usize] = corner as u32;
-    });
+    let mut oriented_corners = vec![Corner::default(); 3 * source.oriented.len()];
+    let corners = Corner::all(source.oriented.len());
+    source
+        .given_corners()
+        .into_iter()
+        .zip(corners)
+        .for_each(|(given, corner)| oriented_corners[given] = corner);
     pull_rows(&pulled, width, &oriented_corners)
 }

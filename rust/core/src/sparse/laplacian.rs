@@ -8,27 +8,25 @@
 
 use sprs::{CsMat, CsMatI};
 
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Corner, TriangleMesh, Vertex};
 use crate::parallel;
 
-const NONE: u32 = u32::MAX;
-
-/// The two corners that face an edge; the second is [`NONE`] on the boundary.
-type EdgeCorners = [u32; 2];
+/// The two corners that face an edge, the second `None` on the boundary; a diagonal entry has none.
+type EdgeCorners = [Option<Corner>; 2];
 
 /// The matrix `L_II` of a mesh over its free vertices I, upper triangle, pattern fixed.
 #[derive(Debug, Clone)]
 pub struct Laplacian {
     /// Mesh vertex of each unknown, ascending.
     free: Vec<Vertex>,
-    /// Unknown of each mesh vertex, `u32::MAX` where it is held.
-    unknown: Vec<u32>,
+    /// Unknown of each mesh vertex, `None` where it is held.
+    unknown: Vec<Option<usize>>,
     /// The upper triangle with the diagonal last in each column.
     matrix: CsMat<f64>,
-    /// For each stored entry the corners it gathers; a diagonal entry has `[NONE, NONE]`.
+    /// For each stored entry the corners it gathers.
     gathers: Vec<EdgeCorners>,
     /// Column of each stored entry.
-    columns: Vec<u32>,
+    columns: Vec<usize>,
 }
 
 impl Laplacian {
@@ -47,7 +45,7 @@ impl Laplacian {
 
     /// Unknown of a mesh vertex, `None` where the vertex is held.
     pub fn unknown(&self, vertex: Vertex) -> Option<usize> {
-        (self.unknown[vertex] != NONE).then_some(self.unknown[vertex] as usize)
+        self.unknown[vertex]
     }
 
     /// The assembled matrix: upper triangle, compressed columns.
@@ -66,11 +64,11 @@ impl Laplacian {
         let (free, gathers, columns) = (&self.free, &self.gathers, &self.columns);
         let rows = self.matrix.indices().to_vec();
         parallel::fill(self.matrix.data_mut(), |k| {
-            let (row, column) = (free[rows[k]], free[columns[k] as usize]);
+            let (row, column) = (free[rows[k]], free[columns[k]]);
             let value = match gathers[k] {
-                [NONE, _] => diagonal(mesh, weights, row),
-                [one, NONE] => -weights[one as usize],
-                [one, two] => -(weights[one as usize] + weights[two as usize]),
+                [None, _] => diagonal(mesh, weights, row),
+                [Some(corner), None] => -weights[corner],
+                [Some(corner), Some(across)] => -(weights[corner] + weights[across]),
             };
             value * entry(row, column)
         });
@@ -104,10 +102,10 @@ impl Laplacian {
 fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: Vertex) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for &corner in mesh.vertex_corners(vertex) {
-        let (face, k) = (corner as usize / 3, corner as usize % 3);
-        for (neighbor, facing) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
-            let image = map[mesh.faces()[face][neighbor]];
-            let weight = weights[3 * face + facing];
+        let (next, previous) = (corner.next(), corner.previous());
+        for (neighbor, facing) in [(next, previous), (previous, next)] {
+            let image = map[neighbor.vertex(mesh.faces())];
+            let weight = weights[facing];
             sum[0] += weight * (map[vertex][0] - image[0]);
             sum[1] += weight * (map[vertex][1] - image[1]);
         }
@@ -117,36 +115,34 @@ fn apply(mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]], vertex: Vertex)
 
 /// L_vv: the weights of all edges at `vertex`.
 fn diagonal(mesh: &TriangleMesh, weights: &[f64], vertex: Vertex) -> f64 {
-    mesh.vertex_corners(vertex)
-        .iter()
-        .map(|&corner| {
-            let face = corner / 3 * 3;
-            weights[(face + (corner + 1) % 3) as usize] + weights[(face + (corner + 2) % 3) as usize]
-        })
-        .sum()
+    let corners = mesh.vertex_corners(vertex).iter();
+    corners.map(|corner| weights[corner.next()] + weights[corner.previous()]).sum()
 }
 
-fn number_unknowns(n_vertices: usize, is_free: impl Fn(Vertex) -> bool) -> (Vec<Vertex>, Vec<u32>) {
+fn number_unknowns(n_vertices: usize, is_free: impl Fn(Vertex) -> bool) -> (Vec<Vertex>, Vec<Option<usize>>) {
     let free: Vec<Vertex> = Vertex::all(n_vertices).filter(|&v| is_free(v)).collect();
-    let mut unknown = vec![NONE; n_vertices];
+    let mut unknown = vec![None; n_vertices];
     for (i, &v) in free.iter().enumerate() {
-        unknown[v] = i as u32;
+        unknown[v] = Some(i);
     }
     (free, unknown)
 }
 
 /// For each column the rows above the diagonal with the corners that face the edge, ascending.
-fn upper_columns(mesh: &TriangleMesh, free: &[Vertex], unknown: &[u32]) -> Vec<Vec<(u32, EdgeCorners)>> {
+fn upper_columns(
+    mesh: &TriangleMesh,
+    free: &[Vertex],
+    unknown: &[Option<usize>],
+) -> Vec<Vec<(usize, EdgeCorners)>> {
     parallel::map(free.len(), |column| {
-        let vertex = free[column];
-        let mut rows: Vec<(u32, EdgeCorners)> = Vec::with_capacity(4);
-        for &corner in mesh.vertex_corners(vertex) {
-            let face = mesh.faces()[corner as usize / 3];
-            let base = corner / 3 * 3;
-            for (neighbor, facing) in [(1, 2), (2, 1)] {
-                let neighbor = face[((corner + neighbor) % 3) as usize];
-                let facing = base + (corner % 3 + facing) % 3;
-                add_neighbor(&mut rows, unknown[neighbor], column as u32, facing);
+        let mut rows: Vec<(usize, EdgeCorners)> = Vec::with_capacity(4);
+        for corner in mesh.vertex_corners(free[column]) {
+            let (next, previous) = (corner.next(), corner.previous());
+            for (neighbor, facing) in [(next, previous), (previous, next)] {
+                let row = unknown[neighbor.vertex(mesh.faces())];
+                if let Some(row) = row.filter(|&row| row <= column) {
+                    add_neighbor(&mut rows, row, facing);
+                }
             }
         }
         rows.sort_unstable();
@@ -154,22 +150,21 @@ fn upper_columns(mesh: &TriangleMesh, free: &[Vertex], unknown: &[u32]) -> Vec<V
     })
 }
 
-/// Adds the corner `facing` to the entry (row, column), which an earlier face may have begun.
-fn add_neighbor(rows: &mut Vec<(u32, EdgeCorners)>, row: u32, column: u32, facing: u32) {
-    if row == NONE || row > column {
-        return;
-    }
+/// Adds the corner `facing` to the entry of a row, which an earlier face may have begun.
+fn add_neighbor(rows: &mut Vec<(usize, EdgeCorners)>, row: usize, facing: Corner) {
     match rows.iter_mut().find(|(seen, _)| *seen == row) {
         // ascending, so that the order of gathering does not depend on the order of the one-ring
-        Some((_, corners)) => *corners = [corners[0].min(facing), corners[0].max(facing)],
-        None => rows.push((row, [facing, NONE])),
+        Some((_, [first, second])) => {
+            (*first, *second) = ((*first).min(Some(facing)), (*first).max(Some(facing)));
+        }
+        None => rows.push((row, [Some(facing), None])),
     }
 }
 
-type Compressed = (CsMatI<f64, usize>, Vec<EdgeCorners>, Vec<u32>);
+type Compressed = (CsMatI<f64, usize>, Vec<EdgeCorners>, Vec<usize>);
 
 /// Compressed columns with the diagonal appended to each.
-fn compress(columns: Vec<Vec<(u32, EdgeCorners)>>) -> Compressed {
+fn compress(columns: Vec<Vec<(usize, EdgeCorners)>>) -> Compressed {
     let n = columns.len();
     let stored = n + columns.iter().map(Vec::len).sum::<usize>();
     let (mut starts, mut rows) = (Vec::with_capacity(n + 1), Vec::with_capacity(stored));
@@ -177,12 +172,12 @@ fn compress(columns: Vec<Vec<(u32, EdgeCorners)>>) -> Compressed {
     starts.push(0);
     for (column, entries) in columns.into_iter().enumerate() {
         for (row, corners) in entries {
-            rows.push(row as usize);
+            rows.push(row);
             gathers.push(corners);
         }
         rows.push(column);
-        gathers.push([NONE, NONE]);
-        column_of.resize(rows.len(), column as u32);
+        gathers.push([None, None]);
+        column_of.resize(rows.len(), column);
         starts.push(rows.len());
     }
     let values = vec![0.0; rows.len()];

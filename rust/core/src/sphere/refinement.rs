@@ -11,11 +11,11 @@
 //!
 //! Cost: up to three descents with an initial map, on a mesh of one and a half to four times as many faces.
 
-use super::Run;
 use std::f64::consts::PI;
 
 use ndarray::Array2;
 
+use super::Run;
 use super::options::SphereMapOptions;
 use super::published::objective::SphereObjective;
 use super::published::run::energy_share;

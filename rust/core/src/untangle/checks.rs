@@ -50,15 +50,15 @@ pub(super) fn arguments(
 }
 
 /// The component of each vertex.
-pub(super) fn components(mesh: &TriangleMesh) -> Vec<u32> {
-    let mut component = vec![u32::MAX; mesh.n_vertices()];
+pub(super) fn components(mesh: &TriangleMesh) -> Vec<usize> {
+    let mut component = vec![usize::MAX; mesh.n_vertices()];
     for (k, &face) in mesh.topology().first_faces.iter().enumerate() {
         let mut front = vec![mesh.faces()[face][0]];
         while let Some(vertex) = front.pop() {
-            if component[vertex] == u32::MAX {
-                component[vertex] = k as u32;
+            if component[vertex] == usize::MAX {
+                component[vertex] = k;
                 let corners = mesh.vertex_corners(vertex);
-                front.extend(corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]));
+                front.extend(corners.iter().flat_map(|&corner| mesh.faces()[corner.face()]));
             }
         }
     }
@@ -76,7 +76,7 @@ pub(super) fn held(mesh: &TriangleMesh, fixed: &[usize]) -> Vec<bool> {
 pub(super) fn feasible(
     mesh: &TriangleMesh,
     given: &Positions,
-    components: &[u32],
+    components: &[usize],
     held: &[bool],
     folded: &[usize],
 ) -> Result<(), Error> {
@@ -98,10 +98,10 @@ pub(super) fn feasible(
     // 2. Outlines in the plane that turn too little
     let Positions::Plane(map) = given else { return Ok(()) };
     for component in 0..mesh.n_components() {
-        let of_component = |face: &&usize| components[mesh.faces()[**face][0]] == component as u32;
+        let of_component = |face: &&usize| components[mesh.faces()[**face][0]] == component;
         let Some(faces) = Elements::collect(folded.iter().filter(of_component).copied()) else { continue };
         let loops = mesh.boundary_loops().iter();
-        let loops: Vec<&Vec<Vertex>> = loops.filter(|ring| components[ring[0]] == component as u32).collect();
+        let loops: Vec<&Vec<Vertex>> = loops.filter(|ring| components[ring[0]] == component).collect();
         if loops.is_empty() {
             let found =
                 "flat on a part without a boundary, which cannot lie in the plane without folds".into();
@@ -109,7 +109,7 @@ pub(super) fn feasible(
             return Err(Error::InvalidArray { name: "image", found, expected });
         }
         let most: i64 = loops.iter().map(|ring| most_turns(ring, map)).sum();
-        let needed = euler_characteristic(mesh, components, component as u32, &loops);
+        let needed = euler_characteristic(mesh, components, component, &loops);
         if most < needed {
             return Err(MapError::OutlineFolds { faces, turns: most, needed }.into());
         }
@@ -137,8 +137,8 @@ fn most_turns(ring: &[Vertex], map: &[[f64; 2]]) -> i64 {
 /// Vertices − edges + faces of one component.
 fn euler_characteristic(
     mesh: &TriangleMesh,
-    components: &[u32],
-    component: u32,
+    components: &[usize],
+    component: usize,
     loops: &[&Vec<Vertex>],
 ) -> i64 {
     let vertices = components.iter().filter(|&&c| c == component).count();
@@ -152,7 +152,7 @@ pub(super) fn pins_near(mesh: &TriangleMesh, fixed: &[usize], folded: &[usize]) 
     let corners = folded.iter().flat_map(|&face| mesh.faces()[face]);
     let around = corners.flat_map(|vertex| mesh.vertex_corners(vertex));
     let mut near: Vec<usize> =
-        around.flat_map(|&corner| mesh.faces()[corner as usize / 3]).map(|v| v.index()).collect();
+        around.flat_map(|&corner| mesh.faces()[corner.face()]).map(|v| v.index()).collect();
     near.sort_unstable();
     near.dedup();
     let mut pins: Vec<usize> =

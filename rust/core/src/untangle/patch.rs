@@ -5,7 +5,7 @@ use super::positions::{Chart, Positions};
 use super::triangle::{Corners, doubled_area};
 use crate::energy::rest_cotangents;
 use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Face, TriangleMesh, Vertex};
 
 /// Least height of a rest shape relative to its longest edge; flatter faces are fattened.
 const FLATTEST: f64 = 0.05;
@@ -21,7 +21,7 @@ pub(super) struct Patch {
     /// The faces, by indices in `vertices`.
     pub faces: Vec<[Vertex; 3]>,
     /// The indices of the faces in the mesh.
-    face_indices: Vec<usize>,
+    face_indices: Vec<Face>,
     /// Whether each vertex moves.
     pub is_free: Vec<bool>,
     /// The places of the map given, in the chart.
@@ -48,7 +48,7 @@ impl Patch {
     ) -> Option<Self> {
         // 1. The faces at the free vertices, numbered anew
         let corners = free.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
-        let mut face_indices: Vec<usize> = corners.map(|&corner| corner as usize / 3).collect();
+        let mut face_indices: Vec<Face> = corners.map(|&corner| corner.face()).collect();
         face_indices.sort_unstable();
         face_indices.dedup();
         let mut vertices: Vec<Vertex> = face_indices.iter().flat_map(|&face| mesh.faces()[face]).collect();
@@ -158,7 +158,7 @@ pub(super) mod tests {
         Patch {
             vertices: [0, 1, 2].map(Vertex).to_vec(),
             faces: vec![[0, 1, 2].map(Vertex)],
-            face_indices: vec![0],
+            face_indices: vec![Face(0)],
             is_free: vec![true; 3],
             origin: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
             present: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],

@@ -77,7 +77,7 @@ fn sticking_out(mesh: &TriangleMesh, vertices: &[(Vertex, f64)]) -> Vec<Vertex> 
     };
     let is_far = |&&(vertex, distance_here): &&(Vertex, f64)| {
         let corners = mesh.vertex_corners(vertex).iter();
-        let beside = corners.flat_map(|&corner| mesh.faces()[corner as usize / 3]);
+        let beside = corners.flat_map(|&corner| mesh.faces()[corner.face()]);
         beside.map(distance).all(|beside| distance_here >= (1.0 - MARGIN) * beside)
     };
     vertices.iter().filter(is_far).map(|&(vertex, _)| vertex).collect()
@@ -94,7 +94,7 @@ fn within(mesh: &TriangleMesh, held: &[bool], folded: &[usize], rings: usize) ->
         }
         if ring < rings {
             let corners = front.iter().flat_map(|&vertex| mesh.vertex_corners(vertex));
-            front = corners.flat_map(|&corner| mesh.faces()[corner as usize / 3]).collect();
+            front = corners.flat_map(|&corner| mesh.faces()[corner.face()]).collect();
         }
     }
     let free = Vertex::all(mesh.n_vertices()).filter(|&v| reached[v] && !held[v]).collect();
@@ -112,7 +112,7 @@ pub(super) fn separate(mesh: &TriangleMesh, free: &[Vertex]) -> Vec<Vec<Vertex>>
         let (mut set, mut next) = (vec![free[first]], 0);
         while next < set.len() {
             for &corner in mesh.vertex_corners(set[next]) {
-                for vertex in mesh.faces()[corner as usize / 3] {
+                for vertex in mesh.faces()[corner.face()] {
                     if let Ok(k) = free.binary_search(&vertex)
                         && !std::mem::replace(&mut is_taken[k], true)
                     {

@@ -42,13 +42,13 @@ impl Positions {
     }
 
     /// Whether each vertex is in a component most of whose area is mirrored.
-    pub(super) fn mirrored(&self, mesh: &TriangleMesh, components: &[u32]) -> Vec<bool> {
-        let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
+    pub(super) fn mirrored(&self, mesh: &TriangleMesh, components: &[usize]) -> Vec<bool> {
+        let n_components = components.iter().max().map_or(0, |&last| last + 1);
         let mut areas = vec![0.0; n_components];
         for face in mesh.faces() {
-            areas[components[face[0]] as usize] += self.signed_area(*face);
+            areas[components[face[0]]] += self.signed_area(*face);
         }
-        components.iter().map(|&component| areas[component as usize] < 0.0).collect()
+        components.iter().map(|&component| areas[component] < 0.0).collect()
     }
 
     /// Twice the area of a face, with the sign of its orientation.
@@ -118,7 +118,7 @@ impl Positions {
     /// The distance of a vertex from the mean of its neighbors, where one shared by two faces counts twice.
     pub(super) fn distance_from_neighbors(&self, mesh: &TriangleMesh, vertex: Vertex) -> f64 {
         let corners = mesh.vertex_corners(vertex);
-        let ring = corners.iter().flat_map(|&corner| mesh.faces()[corner as usize / 3]);
+        let ring = corners.iter().flat_map(|&corner| mesh.faces()[corner.face()]);
         let ring = ring.filter(|&neighbor| neighbor != vertex);
         let share = 0.5 / corners.len() as f64;
         let place = |v: Vertex| match self {

@@ -2,7 +2,7 @@
 //! What a `TriangleMesh` accepts, repairs, refuses and knows.
 
 use authalic::testing::{TriangleMesh, consistent, geometry};
-use authalic::{Elements, Error, Face, MeshError, Vertex};
+use authalic::{Corner, Elements, Error, Face, MeshError, Vertex};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
@@ -62,11 +62,11 @@ fn angle_defects_add_up_to_the_euler_characteristic() {
 fn corners_know_their_neighbours() {
     for test in common::orientable() {
         let mesh = test.mesh();
-        let ends = |corner: u32| {
-            let face = mesh.faces()[corner as usize / 3];
-            [1, 2].map(|k| face[(corner as usize + k) % 3])
+        let ends = |corner: Corner| {
+            let face = mesh.faces()[corner.index() / 3];
+            [1, 2].map(|k| face[(corner.index() + k) % 3])
         };
-        for corner in 0..3 * mesh.n_faces() as u32 {
+        for corner in Corner::all(mesh.n_faces()) {
             let [a, b] = ends(corner);
             match mesh.opposite(corner) {
                 Some(other) => {
@@ -76,13 +76,13 @@ fn corners_know_their_neighbours() {
                 None => assert!(mesh.is_boundary(a) && mesh.is_boundary(b)),
             }
         }
-        let listed: Vec<u32> =
+        let listed: Vec<Corner> =
             Vertex::all(mesh.n_vertices()).flat_map(|v| mesh.vertex_corners(v).to_vec()).collect();
         assert_eq!(BTreeSet::from_iter(&listed).len(), 3 * mesh.n_faces());
         for v in Vertex::all(mesh.n_vertices()) {
             let corners = mesh.vertex_corners(v);
             assert!(corners.is_sorted());
-            assert!(corners.iter().all(|&c| mesh.faces()[c as usize / 3][c as usize % 3] == v));
+            assert!(corners.iter().all(|&c| mesh.faces()[c.index() / 3][c.index() % 3] == v));
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use authalic::{Correspondence, DiskMap, Error, History, RoughSphere, SphereMap, Status};
+use authalic::{Corner, Correspondence, DiskMap, Error, History, RoughSphere, SphereMap, Status, Vertex};
 use numpy::ndarray::{Array1, Array2, Array3, ArrayView2, aview1};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -346,10 +346,10 @@ impl Registration {
 }
 
 /// The row of the target's data that each vertex or corner of the source takes.
-fn nearest_rows(map: &Correspondence, per: Per) -> Vec<u32> {
+fn nearest_rows(map: &Correspondence, per: Per) -> Vec<usize> {
     match per {
-        Per::Vertex => map.nearest_vertices().into_iter().map(|vertex| vertex.0).collect(),
-        Per::Corner => map.nearest_corners(),
+        Per::Vertex => map.nearest_vertices().into_iter().map(Vertex::index).collect(),
+        Per::Corner => map.nearest_corners().into_iter().map(Corner::index).collect(),
     }
 }
 

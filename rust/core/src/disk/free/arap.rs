@@ -37,8 +37,8 @@ pub(super) fn as_rigid_as_possible(
         });
         // 2. Global: the map whose Jacobians are nearest to them
         let forces = energy.gathered(|corner| {
-            let ([cosine, sine], g) = (turns[corner / 3], energy.hats(corner / 3)[corner % 3]);
-            let area = energy.targets[corner / 3];
+            let ([cosine, sine], g) = (turns[corner.face()], energy.hat(corner));
+            let area = energy.targets[corner.face()];
             [area * (cosine * g[0] - sine * g[1]), area * (sine * g[0] + cosine * g[1])]
         });
         let mut columns: Vec<f64> = (0..2 * n).map(|k| forces[k % n][k / n]).collect();

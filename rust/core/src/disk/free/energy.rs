@@ -12,7 +12,7 @@
 use super::face::{Element, Jacobian, STIFFENING, add_area_curvature, add_dirichlet, add_square, stiffened};
 use crate::codomain::planar::PlanarMap;
 use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Corner, TriangleMesh, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -64,6 +64,11 @@ impl<'a> Energy<'a> {
             rest_hats(corners, targets[face])
         });
         Self { mesh, targets, hats }
+    }
+
+    /// The gradient of a corner's hat function on the rest triangle of its face.
+    pub(super) fn hat(&self, corner: Corner) -> [f64; 2] {
+        self.hats[corner.face()][corner.place()]
     }
 
     /// The gradients of the hat functions on the rest triangle of a face.
@@ -132,19 +137,17 @@ impl<'a> Energy<'a> {
     pub(super) fn gradient(&self, map: &[[f64; 2]], weight: f64) -> PlanarMap {
         let by_face = parallel::map(self.mesh.n_faces(), |face| self.slopes(map, face, weight));
         self.gathered(|corner| {
-            let [a, b, c, d] = by_face[corner / 3];
-            let g = self.hats[corner / 3][corner % 3];
+            let [a, b, c, d] = by_face[corner.face()];
+            let g = self.hat(corner);
             [a * g[0] + b * g[1], c * g[0] + d * g[1]]
         })
     }
 
     /// Sums over the corners of every vertex.
-    pub(super) fn gathered(&self, of_corner: impl Fn(usize) -> [f64; 2] + Sync + Send) -> PlanarMap {
+    pub(super) fn gathered(&self, of_corner: impl Fn(Corner) -> [f64; 2] + Sync + Send) -> PlanarMap {
         parallel::map(self.mesh.n_vertices(), |v| {
             let corners = self.mesh.vertex_corners(Vertex::new(v)).iter();
-            corners
-                .map(|&corner| of_corner(corner as usize))
-                .fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]])
+            corners.map(|&corner| of_corner(corner)).fold([0.0; 2], |s, x| [s[0] + x[0], s[1] + x[1]])
         })
     }
 

@@ -6,8 +6,8 @@ use super::energy::Energy;
 use super::meeting::first_meeting;
 use super::sweep::{Extent, for_each_overlap};
 use crate::codomain::planar::PlanarMap;
-use crate::mesh::Vertex;
 use crate::mesh::polygon::is_simple_outline;
+use crate::mesh::{Corner, Face, Vertex};
 
 /// The outlines of a map: all boundary loops of its surface.
 pub(super) struct Outline {
@@ -39,27 +39,28 @@ impl Outline {
             let first = next.len();
             next.extend((0..vertices.len()).map(|k| first + (k + 1) % vertices.len()));
         }
-        let height = |corner: u32| {
-            let [x, y] = energy.hats(corner as usize / 3)[corner as usize % 3];
+        let height = |corner: Corner| {
+            let [x, y] = energy.hat(corner);
             x.hypot(y).recip()
         };
-        let least = |face: u32| (0..3).map(|k| height(3 * face + k)).fold(f64::INFINITY, f64::min);
+        let least = |face: Face| face.corners().map(height).into_iter().fold(f64::INFINITY, f64::min);
         let mut edges = Vec::with_capacity(vertices.len());
         for (&from, &to) in vertices.iter().zip(next.iter().map(|&k| &vertices[k])) {
-            let leaves = |corner: &&u32| {
-                let [face, k] = [**corner as usize / 3, **corner as usize % 3];
-                mesh.faces()[face][(k + 1) % 3] == to
-            };
+            let leaves = |corner: &&Corner| corner.next().vertex(mesh.faces()) == to;
             let corner = *mesh.vertex_corners(from).iter().find(leaves).expect("an edge has a face");
-            let (face, across) = (corner / 3, (corner + 2 - corner / 3 * 3) % 3);
-            let opposite = mesh.faces()[face as usize][across as usize];
-            let across = 3 * face + across;
-            let length = 2.0 * energy.targets[corner as usize / 3] / height(across);
-            edges.push((Edge { ends: [from, to], opposite, height: least(corner / 3).min(length) }, length));
+            let across = corner.previous();
+            let opposite = across.vertex(mesh.faces());
+            let length = 2.0 * energy.targets[corner.face()] / height(across);
+            edges.push((
+                Edge { ends: [from, to], opposite, height: least(corner.face()).min(length) },
+                length,
+            ));
         }
         let mut heights: Vec<f64> = vertices
             .iter()
-            .map(|&v| mesh.vertex_corners(v).iter().map(|c| least(c / 3)).fold(f64::INFINITY, f64::min))
+            .map(|&v| {
+                mesh.vertex_corners(v).iter().map(|corner| least(corner.face())).fold(f64::INFINITY, f64::min)
+            })
             .collect();
         for (k, (_, length)) in edges.iter().enumerate() {
             [k, next[k]].into_iter().for_each(|end| heights[end] = heights[end].min(*length));

@@ -9,8 +9,8 @@ use super::lscm::{of_area_one, spectral_conformal};
 use super::outline::Outline;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
-use crate::mesh::Vertex;
 use crate::mesh::geometry::{area_vector, triangle};
+use crate::mesh::{Corner, Vertex};
 use crate::sparse::{Analysis, Failure};
 use crate::vector::Vector3;
 
@@ -78,8 +78,8 @@ pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: Plana
 /// True if the faces around every inner vertex turn around it once.
 fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool {
     let mesh = energy.mesh;
-    let angle = |corner: u32| {
-        let (face, k) = (mesh.faces()[corner as usize / 3], corner as usize % 3);
+    let angle = |corner: Corner| {
+        let (face, k) = (mesh.faces()[corner.face()], corner.place());
         let [o, p, q] = [0, 1, 2].map(|step| map[face[(k + step) % 3]]);
         let ([a, b], [c, d]) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
         (a * d - b * c).atan2(a * c + b * d)
@@ -100,9 +100,9 @@ fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Planar
         let corners = mesh.vertex_corners(v);
         let mut sum = [0.0; 2];
         for &corner in corners {
-            let face = mesh.faces()[corner as usize / 3];
+            let face = mesh.faces()[corner.face()];
             for k in 1..3 {
-                let x = map[face[(corner as usize % 3 + k) % 3]];
+                let x = map[face[(corner.place() + k) % 3]];
                 (0..2).for_each(|axis| sum[axis] += x[axis] - map[v][axis]);
             }
         }

@@ -10,6 +10,7 @@ use super::energy::{Energy, Hessian};
 use super::face::Element;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
+use crate::mesh::{Corner, Face};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure};
 
@@ -77,7 +78,7 @@ impl<'a> System<'a> {
         let with_contacts = |face: usize| {
             let mut element = elements[face];
             for c in 0..3 {
-                if let Ok(at) = shares.binary_search_by_key(&((3 * face + c) as u32), |share| share.0) {
+                if let Ok(at) = shares.binary_search_by_key(&Face::new(face).corner(c), |share| share.0) {
                     let block = shares[at].1;
                     element[2 * c][2 * c] += block[0];
                     element[2 * c + 1][2 * c] += block[1];
@@ -117,7 +118,7 @@ impl<'a> System<'a> {
             std::array::from_fn(|i| (0..6).map(|j| self.elements[face][i][j] * corners[j / 2][j % 2]).sum())
         });
         let mut product = energy.gathered(|corner| {
-            let (of_face, c) = (&by_face[corner / 3], corner % 3);
+            let (of_face, c) = (&by_face[corner.face()], corner.place());
             [of_face[2 * c], of_face[2 * c + 1]]
         });
         for (contact, [force, stiffness]) in state.contacts.iter().zip(state.springs) {
@@ -172,8 +173,8 @@ impl<'a> System<'a> {
 }
 
 /// The contacts' diagonal blocks (xx, xy, yy), at the first corner of each vertex, in the order of the corners.
-fn shares(energy: &Energy<'_>, state: &Linearized<'_>) -> Vec<(u32, [f64; 3])> {
-    let mut all: Vec<(u32, [f64; 3])> = Vec::with_capacity(3 * state.contacts.len());
+fn shares(energy: &Energy<'_>, state: &Linearized<'_>) -> Vec<(Corner, [f64; 3])> {
+    let mut all: Vec<(Corner, [f64; 3])> = Vec::with_capacity(3 * state.contacts.len());
     for (contact, [_, stiffness]) in state.contacts.iter().zip(state.springs) {
         for (k, &v) in contact.vertices.iter().enumerate() {
             let [x, y] = [contact.slopes[2 * k], contact.slopes[2 * k + 1]];
@@ -182,7 +183,7 @@ fn shares(energy: &Energy<'_>, state: &Linearized<'_>) -> Vec<(u32, [f64; 3])> {
     }
     // stable, so that sums have one order
     all.sort_by_key(|(corner, _)| *corner);
-    let mut merged: Vec<(u32, [f64; 3])> = Vec::new();
+    let mut merged: Vec<(Corner, [f64; 3])> = Vec::new();
     for (corner, block) in all {
         match merged.last_mut() {
             Some((last, sum)) if *last == corner => (0..3).for_each(|k| sum[k] += block[k]),

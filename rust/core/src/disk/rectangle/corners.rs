@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{Elements, Error, MapError};
 use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Corner, TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// Four places along the boundary loop in cyclic order; the first goes to the lower left.
@@ -303,8 +303,8 @@ impl<'a> Outline<'a> {
 
 /// The sum of the angles of the faces at a vertex.
 fn angle_sum(mesh: &TriangleMesh, vertex: Vertex) -> f64 {
-    let angle = |&corner: &u32| {
-        let (face, k) = (corner as usize / 3, corner as usize % 3);
+    let angle = |&corner: &Corner| {
+        let (face, k) = (corner.face(), corner.place());
         let corners = triangle(mesh.points(), mesh.faces()[face]);
         let [here, next, after] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
         let (a, b) = (next - here, after - here);
@@ -320,12 +320,11 @@ fn smallest_parts_cut_off(mesh: &TriangleMesh, outline: &[Vertex]) -> (Vec<[usiz
     let mut place = vec![usize::MAX; mesh.n_vertices()];
     outline.iter().enumerate().for_each(|(k, &v)| place[v] = k);
     let mut parts = Vec::new();
-    for corner in 0..3 * mesh.n_faces() {
-        let face = mesh.faces()[corner / 3];
-        let ends = [face[(corner + 1) % 3], face[(corner + 2) % 3]];
+    for corner in Corner::all(mesh.n_faces()) {
+        let ends = corner.half_edge(mesh.faces());
         let [from, to] = ends.map(|v| place[v]);
         // each inner edge is met twice, once in each direction
-        if from != usize::MAX && to != usize::MAX && mesh.opposite(corner as u32).is_some() {
+        if from != usize::MAX && to != usize::MAX && mesh.opposite(corner).is_some() {
             parts.push(((to + n - from) % n - 1, (from + 1) % n, ends));
         }
     }

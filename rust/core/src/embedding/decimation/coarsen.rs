@@ -10,8 +10,7 @@ use std::collections::BinaryHeap;
 
 use super::Decimation;
 use crate::control::Observer;
-use crate::mesh::Vertex;
-use crate::mesh::corners::next_corner;
+use crate::mesh::{Corner, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -53,7 +52,7 @@ impl PartialOrd for Candidate {
 #[derive(Default)]
 struct Ring {
     /// The corners at the vertex whose next corners are the neighbors.
-    corners: Vec<u32>,
+    corners: Vec<Corner>,
     vertices: Vec<Vertex>,
     points: Vec<Vector3>,
     measure: f64,
@@ -166,10 +165,10 @@ impl Decimation<'_> {
 
     /// The cost of a vertex, infinite where it cannot collapse, and the corner at it that is followed by the neighbor onto
     /// which it collapses.
-    fn best_collapse(&self, vertex: Vertex, ring: &mut Ring) -> (f64, Option<u32>) {
+    fn best_collapse(&self, vertex: Vertex, ring: &mut Ring) -> (f64, Option<Corner>) {
         self.fill_ring(vertex, ring);
         let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);
-        let mut rated: Vec<(f64, Vertex, u32)> = (0..ring.vertices.len())
+        let mut rated: Vec<(f64, Vertex, Corner)> = (0..ring.vertices.len())
             .filter(allowed)
             .map(|k| {
                 let neighbor = ring.vertices[k];
@@ -194,11 +193,11 @@ impl Decimation<'_> {
         ring.points.clear();
         (ring.measure, ring.apex) = (0.0, None);
         for corner in self.around(self.corners[vertex]) {
-            let neighbor = self.vertex(next_corner(corner));
+            let neighbor = self.vertex(corner.next());
             if neighbor == self.apex() {
                 ring.apex = Some(ring.vertices.len());
             }
-            ring.measure += self.faces[corner as usize / 3].target;
+            ring.measure += self.faces[corner.face()].target;
             ring.corners.push(corner);
             ring.vertices.push(neighbor);
             ring.points.push(self.mesh.points().get(neighbor.index()).copied().unwrap_or_default());
@@ -208,6 +207,6 @@ impl Decimation<'_> {
     /// The link condition: exactly two common neighbors.
     fn keeps_the_sphere(&self, ring: &Ring, onto: Vertex) -> bool {
         let around = self.around(self.corners[onto]);
-        around.filter(|&corner| ring.vertices.contains(&self.vertex(next_corner(corner)))).count() == 2
+        around.filter(|&corner| ring.vertices.contains(&self.vertex(corner.next()))).count() == 2
     }
 }

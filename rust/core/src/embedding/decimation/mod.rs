@@ -15,21 +15,20 @@
 
 mod coarsen;
 
-use crate::mesh::corners::{next_corner, previous_corner};
 use crate::mesh::geometry::{area, triangle};
 use crate::mesh::ties::tie_breakers;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
 
 /// A mesh that loses vertices by [`Decimation::coarsen`] and gets them back by [`Decimation::refine`].
 #[derive(Debug)]
 pub(crate) struct Decimation<'a> {
     mesh: &'a TriangleMesh,
     /// The faces of the mesh, then those at the apex.
-    faces: Vec<Face>,
+    faces: Vec<Triangle>,
     /// A corner at each vertex; for a collapsed vertex the corner whose next corner it collapsed onto.
-    corners: Vec<u32>,
+    corners: Vec<Corner>,
     /// The degree of each vertex; for a collapsed vertex its last degree.
-    degrees: Vec<u32>,
+    degrees: Vec<usize>,
     gone: Vec<bool>,
     collapses: Vec<Collapse>,
     /// The targets that the collapses changed, in their order.
@@ -40,10 +39,10 @@ pub(crate) struct Decimation<'a> {
 
 /// A face with all data for a turn around a vertex, half a cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Face {
+struct Triangle {
     vertices: [Vertex; 3],
     /// The corner across the edge opposite to each corner.
-    twins: [u32; 3],
+    twins: [Corner; 3],
     target: f64,
 }
 
@@ -60,18 +59,18 @@ impl<'a> Decimation<'a> {
     /// The whole mesh with its targets, before any collapse: a sphere, or a disk, which gets its apex.
     pub(crate) fn new(mesh: &'a TriangleMesh, targets: Vec<f64>) -> Self {
         let n = mesh.n_vertices();
+        // the corners of a boundary get a twin when the apex closes it
         let twin = |corner| mesh.opposite(corner).unwrap_or_default();
-        let faces = mesh.faces().iter().zip(targets).zip((0..).step_by(3));
-        let face = |((&vertices, target), corner): ((&[Vertex; 3], f64), u32)| Face {
-            vertices,
-            twins: [corner, corner + 1, corner + 2].map(twin),
+        let triangle = |(face, target): (Face, f64)| Triangle {
+            vertices: mesh.faces()[face],
+            twins: face.corners().map(twin),
             target,
         };
         let mut whole = Self {
             mesh,
-            faces: faces.map(face).collect(),
+            faces: Face::all(mesh.n_faces()).zip(targets).map(triangle).collect(),
             corners: Vertex::all(n).map(|vertex| mesh.vertex_corners(vertex)[0]).collect(),
-            degrees: Vertex::all(n).map(|vertex| mesh.vertex_corners(vertex).len() as u32).collect(),
+            degrees: Vertex::all(n).map(|vertex| mesh.vertex_corners(vertex).len()).collect(),
             gone: vec![false; n],
             collapses: Vec::with_capacity(n),
             old_targets: Vec::with_capacity(6 * n),
@@ -83,26 +82,22 @@ impl<'a> Decimation<'a> {
 
     /// Joins the boundary loop to the apex.
     fn close(&mut self, boundary: &[Vertex]) {
-        let (apex, first) = (self.apex(), 3 * self.faces.len() as u32);
-        let end = first + 3 * boundary.len() as u32;
+        let (apex, first, n) = (self.apex(), self.faces.len(), boundary.len());
+        let face = |k: usize| Face::new(first + k % n);
         for (k, &vertex) in boundary.iter().enumerate() {
-            let next = boundary[(k + 1) % boundary.len()];
-            let along = |&&corner: &&u32| {
-                self.vertex(next_corner(corner)) == next
-                    && self.mesh.opposite(previous_corner(corner)).is_none()
+            let next = boundary[(k + 1) % n];
+            let along = |corner: &&Corner| {
+                self.vertex(corner.next()) == next && self.mesh.opposite(corner.previous()).is_none()
             };
             let corner = self.mesh.vertex_corners(vertex).iter().find(along);
-            let across = previous_corner(*corner.expect("the loop runs along boundary edges"));
-            let face = first + 3 * k as u32;
-            let [before, behind] =
-                [if k == 0 { end } else { face } - 3, if face + 3 == end { first } else { face + 3 }];
-            let twins = [before + 1, behind, across];
-            self.faces.push(Face { vertices: [next, vertex, apex], twins, target: 0.0 });
-            *self.twin_mut(across) = face + 2;
+            let across = corner.expect("the loop runs along boundary edges").previous();
+            let twins = [face(k + n - 1).corner(1), face(k + 1).corner(0), across];
+            self.faces.push(Triangle { vertices: [next, vertex, apex], twins, target: 0.0 });
+            *self.twin_mut(across) = face(k).corner(2);
             self.degrees[vertex] += 2;
         }
-        self.corners.push(first + 2);
-        self.degrees.push(boundary.len() as u32);
+        self.corners.push(face(0).corner(2));
+        self.degrees.push(n);
         self.gone.push(false);
     }
 
@@ -119,14 +114,14 @@ impl<'a> Decimation<'a> {
     /// The faces at a vertex, counter-clockwise, each as its two other vertices in order and its target.
     pub(crate) fn star(&self, vertex: Vertex) -> impl Iterator<Item = (Vertex, Vertex, f64)> {
         self.around(self.corners[vertex]).map(|corner| {
-            let ends = [next_corner(corner), previous_corner(corner)].map(|corner| self.vertex(corner));
-            (ends[0], ends[1], self.faces[corner as usize / 3].target)
+            let ends = [corner.next(), corner.previous()].map(|corner| self.vertex(corner));
+            (ends[0], ends[1], self.faces[corner.face()].target)
         })
     }
 
     /// The number of neighbors of a vertex.
     pub(crate) fn degree(&self, vertex: Vertex) -> usize {
-        self.degrees[vertex] as usize
+        self.degrees[vertex]
     }
 
     /// True if a vertex has been collapsed.
@@ -140,41 +135,41 @@ impl<'a> Decimation<'a> {
         let Collapse { vertex, onto } = collapse;
         let corner = self.corners[vertex];
         // 1. Put the dead faces back between their neighbors
-        for corner in self.dead_faces(corner).into_iter().flat_map(|face| 3 * face..3 * face + 3) {
+        for corner in self.dead_faces(corner).into_iter().flat_map(Face::corners) {
             let across = self.twin(corner);
             *self.twin_mut(across) = corner;
         }
         // 2. Give the star its vertex back
         let mut current = corner;
         loop {
-            self.faces[current as usize / 3].vertices[current as usize % 3] = vertex;
+            self.faces[current.face()].vertices[current.place()] = vertex;
             current = self.turned(current);
             if current == corner {
                 break;
             }
         }
-        self.corners[onto] = next_corner(corner);
+        self.corners[onto] = corner.next();
         self.gone[vertex] = false;
         self.count_neighbors(collapse, corner, 1);
         // 3. Give the star its measure back
-        let faces: Vec<u32> = self.measured_faces(corner).collect();
+        let faces: Vec<Face> = self.measured_faces(corner).collect();
         let begin = self.old_targets.len() - faces.len();
         for (face, target) in faces.into_iter().zip(self.old_targets.drain(begin..)) {
-            self.faces[face as usize].target = target;
+            self.faces[face].target = target;
         }
         Some(collapse)
     }
 
     /// Moves the vertex at a corner onto that of the next corner.
-    fn collapse(&mut self, corner: u32) {
-        let collapse = Collapse { vertex: self.vertex(corner), onto: self.vertex(next_corner(corner)) };
+    fn collapse(&mut self, corner: Corner) {
+        let collapse = Collapse { vertex: self.vertex(corner), onto: self.vertex(corner.next()) };
         let dead = self.dead_faces(corner);
-        let heirs: Vec<u32> = self.measured_faces(corner).collect();
+        let heirs: Vec<Face> = self.measured_faces(corner).collect();
         self.count_neighbors(collapse, corner, -1);
         // 1. Give the star its new vertex
         let mut last = corner;
         loop {
-            self.faces[last as usize / 3].vertices[last as usize % 3] = collapse.onto;
+            self.faces[last.face()].vertices[last.place()] = collapse.onto;
             let next = self.turned(last);
             if next == corner {
                 break;
@@ -182,19 +177,19 @@ impl<'a> Decimation<'a> {
             last = next;
         }
         // 2. Join the faces beside each dead face
-        for [one, two] in [[corner, next_corner(corner)], [last, previous_corner(last)]] {
+        for [one, two] in [[corner, corner.next()], [last, last.previous()]] {
             let [one, two] = [one, two].map(|corner| self.twin(corner));
             *self.twin_mut(one) = two;
             *self.twin_mut(two) = one;
-            for corner in [next_corner(two), previous_corner(two)] {
+            for corner in [two.next(), two.previous()] {
                 let vertex = self.vertex(corner);
                 self.corners[vertex] = corner;
             }
         }
         // 3. Share the measure among the remaining faces
-        let measure: f64 = heirs.iter().map(|&face| self.faces[face as usize].target).sum();
-        self.old_targets.extend(heirs.iter().map(|&face| self.faces[face as usize].target));
-        dead.into_iter().for_each(|face| self.faces[face as usize].target = 0.0);
+        let measure: f64 = heirs.iter().map(|&face| self.faces[face].target).sum();
+        self.old_targets.extend(heirs.iter().map(|&face| self.faces[face].target));
+        dead.into_iter().for_each(|face| self.faces[face].target = 0.0);
         self.share_out(heirs.into_iter().filter(|face| !dead.contains(face)), measure);
         // 4. Record the collapse
         self.corners[collapse.vertex] = corner;
@@ -203,22 +198,22 @@ impl<'a> Decimation<'a> {
     }
 
     /// Shares out half of a measure in equal parts, half by area.
-    fn share_out(&mut self, faces: impl Iterator<Item = u32> + Clone, measure: f64) {
-        let face_area = |face: u32| area(triangle(self.mesh.points(), self.faces[face as usize].vertices));
+    fn share_out(&mut self, faces: impl Iterator<Item = Face> + Clone, measure: f64) {
+        let face_area = |face: Face| area(triangle(self.mesh.points(), self.faces[face].vertices));
         let areas: Vec<f64> = faces.clone().map(face_area).collect();
         let total: f64 = areas.iter().sum();
         let equal = 1.0 / areas.len() as f64;
         for (face, area) in faces.zip(areas) {
             let by_area = if total > 0.0 { area / total } else { equal };
-            self.faces[face as usize].target = 0.5 * measure * (by_area + equal);
+            self.faces[face].target = 0.5 * measure * (by_area + equal);
         }
     }
 
     /// Updates the degrees of a vertex's neighbors when it comes back (`sign` 1) or collapses (−1).
-    fn count_neighbors(&mut self, collapse: Collapse, corner: u32, sign: i32) {
-        let beyond = self.degrees[collapse.vertex] as i32 - 4;
-        let across = self.twin(previous_corner(corner));
-        let beside = [previous_corner(corner), across].map(|corner| (self.vertex(corner), sign));
+    fn count_neighbors(&mut self, collapse: Collapse, corner: Corner, sign: isize) {
+        let beyond = self.degrees[collapse.vertex] as isize - 4;
+        let across = self.twin(corner.previous());
+        let beside = [corner.previous(), across].map(|corner| (self.vertex(corner), sign));
         for (vertex, change) in beside.into_iter().chain([(collapse.onto, -sign * beyond)]) {
             let degree = &mut self.degrees[vertex];
             *degree = degree.wrapping_add_signed(change);
@@ -227,40 +222,40 @@ impl<'a> Decimation<'a> {
 
     /// The faces that share the measure of the star around a corner: those of the star that are not at the apex; where there
     /// is only one, also the face across from the vertex, which inherits it.
-    fn measured_faces(&self, corner: u32) -> impl Iterator<Item = u32> {
-        let star = self.around(corner).filter(|&corner| (corner as usize) < 3 * self.mesh.n_faces());
+    fn measured_faces(&self, corner: Corner) -> impl Iterator<Item = Face> {
+        let star = self.around(corner).filter(|corner| corner.face().index() < self.mesh.n_faces());
         let is_ear = star.clone().nth(1).is_none();
         let heir = star.clone().next().filter(|_| is_ear).map(|corner| self.twin(corner));
-        star.chain(heir).map(|corner| corner / 3)
+        star.chain(heir).map(Corner::face)
     }
 
     /// The faces on both sides of the edge from the vertex at a corner to that of the next corner.
-    fn dead_faces(&self, corner: u32) -> [u32; 2] {
-        [corner / 3, self.twin(previous_corner(corner)) / 3]
+    fn dead_faces(&self, corner: Corner) -> [Face; 2] {
+        [corner.face(), self.twin(corner.previous()).face()]
     }
 
     /// The corners at one vertex, counter-clockwise.
-    fn around(&self, first: u32) -> impl Iterator<Item = u32> + Clone {
+    fn around(&self, first: Corner) -> impl Iterator<Item = Corner> + Clone {
         std::iter::successors(Some(first), move |&corner| {
             Some(self.turned(corner)).filter(|&turned| turned != first)
         })
     }
 
     /// The next corner at the same vertex, counter-clockwise.
-    fn turned(&self, corner: u32) -> u32 {
-        next_corner(self.twin(next_corner(corner)))
+    fn turned(&self, corner: Corner) -> Corner {
+        self.twin(corner.next()).next()
     }
 
-    fn twin(&self, corner: u32) -> u32 {
-        self.faces[corner as usize / 3].twins[corner as usize % 3]
+    fn twin(&self, corner: Corner) -> Corner {
+        self.faces[corner.face()].twins[corner.place()]
     }
 
-    fn twin_mut(&mut self, corner: u32) -> &mut u32 {
-        &mut self.faces[corner as usize / 3].twins[corner as usize % 3]
+    fn twin_mut(&mut self, corner: Corner) -> &mut Corner {
+        &mut self.faces[corner.face()].twins[corner.place()]
     }
 
-    fn vertex(&self, corner: u32) -> Vertex {
-        self.faces[corner as usize / 3].vertices[corner as usize % 3]
+    fn vertex(&self, corner: Corner) -> Vertex {
+        self.faces[corner.face()].vertices[corner.place()]
     }
 }
 

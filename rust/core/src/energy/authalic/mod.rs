@@ -31,7 +31,7 @@ use super::stretch::Profile;
 use crate::codomain::Codomain;
 use crate::codomain::motion::Frame;
 use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, Vertex, VertexCorners};
+use crate::mesh::{Corner, Face, TriangleMesh, Vertex, VertexCorners};
 use crate::parallel;
 use crate::vector::Vector3;
 use face::{Outer, STEEPNESS, Triangle, add_product, add_quadratic, angle_cost};
@@ -103,9 +103,9 @@ impl AuthalicEnergy {
         let cotangents = parallel::map(mesh.n_faces(), |face| {
             rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), flattest)
         });
-        let is_boundary = |corner: usize| u8::from(mesh.opposite(corner as u32).is_none());
+        let is_boundary = |corner: Corner| u8::from(mesh.opposite(corner).is_none());
         let boundary_edges = parallel::map(mesh.n_faces(), |face| {
-            (0..3).map(|c| is_boundary(3 * face + c) << c).fold(0, |bits, bit| bits | bit)
+            (0..3).map(|c| is_boundary(Face::new(face).corner(c)) << c).fold(0, |bits, bit| bits | bit)
         });
         let faces = mesh.faces().to_vec();
         let corners = VertexCorners::new(mesh.n_vertices(), &faces);
@@ -118,7 +118,7 @@ impl AuthalicEnergy {
     }
 
     /// The corners at a vertex, in ascending order.
-    pub(crate) fn vertex_corners(&self, vertex: Vertex) -> &[u32] {
+    pub(crate) fn vertex_corners(&self, vertex: Vertex) -> &[Corner] {
         self.corners.of(vertex)
     }
 
@@ -297,7 +297,7 @@ impl AuthalicEnergy {
         parallel::map(self.corners.len(), |vertex| {
             let mut sum = [0.0; 2];
             for &corner in self.corners.of(Vertex::new(vertex)) {
-                let (face, k) = (corner as usize / 3, corner as usize % 3);
+                let (face, k) = (corner.face(), corner.place());
                 (0..2).for_each(|axis| sum[axis] += by_face[face][2 * k + axis]);
             }
             sum

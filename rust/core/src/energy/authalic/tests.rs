@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::codomain::motion::{Motion, frames};
-use crate::mesh::Vertex;
+use crate::mesh::{Corner, Vertex};
 use crate::vector::coordinates;
 
 const FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
@@ -81,8 +81,8 @@ fn missing_pull(
     if motions[vertex] != Motion::Circle {
         return 0.0;
     }
-    let of_corner = |&corner: &u32| {
-        let (face, c) = (corner as usize / 3, corner as usize % 3);
+    let of_corner = |&corner: &Corner| {
+        let (face, c) = (corner.face().index(), corner.place());
         let corners = energy.triangle(map, face);
         let outer = energy.outer(&corners, face, &WEIGHTS);
         corners.slope_in_space(&outer, energy.cotangents[face], c).dot(frames[vertex].outward)

@@ -8,7 +8,7 @@
 //! Input: two surfaces of genus 0 and as many curves on either. Cost: linear.
 
 use crate::error::{CurveError, Elements, Error, Side};
-use crate::mesh::{Face, TriangleMesh, Vertex};
+use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
 
 /// Least number of vertices of a path that counts as closed because an edge joins its ends; a shorter one may
 /// just bend around a face or two.
@@ -261,8 +261,7 @@ pub(super) fn loop_along(mesh: &TriangleMesh, curve: &[Vertex]) -> Option<usize>
 /// The face on the left of the edge from one vertex to another, if there is one.
 pub(super) fn face_on_left(mesh: &TriangleMesh, from: Vertex, to: Vertex) -> Option<Face> {
     let corners = mesh.vertex_corners(from).iter();
-    let next = |corner: u32| mesh.faces()[corner as usize / 3][(corner as usize % 3 + 1) % 3];
-    corners.copied().find(|&corner| next(corner) == to).map(Face::of_corner)
+    corners.copied().find(|corner| corner.next().vertex(mesh.faces()) == to).map(Corner::face)
 }
 
 /// Whether an edge joins two vertices.

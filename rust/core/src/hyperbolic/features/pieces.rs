@@ -94,7 +94,7 @@ impl Surface<'_> {
     /// The region on the left of a boundary loop, twice.
     fn loop_sides(&self, feature: &Feature) -> [usize; 2] {
         let corner = self.mesh.vertex_corners(feature.start())[0];
-        [self.regions.of_face[Face::of_corner(corner)]; 2]
+        [self.regions.of_face[corner.face()]; 2]
     }
 }
 

@@ -9,9 +9,8 @@
 
 use super::curves::{CurvePair, Gap, face_on_left, loop_along};
 use crate::error::{CurveError, Error, Side};
-use crate::mesh::corners::{NO_CORNER, next_corner, previous_corner, vertex_at};
 use crate::mesh::geometry::triangle;
-use crate::mesh::{Face, TriangleMesh, Vertex};
+use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
 use crate::vector::Vector3;
 
 /// The region beyond the boundary, which is none.
@@ -224,31 +223,29 @@ fn walls_at_corners<'a>(mesh: &TriangleMesh, curves: impl Iterator<Item = &'a [V
             next[vertex] = [curve[(k + 1) % n], curve[(k + n - 1) % n]];
         }
     }
-    let is_wall = |corner: u32| {
-        let [a, b] = [next_corner(corner), previous_corner(corner)].map(|c| vertex_at(mesh.faces(), c));
+    let is_wall = |corner: Corner| {
+        let [a, b] = corner.half_edge(mesh.faces());
         next[a].contains(&b)
     };
-    (0..3 * mesh.n_faces() as u32).map(is_wall).collect()
+    Corner::all(mesh.n_faces()).map(is_wall).collect()
 }
 
 /// The region of each face, and the number of regions.
 fn flooded(mesh: &TriangleMesh, is_wall: &[bool]) -> (Vec<usize>, usize) {
     let (mut of_face, mut count) = (vec![OUTSIDE; mesh.n_faces()], 0);
-    for seed in 0..mesh.n_faces() {
+    for seed in Face::all(mesh.n_faces()) {
         if of_face[seed] != OUTSIDE {
             continue;
         }
         of_face[seed] = count;
-        let mut pending = vec![seed as u32];
+        let mut pending = vec![seed];
         while let Some(face) = pending.pop() {
-            for corner in 3 * face..3 * face + 3 {
-                let across = mesh.opposite(corner).unwrap_or(NO_CORNER);
-                if across == NO_CORNER || is_wall[corner as usize] || of_face[across as usize / 3] != OUTSIDE
-                {
-                    continue;
+            for corner in face.corners() {
+                let Some(beyond) = mesh.opposite(corner).map(Corner::face) else { continue };
+                if !is_wall[corner] && of_face[beyond] == OUTSIDE {
+                    of_face[beyond] = count;
+                    pending.push(beyond);
                 }
-                of_face[across as usize / 3] = count;
-                pending.push(across / 3);
             }
         }
         count += 1;

@@ -12,7 +12,7 @@ use crate::hyperbolic::moebius::{
     Complex, Moebius, from_hyperboloid, orientation, seen_from, to_hyperboloid,
 };
 use crate::hyperbolic::slice::Opened;
-use crate::mesh::{Face, NO_CORNER};
+use crate::mesh::{Corner, Face};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -35,7 +35,7 @@ pub(crate) struct Atlas<'a> {
     pub transitions: Vec<Moebius>,
     /// (m, 3): μ at the corners of each face.
     pub mu: Vec<[f64; 3]>,
-    opposite: &'a [u32],
+    opposite: &'a [Option<Corner>],
 }
 
 /// The end of a walk.
@@ -58,10 +58,10 @@ impl<'a> Atlas<'a> {
         let charts =
             parallel::map(surface.faces.len(), |face| chart(metric.lengths[face], metric.angles[face]));
         let transitions = parallel::map(3 * charts.len(), |corner| match opposite[corner] {
-            NO_CORNER => Moebius::default(),
-            across => {
-                let [from, to] = edge(&charts, corner);
-                let [to_from, to_to] = edge(&charts, across as usize);
+            None => Moebius::default(),
+            Some(across) => {
+                let [from, to] = edge(&charts, Corner::new(corner));
+                let [to_from, to_to] = edge(&charts, across);
                 Moebius::between([from, to], [to_to, to_from])
             }
         });
@@ -75,8 +75,7 @@ impl<'a> Atlas<'a> {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         for step in 0..MOST_STEPS {
             let heights = self.heights(walk.face, walk.x);
-            let crossed =
-                |k: &usize| heights[*k] < -INSIDE && self.opposite[walk.face.corner(*k)] != NO_CORNER;
+            let crossed = |k: &usize| heights[*k] < -INSIDE && self.opposite[walk.face.corner(*k)].is_some();
             let candidates: Vec<usize> = (0..3).filter(crossed).collect();
             let lowest = || candidates.iter().copied().min_by(|&a, &b| heights[a].total_cmp(&heights[b]));
             let chosen = match candidates.len() {
@@ -93,9 +92,10 @@ impl<'a> Atlas<'a> {
     }
 
     /// The walk one face farther.
-    fn across(&self, walk: &Walk, corner: usize) -> Walk {
+    fn across(&self, walk: &Walk, corner: Corner) -> Walk {
+        let across = self.opposite[corner].expect("a walk crosses inner edges only");
         let transition = self.transitions[corner];
-        let (face, x) = (Face::of_corner(self.opposite[corner]), transition.apply(walk.x));
+        let (face, x) = (across.face(), transition.apply(walk.x));
         Walk { face, x, motion: transition * walk.motion, is_outside: false }
     }
 
@@ -137,9 +137,8 @@ fn determinant(a: Vector3, b: Vector3, x: Vector3) -> f64 {
 }
 
 /// The ends of the edge opposite to a corner, in the direction of its face.
-fn edge(charts: &[[Complex; 3]], corner: usize) -> [Complex; 2] {
-    let (face, k) = (corner / 3, corner % 3);
-    [charts[face][(k + 1) % 3], charts[face][(k + 2) % 3]]
+fn edge(charts: &[[Complex; 3]], corner: Corner) -> [Complex; 2] {
+    [corner.next(), corner.previous()].map(|corner| charts[corner.face()][corner.place()])
 }
 
 /// A face in the Poincaré disk, with its middle at the origin.

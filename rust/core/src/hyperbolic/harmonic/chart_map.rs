@@ -6,7 +6,7 @@ use super::delaunay::{Net, Weighted, delaunay};
 use super::initial::Places;
 use crate::error::Error;
 use crate::hyperbolic::moebius::{Complex, Moebius, exponential, seen_from};
-use crate::mesh::{NO_CORNER, Vertex};
+use crate::mesh::{Corner, Vertex};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Order};
 
@@ -26,7 +26,7 @@ pub(crate) struct ChartMap<'a> {
     /// (3 m,): the weight of the edge opposite to each corner of `intrinsic`.
     pub weights: Vec<f64>,
     /// The edges of `intrinsic` between ends that are not both held, each by one corner.
-    edges: Vec<u32>,
+    edges: Vec<Corner>,
     /// The energy of the identity of the source on these edges.
     pub rest_energy: f64,
 }
@@ -53,18 +53,18 @@ impl<'a> ChartMap<'a> {
     ) -> Self {
         let Weighted { net: intrinsic, weights, lengths } = delaunay(input.clone(), lengths, kept);
         let mut map = Self { atlas, places, input, intrinsic, weights, edges: Vec::new(), rest_energy: 0.0 };
-        map.edges = (0..map.weights.len() as u32).filter(|&corner| map.counts(corner)).collect();
-        let rest = |&corner: &u32| 0.5 * map.weights[corner as usize] * lengths[corner as usize].powi(2);
+        map.edges = Corner::all(map.intrinsic.faces.len()).filter(|&corner| map.counts(corner)).collect();
+        let rest = |&corner: &Corner| 0.5 * map.weights[corner] * lengths[corner].powi(2);
         map.rest_energy = map.edges.iter().map(rest).sum();
         map
     }
 
     /// Whether the edge of a corner counts, from this side; edges between two held vertices do not.
-    fn counts(&self, corner: u32) -> bool {
-        let across = self.intrinsic.opposite[corner as usize];
+    fn counts(&self, corner: Corner) -> bool {
+        let across = self.intrinsic.opposite[corner];
         let is_held = |vertex: Vertex| self.places.held[vertex].is_some();
-        let [tail, head] = self.intrinsic.ends(corner as usize);
-        (across == NO_CORNER || corner < across) && !(is_held(tail) && is_held(head))
+        let [tail, head] = self.intrinsic.ends(corner);
+        across.is_none_or(|across| corner < across) && !(is_held(tail) && is_held(head))
     }
 
     /// E at the present places.
@@ -80,8 +80,7 @@ impl<'a> ChartMap<'a> {
         })
     }
 
-    fn pull(&self, corner: u32, positions: &[Complex]) -> Pull {
-        let corner = corner as usize;
+    fn pull(&self, corner: Corner, positions: &[Complex]) -> Pull {
         let ends = self.intrinsic.ends(corner);
         let [a, x] = ends.map(|vertex| positions[vertex]);
         let transition = self.intrinsic.transitions[corner];
@@ -123,8 +122,8 @@ impl<'a> ChartMap<'a> {
     pub(super) fn stiffness(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.places.positions.len()];
         for &corner in &self.edges {
-            let ends = self.intrinsic.ends(corner as usize);
-            ends.iter().for_each(|&vertex| sums[vertex] += self.weights[corner as usize]);
+            let ends = self.intrinsic.ends(corner);
+            ends.iter().for_each(|&vertex| sums[vertex] += self.weights[corner]);
         }
         sums
     }
@@ -136,7 +135,7 @@ impl<'a> ChartMap<'a> {
         let mut dofs: Vec<u8> =
             self.places.held.iter().map(|held| if held.is_some() { 0 } else { 2 }).collect();
         dofs.push(0);
-        let clique = |&corner: &u32| match self.intrinsic.ends(corner as usize) {
+        let clique = |&corner: &Corner| match self.intrinsic.ends(corner) {
             [tail, head] if tail == head => [tail, Vertex::new(n), Vertex::new(n)],
             [tail, head] => [tail, head, Vertex::new(n)],
         };
@@ -192,8 +191,7 @@ impl<'a> ChartMap<'a> {
         for net in [&mut self.input, &mut self.intrinsic] {
             let (faces, old) = (&net.faces, &net.transitions);
             net.transitions = parallel::map(old.len(), |corner| {
-                let face = faces[corner / 3];
-                let [tail, head] = [1, 2].map(|step| walks[face[(corner + step) % 3]].motion);
+                let [tail, head] = Corner::new(corner).half_edge(faces).map(|vertex| walks[vertex].motion);
                 if tail == Moebius::default() && head == Moebius::default() {
                     old[corner]
                 } else {

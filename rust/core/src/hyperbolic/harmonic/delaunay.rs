@@ -12,7 +12,7 @@
 
 use crate::hyperbolic::moebius::Moebius;
 use crate::hyperbolic::slice::Opened;
-use crate::mesh::{NO_CORNER, Vertex};
+use crate::mesh::{Corner, Face, Vertex};
 
 /// An edge is flipped if its cotangents sum to less than minus this.
 const CONVEX: f64 = 1e-9;
@@ -31,7 +31,7 @@ pub(crate) struct Net {
     /// (m, 3): the vertices of the faces.
     pub faces: Vec<[Vertex; 3]>,
     /// (3 m,): the opposite corners.
-    pub opposite: Vec<u32>,
+    pub opposite: Vec<Option<Corner>>,
     /// (3 m,): the isometry from the chart of an edge's head to that of its tail; its face runs from tail to head.
     pub transitions: Vec<Moebius>,
 }
@@ -50,9 +50,8 @@ impl Net {
     }
 
     /// The tail and the head of the edge of a corner.
-    pub(crate) fn ends(&self, corner: usize) -> [Vertex; 2] {
-        let face = self.faces[corner / 3];
-        [face[(corner + 1) % 3], face[(corner + 2) % 3]].map(|v| v)
+    pub(crate) fn ends(&self, corner: Corner) -> [Vertex; 2] {
+        corner.half_edge(&self.faces)
     }
 }
 
@@ -64,58 +63,57 @@ pub(crate) fn delaunay(mut net: Net, lengths: &[[f64; 3]], kept: &[bool]) -> Wei
     let mut lengths: Vec<f64> = lengths.iter().flatten().copied().collect();
     let is_boundary = boundary_vertices(&net);
     // 1. Flips until every edge is Delaunay
-    let mut queue: Vec<u32> =
-        (0..lengths.len() as u32).rev().filter(|&c| c < net.opposite[c as usize]).collect();
+    let is_first = |corner: &Corner| net.opposite[*corner].is_none_or(|across| *corner < across);
+    let mut queue: Vec<Corner> = Corner::all(net.faces.len()).rev().filter(is_first).collect();
     let mut is_queued = vec![false; lengths.len()];
-    queue.iter().for_each(|&corner| is_queued[corner as usize] = true);
+    queue.iter().for_each(|&corner| is_queued[corner] = true);
     let mut flips_left = 100 * lengths.len();
     while let Some(corner) = queue.pop() {
-        is_queued[corner as usize] = false;
-        let is_kept = |corner: u32| corner != NO_CORNER && kept[corner as usize / 3];
-        let may_flip = flips_left > 0 && !is_kept(corner) && !is_kept(net.opposite[corner as usize]);
-        if !may_flip || !should_flip(&net, &lengths, &is_boundary, corner as usize) {
+        is_queued[corner] = false;
+        let is_kept = |corner: Corner| kept[corner.face()];
+        let may_flip = flips_left > 0 && !is_kept(corner) && !net.opposite[corner].is_some_and(is_kept);
+        if !may_flip || !should_flip(&net, &lengths, &is_boundary, corner) {
             continue;
         }
         flips_left -= 1;
-        for around in flip(&mut net, &mut lengths, corner as usize) {
-            let edge = around.min(net.opposite[around as usize]);
-            if net.opposite[around as usize] != NO_CORNER && !is_queued[edge as usize] {
-                is_queued[edge as usize] = true;
+        for around in flip(&mut net, &mut lengths, corner) {
+            let Some(across) = net.opposite[around] else { continue };
+            let edge = around.min(across);
+            if !is_queued[edge] {
+                is_queued[edge] = true;
                 queue.push(edge);
             }
         }
     }
     // 2. Weights
-    let halves: Vec<f64> = (0..net.faces.len()).flat_map(|face| cotangents(&lengths, face)).collect();
-    let weight = |corner: usize| match net.opposite[corner] {
-        NO_CORNER => 0.5 * halves[corner],
-        across => 0.5 * (halves[corner] + halves[across as usize]),
+    let halves: Vec<f64> = Face::all(net.faces.len()).flat_map(|face| cotangents(&lengths, face)).collect();
+    let weight = |corner: Corner| match net.opposite[corner] {
+        None => 0.5 * halves[corner],
+        Some(across) => 0.5 * (halves[corner] + halves[across]),
     };
-    let is_kept = |corner: usize| {
-        kept[corner / 3] || net.opposite[corner] != NO_CORNER && kept[net.opposite[corner] as usize / 3]
+    let is_kept = |corner: Corner| {
+        kept[corner.face()] || net.opposite[corner].is_some_and(|across| kept[across.face()])
     };
-    let least = |corner: usize| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
-    let weights = (0..halves.len()).map(|corner| weight(corner).max(least(corner))).collect();
+    let least = |corner: Corner| if is_kept(corner) { LEAST_KEPT } else { LEAST_WEIGHT };
+    let weights = Corner::all(net.faces.len()).map(|corner| weight(corner).max(least(corner))).collect();
     Weighted { net, weights, lengths }
 }
 
 fn boundary_vertices(net: &Net) -> Vec<bool> {
     let n_vertices = net.faces.iter().flatten().max().map_or(0, |&last| last.index() + 1);
     let mut is_boundary = vec![false; n_vertices];
-    for corner in (0..net.opposite.len()).filter(|&corner| net.opposite[corner] == NO_CORNER) {
+    for corner in Corner::all(net.faces.len()).filter(|&corner| net.opposite[corner].is_none()) {
         net.ends(corner).iter().for_each(|&vertex| is_boundary[vertex] = true);
     }
     is_boundary
 }
 
 /// Whether an edge is not Delaunay and may be flipped.
-fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) -> bool {
-    let across = net.opposite[corner];
-    if across == NO_CORNER || across as usize / 3 == corner / 3 {
+fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: Corner) -> bool {
+    let Some(across) = net.opposite[corner].filter(|across| across.face() != corner.face()) else {
         return false;
-    }
-    let across = across as usize;
-    let is_on_boundary = |corner: usize| is_boundary[net.faces[corner / 3][corner % 3]];
+    };
+    let is_on_boundary = |corner: Corner| is_boundary[corner.vertex(&net.faces)];
     let (ours, theirs) = (chords(lengths, corner), chords(lengths, across));
     // the cosines of the opposite angles, doubled; their sum has the sign of that of the cotangents
     let cosine = |[e, a, b]: [f64; 3]| (a * a + b * b - e * e) / (a * b);
@@ -131,56 +129,54 @@ fn should_flip(net: &Net, lengths: &[f64], is_boundary: &[bool], corner: usize) 
 /// Flips the edge of a corner; returns the corners of the four edges around it.
 ///
 /// Faces (p, i, j) and (q, j, i) become (p, i, q) and (q, j, p).
-fn flip(net: &mut Net, lengths: &mut [f64], corner: usize) -> [u32; 4] {
-    let next = |corner: usize| corner - corner % 3 + (corner + 1) % 3;
-    let across = net.opposite[corner] as usize;
+fn flip(net: &mut Net, lengths: &mut [f64], corner: Corner) -> [Corner; 4] {
+    let across = net.opposite[corner].expect("an edge that is flipped has two faces");
     // edges j → p and p → i of the first face, i → q and q → j of the second
-    let (jp, pi) = (next(corner), next(next(corner)));
-    let (iq, qj) = (next(across), next(next(across)));
-    let [p, q] = [corner, across].map(|corner| net.faces[corner / 3][corner % 3]);
+    let (jp, pi) = (corner.next(), corner.previous());
+    let (iq, qj) = (across.next(), across.previous());
+    let [p, q] = [corner, across].map(|corner| corner.vertex(&net.faces));
     let [i, j] = net.ends(corner);
     let length = diagonal(lengths, corner, across);
     let kept = [iq, pi, jp, qj].map(|c| (net.opposite[c], lengths[c], net.transitions[c]));
     let new_transition = net.transitions[iq].inverse() * net.transitions[pi].inverse();
-    let (f, g) = (corner / 3, across / 3);
+    let (f, g) = (corner.face(), across.face());
     net.faces[f] = [p, i, q];
     net.faces[g] = [q, j, p];
-    let places = [3 * f, 3 * f + 2, 3 * g, 3 * g + 2];
+    let places = [f.corner(0), f.corner(2), g.corner(0), g.corner(2)];
     // two of the four edges may be glued to each other; then each has to follow its partner
-    let moved = |old: u32| match [iq, pi, jp, qj].iter().position(|&c| c as u32 == old) {
-        Some(k) => places[k] as u32,
+    let moved = |old: Corner| match [iq, pi, jp, qj].iter().position(|&corner| corner == old) {
+        Some(k) => places[k],
         None => old,
     };
     for (&place, (opposite, length, transition)) in places.iter().zip(kept) {
-        net.opposite[place] = if opposite == NO_CORNER { NO_CORNER } else { moved(opposite) };
-        if opposite != NO_CORNER {
-            net.opposite[moved(opposite) as usize] = place as u32;
+        net.opposite[place] = opposite.map(moved);
+        if let Some(opposite) = net.opposite[place] {
+            net.opposite[opposite] = Some(place);
         }
         lengths[place] = length;
         net.transitions[place] = transition;
     }
     // the new edge: q → p in the first face, p → q in the second
-    let (ours, theirs) = (3 * f + 1, 3 * g + 1);
-    (net.opposite[ours], net.opposite[theirs]) = (theirs as u32, ours as u32);
+    let (ours, theirs) = (f.corner(1), g.corner(1));
+    (net.opposite[ours], net.opposite[theirs]) = (Some(theirs), Some(ours));
     (lengths[ours], lengths[theirs]) = (length, length);
     net.transitions[ours] = new_transition;
     net.transitions[theirs] = new_transition.inverse();
-    places.map(|place| place as u32)
+    places
 }
 
 /// The lengths of an edge and of the two edges after it in its face.
-fn sides(lengths: &[f64], corner: usize) -> [f64; 3] {
-    let first = corner - corner % 3;
-    [0, 1, 2].map(|step| lengths[first + (corner + step) % 3])
+fn sides(lengths: &[f64], corner: Corner) -> [f64; 3] {
+    [corner, corner.next(), corner.previous()].map(|corner| lengths[corner])
 }
 
 /// The chords of an edge and of the two edges after it in its face.
-fn chords(lengths: &[f64], corner: usize) -> [f64; 3] {
+fn chords(lengths: &[f64], corner: Corner) -> [f64; 3] {
     sides(lengths, corner).map(|length| 2.0 * (0.5 * length).sinh())
 }
 
 /// The angles at the tail and at the head of an edge in its face.
-fn angles_at_ends(lengths: &[f64], corner: usize) -> [f64; 2] {
+fn angles_at_ends(lengths: &[f64], corner: Corner) -> [f64; 2] {
     // edge i → j of the face (p, i, j): j → p is opposite to i, p → i to j
     let [ij, jp, pi] = sides(lengths, corner);
     [angle(jp, pi, ij), angle(pi, ij, jp)]
@@ -194,7 +190,7 @@ fn angle(a: f64, b: f64, c: f64) -> f64 {
 }
 
 /// The length of the other diagonal of the two faces at an edge, from the angle between two sides at its tail.
-fn diagonal(lengths: &[f64], corner: usize, across: usize) -> f64 {
+fn diagonal(lengths: &[f64], corner: Corner, across: Corner) -> f64 {
     let [_, _, pi] = sides(lengths, corner);
     let [_, iq, _] = sides(lengths, across);
     let between = angles_at_ends(lengths, corner)[0] + angles_at_ends(lengths, across)[1];
@@ -204,8 +200,8 @@ fn diagonal(lengths: &[f64], corner: usize, across: usize) -> f64 {
 }
 
 /// The cotangents of the angles of a face's triangle of chords.
-fn cotangents(lengths: &[f64], face: usize) -> [f64; 3] {
-    let [a, b, c] = chords(lengths, 3 * face);
+fn cotangents(lengths: &[f64], face: Face) -> [f64; 3] {
+    let [a, b, c] = chords(lengths, face.corner(0));
     let longest = a.max(b).max(c);
     let s = 0.5 * (a + b + c);
     let heron = (s * (s - a) * (s - b) * (s - c)).max(0.0).sqrt();

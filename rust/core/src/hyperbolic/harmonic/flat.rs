@@ -9,7 +9,6 @@
 //!
 //! Cost: a sparse Cholesky factorization for each surface and a point location for each vertex.
 
-use crate::mesh::{NO_CORNER, Vertex};
 use std::f64::consts::PI;
 
 use super::certificates::PieceCertificates;
@@ -21,6 +20,7 @@ use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError, Side};
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
+use crate::mesh::{Corner, Vertex};
 use crate::vector::Vector3;
 
 /// Most times that a layout may wind around the cylinder beyond its period.
@@ -85,7 +85,7 @@ impl Laid<'_> {
         for (side, theirs) in sides.filter(|(side, _)| !side.is_arc) {
             for (&vertex, &s) in side.vertices.iter().zip(&side.parameters) {
                 let (first, t) = segment(&theirs.parameters, s);
-                copies[vertex] = Location::on_edge(corners[theirs.vertices[first]], t);
+                copies[vertex] = Location::on_edge(corners.after(theirs.vertices[first]), t);
             }
         }
         let mut locations = vec![Location::default(); self.sliced.surface.vertex_of.len()];
@@ -107,10 +107,9 @@ impl Laid<'_> {
     /// The area inside the boundary.
     fn outline_area(&self) -> f64 {
         let disk = &self.sliced.disk;
-        let corners = (0..disk.opposite.len()).filter(|&corner| disk.opposite[corner] == NO_CORNER);
-        let triangle = |corner: usize| {
-            let face = disk.faces[corner / 3];
-            let [a, b] = [1, 2].map(|step| self.layout[face[(corner + step) % 3]]);
+        let corners = Corner::all(disk.faces.len()).filter(|&corner| disk.opposite[corner].is_none());
+        let triangle = |corner: Corner| {
+            let [a, b] = corner.half_edge(&disk.faces).map(|vertex| self.layout[vertex]);
             0.5 * (a[0] * b[1] - a[1] * b[0])
         };
         corners.map(triangle).sum()
@@ -193,7 +192,7 @@ fn on_cylinder(sliced: &Sliced, watch: &Watch<'_>) -> Result<Vec<Planar>, Error>
             system.solve(&faces, &vec![1.0; 3 * faces.len()], jump, &mut map, watch)?;
             let laid = layout(&map);
             let folded = folded_in_plane(&disk.faces, &laid).into_iter();
-            match Elements::collect(folded.map(|face| sliced.places[face].face.index())) {
+            match Elements::collect(folded.map(|face| sliced.places[face].face)) {
                 None => Ok(laid),
                 Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
             }

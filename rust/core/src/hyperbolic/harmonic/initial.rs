@@ -10,8 +10,8 @@
 //!
 //! Cost: two sparse Cholesky factorizations, a point location for each vertex and a short walk for each edge.
 
-use crate::mesh::{Face, NO_CORNER, Vertex};
-use std::collections::{HashMap, VecDeque};
+use std::collections::VecDeque;
+use std::collections::hash_map::{Entry, HashMap};
 use std::f64::consts::PI;
 
 use robust::{Coord, orient2d};
@@ -26,6 +26,7 @@ use crate::hyperbolic::moebius::{Complex, Moebius};
 use crate::hyperbolic::slice::Opened;
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::{Location, Locator};
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 
 /// Most faces of a walk, after which a search takes over.
@@ -107,7 +108,7 @@ fn places_of_copies(
         {
             for (&vertex, &s) in ours.vertices.iter().zip(&ours.parameters) {
                 let (first, t) = segment(&theirs.parameters, s);
-                copies[vertex] = Location::on_edge(corners[theirs.vertices[first]], t);
+                copies[vertex] = Location::on_edge(corners.after(theirs.vertices[first]), t);
             }
         }
     }
@@ -160,10 +161,9 @@ impl Links {
             }
         }
         let mut is_boundary = vec![false; n];
-        for corner in (0..3 * source.faces.len()).filter(|&c| source.surface.opposite[c] == NO_CORNER) {
-            for step in [1, 2] {
-                is_boundary[source.surface.faces[corner / 3][(corner + step) % 3]] = true;
-            }
+        let Opened { faces, opposite, .. } = &source.surface;
+        for corner in Corner::all(faces.len()).filter(|&corner| opposite[corner].is_none()) {
+            corner.half_edge(faces).iter().for_each(|&end| is_boundary[end] = true);
         }
         Self { masters, to_master, is_boundary }
     }
@@ -188,22 +188,20 @@ impl Links {
         copies: &[Location],
     ) -> Vec<Moebius> {
         let opposite = &source.surface.opposite;
-        let along = |corner: usize| {
-            let face = source.disk.faces[corner / 3];
-            let [tail, head] = [face[(corner + 1) % 3], face[(corner + 2) % 3]];
+        let along = |corner: Corner| {
+            let [tail, head] = corner.half_edge(&source.disk.faces);
             let there = walk(&target.disk, layout, atlas, copies[tail].triangle, copies[head].triangle);
             self.to_master[tail] * there.inverse() * self.to_master[head].inverse()
         };
         // one path for both sides
-        let by_first = parallel::map(opposite.len(), |corner| {
-            if opposite[corner] as usize > corner { along(corner) } else { Moebius::default() }
+        let first = |corner: Corner| opposite[corner].filter(|&across| across < corner);
+        let by_first = parallel::map(opposite.len(), |index| match first(Corner::new(index)) {
+            None => along(Corner::new(index)),
+            Some(_) => Moebius::default(),
         });
-        parallel::map(opposite.len(), |corner| {
-            if opposite[corner] as usize > corner {
-                by_first[corner]
-            } else {
-                by_first[opposite[corner] as usize].inverse()
-            }
+        parallel::map(opposite.len(), |index| match first(Corner::new(index)) {
+            None => by_first[index],
+            Some(across) => by_first[across].inverse(),
         })
     }
 }
@@ -223,20 +221,20 @@ fn walk(disk: &Opened, layout: &[Planar], atlas: &Atlas<'_>, from: Face, to: Fac
         }
         let is_beyond = |&k: &usize| {
             let corner = face.corner(k);
-            disk.opposite[corner] != NO_CORNER && is_right_of(edge_of(disk, layout, corner), goal)
+            disk.opposite[corner].is_some() && is_right_of(edge_of(disk, layout, corner), goal)
         };
         let exits: Vec<usize> = (0..3).filter(is_beyond).collect();
         let Some(&k) = exits.get(random.next() as usize % exits.len().max(1)) else { break };
         let corner = face.corner(k);
+        let Some(across) = disk.opposite[corner] else { break };
         motion = atlas.transitions[corner] * motion;
-        face = Face::of_corner(disk.opposite[corner]);
+        face = across.face();
     }
     path(&disk.opposite, atlas, face, to) * motion
 }
 
-fn edge_of(disk: &Opened, layout: &[Planar], corner: usize) -> [Planar; 2] {
-    let face = disk.faces[corner / 3];
-    [1, 2].map(|step| layout[face[(corner + step) % 3]])
+fn edge_of(disk: &Opened, layout: &[Planar], corner: Corner) -> [Planar; 2] {
+    corner.half_edge(&disk.faces).map(|vertex| layout[vertex])
 }
 
 fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {
@@ -245,7 +243,7 @@ fn is_right_of([from, to]: [Planar; 2], point: Planar) -> bool {
 }
 
 /// The isometry from the chart of one face to that of a face near it, along the shortest path of faces.
-fn path(opposite: &[u32], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
+fn path(opposite: &[Option<Corner>], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
     let mut motions = HashMap::from([(from, Moebius::default())]);
     let mut queue = VecDeque::from([from]);
     while let Some(face) = queue.pop_front() {
@@ -254,10 +252,10 @@ fn path(opposite: &[u32], atlas: &Atlas<'_>, from: Face, to: Face) -> Moebius {
             return motion;
         }
         for corner in face.corners() {
-            let across = opposite[corner];
-            let beyond = Face::of_corner(across);
-            if across != NO_CORNER && !motions.contains_key(&beyond) {
-                motions.insert(beyond, atlas.transitions[corner] * motion);
+            let Some(across) = opposite[corner] else { continue };
+            let beyond = across.face();
+            if let Entry::Vacant(unreached) = motions.entry(beyond) {
+                unreached.insert(atlas.transitions[corner] * motion);
                 queue.push_back(beyond);
             }
         }

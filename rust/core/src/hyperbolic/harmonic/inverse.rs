@@ -14,7 +14,7 @@ use super::initial::segment;
 use crate::hyperbolic::moebius::{Complex, Moebius, from_klein, seen_from, to_hyperboloid, to_klein};
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::location::Location;
-use crate::mesh::{Face, NO_CORNER, Vertex};
+use crate::mesh::{Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -44,7 +44,7 @@ pub(crate) fn inverse(map: &ChartMap<'_>, source: &Sliced, target: &Sliced) -> V
     for (ours, theirs) in source.sides.iter().zip(&target.sides).filter(|(side, _)| !side.is_arc) {
         for (&vertex, &s) in theirs.vertices.iter().zip(&theirs.parameters) {
             let (first, t) = segment(&ours.parameters, s);
-            let corner = corners[ours.vertices[first]];
+            let corner = corners.after(ours.vertices[first]);
             locations[surface_vertex[vertex]] = Some(Location::on_edge(corner, t));
         }
     }
@@ -81,9 +81,9 @@ fn covered(map: &ChartMap<'_>, target: &Sliced, face: usize) -> Vec<(Vertex, [f6
             }
         }
         for corner in visited_face.corners() {
-            let across = target.surface.opposite[corner];
-            let beyond = Face::of_corner(across);
-            if across != NO_CORNER && visited.len() < MOST_COVERED && !visited.contains(&beyond) {
+            let Some(across) = target.surface.opposite[corner] else { continue };
+            let beyond = across.face();
+            if visited.len() < MOST_COVERED && !visited.contains(&beyond) {
                 visited.push(beyond);
                 queue.push((beyond, motion * map.atlas.transitions[corner].inverse()));
             }

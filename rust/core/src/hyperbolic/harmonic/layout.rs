@@ -12,7 +12,7 @@ use crate::error::{Elements, Error, NumericsError};
 use crate::hyperbolic::slice::Opened;
 use crate::hyperbolic::slice::sliced::Sliced;
 use crate::mesh::geometry::corner_cotangents;
-use crate::mesh::{NO_CORNER, Vertex};
+use crate::mesh::{Corner, Vertex};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 
@@ -39,7 +39,7 @@ pub(crate) fn planar_layout(
     }
     let uniform = harmonic(disk, &vec![1.0; 3 * disk.faces.len()], held, watch)?;
     let folded = folded_in_plane(&disk.faces, &uniform).into_iter();
-    match Elements::collect(folded.map(|face| sliced.places[face].face.index())) {
+    match Elements::collect(folded.map(|face| sliced.places[face].face)) {
         None => Ok(uniform),
         Some(folded) => Err(NumericsError::NoEmbedding { folded }.into()),
     }
@@ -49,13 +49,13 @@ pub(crate) fn planar_layout(
 pub(super) fn clamped_weights(sliced: &Sliced) -> Vec<f64> {
     let cotangents = corner_cotangents(&sliced.points, &sliced.faces);
     let opposite = &sliced.surface.opposite;
-    let of = |corner: usize| cotangents[corner / 3][corner % 3];
-    let weight = |corner: usize| match opposite[corner] {
-        NO_CORNER => 0.5 * of(corner),
-        across => 0.5 * (of(corner) + of(across as usize)),
+    let of = |corner: Corner| cotangents[corner.face()][corner.place()];
+    let weight = |corner: Corner| match opposite[corner] {
+        None => 0.5 * of(corner),
+        Some(across) => 0.5 * (of(corner) + of(across)),
     };
     parallel::map(3 * cotangents.len(), |corner| {
-        let weight = weight(corner);
+        let weight = weight(Corner::new(corner));
         if weight.is_finite() { weight.clamp(WEIGHTS[0], WEIGHTS[1]) } else { WEIGHTS[1] }
     })
 }

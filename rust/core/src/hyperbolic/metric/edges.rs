@@ -13,7 +13,7 @@
 //! enough for every triangle of a mesh in space hardly ever meet: I ≥ 1. Thurston's angles would then all be 0,
 //! the tangential packing, which does not depend on the surface's shape; so I is kept as it is.
 
-use crate::mesh::{EdgeTable, Vertex, corner_of_entry};
+use crate::mesh::{EdgeTable, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -36,8 +36,8 @@ impl Edges {
             on_boundary: vec![false; n_vertices],
         };
         for (ends, entries) in EdgeTable::new(n_vertices, faces).edges() {
-            for corner in entries.iter().map(|entry| corner_of_entry(entry) as usize) {
-                edges.of_face[corner / 3][corner % 3] = edges.ends.len();
+            for corner in entries.iter().map(|entry| entry.corner()) {
+                edges.of_face[corner.face()][corner.place()] = edges.ends.len();
             }
             if entries.len() == 1 {
                 ends.iter().for_each(|&end| edges.on_boundary[end] = true);

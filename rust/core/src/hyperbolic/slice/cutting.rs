@@ -13,7 +13,7 @@
 
 use super::sliced::Place;
 use crate::hyperbolic::features::piece::Piece;
-use crate::mesh::{EdgeTable, Face, NO_CORNER, Vertex, half_edge, next_corner, previous_corner, vertex_at};
+use crate::mesh::{Corner, EdgeTable, Face, Vertex};
 use crate::vector::Vector3;
 
 /// The reason for which an edge is cut.
@@ -36,14 +36,14 @@ pub(super) struct Cutting {
     pub on_sphere: Vec<Vector3>,
     /// (m, 3): the faces, oriented.
     pub faces: Vec<[Vertex; 3]>,
-    /// (3 m,): the opposite corners, [`NO_CORNER`] on the boundary of the piece.
-    pub opposite: Vec<u32>,
+    /// (3 m,): the opposite corners, `None` on the boundary of the piece.
+    pub opposite: Vec<Option<Corner>>,
     /// (3 m,): the seam of the edge opposite to each corner.
     pub seams: Vec<Seam>,
     /// (m,): where each face lies in the piece.
     pub places: Vec<Place>,
     /// (n,): a corner at each vertex from which [`Cutting::corners`] reaches all.
-    first_corner: Vec<u32>,
+    first_corner: Vec<Option<Corner>>,
     /// (n,): whether each vertex lies on a cut.
     is_cut: Vec<bool>,
 }
@@ -81,24 +81,23 @@ impl Cutting {
     }
 
     /// The corners at a vertex, in the order in which they lie around it; none at a loose vertex.
-    pub(super) fn corners(&self, vertex: Vertex) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn corners(&self, vertex: Vertex) -> impl Iterator<Item = Corner> + '_ {
         let first = self.first_corner[vertex];
-        let turn = move |&corner: &u32| {
-            let across = self.opposite[next_corner(corner) as usize];
-            (across != NO_CORNER).then(|| next_corner(across)).filter(|&corner| corner != first)
+        let turn = move |corner: &Corner| {
+            self.opposite[corner.next()].map(Corner::next).filter(|&corner| Some(corner) != first)
         };
-        std::iter::successors((first != NO_CORNER).then_some(first), turn)
+        std::iter::successors(first, turn)
     }
 
     /// The neighbors of a vertex; at a boundary vertex without the one before it on the boundary.
     pub(super) fn neighbors(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> + '_ {
-        self.corners(vertex).map(|corner| vertex_at(&self.faces, next_corner(corner)))
+        self.corners(vertex).map(|corner| corner.next().vertex(&self.faces))
     }
 
     /// The corner opposite to the half-edge from `a` to `b`, if there is a face on its left.
-    pub(super) fn half_edge(&self, a: Vertex, b: Vertex) -> Option<u32> {
-        let at_start = self.corners(a).find(|&corner| vertex_at(&self.faces, next_corner(corner)) == b);
-        at_start.map(previous_corner)
+    pub(super) fn half_edge(&self, a: Vertex, b: Vertex) -> Option<Corner> {
+        let at_start = self.corners(a).find(|&corner| corner.next().vertex(&self.faces) == b);
+        at_start.map(Corner::previous)
     }
 
     /// Marks the edges of a path for cutting; returns whether it is a path of edges.
@@ -110,10 +109,9 @@ impl Cutting {
 
     fn mark_edge(&mut self, a: Vertex, b: Vertex, seam: Seam) -> bool {
         let Some(corner) = self.half_edge(a, b).or_else(|| self.half_edge(b, a)) else { return false };
-        self.seams[corner as usize] = seam;
-        let across = self.opposite[corner as usize];
-        if across != NO_CORNER {
-            self.seams[across as usize] = seam;
+        self.seams[corner] = seam;
+        if let Some(across) = self.opposite[corner] {
+            self.seams[across] = seam;
         }
         true
     }
@@ -122,8 +120,8 @@ impl Cutting {
     pub(super) fn split_chords(&mut self, vertices: &[Vertex]) {
         for &vertex in vertices {
             // splits keep the corners around the vertex and bring the far ends of its edges nearer
-            let corners: Vec<u32> = self.corners(vertex).collect();
-            for edge in corners.into_iter().map(previous_corner) {
+            let corners: Vec<Corner> = self.corners(vertex).collect();
+            for edge in corners.into_iter().map(Corner::previous) {
                 if self.is_chord(edge) {
                     self.split(edge);
                 }
@@ -132,24 +130,23 @@ impl Cutting {
     }
 
     /// Whether the edge opposite to a corner is not cut but has both ends on cuts.
-    fn is_chord(&self, corner: u32) -> bool {
-        let is_inner =
-            self.opposite[corner as usize] != NO_CORNER && self.seams[corner as usize] == Seam::None;
-        is_inner && half_edge(&self.faces, corner).iter().all(|&end| self.is_cut(end))
+    fn is_chord(&self, corner: Corner) -> bool {
+        let is_inner = self.opposite[corner].is_some() && self.seams[corner] == Seam::None;
+        is_inner && corner.half_edge(&self.faces).iter().all(|&end| self.is_cut(end))
     }
 
     /// Splits the edge opposite to a corner at its midpoint; returns the midpoint.
     ///
     /// The parts at the start of the half-edge keep the numbers of the faces; those at its end are appended.
-    pub(super) fn split(&mut self, corner: u32) -> Vertex {
-        let [start, end] = half_edge(&self.faces, corner);
-        let across = self.opposite[corner as usize];
-        let midpoint = self.add_midpoint(start, end, self.seams[corner as usize] != Seam::None);
+    pub(super) fn split(&mut self, corner: Corner) -> Vertex {
+        let [start, end] = corner.half_edge(&self.faces);
+        let across = self.opposite[corner];
+        let midpoint = self.add_midpoint(start, end, self.seams[corner] != Seam::None);
         let new = self.halve(corner, true, midpoint);
-        self.first_corner[midpoint] = next_corner(new);
-        if across != NO_CORNER {
+        self.first_corner[midpoint] = Some(new.next());
+        if let Some(across) = across {
             let new_across = self.halve(across, false, midpoint);
-            self.link(new, new_across);
+            self.link(new, Some(new_across));
         }
         midpoint
     }
@@ -161,27 +158,27 @@ impl Cutting {
         self.on_sphere.push(if antipodal { self.on_sphere[a] } else { on_sphere * (1.0 / length) });
         self.points.push((self.points[a] + self.points[b]) * 0.5);
         self.is_cut.push(is_cut);
-        self.first_corner.push(NO_CORNER);
+        self.first_corner.push(None);
         Vertex::new(self.points.len() - 1)
     }
 
     /// Divides a face between a corner and the midpoint of the opposite edge. Keeps the half at the start of that
     /// edge, or at its end, and appends the other half; returns the corner of the latter at the dividing corner.
-    fn halve(&mut self, corner: u32, keeps_start: bool, midpoint: Vertex) -> u32 {
-        let [next, previous] = [next_corner(corner), previous_corner(corner)];
+    fn halve(&mut self, corner: Corner, keeps_start: bool, midpoint: Vertex) -> Corner {
+        let [next, previous] = [corner.next(), corner.previous()];
         let [kept, given] = if keeps_start { [next, previous] } else { [previous, next] };
         let new = self.append_copy(corner);
-        let new_given = if keeps_start { new + 2 } else { new + 1 };
-        let new_kept = if keeps_start { new + 1 } else { new + 2 };
+        let new_given = if keeps_start { new.previous() } else { new.next() };
+        let new_kept = if keeps_start { new.next() } else { new.previous() };
         self.move_corner(given, [kept, given], midpoint);
         self.move_corner(new_kept, [new_kept, new_given], midpoint);
         // the side from the corner to the vertex that went to the new face, then the dividing edge
-        let outer = self.opposite[kept as usize];
-        self.seams[new_kept as usize] = self.seams[kept as usize];
+        let outer = self.opposite[kept];
+        self.seams[new_kept] = self.seams[kept];
         self.link(new_kept, outer);
-        self.seams[kept as usize] = Seam::None;
-        self.seams[new_given as usize] = Seam::None;
-        self.link(kept, new_given);
+        self.seams[kept] = Seam::None;
+        self.seams[new_given] = Seam::None;
+        self.link(kept, Some(new_given));
         self.renumber_first(given, new_given);
         if !keeps_start {
             // the side behind the corner is now in the new face
@@ -191,48 +188,52 @@ impl Cutting {
     }
 
     /// Makes `new` the first corner of its vertex if `old` was.
-    fn renumber_first(&mut self, old: u32, new: u32) {
-        let first = &mut self.first_corner[vertex_at(&self.faces, new)];
-        if *first == old {
-            *first = new;
+    fn renumber_first(&mut self, old: Corner, new: Corner) {
+        let first = &mut self.first_corner[new.vertex(&self.faces)];
+        if *first == Some(old) {
+            *first = Some(new);
         }
     }
 
     /// Appends a copy of the face of a corner, without neighbors, with this corner first; returns its first corner.
-    fn append_copy(&mut self, corner: u32) -> u32 {
-        let corners = [corner, next_corner(corner), previous_corner(corner)];
-        let Place { face, corners: weights } = self.places[Face::of_corner(corner)];
-        self.places.push(Place { face, corners: corners.map(|corner| weights[corner as usize % 3]) });
-        self.faces.push(corners.map(|corner| vertex_at(&self.faces, corner)));
-        self.seams.extend(corners.map(|corner| self.seams[corner as usize]));
-        self.opposite.extend([NO_CORNER; 3]);
-        3 * self.faces.len() as u32 - 3
+    fn append_copy(&mut self, corner: Corner) -> Corner {
+        let corners = [corner, corner.next(), corner.previous()];
+        let Place { face, corners: weights } = self.places[corner.face()];
+        self.places.push(Place { face, corners: corners.map(|corner| weights[corner.place()]) });
+        self.faces.push(corners.map(|corner| corner.vertex(&self.faces)));
+        self.seams.extend(corners.map(|corner| self.seams[corner]));
+        self.opposite.extend([None; 3]);
+        Face::new(self.faces.len() - 1).corner(0)
     }
 
     /// Moves a corner to the midpoint of two corners of its face.
-    fn move_corner(&mut self, corner: u32, [a, b]: [u32; 2], midpoint: Vertex) {
-        let weights = &mut self.places[Face::of_corner(corner)].corners;
-        let [a, b] = [a, b].map(|end| weights[end as usize % 3]);
-        weights[corner as usize % 3] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
-        self.faces[corner as usize / 3][corner as usize % 3] = midpoint;
+    fn move_corner(&mut self, corner: Corner, [a, b]: [Corner; 2], midpoint: Vertex) {
+        let weights = &mut self.places[corner.face()].corners;
+        let [a, b] = [a, b].map(|end| weights[end.place()]);
+        weights[corner.place()] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+        self.faces[corner.face()][corner.place()] = midpoint;
     }
 
-    /// Makes two corners opposite to each other; the second may be [`NO_CORNER`].
-    fn link(&mut self, corner: u32, across: u32) {
-        self.opposite[corner as usize] = across;
-        if across != NO_CORNER {
-            self.opposite[across as usize] = corner;
+    /// Makes two corners opposite to each other; the second may be none.
+    fn link(&mut self, corner: Corner, across: Option<Corner>) {
+        self.opposite[corner] = across;
+        if let Some(across) = across {
+            self.opposite[across] = Some(corner);
         }
     }
 }
 
 /// A corner at each vertex; on the boundary the one with a boundary edge behind it.
-fn first_corners(n_vertices: usize, faces: &[[Vertex; 3]], opposite: &[u32]) -> Vec<u32> {
-    let mut first = vec![NO_CORNER; n_vertices];
-    for corner in 0..opposite.len() as u32 {
-        let slot = &mut first[vertex_at(faces, corner)];
-        if *slot == NO_CORNER || opposite[previous_corner(corner) as usize] == NO_CORNER {
-            *slot = corner;
+fn first_corners(
+    n_vertices: usize,
+    faces: &[[Vertex; 3]],
+    opposite: &[Option<Corner>],
+) -> Vec<Option<Corner>> {
+    let mut first = vec![None; n_vertices];
+    for corner in Corner::all(faces.len()) {
+        let slot = &mut first[corner.vertex(faces)];
+        if slot.is_none() || opposite[corner.previous()].is_none() {
+            *slot = Some(corner);
         }
     }
     first
@@ -262,8 +263,8 @@ mod tests {
         let table = EdgeTable::new(cutting.points.len(), &cutting.faces).opposites();
         assert_eq!(cutting.opposite, table);
         for vertex in Vertex::all(cutting.points.len()) {
-            let around: Vec<u32> = cutting.corners(vertex).collect();
-            assert!(around.iter().all(|&corner| vertex_at(&cutting.faces, corner) == vertex));
+            let around: Vec<Corner> = cutting.corners(vertex).collect();
+            assert!(around.iter().all(|&corner| corner.vertex(&cutting.faces) == vertex));
             let all = cutting.faces.as_flattened().iter().filter(|&&corner| corner == vertex);
             assert_eq!(around.len(), all.count());
         }
@@ -281,7 +282,7 @@ mod tests {
     fn splits_keep_neighbors_rings_and_places() {
         let mut cutting = two_triangles();
         for k in 0..60 {
-            cutting.split(7919 * k % cutting.opposite.len() as u32);
+            cutting.split(Corner::new(7919 * k % cutting.opposite.len()));
             check(&cutting);
         }
         assert_eq!(cutting.points.len(), 64);
@@ -294,7 +295,7 @@ mod tests {
         let [start, end] = [0, 1].map(Vertex);
         let midpoint = cutting.split(cutting.half_edge(start, end).unwrap());
         for [a, b] in [[start, midpoint], [midpoint, end], [end, midpoint], [midpoint, start]] {
-            assert_eq!(cutting.seams[cutting.half_edge(a, b).unwrap() as usize], Seam::Feature);
+            assert_eq!(cutting.seams[cutting.half_edge(a, b).unwrap()], Seam::Feature);
         }
         assert_eq!(cutting.seams.iter().filter(|&&seam| seam == Seam::Feature).count(), 4);
         assert!(cutting.is_cut(midpoint));

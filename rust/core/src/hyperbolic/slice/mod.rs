@@ -29,11 +29,11 @@ use super::features::piece::{Feature, Piece};
 use crate::control::Watch;
 use crate::error;
 use crate::error::{CurveError, Error};
-use crate::mesh::{NO_CORNER, Vertex};
+use crate::mesh::Vertex;
 use arcs::Carry;
 use cutting::{Cutting, Seam};
 
-pub(super) use openings::Opened;
+pub(super) use openings::{BoundaryCorners, Opened};
 use sliced::{Side, Sliced, SlicedPair};
 
 /// Cuts both pieces open along their features and along arcs of the same homotopy class.
@@ -113,7 +113,7 @@ fn outline(feature: &Feature) -> Vec<Vertex> {
 fn open(cutting: Cutting, features: &[Feature], arcs: &[Vec<Vertex>]) -> Result<Sliced, Error> {
     let opposite_unless = |is_open: fn(Seam) -> bool| {
         let pairs = cutting.opposite.iter().zip(&cutting.seams);
-        pairs.map(|(&across, &seam)| if is_open(seam) { NO_CORNER } else { across }).collect()
+        pairs.map(|(&across, &seam)| across.filter(|_| !is_open(seam))).collect()
     };
     let surface = Opened::new(&cutting.faces, opposite_unless(|seam| seam == Seam::Feature));
     let disk = Opened::new(&cutting.faces, opposite_unless(|seam| seam != Seam::None));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sliced pieces: surfaces cut along features and arcs, with their places on the surface as given.
 
-use super::openings::Opened;
+use super::openings::{BoundaryCorners, Opened};
 use crate::hyperbolic::features::piece::Piece;
 use crate::location::Location;
-use crate::mesh::{Face, Vertex};
+use crate::mesh::{Corner, Face, Vertex};
 use crate::vector::Vector3;
 
 /// A piece cut along its features, and along a chain of arcs too; edges between two vertices of the cuts are split.
@@ -81,8 +81,11 @@ pub(crate) struct Side {
 
 impl Side {
     /// The corners opposite to the edges of the side; `corners` are [`Opened::boundary_corners`] of the disk.
-    pub(crate) fn opposite_corners<'a>(&'a self, corners: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-        self.vertices[..self.vertices.len() - 1].iter().map(|&vertex| corners[vertex])
+    pub(crate) fn opposite_corners<'a>(
+        &'a self,
+        corners: &'a BoundaryCorners,
+    ) -> impl Iterator<Item = Corner> + 'a {
+        self.vertices[..self.vertices.len() - 1].iter().map(|&vertex| corners.after(vertex))
     }
 }
 

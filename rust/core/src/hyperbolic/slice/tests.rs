@@ -9,9 +9,7 @@ use super::*;
 use crate::control::Silent;
 use crate::hyperbolic::features::piece::Bank;
 use crate::mesh::geometry::{area, triangle};
-use crate::mesh::{
-    EdgeTable, Face, NO_CORNER, Vertex, VertexCorners, faces_of_indices, half_edge, next_corner, vertex_at,
-};
+use crate::mesh::{Corner, EdgeTable, Face, Vertex, VertexCorners, faces_of_indices};
 
 /// The icosahedron, each face divided into 4^level.
 fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
@@ -58,7 +56,7 @@ fn divided(points: &mut Vec<Vector3>, faces: &[[Vertex; 3]]) -> Vec<[Vertex; 3]>
     let table = EdgeTable::new(points.len(), faces);
     let mut middles = vec![Vertex::default(); 3 * faces.len()];
     for ([a, b], _) in table.edges() {
-        table.corners([a, b]).for_each(|corner| middles[corner as usize] = Vertex::new(points.len()));
+        table.corners([a, b]).for_each(|corner| middles[corner] = Vertex::new(points.len()));
         points.push(unit(points[a] + points[b]));
     }
     let four = |(face, &[a, b, c]): (usize, &[Vertex; 3])| {
@@ -250,17 +248,15 @@ fn check_opened(sliced: &Sliced, opened: &Opened, euler: i64, n_loops: i64) {
     assert_eq!(count_loops(opened, boundary), n_loops);
 }
 
-fn boundary_corners(opened: &Opened) -> Vec<u32> {
-    (0..opened.opposite.len() as u32)
-        .filter(|&corner| opened.opposite[corner as usize] == NO_CORNER)
-        .collect()
+fn boundary_corners(opened: &Opened) -> Vec<Corner> {
+    Corner::all(opened.faces.len()).filter(|&corner| opened.opposite[corner].is_none()).collect()
 }
 
-fn count_loops(opened: &Opened, mut boundary: Vec<u32>) -> i64 {
+fn count_loops(opened: &Opened, mut boundary: Vec<Corner>) -> i64 {
     let mut count = 0;
     while let Some(&first) = boundary.first() {
         let vertices = opened.boundary_from(first);
-        boundary.retain(|&corner| !vertices.contains(&vertex_at(&opened.faces, next_corner(corner))));
+        boundary.retain(|&corner| !vertices.contains(&corner.next().vertex(&opened.faces)));
         count += 1;
     }
     count
@@ -269,9 +265,9 @@ fn count_loops(opened: &Opened, mut boundary: Vec<u32>) -> i64 {
 fn check_no_chords(disk: &Opened) {
     let mut on_boundary = vec![false; disk.vertex_of.len()];
     let boundary = boundary_corners(disk);
-    boundary.iter().for_each(|&corner| on_boundary[half_edge(&disk.faces, corner)[0]] = true);
-    for corner in (0..disk.opposite.len() as u32).filter(|&c| disk.opposite[c as usize] != NO_CORNER) {
-        assert!(half_edge(&disk.faces, corner).iter().any(|&end| !on_boundary[end]));
+    boundary.iter().for_each(|&corner| on_boundary[corner.half_edge(&disk.faces)[0]] = true);
+    for corner in Corner::all(disk.faces.len()).filter(|&corner| disk.opposite[corner].is_some()) {
+        assert!(corner.half_edge(&disk.faces).iter().any(|&end| !on_boundary[end]));
     }
 }
 
@@ -410,7 +406,7 @@ fn three_slits_that_meet_in_one_triangle() {
     let sphere = sphere(4);
     let surface = Cutting::new(&sphere);
     let a = middle_vertex(&sphere);
-    let [a, b, c] = sphere.faces[surface.corners(a).next().unwrap() as usize / 3];
+    let [a, b, c] = sphere.faces[surface.corners(a).next().unwrap().index() / 3];
     let paths = [[b, a], [c, b], [a, c]].map(|[from, to]| straight(&surface, from, to, 3));
     check(&with_slits(sphere, &paths));
 }

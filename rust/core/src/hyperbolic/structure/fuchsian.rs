@@ -10,13 +10,14 @@
 //!
 //! Input: an atlas of a sliced surface. Cost: O(m) for a layout.
 
-use crate::mesh::{Face, NO_CORNER};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, to_hyperboloid};
+use crate::hyperbolic::slice::BoundaryCorners;
 use crate::hyperbolic::slice::sliced::{Side, Sliced};
+use crate::mesh::{Corner, Face};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -48,9 +49,8 @@ impl<'a> Development<'a> {
         let mut queue = VecDeque::from([face]);
         while let Some(face) = queue.pop_front() {
             for corner in face.corners() {
-                let across = sliced.disk.opposite[corner];
-                let beyond = Face::of_corner(across);
-                if across == NO_CORNER || is_placed[beyond] {
+                let Some(beyond) = sliced.disk.opposite[corner].map(Corner::face) else { continue };
+                if is_placed[beyond] {
                     continue;
                 }
                 is_placed[beyond] = true;
@@ -100,11 +100,11 @@ impl<'a> Development<'a> {
 
     /// The isometry from the left copy of an arc to the right copy, by the edge whose copies lie nearest to the
     /// origin.
-    fn generator(&self, side: &Side, corners: &[u32]) -> Moebius {
+    fn generator(&self, side: &Side, corners: &BoundaryCorners) -> Moebius {
         let candidates = side.opposite_corners(corners).map(|corner| {
-            let across = self.sliced.surface.opposite[corner as usize];
-            let [left, right] = [corner, across].map(|corner| self.frames[Face::of_corner(corner)]);
-            (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner as usize] * left.inverse())
+            let across = self.sliced.surface.opposite[corner].expect("an arc lies inside the surface");
+            let [left, right] = [corner, across].map(|corner| self.frames[corner.face()]);
+            (left.b.norm() * right.b.norm(), right * self.atlas.transitions[corner] * left.inverse())
         });
         let nearest = candidates.min_by(|a, b| a.0.total_cmp(&b.0));
         let generator = nearest.map_or(Moebius::default(), |(_, generator)| generator);

@@ -33,7 +33,7 @@ use crate::arrays::{from_rows, from_vectors, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{CurveError, Error, NumericsError};
 use crate::location::{Location, points_on};
-use crate::mesh::{Face, Surface, TriangleMesh, Vertex, index_array};
+use crate::mesh::{Corner, Face, Surface, TriangleMesh, Vertex, index_array};
 use fuchsian::{CoverCopy, Development, cover};
 use pants::{Pants, pants};
 use trace::closed_geodesic;
@@ -208,8 +208,8 @@ fn all_pants(domain: &Development<'_>, sliced: &Sliced, atlas: &Atlas<'_>) -> Ve
     let corners = sliced.disk.boundary_corners();
     let last = domain.generators().len();
     let of_feature = |k: usize| {
-        let bank: Vec<u32> = sliced.sides[2 * k + 2].opposite_corners(&corners).collect();
-        let face = Face::of_corner(bank[bank.len() / 2]);
+        let bank: Vec<Corner> = sliced.sides[2 * k + 2].opposite_corners(&corners).collect();
+        let face = bank[bank.len() / 2].face();
         let generators = Development::around(face, sliced, atlas).generators();
         let pants = pants(generators[k], generators[k + 1]);
         Pants { placement: domain.frames[face] * pants.placement, ..pants }
@@ -233,7 +233,7 @@ fn pants_curves(
             let [from, to] = [from, to].map(|end| domain.frames[face].inverse().apply(end));
             (from + to).norm()
         };
-        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(Face::of_corner);
+        let faces = sliced.sides[2 * k + 3].opposite_corners(&corners).map(Corner::face);
         let face = faces.min_by(|&a, &b| far(a).total_cmp(&far(b)))?;
         let generator = Development::around(face, sliced, atlas).generators()[k + 1];
         let line = generator.fixed_points();
@@ -259,7 +259,7 @@ fn both_sides(sides: &[Side], is_arc: bool) -> Vec<[Vec<Vertex>; 2]> {
 /// The lengths once around the features, in the order given.
 fn boundary_lengths(sliced: &Sliced, metric: &Metric, chain: &[(usize, bool)]) -> Vec<f64> {
     let corners = sliced.disk.boundary_corners();
-    let length = |corner: u32| metric.lengths[Face::of_corner(corner)][corner as usize % 3];
+    let length = |corner: Corner| metric.lengths[corner.face()][corner.place()];
     let mut lengths = vec![0.0; chain.len()];
     for side in sliced.sides.iter().filter(|side| !side.is_arc) {
         lengths[chain[side.index].0] += side.opposite_corners(&corners).map(length).sum::<f64>();

@@ -13,7 +13,7 @@ use crate::hyperbolic::harmonic::atlas::Atlas;
 use crate::hyperbolic::moebius::{Complex, Moebius, distance, from_hyperboloid, from_klein, to_hyperboloid};
 use crate::hyperbolic::slice::Opened;
 use crate::location::Location;
-use crate::mesh::{Face, NO_CORNER, next_corner, previous_corner};
+use crate::mesh::{Corner, Face};
 use crate::vector::Vector3;
 
 /// Relative tolerance on the length when testing whether the line has closed.
@@ -77,15 +77,15 @@ fn height([from, to]: Line, point: Vector3) -> f64 {
 }
 
 /// The height of a corner's vertex above a line in the chart of its face.
-fn corner_height(atlas: &Atlas<'_>, corner: u32, line: Line) -> f64 {
-    height(line, to_hyperboloid(atlas.charts[Face::of_corner(corner)][corner as usize % 3]))
+fn corner_height(atlas: &Atlas<'_>, corner: Corner, line: Line) -> f64 {
+    height(line, to_hyperboloid(atlas.charts[corner.face()][corner.place()]))
 }
 
 /// The corner opposite to the edge through which a line leaves a face; `None` if it misses the face.
-fn exit(atlas: &Atlas<'_>, face: Face, line: Line) -> Option<u32> {
+fn exit(atlas: &Atlas<'_>, face: Face, line: Line) -> Option<Corner> {
     let is_left = |corner| corner_height(atlas, corner, line) >= 0.0;
-    let mut corners = face.corners().into_iter().map(|corner| corner as u32);
-    corners.find(|&corner| !is_left(next_corner(corner)) && is_left(previous_corner(corner)))
+    let mut corners = face.corners().into_iter();
+    corners.find(|&corner| !is_left(corner.next()) && is_left(corner.previous()))
 }
 
 /// The edges that a line crosses, from the edge `start` until it closes; each by the opposite corner in the face that
@@ -93,19 +93,16 @@ fn exit(atlas: &Atlas<'_>, face: Face, line: Line) -> Option<u32> {
 fn crossings(
     atlas: &Atlas<'_>,
     surface: &Opened,
-    start: u32,
+    start: Corner,
     mut line: Line,
     length: f64,
-) -> Option<Vec<u32>> {
+) -> Option<Vec<Corner>> {
     let (mut corner, mut corners, mut traveled) = (start, Vec::new(), 0.0);
     while traveled < LOST * length {
         if corner == start && traveled > (1.0 - ROUNDING) * length {
             return Some(corners);
         }
-        let (across, tau) = (surface.opposite[corner as usize], atlas.transitions[corner as usize]);
-        if across == NO_CORNER {
-            return None;
-        }
+        let (across, tau) = (surface.opposite[corner]?, atlas.transitions[corner]);
         let entry = tau.apply(crossing(atlas, corner, line).1);
         corners.push(corner);
         line = moved(tau, line);
@@ -116,33 +113,33 @@ fn crossings(
 }
 
 /// The edge through which a line leaves a face that it has entered through another edge.
-fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: u32, line: Line) -> u32 {
+fn ahead(atlas: &Atlas<'_>, surface: &Opened, entered: Corner, line: Line) -> Corner {
     let (exit, remaining) = if corner_height(atlas, entered, line) >= 0.0 {
-        (next_corner(entered), previous_corner(entered))
+        (entered.next(), entered.previous())
     } else {
-        (previous_corner(entered), next_corner(entered))
+        (entered.previous(), entered.next())
     };
     // geodesics stay on the surface, but may run so close to the boundary that rounding takes them across
-    if surface.opposite[exit as usize] == NO_CORNER { remaining } else { exit }
+    if surface.opposite[exit].is_none() { remaining } else { exit }
 }
 
 /// The isometry from the first chart once around to itself.
-fn holonomy(atlas: &Atlas<'_>, corners: &[u32]) -> Moebius {
-    corners.iter().fold(Moebius::default(), |motion, &corner| atlas.transitions[corner as usize] * motion)
+fn holonomy(atlas: &Atlas<'_>, corners: &[Corner]) -> Moebius {
+    corners.iter().fold(Moebius::default(), |motion, &corner| atlas.transitions[corner] * motion)
 }
 
 /// The closed line in the chart of every face that it leaves.
-fn lines(atlas: &Atlas<'_>, corners: &[u32]) -> Vec<Line> {
+fn lines(atlas: &Atlas<'_>, corners: &[Corner]) -> Vec<Line> {
     // the holonomy moves charts against the direction of the line
     let [to, from] = holonomy(atlas, corners).fixed_points();
     let mut lines = vec![[from, to]; corners.len()];
     for k in 1..corners.len() {
-        let tau = atlas.transitions[corners[k - 1] as usize];
+        let tau = atlas.transitions[corners[k - 1]];
         lines[k][0] = on_circle(tau.apply(lines[k - 1][0]));
     }
     let mut end = to;
     for k in (1..corners.len()).rev() {
-        end = on_circle(atlas.transitions[corners[k] as usize].inverse().apply(end));
+        end = on_circle(atlas.transitions[corners[k]].inverse().apply(end));
         lines[k][1] = end;
     }
     lines
@@ -150,12 +147,12 @@ fn lines(atlas: &Atlas<'_>, corners: &[u32]) -> Vec<Line> {
 
 /// The point at which a line crosses the edge opposite to a corner: its location on the flat face and its position in
 /// the chart.
-fn crossing(atlas: &Atlas<'_>, corner: u32, line: Line) -> (Location, Complex) {
-    let ends = [next_corner(corner), previous_corner(corner)];
+fn crossing(atlas: &Atlas<'_>, corner: Corner, line: Line) -> (Location, Complex) {
+    let ends = [corner.next(), corner.previous()];
     let [right, left] = ends.map(|corner| corner_height(atlas, corner, line));
     let weights = [left.max(f64::MIN_POSITIVE), (-right).max(f64::MIN_POSITIVE)];
     let [from, to] = [0, 1].map(|k| {
-        let (face, corner) = (Face::of_corner(ends[k]), ends[k] as usize % 3);
+        let (face, corner) = (ends[k].face(), ends[k].place());
         (to_hyperboloid(atlas.charts[face][corner]), weights[k] / atlas.mu[face][corner])
     });
     let place = Location::on_edge(corner, to.1 / (from.1 + to.1));

@@ -8,7 +8,7 @@
 use super::{interpolated, rows};
 use crate::location::{Location, Locator, determinant};
 use crate::mesh::geometry::triangle;
-use crate::mesh::{Face, Vertex, VertexCorners};
+use crate::mesh::{Corner, Face, Vertex, VertexCorners};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -47,8 +47,8 @@ pub fn pull_corners(
     });
     let places = places.as_flattened();
     rows(places.len(), width, |row, column| {
-        let first = places[row].triangle.corner(0);
-        interpolated(places[row], |corner| values[(first + corner) * width + column])
+        let face = places[row].triangle;
+        interpolated(places[row], |k| values[face.corner(k).index() * width + column])
     })
 }
 
@@ -94,11 +94,9 @@ impl Target<'_> {
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
         let [start, end] = [i, j].map(|k| self.faces[face][k]);
         // in the adjacent face the edge runs the other way
-        let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
-        let vertex = |corner: u32| self.faces[corner as usize / 3][corner as usize % 3];
-        let across = *self.corners.of(end).iter().find(|&&corner| vertex(after(corner)) == start)?;
-        let agrees = |k: usize, corner: u32| self.agree(face.corner(k), corner as usize);
-        (agrees(j, across) && agrees(i, after(across))).then_some(Face::of_corner(across))
+        let across = *self.corners.of(end).iter().find(|corner| corner.next().vertex(self.faces) == start)?;
+        let agrees = |k: usize, corner: Corner| self.agree(face.corner(k), corner);
+        (agrees(j, across) && agrees(i, across.next())).then_some(across.face())
     }
 
     /// The location at which the way crosses an edge.
@@ -116,14 +114,14 @@ impl Target<'_> {
     }
 
     /// Whether two corners have the same values up to the rounding of single precision; two NaNs agree.
-    fn agree(&self, a: usize, b: usize) -> bool {
+    fn agree(&self, a: Corner, b: Corner) -> bool {
         let is_same = |(a, b): (&f64, &f64)| {
             (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1.0) || a.is_nan() && b.is_nan() || a == b
         };
         self.row(a).iter().zip(self.row(b)).all(is_same)
     }
 
-    fn row(&self, corner: usize) -> &[f64] {
-        &self.values[corner * self.width..][..self.width]
+    fn row(&self, corner: Corner) -> &[f64] {
+        &self.values[corner.index() * self.width..][..self.width]
     }
 }

@@ -10,8 +10,8 @@
 mod corners;
 
 use crate::location::{Location, Locator};
-use crate::mesh::Vertex;
 use crate::mesh::geometry::triangle;
+use crate::mesh::{Corner, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
@@ -52,17 +52,17 @@ pub fn nearest_vertices(faces: &[[Vertex; 3]], locations: &[Location]) -> Vec<Ve
 
 /// The corner of the target's faces nearest to each corner of the source's, (3 m,): corner `3 * face + k`, on the side
 /// on which the source's face lies.
-pub fn nearest_corners(sides: &[Location]) -> Vec<u32> {
-    parallel::map(sides.len(), |corner| sides[corner].triangle.corner(heaviest(sides[corner])) as u32)
+pub fn nearest_corners(sides: &[Location]) -> Vec<Corner> {
+    parallel::map(sides.len(), |corner| sides[corner].triangle.corner(heaviest(sides[corner])))
 }
 
 /// The given rows of data of any type: labels by [`nearest_vertices`] or [`nearest_corners`].
 ///
 /// # Panics
 /// If a row is out of range.
-pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[u32]) -> Vec<T> {
-    let row = |row: u32| &values[row as usize * width..][..width];
-    rows.iter().flat_map(|&index| row(index)).copied().collect()
+pub fn pull_rows<T: Copy>(values: &[T], width: usize, rows: &[impl Copy + Into<usize>]) -> Vec<T> {
+    let row = |row: usize| &values[row * width..][..width];
+    rows.iter().flat_map(|&index| row(index.into())).copied().collect()
 }
 
 /// The locations of the corners of the source's faces in the target, (3 m,): those of their vertices, but in a triangle

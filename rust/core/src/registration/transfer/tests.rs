@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 use super::*;
 use crate::location::tests::{Map, number, octasphere, rings};
-use crate::mesh::{Face, Vertex};
+use crate::mesh::{Corner, Face, Vertex};
 
 fn located(target: &Map, points: &[Vector3]) -> Vec<Location> {
     let locator = Locator::new(&target.0, &target.1);
@@ -67,7 +67,7 @@ fn a_mesh_gets_its_own_data_back_to_the_bit() {
         // every corner of every face has a value of its own: each edge is a seam
         let values: Vec<f64> = (0..3 * map.1.len()).map(number).collect();
         assert_eq!(corners(&values, 1, &map, &map), values);
-        let own: Vec<u32> = (0..3 * map.1.len() as u32).collect();
+        let own: Vec<Corner> = Corner::all(map.1.len()).collect();
         assert_eq!(nearest_corners(&sides), own);
         let vertices: Vec<Vertex> = Vertex::all(map.0.len()).collect();
         assert_eq!(nearest_vertices(&map.1, &locations), vertices);
@@ -150,14 +150,7 @@ fn labels_come_from_the_nearest_corner() {
         located(&target, &[Vector3([0.6, 0.3, 1.0]), Vector3([0.1, 0.7, 1.0]), Vector3([0.5, 0.0, 1.0])]);
     let nearest = nearest_vertices(&target.1, &locations);
     assert_eq!(nearest, [1, 2, 0].map(Vertex));
-    assert_eq!(
-        pull_rows(
-            &["a", "b", "c", "d", "e", "f"],
-            2,
-            &nearest.iter().map(|vertex| vertex.0).collect::<Vec<_>>()
-        ),
-        ["c", "d", "e", "f", "a", "b"]
-    );
+    assert_eq!(pull_rows(&["a", "b", "c", "d", "e", "f"], 2, &nearest), ["c", "d", "e", "f", "a", "b"]);
 }
 
 #[test]

@@ -304,7 +304,7 @@ def digest(result, image):
     energy = result.history["authalic_energy"]
     return [hashlib.sha256(array.tobytes()).hexdigest() for array in (image, energy)]
 found = []
-for mesh in (bumpy_square(150), meshes.DISKS["rough_cap"], meshes.DISKS["tube_disk"]):
+for mesh in (bumpy_square(100), meshes.DISKS["rough_cap"], meshes.DISKS["tube_disk"]):
     for options in ({}, {"boundary": "arc_length"}, {"angle_weight": 0.03}):
         result = authalic.disk_map(*mesh, **options)
         found.append(digest(result, result.uv))

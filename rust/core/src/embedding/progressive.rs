@@ -238,7 +238,7 @@ impl<'a> Embedding<'a> {
     fn place_in_kernel(&mut self, center: Vector3, motion: Motion) -> Option<Vector3> {
         let frame = motion.frame(center);
         let centroid = kernel_centroid(center, frame.axes, self.star.edges(), &mut self.room);
-        // towards the vertex it went onto, where the kernel is
+        // toward the vertex it went onto, where the kernel is
         let mut places = (0..12).map(|k| motion.moved(center, &frame, centroid.map(|x| 0.1f64.powi(k) * x)));
         places.find(|&place| self.star.energy(place, self.shape).is_some())
     }

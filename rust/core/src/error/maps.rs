@@ -50,7 +50,7 @@ pub enum MapError {
         reason: &'static str,
     },
 
-    /// Positions on a sphere are not finite, or at its centre.
+    /// Positions on a sphere are not finite, or at its center.
     #[error("{name} points nowhere at {}: give finite positions around the origin, none in it", .vertices.named("vertex"))]
     NoDirection {
         /// The argument.

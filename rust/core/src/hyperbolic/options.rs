@@ -14,7 +14,7 @@ pub enum HarmonicSolver {
     /// Riemannian Newton: reaches the minimum in a few steps.
     #[default]
     Newton,
-    /// The paper's heat diffusion: thousands of small steps towards the minimum.
+    /// The paper's heat diffusion: thousands of small steps toward the minimum.
     Heat,
 }
 

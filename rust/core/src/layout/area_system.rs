@@ -87,10 +87,10 @@ impl<'a> AreaSystem<'a> {
         let n = self.right.len();
         let mut solution = vec![[0.0; 2]; n];
         let mut residual = self.right.clone();
-        let mut towards = vec![[0.0; 2]; n];
-        self.precondition(&residual, &mut towards);
-        let mut direction = towards.clone();
-        let mut norm = product(&residual, &towards);
+        let mut toward = vec![[0.0; 2]; n];
+        self.precondition(&residual, &mut toward);
+        let mut direction = toward.clone();
+        let mut norm = product(&residual, &toward);
         let goal = TOLERANCE.powi(2) * norm;
         // buffers shared by all iterations
         let (mut image, mut change) = (vec![[0.0; 2]; n], vec![0.0; self.slopes.len()]);
@@ -102,11 +102,11 @@ impl<'a> AreaSystem<'a> {
             let length = norm / product(&direction, &image);
             add_scaled(&mut solution, length, &direction);
             add_scaled(&mut residual, -length, &image);
-            self.precondition(&residual, &mut towards);
-            let previous = std::mem::replace(&mut norm, product(&residual, &towards));
+            self.precondition(&residual, &mut toward);
+            let previous = std::mem::replace(&mut norm, product(&residual, &toward));
             let factor = norm / previous;
             parallel::fill_with_old(&mut direction, |vertex, [x, y]| {
-                [towards[vertex][0] + factor * x, towards[vertex][1] + factor * y]
+                [toward[vertex][0] + factor * x, toward[vertex][1] + factor * y]
             });
         }
         solution

@@ -70,7 +70,7 @@ impl Default for LayoutOptions<'_> {
 }
 
 impl LayoutOptions<'_> {
-    /// The axes of a projection: towards the seam, a quarter turn on about the pole, and towards the pole.
+    /// The axes of a projection: toward the seam, a quarter turn on about the pole, and toward the pole.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] where pole or seam have no direction.

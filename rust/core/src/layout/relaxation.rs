@@ -24,7 +24,7 @@ use crate::parallel;
 /// What the observer is told.
 const MESSAGE: &str = "Evening out areas";
 
-/// The number of steps towards targets of triangles.
+/// The number of steps toward targets of triangles.
 const FIRST_STEPS: usize = 3;
 
 /// Limit on the work of all further steps: the faces of their patches, as a multiple of all faces.

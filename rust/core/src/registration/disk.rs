@@ -67,28 +67,8 @@ pub fn register_disks(
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
     // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
-    let ours: Vec<Vector3> = landmarks.source.iter().map(|&vertex| turned[vertex]).collect();
-    let disk = |mesh, landmarks, places| Carrying {
-        mesh,
-        domain: CanonicalDomain::Disk,
-        landmarks,
-        places,
-        options,
-    };
-    let there = disk(source, landmarks.source, &places);
-    let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
-    let (carried, status) = there.carry(turned.clone(), &mut history, &mut phase)?;
-    let there =
-        Meeting { gap: there.farthest(&carried), source: carried, target: lifted(rows(g.uv.view())), status };
-    let met = if there.gap > MISSED && status != Status::Cancelled {
-        let back = disk(target, landmarks.target, &ours);
-        let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
-        let (carried, status) = back.carry(lifted(rows(g.uv.view())), &mut history, &mut phase)?;
-        let back = Meeting { gap: back.farthest(&carried), source: turned, target: carried, status };
-        if back.gap < there.gap { back } else { there }
-    } else {
-        there
-    };
+    let images = [turned, lifted(rows(g.uv.view()))];
+    let met = meet([source, target], images, landmarks, options, &mut history, observer)?;
     // 5. g⁻¹: the locations on the target
     let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
     let locator = Locator::new(&met.target, target.faces());
@@ -124,6 +104,42 @@ pub fn register_disks(
         target_distortion,
         seconds: history.seconds(),
     })
+}
+
+/// Carries the source's landmarks to the target's; if some are missed also the target's to the source's, if that is
+/// nearer.
+fn meet(
+    [source, target]: [&TriangleMesh; 2],
+    [source_image, target_image]: [Vec<Vector3>; 2],
+    landmarks: &Landmarks<'_>,
+    options: &RegistrationOptions,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> Result<Meeting, Error> {
+    let of = |image: &[Vector3], vertices: &[usize]| -> Vec<Vector3> {
+        vertices.iter().map(|&vertex| image[vertex]).collect()
+    };
+    let (ours, theirs) = (of(&source_image, landmarks.source), of(&target_image, landmarks.target));
+    let disk = |mesh, landmarks, places| Carrying {
+        mesh,
+        domain: CanonicalDomain::Disk,
+        landmarks,
+        places,
+        options,
+    };
+    let there = disk(source, landmarks.source, &theirs);
+    let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
+    let (carried, status) = there.carry(source_image.clone(), history, &mut phase)?;
+    let there =
+        Meeting { gap: there.farthest(&carried), source: carried, target: target_image.clone(), status };
+    if there.gap <= MISSED || status == Status::Cancelled {
+        return Ok(there);
+    }
+    let back = disk(target, landmarks.target, &ours);
+    let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
+    let (carried, status) = back.carry(target_image, history, &mut phase)?;
+    let back = Meeting { gap: back.farthest(&carried), source: source_image, target: carried, status };
+    Ok(if back.gap < there.gap { back } else { there })
 }
 
 /// Both surfaces in the disk with their landmarks together, up to a gap.

@@ -4,6 +4,8 @@
 //! f₀ and f₁ are the area-preserving maps of source and target to the sphere. After the best rotation h₀ and
 //! h₁ move both landmarks of a pair to the middle between them, so that each surface moves only half the way.
 
+use std::borrow::Cow;
+
 use super::Landmarks;
 use super::correspondence::{Correspondence, Registered, meshes};
 use super::landmark_descent::Carrying;
@@ -64,13 +66,7 @@ pub fn register_spheres(
     target.require_sphere().map_err(|error| error.of_surface(Side::Target))?;
     landmarks.check(source, target, CanonicalDomain::Sphere)?;
     options.check()?;
-    let same_side;
-    let target = if inside_out(source, target) {
-        same_side = target.turned_over();
-        &same_side
-    } else {
-        target
-    };
+    let target = &*not_inside_out(target, source);
     // 2. Both surfaces to the sphere
     let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
@@ -81,9 +77,7 @@ pub fn register_spheres(
     // 3. The best rotation of the landmarks, and the middle of each pair
     let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
     let turned = turned(source, on_sphere, landmarks, &target_on_sphere);
-    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| turned[p]).collect();
-    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| target_on_sphere[q]).collect();
-    let places = meeting_places(&ours, &theirs);
+    let places = meeting_places(&pairs(landmarks, &turned, &target_on_sphere));
     // 4. h₀ and h₁: the landmarks of both carried to the middles
     let carrying = |mesh, landmarks| Carrying {
         mesh,
@@ -102,8 +96,8 @@ pub fn register_spheres(
     let locator = Locator::new(&target_registered, target.faces());
     let (locations, status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
     // 6. Figures
-    let error = |(&p, &q): (&usize, &usize)| registered[p].distance(target_registered[q]);
-    let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
+    let landmark_pairs = pairs(landmarks, &registered, &target_registered);
+    let landmark_error: Vec<f64> = landmark_pairs.iter().map(|[p, q]| p.distance(*q)).collect();
     let missed = missed(landmarks, &landmark_error, target, &locations);
     let figures = |mesh: &TriangleMesh, map: &[Vector3]| {
         measure(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
@@ -139,6 +133,11 @@ pub(crate) fn inside_out(source: &TriangleMesh, target: &TriangleMesh) -> bool {
     volume(source) * volume(target) < 0.0
 }
 
+/// A surface, turned over if it is inside out relative to the other.
+fn not_inside_out<'a>(surface: &'a TriangleMesh, other: &TriangleMesh) -> Cow<'a, TriangleMesh> {
+    if inside_out(surface, other) { Cow::Owned(surface.turned_over()) } else { Cow::Borrowed(surface) }
+}
+
 /// Six times the signed volume inside.
 fn volume(mesh: &TriangleMesh) -> f64 {
     parallel::sum(mesh.n_faces(), |face| {
@@ -155,8 +154,8 @@ fn turned(
     landmarks: &Landmarks<'_>,
     f1: &[Vector3],
 ) -> Vec<Vector3> {
-    let ours: Vec<Vector3> = landmarks.source.iter().map(|&p| f0[p]).collect();
-    let theirs: Vec<Vector3> = landmarks.target.iter().map(|&q| f1[q]).collect();
+    let (ours, theirs): (Vec<Vector3>, Vec<Vector3>) =
+        pairs(landmarks, &f0, f1).into_iter().map(|[p, q]| (p, q)).unzip();
     // the least of equally good rotations, as about the axis of two opposite landmarks
     let axes = [0, 1, 2].map(Vector3::unit);
     let weights = [vec![1.0; ours.len()], vec![LEAST_TURN; 3]].concat();
@@ -169,15 +168,21 @@ fn turned(
     if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0 }
 }
 
+/// The places of the landmarks of each pair on the sphere, the source's first.
+fn pairs(landmarks: &Landmarks<'_>, source: &[Vector3], target: &[Vector3]) -> Vec<[Vector3; 2]> {
+    landmarks.source.iter().zip(landmarks.target).map(|(&p, &q)| [source[p], target[q]]).collect()
+}
+
 /// The meeting places of the pairs: their middles, or the target's landmarks if some middles would coincide, as those
 /// of two landmarks that change places.
-fn meeting_places(ours: &[Vector3], theirs: &[Vector3]) -> Vec<Vector3> {
-    let middle: Vec<Vector3> = ours.iter().zip(theirs).map(|(&a, &b)| between(a, b)).collect();
+fn meeting_places(pairs: &[[Vector3; 2]]) -> Vec<Vector3> {
+    let middle: Vec<Vector3> = pairs.iter().map(|&[p, q]| between(p, q)).collect();
     let is_crowded = |i: usize, j: usize| {
-        let apart = |points: &[Vector3]| points[i].distance(points[j]);
-        apart(&middle) < CROWDED * apart(ours).min(apart(theirs))
+        let apart = |side: usize| pairs[i][side].distance(pairs[j][side]);
+        middle[i].distance(middle[j]) < CROWDED * apart(0).min(apart(1))
     };
-    if (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j))) { theirs.to_vec() } else { middle }
+    let are_crowded = (0..middle.len()).any(|i| (0..i).any(|j| is_crowded(i, j)));
+    if are_crowded { pairs.iter().map(|&[_, q]| q).collect() } else { middle }
 }
 
 /// The midpoint of two points of the sphere; of opposite points the second.

@@ -223,7 +223,7 @@ fn normalize(plane: &mut [[f64; 2]], weights: &[f64]) {
 
 /// Moves the centroid of the measure to the center by Möbius transformations of the sphere.
 ///
-/// Newton's method: the boost towards −b moves x by −(b − (b·x) x) to first order, so the b that brings the
+/// Newton's method: the boost toward −b moves x by −(b − (b·x) x) to first order, so the b that brings the
 /// centroid c to the center solves (I − Σ w x xᵀ) b = c.
 fn centered(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
     let total: f64 = weights.iter().sum();

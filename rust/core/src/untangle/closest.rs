@@ -8,7 +8,7 @@
 //! Σ |x − x⁰|² − μ Σ log(ρ − τ)
 //! ```
 //!
-//! for μ that falls towards 0 (Nocedal & Wright, section 19.6). Vertices that end next to their old places return
+//! for μ that falls toward 0 (Nocedal & Wright, section 19.6). Vertices that end next to their old places return
 //! exactly. Lengths are in units of a mean face.
 //!
 //! Cost: up to [`STEPS`] factorizations of the patch for each of about eight μ.

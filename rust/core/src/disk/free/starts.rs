@@ -91,7 +91,7 @@ fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool
     })
 }
 
-/// The map with vertices that touch an edge of the outline moved a little towards their neighbors.
+/// The map with vertices that touch an edge of the outline moved a little toward their neighbors.
 fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> PlanarMap {
     let mesh = energy.mesh;
     let mut pulled = map.to_vec();

@@ -14,7 +14,7 @@ use crate::mesh::{Corner, Face};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure};
 
-/// Bounds of the relative residual that ends the conjugate gradients; it falls towards the minimum.
+/// Bounds of the relative residual that ends the conjugate gradients; it falls toward the minimum.
 const RESIDUALS: [f64; 2] = [1e-4, 0.1];
 
 /// Limit of the conjugate gradient steps.

@@ -154,7 +154,7 @@ impl Rectangle<'_> {
         (self.with_best_aspect(problem, &map, 1.0).0, status)
     }
 
-    /// The map stretched towards the best aspect, and the logarithm by which it was off; as it is where the aspect is given.
+    /// The map stretched toward the best aspect, and the logarithm by which it was off; as it is where the aspect is given.
     fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, relaxation: f64) -> (SpatialMap, f64) {
         match self.aspect {
             Some(_) => (map.clone(), 0.0),

@@ -223,7 +223,7 @@ fn paired(curve: usize, (source, target): (Path, Path)) -> Result<CurvePair, Err
     Ok(CurvePair { source: source.vertices, target: target.vertices, closed, on_boundary: false, gap })
 }
 
-/// Starts a closed curve at the vertex with the least coordinates, towards the lesser of its neighbors, so that
+/// Starts a closed curve at the vertex with the least coordinates, toward the lesser of its neighbors, so that
 /// the start and the direction given do not matter.
 fn start_canonically(closed: &mut [Vertex], mesh: &TriangleMesh) {
     let point = |vertex: Vertex| mesh.points()[vertex];

@@ -37,8 +37,8 @@ pub(super) struct Pull {
     ends: [Vertex; 2],
     weight: f64,
     distance: f64,
-    /// The unit vectors at each end towards the other.
-    towards: [Complex; 2],
+    /// The unit vectors at each end toward the other.
+    toward: [Complex; 2],
 }
 
 impl<'a> ChartMap<'a> {
@@ -90,8 +90,8 @@ impl<'a> ChartMap<'a> {
         let unit = |z: Complex| if size > 0.0 { z / z.norm() } else { Complex::new(1.0, 0.0) };
         let turn = transition.derivative(x);
         let away = if size > 0.0 { unit(back) } else { Complex::new(-1.0, 0.0) };
-        let towards = [unit(there), away * (turn / turn.norm()).conj()];
-        Pull { ends, weight: self.weights[corner], distance: 2.0 * size.atanh(), towards }
+        let toward = [unit(there), away * (turn / turn.norm()).conj()];
+        Pull { ends, weight: self.weights[corner], distance: 2.0 * size.atanh(), toward }
     }
 
     /// The pulls of all edges.
@@ -103,8 +103,8 @@ impl<'a> ChartMap<'a> {
     pub(super) fn gradient(&self, pulls: &[Pull]) -> Vec<Complex> {
         let mut gradient = vec![Complex::default(); self.places.positions.len()];
         for pull in pulls {
-            for (vertex, towards) in pull.ends.into_iter().zip(pull.towards) {
-                gradient[vertex] -= pull.weight * pull.distance * towards;
+            for (vertex, toward) in pull.ends.into_iter().zip(pull.toward) {
+                gradient[vertex] -= pull.weight * pull.distance * toward;
             }
         }
         for (slope, held) in gradient.iter_mut().zip(&self.places.held) {
@@ -209,14 +209,14 @@ pub(super) fn hessian(pull: &Pull) -> [[f64; 6]; 6] {
     let d = pull.distance;
     let (along, across) =
         if d < SERIES { (1.0 + d * d / 3.0, 1.0 - d * d / 6.0) } else { (d / d.tanh(), d / d.sinh()) };
-    let [e, f] = pull.towards.map(|z| [z.re, z.im]);
-    let [n, o] = pull.towards.map(|z| [-z.im, z.re]);
+    let [e, f] = pull.toward.map(|z| [z.re, z.im]);
+    let [n, o] = pull.toward.map(|z| [-z.im, z.re]);
     let mut matrix = [[0.0; 6]; 6];
     for row in 0..2 {
         for column in 0..2 {
             let end =
                 |u: [f64; 2], v: [f64; 2]| pull.weight * (u[row] * u[column] + along * v[row] * v[column]);
-            // the vectors at the ends point towards each other along a geodesic, so their normals are opposite too
+            // the vectors at the ends point toward each other along a geodesic, so their normals are opposite too
             let both = pull.weight * (e[row] * f[column] + across * n[row] * o[column]);
             matrix[row][column] = end(e, n);
             matrix[2 + row][2 + column] = end(f, o);

@@ -3,7 +3,7 @@
 //!
 //! Discrete conformal changes with a fixed triangulation need not have a solution: a face with an angle close
 //! to π may end up violating the triangle inequality. Packings of tangential circles always have a solution (W.
-//! Thurston), and never violate it. So the inversive distances of edges at such faces are moved towards 1, the
+//! Thurston), and never violate it. So the inversive distances of edges at such faces are moved toward 1, the
 //! tangential value, until there is a solution: a third of the way at a time, at the faces themselves first,
 //! then around them, in the end everywhere. Conformality is given up only at these edges.
 //!

@@ -81,7 +81,7 @@ fn parabolic_step(best: Point, second: Point, third: Point) -> Option<f64> {
     step.is_finite().then_some(step)
 }
 
-/// A step that lands within two tolerances of an end goes one tolerance towards the middle instead.
+/// A step that lands within two tolerances of an end goes one tolerance toward the middle instead.
 fn away_from_ends(step: f64, best: f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let to = best + step;
     if to - low < 2.0 * tolerance || high - to < 2.0 * tolerance {

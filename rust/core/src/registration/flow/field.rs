@@ -149,9 +149,9 @@ fn planar_stream(scale: f64, sources: &[Source], x: Vector3) -> (f64, [f64; 2]) 
     for Source { place, pull, mass } in sources {
         let d = [scale * (x[0] - place[0]), scale * (x[1] - place[1])];
         let (phi, g, h) = matern(d[0] * d[0] + d[1] * d[1]);
-        let towards = pull[0] * d[0] + pull[1] * d[1];
-        value += mass * (phi + ROTATION) + g * towards;
-        let along = h * towards - mass * g;
+        let toward = pull[0] * d[0] + pull[1] * d[1];
+        value += mass * (phi + ROTATION) + g * toward;
+        let along = h * toward - mass * g;
         gradient = [0, 1].map(|k| gradient[k] + scale * (g * pull[k] + along * d[k]));
     }
     (value, gradient)

@@ -40,7 +40,7 @@ const ON_CIRCLE: f64 = 1e-12;
 /// Vertices between two checks for cancellation.
 const BREATH: usize = 512;
 
-/// Carries the `landmarks`, vertices of `map`, towards their `places`, and all other vertices along.
+/// Carries the `landmarks`, vertices of `map`, toward their `places`, and all other vertices along.
 ///
 /// `mended` removes the folds that coarse faces of a moved map may have, or returns `None` if there are too many.
 /// Returns the last accepted map; the map given, unchanged, if the landmarks are at their places already.

@@ -7,11 +7,15 @@ import re
 from pathlib import Path
 
 import pytest
-from test_architecture import ADDON_ROOMS, CORE_ROOMS
+from test_architecture import ADDON_ROOMS, CORE_ROOMS, HYPERBOLIC_ROOMS
 
 ROOT = Path(__file__).resolve().parents[1]
 GUIDES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-DOCUMENTS = [*GUIDES, ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md", ROOT / "tests" / "gui" / "README.md"]
+DOCUMENTS = [
+    *GUIDES,
+    *(ROOT / "ARCHITECTURE.md", ROOT / "CHANGELOG.md"),
+    *(ROOT / "rust" / "core" / "README.md", ROOT / "tests" / "gui" / "README.md"),
+]
 TOP = sorted(path.name for path in ROOT.iterdir() if path.is_dir())
 MADE = (".venv/", "dist/", "out/")
 """Folders that commands make; they need not exist."""
@@ -109,6 +113,14 @@ def test_the_graph_of_dependencies_is_the_one_that_is_checked() -> None:
     addon[1] = addon[1].replace("extension", "")
     rows = [set(line.split()) for line in (*core, *addon) if line.strip()]
     assert rows == [*CORE_ROOMS, *ADDON_ROOMS[:-1]]
+
+
+def test_the_rows_of_hyperbolic_rooms_are_those_that_are_checked() -> None:
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    listed = re.search(r"Within `hyperbolic/` the rows are: ([\w\s,;]+)\.", text)
+    assert listed
+    rows = [{room.strip() for room in row.split(",")} for row in listed[1].split(";")]
+    assert rows == [*HYPERBOLIC_ROOMS]
 
 
 @documents

@@ -117,7 +117,7 @@ OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | IN_BLENDER
         ("tests/api/oracle.py", {"ruff", "python"}),
         ("tests/blender/test_modal.py", {"ruff", "types"} | IN_BLENDER),
         ("tests/blender/meshes.py", {"ruff", "types"} | IN_BLENDER),
-        ("tests/gui/driver.py", {"ruff"}),
+        ("tests/gui/driver.py", {"ruff", "types"}),
         ("tests/test_scripts.py", {"ruff", "python"}),
         ("scripts/bench", {"ruff", "python"}),
         ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),

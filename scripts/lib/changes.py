@@ -36,7 +36,7 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("tests/blender/test_*.py", {"ruff": (), "types": (), **dict.fromkeys(BLENDER, ("{file}",))}),
     ("tests/blender/*", _whole("ruff", "types", *BLENDER)),
     ("tests/data/*", {"python": ("tests/api",), **_whole(*BLENDER)}),
-    ("tests/gui/*.py", _whole("ruff")),
+    ("tests/gui/*.py", _whole("ruff", "types")),
     ("tests/test_architecture.py", {"ruff": (), "python": STRUCTURE}),
     ("tests/test_*.py", {"ruff": (), "python": ("{file}",)}),
     ("scripts/lib/bench/*", {"ruff": (), "python": PROJECT}),

@@ -166,10 +166,6 @@ def _center(mesh):
     mesh.transform(Matrix.Scale(scale, 4) @ Matrix.Translation(tuple(-(low + high) / 2)))
 
 
-def _has_open_edge(vertex):
-    return any(edge.is_boundary or edge.seam for edge in vertex.link_edges)
-
-
 def _pieces(work):
     seen, pieces = set(), []
     for first in work.verts:

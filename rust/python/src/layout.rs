@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::layout`.
 
-use authalic::{LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, Surface};
-use numpy::ndarray::Array2;
+use std::sync::Arc;
+
+use authalic::{LayoutKind, LayoutOptions, Precision, Seam, SphereFaces};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -54,7 +55,7 @@ pub struct Arguments<'a, 'py> {
 }
 
 /// `SphereMap.layout`.
-pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> PyResult<Layout> {
+pub fn layout(py: Python<'_>, sphere: Arc<SphereFaces>, arguments: &Arguments<'_, '_>) -> PyResult<Layout> {
     // 1. Arguments to plain data
     let (kind, precision) = (parse_kind(arguments.kind)?, parse_precision(arguments.precision)?);
     let pole = arguments.pole.map_or(Ok([0.0, 0.0, 1.0]), parse_pole)?;
@@ -85,14 +86,7 @@ pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> 
             candidates: candidates.as_deref(),
             precision,
         };
-        let image = Surface::new(sphere.positions, sphere.faces)?;
-        let sphere = SphereFaces {
-            image: &image,
-            targets: &sphere.targets,
-            face_of: sphere.face_of.as_deref(),
-            n_vertices: sphere.n_vertices,
-        };
-        authalic::layout(sphere, &options, observer)
+        authalic::layout(&sphere, &options, observer)
     })?;
     // 3. The result
     Ok(Layout {
@@ -105,20 +99,6 @@ pub fn layout(py: Python<'_>, sphere: Sphere, arguments: &Arguments<'_, '_>) -> 
         status: layout.status.as_str(),
         seconds: layout.seconds,
     })
-}
-
-/// The parts of a map that are laid out, copied so that the run needs no Python.
-pub struct Sphere {
-    /// (n, 3): the images of the vertices, then those of split points.
-    pub positions: Array2<f64>,
-    /// (m, 3): the faces, or their parts.
-    pub faces: Array2<u32>,
-    /// (m,): the target measure of each face or part.
-    pub targets: Vec<f64>,
-    /// (m,): the face of the map that each part belongs to, if they are parts.
-    pub face_of: Option<Vec<usize>>,
-    /// The number of vertices.
-    pub n_vertices: usize,
 }
 
 fn parse_kind(kind: &str) -> PyResult<LayoutKind> {

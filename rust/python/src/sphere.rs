@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::sphere_map`.
 
-use authalic::{LineSearch, SphereMapOptions, SphereMethod};
-use numpy::ndarray::{ArrayView2, Axis, concatenate};
+use std::sync::Arc;
+
+use authalic::{LineSearch, SphereFaces, SphereMapOptions, SphereMethod};
+use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, from_index_list, from_indices, index_table, labels, real_table, reals};
+use crate::arrays::{from_array, from_index_list, from_indices, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
-use crate::layout::{Arguments, Layout, Sphere, layout};
+use crate::layout::{Arguments, Layout, layout};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 use crate::surface::{Given, oriented};
@@ -46,8 +48,8 @@ pub struct SphereMap {
     /// Wall time of the call.
     #[pyo3(get)]
     seconds: f64,
-    /// (m,): the target measure of each face, for layouts.
-    targets: Vec<f64>,
+    /// What `layout` lays out.
+    sphere: Arc<SphereFaces>,
 }
 
 /// The faces of a surface, some of them split, and the split points.
@@ -73,8 +75,6 @@ pub struct Refinement {
     /// The figures of these faces.
     #[pyo3(get)]
     distortion: Py<Distortion>,
-    /// (m',): the target measure of each face, for layouts.
-    targets: Vec<f64>,
 }
 
 impl Refinement {
@@ -86,7 +86,6 @@ impl Refinement {
             faces: from_indices(py, refinement.faces.view()),
             face_of: from_index_list(py, refinement.face_of.into_iter()),
             distortion: Py::new(py, Distortion::new(py, refinement.distortion))?,
-            targets: refinement.targets,
         })
     }
 }
@@ -104,8 +103,13 @@ impl Refinement {
 }
 
 impl SphereMap {
-    /// The map without a refinement.
-    pub fn new(py: Python<'_>, map: authalic::SphereMap, faces: ArrayView2<'_, u32>) -> PyResult<Self> {
+    /// The map without a refinement, and what is laid out of it.
+    pub fn new(
+        py: Python<'_>,
+        map: authalic::SphereMap,
+        faces: ArrayView2<'_, u32>,
+        sphere: SphereFaces,
+    ) -> PyResult<Self> {
         Ok(Self {
             positions: from_array(py, map.positions),
             faces: from_indices(py, faces),
@@ -115,28 +119,7 @@ impl SphereMap {
             distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             refinement: None,
             seconds: map.seconds,
-            targets: map.targets,
-        })
-    }
-
-    /// The map for a layout, with the parts of its faces if some are split.
-    fn to_lay_out(&self, py: Python<'_>) -> PyResult<Sphere> {
-        let positions = real_table::<3>(self.positions.bind(py), "positions")?;
-        let n_vertices = positions.nrows();
-        let Some(refinement) = &self.refinement else {
-            let faces = index_table::<3>(self.faces.bind(py), "faces", n_vertices)?;
-            return Ok(Sphere { positions, faces, targets: self.targets.clone(), face_of: None, n_vertices });
-        };
-        let refinement = refinement.get();
-        let of_split_points = real_table::<3>(refinement.positions.bind(py), "positions")?;
-        let positions = concatenate![Axis(0), positions, of_split_points];
-        let face_of = labels(refinement.face_of.bind(py), "face_of")?;
-        Ok(Sphere {
-            faces: index_table::<3>(refinement.faces.bind(py), "faces", positions.nrows())?,
-            positions,
-            targets: refinement.targets.clone(),
-            face_of: Some(face_of.iter().map(|&face| face as usize).collect()),
-            n_vertices,
+            sphere: Arc::new(sphere),
         })
     }
 }
@@ -218,7 +201,7 @@ impl SphereMap {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Layout> {
         let arguments = Arguments { kind, pole, seam, polygons, density, candidates, precision, progress };
-        layout(py, self.to_lay_out(py)?, &arguments)
+        layout(py, self.sphere.clone(), &arguments)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -335,7 +318,7 @@ pub fn sphere_map(
     let density = density.map(|density| reals(density, "density")).transpose()?;
     let initial = initial.map(|initial| real_table::<3>(initial, "initial")).transpose()?;
     // 2. The run
-    let (mut map, surface) = run(py, progress, move |observer| {
+    let (mut map, surface, sphere) = run(py, progress, move |observer| {
         let surface = given.surface()?;
         let density = density.as_ref().map(|density| density.view());
         let initial = initial.as_ref().map(|initial| initial.view());
@@ -351,12 +334,14 @@ pub fn sphere_map(
             refine,
             unfold,
         };
-        Ok((authalic::sphere_map(&surface, &options, observer)?, surface))
+        let map = authalic::sphere_map(&surface, &options, observer)?;
+        let sphere = map.faces_on_sphere(surface.oriented_faces()?.view())?;
+        Ok((map, surface, sphere))
     })?;
     // 3. The result
     let refinement = map.refinement.take().map(|refinement| Refinement::new(py, *refinement, &surface));
     let refinement = refinement.transpose()?.map(|refinement| Py::new(py, refinement)).transpose()?;
-    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface).view())? })
+    Ok(SphereMap { refinement, ..SphereMap::new(py, map, oriented(&surface).view(), sphere)? })
 }
 
 fn parse_method(method: &str) -> PyResult<SphereMethod> {

@@ -80,7 +80,7 @@ impl<'a, P: Projection> Run<'a, P> {
     ///
     /// # Errors
     /// Arrays of the wrong length, positions without a direction, options out of range.
-    pub fn new(sphere: SphereFaces<'a>, options: &LayoutOptions<'_>) -> Result<Self, Error> {
+    pub fn new(sphere: &'a SphereFaces, options: &LayoutOptions<'_>) -> Result<Self, Error> {
         let began = Instant::now();
         let [first, second, third] = options.frame()?;
         sphere.check()?;
@@ -90,7 +90,7 @@ impl<'a, P: Projection> Run<'a, P> {
         let targets = sphere.areas(options.density)?;
         Ok(Self {
             faces,
-            face_of: sphere.face_of,
+            face_of: sphere.face_of.as_deref(),
             points: parallel::map(positions.len(), |vertex| turned(positions[vertex])),
             corners: VertexCorners::new(positions.len(), faces),
             polygons: Polygons::new(faces, labels.as_deref()),

@@ -35,7 +35,7 @@ mod sphere_faces;
 mod twist;
 mod unfolding;
 
-use ndarray::{Axis, concatenate};
+use ndarray::{ArrayView2, Axis, concatenate};
 
 use crate::control::Observer;
 use crate::error::Error;
@@ -79,20 +79,27 @@ impl SphereMap {
         options: &LayoutOptions<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Layout, Error> {
+        layout(&self.faces_on_sphere(surface.oriented_faces()?.view())?, options, observer)
+    }
+
+    /// The map as it is laid out, checked once for any number of layouts. `faces` (m, 3) are those of the surface, as
+    /// oriented.
+    ///
+    /// # Errors
+    /// Faces that do not fit the map.
+    pub fn faces_on_sphere(&self, faces: ArrayView2<'_, u32>) -> Result<SphereFaces, Error> {
         let n_vertices = self.positions.nrows();
         let Some(refinement) = &self.refinement else {
-            let image = Surface::new(&self.positions, surface.oriented_faces()?)?;
-            let sphere = SphereFaces { image: &image, targets: &self.targets, face_of: None, n_vertices };
-            return layout(sphere, options, observer);
+            let image = Surface::new(&self.positions, faces)?;
+            return Ok(SphereFaces { image, targets: self.targets.clone(), face_of: None, n_vertices });
         };
         let positions = concatenate![Axis(0), self.positions, refinement.positions];
-        let sphere = SphereFaces {
-            image: &Surface::new(positions, &refinement.faces)?,
-            targets: &refinement.targets,
-            face_of: Some(&refinement.face_of),
+        Ok(SphereFaces {
+            image: Surface::new(positions, &refinement.faces)?,
+            targets: refinement.targets.clone(),
+            face_of: Some(refinement.face_of.clone()),
             n_vertices,
-        };
-        layout(sphere, options, observer)
+        })
     }
 }
 
@@ -101,7 +108,7 @@ impl SphereMap {
 /// # Errors
 /// As [`SphereMap::layout`].
 pub fn layout(
-    sphere: SphereFaces<'_>,
+    sphere: &SphereFaces,
     options: &LayoutOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Layout, Error> {

@@ -14,19 +14,19 @@ use crate::parallel;
 use crate::vector::Vector3;
 
 /// A map onto the sphere as it is laid out: faces between vertices, or the parts of split faces.
-#[derive(Debug, Clone, Copy)]
-pub struct SphereFaces<'a> {
+#[derive(Debug, Clone)]
+pub struct SphereFaces {
     /// The image: vertices on the unit sphere, faces counter-clockwise seen from outside.
-    pub image: &'a Surface,
+    pub image: Surface,
     /// (m,): the target measure of each face, positive, on any scale.
-    pub targets: &'a [f64],
+    pub targets: Vec<f64>,
     /// (m,): the face of the map that each of them is a part of, ascending; all whole where `None`.
-    pub face_of: Option<&'a [usize]>,
+    pub face_of: Option<Vec<usize>>,
     /// The number of vertices of the map; the vertices of `image` after these are split points.
     pub n_vertices: usize,
 }
 
-impl SphereFaces<'_> {
+impl SphereFaces {
     /// Checks that the arrays fit each other.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl SphereFaces<'_> {
             let expected = format!("at least {} rows, one per vertex", self.n_vertices);
             return Err(Error::InvalidArray { name: "image", found: n_points.to_string(), expected });
         }
-        let Some(face_of) = self.face_of else { return Ok(()) };
+        let Some(face_of) = &self.face_of else { return Ok(()) };
         check_length("face_of", face_of.len(), self.image.n_faces(), "one face per part")?;
         if face_of.is_sorted() {
             return Ok(());
@@ -58,8 +58,8 @@ impl SphereFaces<'_> {
 
     /// How many faces the map has, which may be split.
     fn n_whole_faces(&self) -> usize {
-        let last = self.face_of.and_then(|face_of| face_of.last());
-        self.face_of.map_or(self.image.n_faces(), |_| last.map_or(0, |&face| face + 1))
+        let last_part = |face_of: &Vec<usize>| face_of.last().map_or(0, |&face| face + 1);
+        self.face_of.as_ref().map_or(self.image.n_faces(), last_part)
     }
 
     /// The label of the polygon of each face; the parts of a face have one.
@@ -67,19 +67,19 @@ impl SphereFaces<'_> {
         if let Some(polygons) = polygons {
             check_length("polygons", polygons.len(), self.n_whole_faces(), "one number per face")?;
         }
-        Ok(match (polygons, self.face_of) {
+        Ok(match (polygons, &self.face_of) {
             (Some(polygons), Some(face_of)) => Some(face_of.iter().map(|&face| polygons[face]).collect()),
             (Some(polygons), None) => Some(polygons.to_vec()),
-            (None, face_of) => face_of.map(<[usize]>::to_vec),
+            (None, face_of) => face_of.clone(),
         })
     }
 
     /// The areas wanted, with the sum of the sphere's; the parts of a face share its density in proportion to their targets.
     pub(super) fn areas(&self, density: Option<ArrayView1<'_, f64>>) -> Result<Vec<f64>, Error> {
-        let mut areas = normalized_density(self.targets, self.image.n_faces())?;
+        let mut areas = normalized_density(&self.targets, self.image.n_faces())?;
         if let Some(density) = density {
             let density = normalized_density(&density.to_vec(), self.n_whole_faces())?;
-            let whole = |part: usize| self.face_of.map_or(part, |face_of| face_of[part]);
+            let whole = |part: usize| self.face_of.as_ref().map_or(part, |face_of| face_of[part]);
             let mut sums = vec![0.0; density.len()];
             (0..areas.len()).for_each(|part| sums[whole(part)] += areas[part]);
             areas =

@@ -65,19 +65,23 @@ fn arrays_that_do_not_fit_are_refused() {
     let image = surface();
     let (n_vertices, n_faces) = (image.n_vertices(), image.n_faces());
     let (targets, parts) = (vec![1.0; n_faces], (0..n_faces).rev().collect::<Vec<_>>());
-    let fitting = SphereFaces { image: &image, targets: &targets, face_of: None, n_vertices };
+    let fitting = SphereFaces { image, targets: targets.clone(), face_of: None, n_vertices };
     let refused =
-        |sphere: SphereFaces<'_>, options: &LayoutOptions<'_>| match layout(sphere, options, &mut Silent) {
+        |sphere: SphereFaces, options: &LayoutOptions<'_>| match layout(&sphere, options, &mut Silent) {
             Err(Error::InvalidArray { name, .. }) => name,
             _ => "none",
         };
     let options = LayoutOptions::default();
-    assert_eq!(refused(SphereFaces { targets: &targets[1..], ..fitting }, &options), "density");
-    assert_eq!(refused(SphereFaces { face_of: Some(&parts), ..fitting }, &options), "face_of");
-    assert_eq!(refused(SphereFaces { face_of: Some(&parts[1..]), ..fitting }, &options), "face_of");
-    assert_eq!(refused(SphereFaces { n_vertices: n_vertices + 1, ..fitting }, &options), "image");
+    assert_eq!(
+        refused(SphereFaces { targets: targets[1..].to_vec(), ..fitting.clone() }, &options),
+        "density"
+    );
+    let cut_off = Some(parts[1..].to_vec());
+    assert_eq!(refused(SphereFaces { face_of: Some(parts), ..fitting.clone() }, &options), "face_of");
+    assert_eq!(refused(SphereFaces { face_of: cut_off, ..fitting.clone() }, &options), "face_of");
+    assert_eq!(refused(SphereFaces { n_vertices: n_vertices + 1, ..fitting.clone() }, &options), "image");
     let polygons = LayoutOptions { polygons: Some(&[0, 1]), ..options };
-    assert_eq!(refused(fitting, &polygons), "polygons");
+    assert_eq!(refused(fitting.clone(), &polygons), "polygons");
     let candidates = LayoutOptions { candidates: Some(&[true]), ..options };
     assert_eq!(refused(fitting, &candidates), "candidates");
 }

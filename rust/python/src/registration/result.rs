@@ -12,7 +12,7 @@ use super::certificates::Certificates;
 use super::finished::{Finished, Per};
 use crate::arrays::{Reals, Values, from_array, from_index_list, from_indices, from_values};
 use crate::distortion::Distortion;
-use crate::errors::{bad_array, bad_option, warning};
+use crate::errors::{bad_array, bad_option, to_python, warning};
 use crate::run::run;
 use crate::{disk, sphere};
 
@@ -201,7 +201,8 @@ fn maps(
         Ok::<_, PyErr>(Py::new(py, disk::DiskMap::new(py, map.clone(), faces)?)?.into_any())
     };
     let sphere = |map: &SphereMap, faces| {
-        Ok::<_, PyErr>(Py::new(py, sphere::SphereMap::new(py, map.clone(), faces)?)?.into_any())
+        let on_sphere = map.faces_on_sphere(faces).map_err(|error| to_python(py, &error))?;
+        Ok::<_, PyErr>(Py::new(py, sphere::SphereMap::new(py, map.clone(), faces, on_sphere)?)?.into_any())
     };
     Ok(match finished {
         Finished::Disk(disks) => [disk(&disks.source_map, faces)?, disk(&disks.target_map, target_faces)?],

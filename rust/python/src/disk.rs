@@ -6,9 +6,10 @@ use numpy::PyArray2;
 use numpy::ndarray::ArrayView2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Reals, from_array, from_indices, index_list, real_table, reals};
+use crate::arrays::{Reals, from_array, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option};
+use crate::indices::{from_indices, index_list};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 use crate::surface::{Given, oriented};

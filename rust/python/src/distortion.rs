@@ -4,7 +4,8 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, from_array, from_index_list, reals};
+use crate::arrays::{self, from_array, reals};
+use crate::indices::from_index_list;
 use crate::run::run;
 use crate::surface::Given;
 

@@ -5,7 +5,8 @@ use numpy::PyArray1;
 use numpy::ndarray::Array1;
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, from_index_list, real_table, reals};
+use crate::arrays::{from_array, real_table, reals};
+use crate::indices::from_index_list;
 use crate::run::run;
 use crate::surface::Given;
 

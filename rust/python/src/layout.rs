@@ -7,9 +7,11 @@ use authalic::{LayoutKind, LayoutOptions, Precision, Seam, SphereFaces};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Values, from_array, from_index_list, from_indices, labels, reals, vertex_set};
+use crate::arrays::{from_array, reals};
 use crate::errors::{bad_array, bad_option};
+use crate::indices::{from_index_list, from_indices, labels, vertex_set};
 use crate::run::run;
+use crate::values::Values;
 
 /// A map onto the sphere laid out in the plane, cut open along a seam, without folds.
 #[pyclass(frozen, get_all, module = "authalic")]

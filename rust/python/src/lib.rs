@@ -7,6 +7,7 @@ mod disk;
 mod distortion;
 mod errors;
 mod hessian;
+mod indices;
 mod layout;
 mod options;
 mod registration;
@@ -15,6 +16,7 @@ mod sphere;
 mod structure;
 mod surface;
 mod untangle;
+mod values;
 
 use pyo3::prelude::*;
 

@@ -8,9 +8,10 @@ use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_array, from_index_list, from_indices, real_table, reals};
+use crate::arrays::{from_array, real_table, reals};
 use crate::distortion::Distortion;
 use crate::errors::bad_option;
+use crate::indices::{from_index_list, from_indices};
 use crate::layout::{Arguments, Layout, layout};
 use crate::options::{history, parse_iterations};
 use crate::run::run;

@@ -5,8 +5,9 @@ use authalic::{self as core, Complex, Moebius, Vertex};
 use numpy::{Complex64, PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::arrays::{Reals, from_array, from_index_list, from_indices};
+use crate::arrays::{Reals, from_array};
 use crate::errors::bad_option;
+use crate::indices::{from_index_list, from_indices};
 use crate::options::{choice, metrics};
 use crate::registration::vertex_paths;
 use crate::run::run;

@@ -9,8 +9,9 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-use crate::arrays::{from_array, from_index_list, from_indices, index_table, real_table};
+use crate::arrays::{from_array, real_table};
 use crate::errors::bad_array;
+use crate::indices::{from_index_list, from_indices, index_table};
 use crate::run::run;
 
 /// A triangle mesh that is checked once, and accepted in the place of vertices and faces.

@@ -7,8 +7,9 @@ use authalic::UntangleOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Reals, from_array, from_index_list, vertex_set};
+use crate::arrays::{self, Reals, from_array};
 use crate::distortion::Distortion;
+use crate::indices::{from_index_list, vertex_set};
 use crate::run::run;
 use crate::surface::Given;
 

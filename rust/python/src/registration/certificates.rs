@@ -4,7 +4,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::from_index_list;
+use crate::indices::from_index_list;
 
 /// The proof that a registration by curves is one-to-one and takes curve to curve.
 ///

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::finished::Finished;
 use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked};
-use crate::arrays::index_list;
+use crate::indices::index_list;
 use crate::run::run;
 use crate::surface::Given;
 

@@ -10,10 +10,12 @@ use pyo3::prelude::*;
 
 use super::certificates::Certificates;
 use super::finished::{Finished, Per};
-use crate::arrays::{Reals, Values, from_array, from_index_list, from_indices, from_values};
+use crate::arrays::{Reals, from_array};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python, warning};
+use crate::indices::{from_index_list, from_indices};
 use crate::run::run;
+use crate::values::{Values, from_values};
 use crate::{disk, sphere};
 
 /// A one-to-one map of a source surface onto a target that takes landmarks to landmarks.

@@ -4,8 +4,8 @@
 use authalic::{Error, Side};
 use pyo3::prelude::*;
 
-use crate::arrays::index_list;
 use crate::errors::bad_array;
+use crate::indices::index_list;
 use crate::surface::Given;
 
 /// The names of the source, its vertices and its faces in messages.

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Data of any kind and shape, as registrations carry it.
+
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::{as_array, converted, shape_words};
+
+/// Data of any kind and shape.
+pub struct Values<'py> {
+    array: Bound<'py, PyUntypedArray>,
+    name: &'static str,
+}
+
+impl<'py> Values<'py> {
+    pub fn new(object: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
+        Ok(Self { array: as_array(object, name)?, name })
+    }
+
+    pub fn shape(&self) -> Vec<usize> {
+        self.array.shape().to_vec()
+    }
+
+    pub fn shape_words(&self) -> String {
+        shape_words(self.array.shape())
+    }
+
+    /// All values in C order as float64; `expected` says in messages what they must be.
+    pub fn reals(&self, expected: &str) -> PyResult<Vec<f64>> {
+        let array: PyReadonlyArrayDyn<'_, f64> =
+            converted(&self.array, self.name, "float64", "iufb", expected)?;
+        Ok(array.as_slice()?.to_vec())
+    }
+
+    /// The given rows, in the same dtype, as an array of shape `shape`. The first `axes` axes number the rows.
+    pub fn taken(&self, axes: usize, rows: &[usize], shape: Vec<usize>) -> PyResult<Py<PyAny>> {
+        let py = self.array.py();
+        let (first, rest) = self.array.shape().split_at(axes);
+        let by_row: Vec<usize> =
+            std::iter::once(first.iter().product()).chain(rest.iter().copied()).collect();
+        let reshape = intern!(py, "reshape");
+        let indices = PyArray1::from_iter(py, rows.iter().map(|&row| row as i64));
+        let table = self.array.call_method1(reshape, (PyTuple::new(py, by_row)?,))?;
+        let taken = table.call_method1(intern!(py, "take"), (indices, 0))?;
+        Ok(taken.call_method1(reshape, (PyTuple::new(py, shape)?,))?.unbind())
+    }
+}
+
+/// Numbers in C order as an array of any shape.
+pub fn from_values(py: Python<'_>, values: Vec<f64>, shape: Vec<usize>) -> PyResult<Py<PyAny>> {
+    Ok(PyArray1::from_vec(py, values).reshape(shape)?.into_any().unbind())
+}

@@ -40,7 +40,8 @@ def edges_between(mesh: bpy.types.Mesh, pairs: Sequence[Edge]) -> list[int]:
     bad = np.flatnonzero(keys[order[places]] != wanted) if len(keys) else np.zeros(1, int)
     if len(bad):
         raise NoEdge("no edge joins vertices {} and {}".format(*pairs[bad[0]]))
-    return order[places].tolist()
+    edges: list[int] = order[places].tolist()
+    return edges
 
 
 def _edited_between(edit: bmesh.types.BMesh, pairs: Sequence[Edge]) -> list[int]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Types of Blender's data with the properties that the extension adds; the type checker alone knows these."""
 
-from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
 import bpy
 
@@ -55,7 +55,7 @@ else:
 
 def owner_of(entry: "Landmark | LandmarkCurve") -> MeshObject:
     """The object that a list entry is kept on."""
-    owner: Any = entry.id_data
+    owner: MeshObject = entry.id_data  # type: ignore[assignment]
     return owner
 
 

@@ -109,4 +109,4 @@ def _add_edited(mesh: bpy.types.Mesh, name: str) -> str:
         for face in edit.faces:
             for loop in face.loops:
                 loop[new].uv = loop[source].uv
-    return new.name
+    return str(new.name)

@@ -76,7 +76,7 @@ def _areas(points: Floats, image: Singles) -> tuple[Floats, Floats]:
 
 def _ratios(areas: Floats, image_areas: Floats) -> Floats:
     """Signed image areas (t,) over areas (t,), scaled so that all areas together have the ratio 1."""
-    return image_areas / areas * (areas.sum() / np.abs(image_areas).sum())
+    return image_areas / areas * float(areas.sum() / np.abs(image_areas).sum())
 
 
 def _log2(ratios: Floats, folded: Booleans) -> Floats:

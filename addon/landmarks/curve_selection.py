@@ -57,4 +57,5 @@ def _from_active(path: Path, active: Sequence[int]) -> tuple[Path, bool]:
 def _chord(obj: MeshObject, path: Path) -> Floats:
     """From the start to the end in the world."""
     start, end = vertex_positions.undeformed(obj, (path[0], path[-1]))
-    return np.array(obj.matrix_world)[:3, :3] @ (end - start)
+    chord: Floats = np.array(obj.matrix_world)[:3, :3] @ (end - start)
+    return chord

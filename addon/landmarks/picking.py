@@ -91,7 +91,7 @@ class Pickable:
         return bool(np.isfinite(corners).all() and outside.any())
 
     def _moved(self, points: Floats) -> Floats:
-        matrix = np.array(self.matrix)
+        matrix: Floats = np.array(self.matrix)
         return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 

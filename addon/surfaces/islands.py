@@ -48,16 +48,18 @@ def upright(uv: Floats) -> Floats:
 def _tightest(points: Floats, angles: Floats) -> float:
     """The angle, of (k,), by which points must be turned for the smallest bounding box."""
     sizes = [np.ptp(_turned(points, angle), axis=0).prod() for angle in angles]
-    return angles[int(np.argmin(sizes))]
+    return float(angles[np.argmin(sizes)])
 
 
 def _turned(points: Floats, angle: float) -> Floats:
     cosine, sine = np.cos(angle), np.sin(angle)
-    return points @ np.array([[cosine, sine], [-sine, cosine]])
+    turn: Floats = np.array([[cosine, sine], [-sine, cosine]])
+    return points @ turn
 
 
 def _outline(uv: Floats) -> Floats:
     """The outermost points, of (n, 2), in `_DIRECTIONS` directions."""
     u, v = np.ascontiguousarray(uv.T)
     angles = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)
-    return uv[np.unique([np.argmax(np.cos(angle) * u + np.sin(angle) * v) for angle in angles])]
+    outermost: Integers = np.unique([np.argmax(np.cos(angle) * u + np.sin(angle) * v) for angle in angles])
+    return uv[outermost]

@@ -18,13 +18,13 @@ def centroid(points: Floats, faces: Integers) -> Floats:
 
 def radius(points: Floats, faces: Integers) -> float:
     """The radius of the sphere that has the area of a surface."""
-    return np.sqrt(triangulation.areas(points[faces]).sum() / (4 * np.pi))
+    return float(np.sqrt(triangulation.areas(points[faces]).sum() / (4 * np.pi)))
 
 
 def volume(points: Floats, faces: Integers) -> float:
     """The signed volume inside a closed surface: negative where its faces look inward."""
     a, b, c = (points[faces[:, corner]] for corner in range(3))
-    return np.einsum("ij,ij", a, np.cross(b, c)) / 6
+    return float(np.einsum("ij,ij", a, np.cross(b, c))) / 6
 
 
 def over_surface(points: Floats, faces: Integers, positions: Floats) -> Floats:
@@ -53,4 +53,5 @@ def is_thin(positions: Floats, faces: Integers) -> bool:
 def turned(faces: Integers, oriented: Integers) -> Booleans:
     """A mask (m,) of the faces (m, 3) that `oriented` (m, 3), in which all are oriented alike, turns over."""
     turns = np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)
-    return ~(oriented[:, None, :] == turns).all(axis=2).any(axis=1)
+    is_kept: Booleans = (oriented[:, None, :] == turns).all(axis=2).any(axis=1)
+    return ~is_kept

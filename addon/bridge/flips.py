@@ -18,6 +18,9 @@ from .patches import checked, cut
 from .progress import NOT_REACHED, Progress, keep_going, one_by_one
 from .results import Refusal, Unflipped
 
+# The kinds of errors that say that the outline, pins or shared UVs leave no way out; their indices are faces.
+_NO_WAY_OUT = {"fixed_fold", "outline_fold", "still_folded"}
+
 
 def fix_flips(surfaces: Sequence[Surface], progress: Progress = keep_going) -> Unflipped:
     """Finds UVs without flipped faces for the islands of `surfaces`, moving as few as possible.
@@ -110,6 +113,8 @@ def _untangled(
     except (authalic.MeshError, authalic.SolverError) as problem:
         if result.ended_early:
             raise Unsuitable(NOT_REACHED) from problem
+        if problem.kind not in _NO_WAY_OUT:
+            raise
         flipped = np.unique(tangle.polygons[np.array(problem.indices, int)])
         raise Unsuitable(_why_not(flipped, bool(tangle.pinned.any()), bool(tangle.shared.any()))) from problem
 

@@ -8,8 +8,9 @@ import bmesh
 import bpy
 import meshes
 import numpy as np
+import problems
 import pytest
-from installed import part
+from installed import library, part
 from meshes import Array, MeshObject
 
 N = 8
@@ -137,6 +138,31 @@ def test_outline_that_leaves_no_way_out_is_told() -> None:
     before = meshes.uv(obj)
     with pytest.raises(RuntimeError, match=r"No flipped face could be fixed: Grid at face 0"):
         fix()
+    assert (meshes.uv(obj) == before).all()
+
+
+@pytest.mark.parametrize(
+    ("exception", "kind", "said"),
+    [
+        ("SolverError", "still_folded", r"1 face \(0\) cannot be turned without moving its outline"),
+        ("MeshError", "fixed_fold", r"cannot be turned without moving its outline"),
+        ("MeshError", "outline_fold", r"cannot be turned without moving its outline"),
+        ("SolverError", "factorization_failed", r"Grid at face 0: is too badly conditioned"),
+        ("MeshError", "map_not_finite", r"Grid at face 0: NaN or infinite UVs"),
+    ],
+)
+def test_only_faces_that_stay_flipped_are_said_to_need_another_outline(
+    exception: str, kind: str, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_args: Any, **_options: Any) -> None:
+        raise problems.made(exception, kind, indices=(0, 1), count=2)
+
+    monkeypatch.setattr(library(), "untangle", refuse)
+    obj = tangled_grid()
+    before = meshes.uv(obj)
+    with pytest.raises(RuntimeError, match=said) as refusal:
+        fix()
+    assert ("outline" in str(refusal.value)) == ("outline" in said)
     assert (meshes.uv(obj) == before).all()
 
 

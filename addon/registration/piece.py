@@ -11,7 +11,7 @@ from .sides import Side
 def check_piece(side: Side, patches: Sequence[Patch]) -> Patch:
     """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
     try:
-        _check_one_piece(len(side.points), patches)
+        suitability.check_one_piece(len(side.points), patches)
         if patches[0].genus is None:
             raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
         if patches[0].genus > 0:
@@ -19,16 +19,3 @@ def check_piece(side: Side, patches: Sequence[Patch]) -> Patch:
     except Unsuitable as problem:
         raise Unsuitable(f"{side.name}: {problem}") from problem
     return patches[0]
-
-
-def _check_one_piece(count: int, patches: Sequence[Patch]) -> None:
-    if sum(len(patch.vertex_of) for patch in patches) > count:
-        raise Unsuitable(
-            "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "
-            "faces (Select > All by Trait > Non Manifold shows them)"
-        )
-    if len(patches) > 1:
-        raise Unsuitable(
-            f"consists of {len(patches)} pieces where one is allowed; separate it by loose parts, or join "
-            "them by a remesh"
-        )

@@ -76,7 +76,7 @@ def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> N
             f"has {messages.count(len(loose), 'loose vertex')} without a face ({messages.numbers(loose)}); "
             "delete loose geometry"
         )
-    _check_pieces(len(used), patches)
+    check_one_piece(len(used), patches)
     patch = patches[0]
     if patch.genus is None:
         raise Unsuitable("is one-sided, like a Klein bottle, and has no map onto a sphere; remesh it")
@@ -89,14 +89,15 @@ def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> N
         )
 
 
-def _check_pieces(used: int, patches: Sequence[Patch]) -> None:
-    if sum(len(patch.vertex_of) for patch in patches) > used:
+def check_one_piece(count: int, patches: Sequence[Patch]) -> None:
+    """Raises `Unsuitable` unless `count` vertices with faces are cut into one patch, none of them twice."""
+    if sum(len(patch.vertex_of) for patch in patches) > count:
         raise Unsuitable(
             "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "
             "faces (Select > All by Trait > Non Manifold shows them)"
         )
     if len(patches) > 1:
         raise Unsuitable(
-            f"consists of {len(patches)} pieces, a sphere is one; separate it by loose parts, or join them "
-            "by a remesh"
+            f"consists of {len(patches)} pieces where one is allowed; separate it by loose parts, or join "
+            "them by a remesh"
         )

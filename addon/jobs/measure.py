@@ -35,9 +35,9 @@ def job(context: bpy.types.Context) -> Job[bridge.Measurement | None, bridge.Mea
     return Job(lambda progress: bridge.measure(surfaces), finish)
 
 
-def line(figures: bridge.Figures) -> str:
-    """The figures in one line."""
-    parts = [
+def phrases(figures: bridge.Figures) -> list[str]:
+    """A phrase for each figure."""
+    said = [
         f"area ratio mean {figures.mean:.3f}",
         f"area ratio SD {figures.deviation:.3g}",
         f"log2 area ratio {figures.log2_min:.2f} to {figures.log2_max:.2f}",
@@ -45,5 +45,5 @@ def line(figures: bridge.Figures) -> str:
         f"angle distortion {figures.angle:.2f}",
     ]
     if figures.without_area:
-        parts.append(f"{figures.without_area} triangles without area left out")
-    return ", ".join(parts)
+        said.append(f"{figures.without_area} triangles without area left out")
+    return said

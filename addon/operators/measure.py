@@ -30,10 +30,10 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
         except targets.NothingToDo as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
-        line = measure.line(figures)
+        phrases = measure.phrases(figures)
         manager: Any = context.window_manager
-        manager.authalic_figures = line
-        self.report({"INFO"}, f"Measured {figures.triangles} triangles: {line}")
+        manager.authalic_figures = "\n".join(phrases)
+        self.report({"INFO"}, f"Measured {figures.triangles} triangles: {', '.join(phrases)}")
         return {"FINISHED"}
 
 
@@ -43,7 +43,7 @@ _PROPERTIES: Any = bpy.types.WindowManager
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_measure)
     _PROPERTIES.authalic_figures = StringProperty(
-        name="Figures", description="The last measurement", options={"SKIP_SAVE"}
+        name="Figures", description="The last measurement, one figure per line", options={"SKIP_SAVE"}
     )
 
 

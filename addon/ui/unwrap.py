@@ -39,7 +39,7 @@ class _MeasurePanel(_Panel):
         column = layout.column(align=True)
         manager: Any = context.window_manager
         # one figure per line: a sidebar is narrow
-        for figure in filter(None, manager.authalic_figures.split(", ")):
+        for figure in manager.authalic_figures.splitlines():
             column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
 

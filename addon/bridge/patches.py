@@ -1,5 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes cut into patches: the only time that their arrays go to the native library."""
+"""Meshes handed to the native library and cut into patches.
+
+The arrays of a mesh cross here, once for an unwrap, a fix of flips or a sphere: its patches are surfaces of
+the library, so that maps and figures of them send images and options only. Other arrays cross elsewhere:
+
+- `islands`: the laid-out mesh of a closed island, which has the points on its seam twice;
+- `registrations`: the two surfaces of a registration, and the values of a morph or a transfer;
+- `figures.measure`: the triangles to measure, joined where they share UVs.
+"""
 
 import numpy as np
 

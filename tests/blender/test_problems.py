@@ -233,13 +233,13 @@ def reversed_once(obj: MeshObject) -> Curves:
     return [(source_path, target_path[::-1]), *others]
 
 
-def reversed_all(obj: MeshObject) -> Curves:
-    return [(source_path, target_path[::-1]) for source_path, target_path in same(obj)]
-
-
 def rows(obj: MeshObject) -> Curves:
     paths = routes(obj, [[(x, -0.4, 0), (x, 0.4, 0)] for x in (-0.4, 0.4)])
     return [(path, path) for path in paths]
+
+
+def reversed_rows(obj: MeshObject) -> Curves:
+    return [(source_path, target_path[::-1]) for source_path, target_path in rows(obj)]
 
 
 def mirrored(obj: MeshObject) -> None:
@@ -278,6 +278,10 @@ CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
     "mirrored": (lambda: registered(same, spoil=mirrored), ["Object > Mirror"]),
     "swapped": (lambda: registered(swapped), ["strained"]),
     "reversed": (lambda: registered(reversed_once), ['curve "Curve 1" fits far better in reverse']),
+    "reversed_all": (
+        lambda: registered(reversed_rows, sheet),
+        ["most curves run backwards", 'curve "Curve 2" fits far better in reverse'],
+    ),
     "turned_over": (lambda: registered(rows, sheet, turned_over), ["Mesh > Normals > Flip"]),
     "cancelled": (lambda: registered(same, progress=lambda *_: False), ["cancelled before"]),
 }

@@ -99,7 +99,7 @@ def _check(obj: MeshObject) -> None:
         raise CannotRegister(f"{obj.name} has no faces")
     scale = np.abs(np.linalg.svd(np.array(obj.matrix_world)[:3, :3], compute_uv=False))
     if not scale.min() > 1e-9 * scale.max():
-        raise CannotRegister(f"{obj.name} is scaled to nothing along an axis; clear its scale")
+        raise CannotRegister(f"{obj.name} has a scale of zero along an axis; clear its scale")
 
 
 def _problems(kind: str, pairs: Sequence[Pair] | Sequence[Curve]) -> list[str]:

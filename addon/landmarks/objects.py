@@ -28,11 +28,11 @@ def target_problem(source: MeshObject) -> str | None:
     """Why a source object has no target to work with, or None."""
     target = source.authalic_target
     if target is None:
-        return "there is no target object, choose one"
+        return "there is no target object; choose one"
     if target == source or target.type != "MESH":
-        return f"{target.name} cannot be the target, choose another mesh object"
+        return f"{target.name} cannot be the target; choose another mesh object"
     if not target.users_scene:
-        return f"the target object {target.name} was deleted, choose another one"
+        return f"the target object {target.name} was deleted; choose another one"
     return None
 
 

@@ -62,7 +62,10 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
     bl_label = "Add Landmark Curve"
 
     name: StringProperty(
-        name="Name", description="Empty to keep the name, or for a number", default="", options=GIVEN
+        name="Name",
+        description="Leave empty to keep the name, or to use a number",
+        default="",
+        options=GIVEN,
     )
     index: _index("-1 for a new pair, or for one that lacks the path")
     source_vertices: _path("Source Vertices", "on this object")

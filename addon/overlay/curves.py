@@ -20,7 +20,7 @@ from ..landmarks import curves as landmark_curves
 from ..landmarks import paths
 from ..landmarks.objects import SIDES, active_source, side_object
 from ..surfaces.arrays import Edge
-from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disc, faces_eye, is_drawn, label, sources
+from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disk, faces_eye, is_drawn, label, sources
 
 Color = tuple[float, float, float]
 End = tuple[Vector, Vector, float]
@@ -203,8 +203,8 @@ def _draw_start(line: Line, end: End, color: Color, scale: float) -> None:
     pixel, _, alpha = end
     rim = ACTIVE if line.is_active else DARK
     if line.is_whole:
-        disc(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
-        disc(pixel, _DOT * scale, (*color, alpha))
+        disk(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
+        disk(pixel, _DOT * scale, (*color, alpha))
     text = PROBLEM if line.has_problem else ACTIVE
     label(str(line.number + 1), pixel, scale * (14 if line.is_active else 12), (*text, alpha))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Discs and labels drawn over a 3D view, and the objects that they are drawn for."""
+"""Disks and labels drawn over a 3D view, and the objects that they are drawn for."""
 
 import math
 from collections.abc import Sequence
@@ -52,8 +52,8 @@ def _to_eye(context: bpy.types.Context, point: Vector) -> Vector:
     return view.view_matrix.inverted().to_3x3() @ vertex_positions.Z
 
 
-def disc(center: Sequence[float] | Vector, radius: float, color: Sequence[float]) -> None:
-    """A disc whose rim fades out over a pixel."""
+def disk(center: Sequence[float] | Vector, radius: float, color: Sequence[float]) -> None:
+    """A disk whose rim fades out over a pixel."""
     inner, outer = _circle(center, radius - 0.5), _circle(center, radius + 0.5)
     clear = (*color[:3], 0.0)
     points = [(center[0], center[1]), *inner, *outer]

@@ -14,7 +14,7 @@ from ..blender import element_marks, vertex_positions
 from ..blender.types import MeshObject
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, active_source
-from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disc, faces_eye, is_drawn, label, redraw, sources
+from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disk, faces_eye, is_drawn, label, redraw, sources
 
 _COLORS = {"source": (0.16, 0.55, 1.0), "target": (1.0, 0.58, 0.1)}
 _RADIUS = 5.0
@@ -66,7 +66,7 @@ def _draw() -> None:
     placed.sort(key=lambda place: (place[2], place[0].is_active))  # those in front over the others
     gpu.state.blend_set("ALPHA")
     for marker, pixel, is_front in placed:
-        _draw_disc(marker, pixel, scale, 1.0 if is_front else BEHIND)
+        _draw_disk(marker, pixel, scale, 1.0 if is_front else BEHIND)
     gpu.state.blend_set("NONE")
     for marker, pixel, is_front in placed:
         _draw_text(marker, pixel, scale, 1.0 if is_front else BEHIND)
@@ -82,11 +82,11 @@ def _place(marker: Marker, context: bpy.types.Context) -> tuple[Marker, Vector, 
     return (marker, pixel, faces_eye(context, point, normal)) if pixel else None
 
 
-def _draw_disc(marker: Marker, pixel: Vector, scale: float, alpha: float) -> None:
+def _draw_disk(marker: Marker, pixel: Vector, scale: float, alpha: float) -> None:
     color = PROBLEM if marker.has_problem else _COLORS[marker.side]
     radius = _RADIUS * scale * (1.3 if marker.is_active else 1.0)
-    disc(pixel, radius + 1.5 * scale, (*(ACTIVE if marker.is_active else DARK), alpha))
-    disc(pixel, radius, (*color, alpha))
+    disk(pixel, radius + 1.5 * scale, (*(ACTIVE if marker.is_active else DARK), alpha))
+    disk(pixel, radius, (*color, alpha))
 
 
 def _draw_text(marker: Marker, pixel: Vector, scale: float, alpha: float) -> None:

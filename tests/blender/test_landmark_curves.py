@@ -422,7 +422,7 @@ def test_a_deleted_target_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     curving.add(ROW, ROW_B)
     bpy.data.objects.remove(heads[1])
     bpy.context.view_layer.update()
-    assert curving.listed() == [("Curve 1", ROW, (), "there is no target object, choose one")]
+    assert curving.listed() == [("Curve 1", ROW, (), "there is no target object; choose one")]
     assert call.landmark_curve_remove() == {"FINISHED"}
 
 

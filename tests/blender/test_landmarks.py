@@ -173,7 +173,7 @@ def test_a_deleted_target_is_told(heads: tuple[MeshObject, MeshObject]) -> None:
     pairing.add(20, 30)
     bpy.data.objects.remove(heads[1])
     bpy.context.view_layer.update()
-    assert pairing.listed() == [("Landmark 1", 20, -1, "there is no target object, choose one")]
+    assert pairing.listed() == [("Landmark 1", 20, -1, "there is no target object; choose one")]
 
 
 def test_a_target_that_left_the_scene_is_told(heads: tuple[MeshObject, MeshObject]) -> None:

@@ -283,7 +283,7 @@ def refusal(pattern: str, obj: MeshObject | None = None, **options: Any) -> None
 def test_poll() -> None:
     source, target = balls()
     source.authalic_target = None
-    refusal("there is no target object, choose one")
+    refusal("there is no target object; choose one")
     source.authalic_target = target
     bpy.ops.object.mode_set(mode="EDIT")
     with pytest.raises(RuntimeError, match="Only in Object Mode"):
@@ -364,7 +364,7 @@ def test_flattened_object() -> None:
     source, _ = balls()
     source.scale = (1, 1, 0)
     bpy.context.view_layer.update()
-    refusal("Icosphere is scaled to nothing along an axis")
+    refusal("Icosphere has a scale of zero along an axis")
 
 
 @pytest.mark.parametrize(

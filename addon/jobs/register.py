@@ -110,7 +110,7 @@ def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
     """Writes a UV map in which the unit disk fills the square; returns why not, or None."""
     mesh = obj.data
     if mesh.library is not None:
-        return f"{obj.name} has no UV map, its mesh is linked from another file"
+        return f"{obj.name} has no UV map, because its mesh is linked from another file"
     if uv_maps.is_taken(obj, UV_MAP) or not uv_maps.has_room_for(mesh, UV_MAP):
         return f"{obj.name} has no room for the UV map {UV_MAP}; remove one or rename what has its name"
     real = side.corners >= 0

@@ -55,4 +55,4 @@ def check_vertex(obj: MeshObject, vertex: int) -> None:
     """Raises `CannotPair` unless an object has a vertex."""
     count = element_counts(obj.data)[0]
     if not 0 <= vertex < count:
-        raise CannotPair(f"{obj.name} has no vertex {vertex}, its {count} vertices are 0 to {count - 1}")
+        raise CannotPair(f"{obj.name} has no vertex {vertex}; its {count} vertices are 0 to {count - 1}")

@@ -68,7 +68,7 @@ ERRORS = {
     # Landmark curves
     "curve_counts": "give a partner to {its.unpaired}, or leave it out",
     "no_curves": "a landmark curve is needed; select edges that belong together on both and add them",
-    "short_curve": "{its.curve} is too short, it needs at least two edges: lengthen it, or subdivide there",
+    "short_curve": "{its.curve} is too short: it needs at least two edges; lengthen it, or subdivide there",
     "curve_off_edges": "{its.curve} leaves the edges of the mesh between {its.vertices}: add it again",
     "curve_meets_itself": "{its.curve} meets itself at {its.vertices}: remove the crossing",
     "curves_meet": (
@@ -118,7 +118,7 @@ WARNINGS = {
     ),
     "distorted": (
         "{its.percent:.0f} % of the surface is stretched or squeezed more than tenfold: limbs far from all "
-        "curves are loosely held, give them curves or closed rings of their own"
+        "curves are loosely held; give them curves or closed rings of their own"
     ),
 }
 

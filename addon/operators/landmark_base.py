@@ -42,7 +42,7 @@ class LandmarkOperator(OperatorMixin):
         index, count = self.index, len(getattr(source, self.pairs))
         index = getattr(source, self.active) if index == NONE else index
         if not 0 <= index < count:
-            last = f", its {count} are 0 to {count - 1}" if count else ""
+            last = f"; its {count} are 0 to {count - 1}" if count else ""
             raise CannotPair(f"{source.name} has no {self.noun} {index}{last}")
         return index
 

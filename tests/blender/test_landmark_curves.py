@@ -194,13 +194,13 @@ def test_refusals(heads: tuple[MeshObject, MeshObject], in_edit: bool) -> None:
 
     refused('The curve "Curve 1" has vertex 11 of Head A already; curves must not meet', source="4 11 18")
     refused('The curve "Curve 1" has 2 vertices .12, 13. of Head B already', target="21 12 13")
-    refused("Head A has no vertex 49, its 49 vertices are 0 to 48", source="47 48 49")
+    refused("Head A has no vertex 49; its 49 vertices are 0 to 48", source="47 48 49")
     refused("Head A: no edge joins vertices 22 and 24", source="22 24 25")
     refused("The curve comes to vertex 23 twice on Head A", source="22 23 24 23")
     refused("The curve needs at least 2 edges, not 1,", source="22 23")
     refused("The curve needs at least 3 edges, not 2,", source="22 23 22")
     refused('"2x" is not the number of a vertex', source="2x 3")
-    refused("Head A has no curve 7, its 1 are 0 to 0", index=7)
+    refused("Head A has no curve 7; its 1 are 0 to 0", index=7)
     for name in ("remove", "select", "reverse"):
         curving.refused("has no curve 1", getattr(call, f"landmark_curve_{name}"), index=1)
     heads[0].authalic_target = None

@@ -71,10 +71,10 @@ def test_refusals(heads: tuple[MeshObject, MeshObject], in_edit: bool) -> None:
     pairing.refused('vertex 3 of Head A is in the pair "Landmark 1"', call, source_vertex=3, target_vertex=6)
     pairing.refused('vertex 5 of Head B is in the pair "Landmark 1"', call, source_vertex=4, target_vertex=5)
     pairing.refused(
-        "Head A has no vertex 49, its 49 vertices are 0 to 48", call, source_vertex=49, target_vertex=6
+        "Head A has no vertex 49; its 49 vertices are 0 to 48", call, source_vertex=49, target_vertex=6
     )
     pairing.refused("Head B has no vertex 81", call, source_vertex=4, target_vertex=81)
-    pairing.refused("has no pair 1, its 1", bpy.ops.authalic.landmark_remove, index=1)
+    pairing.refused("has no pair 1; its 1", bpy.ops.authalic.landmark_remove, index=1)
     pairing.refused("has no pair 7", bpy.ops.authalic.landmark_jump, index=7)
     heads[0].authalic_target = None
     with pytest.raises(RuntimeError, match="no target object"):

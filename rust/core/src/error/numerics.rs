@@ -11,7 +11,7 @@ use super::kind::ErrorKind;
 #[non_exhaustive]
 pub enum NumericsError {
     /// A linear system could not be factored.
-    #[error("the factorisation of {what} failed: the mesh is too badly conditioned (look for slivers)")]
+    #[error("the factorization of {what} failed: the mesh is too badly conditioned (look for slivers)")]
     FactorizationFailed {
         /// The matrix.
         what: String,

@@ -199,7 +199,7 @@ def test_the_error_carries_the_vertices_at_fault(side):
 def test_the_counts_must_agree(side, count):
     error = refused(BALL, [*GOOD, FREE][:count], side)
     numbers = (count, 3) if side == "source_curves" else (3, count)
-    assert "{} source_curves and {} target_curves".format(*numbers) in str(error)
+    assert "{} on the source and {} on the target".format(*numbers) in str(error)
     assert str(min(count, 3)) in str(error).split("partner")[1]
 
 

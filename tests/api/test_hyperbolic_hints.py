@@ -46,7 +46,7 @@ def test_open_surfaces_that_look_to_opposite_sides_are_told():
     lines = curves.drawn(mesh, [[[1, 0, 1], [1, 0.5, 1]], [[-1, 0, 1], [-1, 0.4, 0.8]]])
     turned = meshes.Mesh(mesh.vertices, mesh.faces[:, ::-1])
     registration = curves.register(curves.CurvePair(mesh, turned, lines, lines))
-    assert "opposite sides" in registration.warnings[0]
+    assert "opposite ways" in registration.warnings[0]
     assert curves.register(curves.CurvePair(mesh, mesh, lines, lines)).warnings == []
 
 

@@ -55,7 +55,7 @@ pub(crate) fn join<A: Send, B: Send>(
 /// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
 /// several.
 ///
-/// `work` is behind a pointer so that rayon is compiled once a type, not once a loop.
+/// `work` is behind a pointer so that rayon is compiled once per type, not once per loop.
 fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: &(dyn Fn(usize, &mut [T]) + Sync)) {
     let on_these_threads = |out: &mut [T]| {
         out.par_chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the crate's tests from outside look at beside its public interface. No part of that, and free to change.
+//! Items for the integration tests; hidden, not part of the interface, may change at any time.
 
 pub use crate::arrays::{rows, vectors};
 pub use crate::distortion::{folded_in_plane, folded_on_sphere};

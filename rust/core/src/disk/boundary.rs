@@ -12,11 +12,11 @@ pub(super) fn arc_length(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
     let mut map = vec![[0.0; 2]; mesh.n_vertices()];
     let lengths = edge_lengths(mesh, boundary);
     let total: f64 = lengths.iter().sum();
-    let mut travelled = 0.0;
+    let mut traveled = 0.0;
     for (&vertex, length) in boundary.iter().zip(lengths) {
-        let angle = TAU * travelled / total;
+        let angle = TAU * traveled / total;
         map[vertex] = [angle.cos(), angle.sin()];
-        travelled += length;
+        traveled += length;
     }
     map
 }

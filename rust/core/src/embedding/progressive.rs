@@ -119,7 +119,7 @@ struct Embedding<'a> {
     /// The places of the vertices: on the unit sphere, or in the disk at z = 1.
     places: Vec<Vector3>,
     /// The length along the boundary up to each of its vertices, 2π in total; empty on the sphere.
-    travelled: Vec<f64>,
+    traveled: Vec<f64>,
     /// λ, the weight of the shape in the energy.
     shape: f64,
     star: Star,
@@ -137,7 +137,7 @@ impl<'a> Embedding<'a> {
             mesh,
             decimation: Decimation::new(mesh, targets.iter().map(|target| scale * target).collect()),
             places: vec![Vector3::ZERO; mesh.n_vertices()],
-            travelled: boundary.map_or(Vec::new(), |boundary| travelled(mesh, boundary)),
+            traveled: boundary.map_or(Vec::new(), |boundary| traveled(mesh, boundary)),
             shape: SHAPE,
             star: Star::default(),
             room: Default::default(),
@@ -184,7 +184,7 @@ impl<'a> Embedding<'a> {
         self.placed.clone_from(&base);
         let third = 3f64.sqrt().recip();
         let (c, s) = (-0.5, 0.75f64.sqrt());
-        let corners: &[Vector3] = if self.travelled.is_empty() {
+        let corners: &[Vector3] = if self.traveled.is_empty() {
             &[[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].map(|x| Vector3(x) * third)
         } else {
             &[[1., 0., 1.], [c, s, 1.], [c, -s, 1.]].map(Vector3)
@@ -275,7 +275,7 @@ impl<'a> Embedding<'a> {
     }
 
     fn motion(&self, vertex: Vertex) -> Motion {
-        match (self.travelled.is_empty(), self.mesh.is_boundary(vertex)) {
+        match (self.traveled.is_empty(), self.mesh.is_boundary(vertex)) {
             (true, _) => Motion::Sphere,
             (false, false) => Motion::Plane,
             (false, true) => Motion::Circle,
@@ -297,7 +297,7 @@ impl<'a> Embedding<'a> {
         }
         if let (Some(before), Some(behind)) = (before, behind) {
             let arc = |from: Vertex, to: Vertex| {
-                let share = self.travelled[to] - self.travelled[from];
+                let share = self.traveled[to] - self.traveled[from];
                 if share > 0.0 { share } else { share + TAU }
             };
             let places = [before, behind].map(|vertex| self.places[vertex]);
@@ -312,14 +312,14 @@ fn polygon_area(n: usize) -> f64 {
 }
 
 /// The length along the boundary up to each of its vertices, 2π in total; 0 elsewhere.
-fn travelled(mesh: &TriangleMesh, boundary: &[Vertex]) -> Vec<f64> {
+fn traveled(mesh: &TriangleMesh, boundary: &[Vertex]) -> Vec<f64> {
     let point = |k: usize| mesh.points()[boundary[k % boundary.len()]];
     let lengths: Vec<f64> = (0..boundary.len()).map(|k| point(k).distance(point(k + 1))).collect();
     let total: f64 = lengths.iter().sum();
-    let (mut travelled, mut so_far) = (vec![0.0; mesh.n_vertices()], 0.0);
+    let (mut traveled, mut so_far) = (vec![0.0; mesh.n_vertices()], 0.0);
     for (&vertex, length) in boundary.iter().zip(lengths) {
-        travelled[vertex] = TAU * so_far / total;
+        traveled[vertex] = TAU * so_far / total;
         so_far += length;
     }
-    travelled
+    traveled
 }

@@ -13,7 +13,7 @@ use super::side::Side;
 pub enum CurveError {
     /// The lists of landmark curves do not match.
     #[error(
-        "curves come in pairs, but there are {source_count} source_curves and {target_count} target_curves: \
+        "curves come in pairs, but there are {source_count} on the source and {target_count} on the target: \
          give a partner to {}, or leave it out",
         .unpaired.named("curve")
     )]
@@ -26,9 +26,9 @@ pub enum CurveError {
         unpaired: Elements,
     },
 
-    /// There is nothing to register closed surfaces by.
+    /// Closed surfaces were given without a curve.
     #[error(
-        "no curves on closed surfaces: give at least one pair, or use register_spheres, which needs none"
+        "no curves on closed surfaces: give at least one pair, or register by landmark points"
     )]
     NoCurves,
 
@@ -60,7 +60,7 @@ pub enum CurveError {
         curve: usize,
         /// The place in it, from 0.
         place: usize,
-        /// What stands there.
+        /// The value found there.
         value: usize,
         /// How many vertices the mesh has.
         n_vertices: usize,

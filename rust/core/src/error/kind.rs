@@ -28,7 +28,7 @@ macro_rules! kinds {
 pub(crate) use kinds;
 
 kinds! {
-    /// What an error is, by what has to be done about it; each says what the indices of its elements are of.
+    /// The kinds of errors, one per remedy; each says which elements its indices number.
     ErrorKind {
         /// The vertex array is empty.
         NoVertices = "no_vertices",
@@ -96,7 +96,7 @@ kinds! {
         LandmarkOnBoundary = "landmark_on_boundary",
         /// Source and target have different numbers of curves: the curves without a partner.
         CurveCounts = "curve_counts",
-        /// Closed surfaces without a curve.
+        /// Closed surfaces were given without a curve.
         NoCurves = "no_curves",
         /// A curve has too few edges.
         ShortCurve = "short_curve",

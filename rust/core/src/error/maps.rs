@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What can be wrong with what is given beside a mesh to map it: a density, an initial map, an outline.
+//! What can be wrong with a density, an initial map or an outline.
 
 use thiserror::Error;
 
@@ -7,7 +7,7 @@ use super::elements::Elements;
 use super::kind::ErrorKind;
 use super::side::Side;
 
-/// Why a map was refused, or what it is to be made of.
+/// Why a density, an initial map or an outline was refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MapError {

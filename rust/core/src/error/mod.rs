@@ -35,7 +35,7 @@ pub enum Error {
     #[error(transparent)]
     Mesh(#[from] MeshError),
 
-    /// What is given beside a mesh to map it.
+    /// A density, an initial map or an outline.
     #[error(transparent)]
     Map(#[from] MapError),
 

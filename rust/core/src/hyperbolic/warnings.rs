@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Warnings of registrations by curves: signs that the curves do not say what was meant.
+//! Warnings of registrations by curves: signs that the curves are not as intended.
 //!
 //! Cost: linear.
 
@@ -25,11 +25,11 @@ const FACING: f64 = 0.2;
 kinds! {
     /// The subject of a warning; each says what the indices of its elements refer to.
     WarningKind {
-        /// Open surfaces look to opposite sides, so that the map mirrors one.
+        /// Open surfaces face opposite ways, so that the map mirrors one.
         OppositeNormals = "opposite_normals",
-        /// A curve fits far better when one of the two is run through the other way.
+        /// A curve fits far better in reverse on one of the surfaces.
         BackwardCurve = "backward_curve",
-        /// The curves move too much to tell how the surface between them goes along.
+        /// The curves move too far to tell how the surface between them follows.
         UncertainWinding = "uncertain_winding",
         /// The energy of the map is far above that of the surface itself.
         Strained = "strained",
@@ -38,16 +38,16 @@ kinds! {
     }
 }
 
-/// A sign that the curves do not say what was meant.
+/// A sign that the curves are not as intended.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Open surfaces look to opposite sides.
-    #[error("the surfaces look to opposite sides, so the map mirrors one: flip the faces of one of them")]
+    /// Open surfaces face opposite ways.
+    #[error("the surfaces face opposite ways, so the map mirrors one: flip the faces of one of them")]
     OppositeNormals,
 
-    /// A curve seems to run the other way on one of the surfaces.
-    #[error("curve {curve} fits far better the other way round: reverse its path on one of the surfaces")]
+    /// A curve seems to run in reverse on one of the surfaces.
+    #[error("curve {curve} fits far better in reverse: reverse its path on one of the surfaces")]
     BackwardCurve {
         /// The curve.
         curve: usize,
@@ -55,8 +55,8 @@ pub enum Warning {
 
     /// The map may wind around the curves.
     #[error(
-        "the curves move too much to tell how the surface between them goes along: it may wind around them \
-         more than meant"
+        "the curves move too far to tell how the surface between them follows: it may wind around them \
+         more than intended"
     )]
     UncertainWinding,
 
@@ -146,7 +146,7 @@ pub(super) fn warnings(
     warnings
 }
 
-/// Whether two open surfaces face opposite sides in space.
+/// Whether two open surfaces face opposite ways in space.
 fn face_apart(meshes: [&TriangleMesh; 2]) -> bool {
     let facing = meshes.map(|mesh| {
         let vectors = mesh.faces().iter().map(|&face| area_vector(triangle(mesh.points(), face)));

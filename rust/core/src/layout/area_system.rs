@@ -9,7 +9,7 @@
 //! ```
 //!
 //! (Levenberg, A Method for the Solution of Certain Non-Linear Problems in Least Squares, 1944; Marquardt, An Algorithm for
-//! Least-Squares Estimation of Nonlinear Parameters, 1963). D scales each axis by itself: triangles at a pole are a thousand
+//! Least-Squares Estimation of Nonlinear Parameters, 1963). D scales each axis separately: triangles at a pole are a thousand
 //! times as wide as they are high. The errors are local, so a few iterations with the preconditioner D suffice.
 
 use super::chart::{Chart, Point};
@@ -25,10 +25,10 @@ const ITERATIONS: usize = 20;
 /// Relative tolerance of the residual in the norm of the preconditioner.
 const TOLERANCE: f64 = 0.06;
 
-/// Ratio of area to target below which the residual is linear, so that folded faces have one too.
+/// Ratio of area to target below which the residual is linear, so that it is defined for folded faces too.
 const STEEPEST: f64 = 0.05;
 
-/// One vector per vertex that moves, and a zero for all that stay.
+/// One vector per vertex that moves, and one zero vector for all vertices that stay.
 type Step = Vec<[f64; 2]>;
 
 /// The normal equations at one state of a patch.
@@ -38,9 +38,9 @@ pub(super) struct AreaSystem<'a> {
     slopes: Vec<[[f64; 2]; 3]>,
     /// J in the order of the vertices, with the face of each, so that gathering reads memory in order.
     slopes_by_vertex: Vec<(Face, [f64; 2])>,
-    /// D.
+    /// The diagonal matrix D.
     diagonal: Step,
-    /// The right-hand side.
+    /// The right-hand side −Jᵀ r.
     right: Step,
 }
 
@@ -139,7 +139,7 @@ impl<'a> AreaSystem<'a> {
         &self.slopes_by_vertex[self.patch.corners.range(Vertex::new(vertex))]
     }
 
-    /// One value for each vertex that moves, and `at_rest` for all that stay.
+    /// One value for each vertex that moves, and one `at_rest` for all vertices that stay.
     fn per_vertex<T: Copy + Default + Send + Sync>(
         &self,
         at_rest: T,

@@ -23,22 +23,22 @@ use crate::mesh::{Vertex, index_array};
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// The number of attempts that take the best vertices for the singular points, the second best, and so on.
+/// Number of attempts, the first with the best vertices for the singular points, the second with the second best, and so on.
 const RANKS: usize = 4;
 
-/// The number of further attempts on coarse meshes, each with the mesh turned about the pole.
+/// Number of further attempts on coarse meshes, each with the mesh turned about the pole.
 const TURNS: usize = 15;
 
-/// The angle between two such attempts (radians).
+/// Angle by which each of [`TURNS`] turns the mesh further (radians).
 const TURN: f64 = 2.4;
 
-/// The largest number of vertices of a coarse mesh.
+/// Largest number of vertices of a coarse mesh.
 const COARSE: usize = 500;
 
-/// The number of folded faces, beside [`FOLDED_SHARE`], above which other singular points do not help.
+/// Number of folded faces, beside [`FOLDED_SHARE`], above which other singular points do not help.
 const FOLDED_FACES: usize = 100;
 
-/// The same as a fraction of all faces, added to [`FOLDED_FACES`].
+/// Fraction of all faces that is added to [`FOLDED_FACES`].
 const FOLDED_SHARE: f64 = 1e-3;
 
 /// Rounds of unfolding, each followed by a relaxation of the areas.
@@ -47,7 +47,7 @@ const UNFOLDINGS: usize = 4;
 /// Tolerance of the areas relative to their targets for a map with exact areas.
 const LEAST_TOLERANCE: f64 = 0.005;
 
-/// Its increase per unit of the map's area deviation √(E_A/A).
+/// Increase of the tolerance per unit of the map's area deviation √(E_A/A).
 const OF_THE_MAP: f64 = 1.0;
 
 /// The input of a layout, prepared for a projection.
@@ -136,25 +136,25 @@ impl<'a, P: Projection> Run<'a, P> {
         Err(NumericsError::LayoutFolds { faces, precision: self.precision.as_str() }.into())
     }
 
-    /// The number of folded faces up to which they are unfolded one by one.
+    /// The number of folded faces above which neither unfolding nor another choice of vertices is tried.
     fn hopeless(&self) -> usize {
         FOLDED_FACES + (FOLDED_SHARE * self.faces.len() as f64) as usize
     }
 
     fn attempt(&self, rank: usize, turn: f64, observer: &mut dyn Observer) -> Result<Attempt, Error> {
-        // 1. Vertices onto the singular points
+        // 1. Move vertices onto the singular points.
         let watch = begun(observer, 0.0, "Placing the poles")?;
         let Some(placed) = place_singular_points::<P>(&self.turned(turn), rank, &watch)? else {
             return Ok(Attempt::NoRoom);
         };
-        // 2. Into the plane
+        // 2. Lay the faces out in the plane.
         let watch = begun(observer, 0.1, "Laying out faces")?;
         let mut chart = develop::<P>(&placed.points, self.faces, &self.polygons);
         let open: Vec<usize> = (0..self.faces.len()).filter(|&face| !chart.is_closed[face]).collect();
         if !open.is_empty() {
             return Ok(Attempt::Folded(open));
         }
-        // 3. What straight edges have done, roughly
+        // 3. Correct roughly what straight edges do to areas, and remove folds.
         let targets = parallel::map(self.targets.len(), |face| self.targets[face] * P::SCALE);
         let goal = Goal {
             targets: &targets,
@@ -171,7 +171,7 @@ impl<'a, P: Projection> Run<'a, P> {
         if !folded.is_empty() {
             return if watch.goes_on() { Ok(Attempt::Folded(folded)) } else { Err(Error::CancelledEarly) };
         }
-        // 4. And thoroughly
+        // 4. Even out the areas thoroughly.
         Ok(Attempt::Done(self.evened_out(&mut chart, split, &goal, observer)))
     }
 

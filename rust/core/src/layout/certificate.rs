@@ -25,7 +25,7 @@ impl Precision {
         }
     }
 
-    /// The name of the type in the Python package.
+    /// The name of the floating point type, as in NumPy.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Single => "float32",

@@ -23,7 +23,7 @@ pub(super) struct Chart<'a, P> {
     pub isometries: Vec<[Isometry; 3]>,
     /// The corners at poles, grouped by polygon and pole. They lie in the middle of the other corners of their polygon.
     pub polar: Vec<Vec<Corner>>,
-    /// (m,): false if a face winds around a singular point, so that its corners do not fit together.
+    /// (m,): whether the corners of each face fit together; they do not if it winds around a singular point.
     pub is_closed: Vec<bool>,
     pub projection: PhantomData<P>,
 }

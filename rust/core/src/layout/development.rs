@@ -15,18 +15,18 @@ use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// Distance below which two images of a point are equal.
+/// Distance below which two images of a point count as equal.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Develops `faces`, counter-clockwise between `points` of the unit sphere.
 ///
-/// A vertex on a singular point must have exactly its coordinates.
+/// A vertex on a singular point must have exactly the coordinates of that point.
 pub(super) fn develop<'a, P: Projection>(
     points: &[Vector3],
     faces: &'a [[Vertex; 3]],
     polygons: &Polygons,
 ) -> Chart<'a, P> {
-    // 1. Each vertex, and the corners of each face together
+    // 1. Place each vertex, and join the corners of each face.
     let singular: Vec<bool> = parallel::map(points.len(), |vertex| is_singular::<P>(points[vertex]));
     let developed = parallel::map(faces.len(), |face| Triangle::new::<P>(points, &singular, faces[face]));
     let mut chart = Chart {
@@ -37,9 +37,9 @@ pub(super) fn develop<'a, P: Projection>(
         is_closed: developed.iter().map(|triangle| triangle.is_closed).collect(),
         projection: PhantomData,
     };
-    // 2. The faces of each polygon together
+    // 2. Join the faces of each polygon.
     join_polygons(&mut chart, &singular, polygons);
-    // 3. Each polygon into the layout
+    // 3. Move each polygon into the layout.
     move_polygons(&mut chart, &singular, polygons, P::home);
     chart
 }
@@ -73,7 +73,7 @@ struct Triangle {
 
 impl Triangle {
     fn new<P: Projection>(points: &[Vector3], singular: &[bool], face: [Vertex; 3]) -> Self {
-        // arcs to singular points touch a cut, but all that they leave open is an isometry about that point
+        // arcs to singular points touch a cut, which leaves undetermined only an isometry about that point
         let base = (0..3).find(|&corner| !singular[face[corner]]).unwrap_or(0);
         let [second, third] = [(base + 1) % 3, (base + 2) % 3];
         let [a, b, c] = [base, second, third].map(|corner| points[face[corner]]);
@@ -114,7 +114,7 @@ fn polar_corners(faces: &[[Vertex; 3]], singular: &[bool], polygons: &Polygons) 
         .collect()
 }
 
-/// Joins the faces of each polygon along its diagonals. If they do not fit together, none of them is closed.
+/// Joins the faces of each polygon along its diagonals. If they do not fit together, none counts as closed.
 fn join_polygons<P: Projection>(chart: &mut Chart<'_, P>, singular: &[bool], polygons: &Polygons) {
     for &joint in &polygons.joints {
         let joint = from_regular_end(chart.faces, singular, joint);
@@ -142,7 +142,7 @@ fn from_regular_end(faces: &[[Vertex; 3]], singular: &[bool], diagonal: Diagonal
     if singular[diagonal.here[0].vertex(faces)] { diagonal.reversed() } else { diagonal }
 }
 
-/// The isometry that puts the second triangle of a diagonal to the first.
+/// The isometry that attaches the second triangle of a diagonal to the first.
 fn fitting<P: Projection>(chart: &Chart<'_, P>, singular: &[bool], diagonal: Diagonal) -> Isometry {
     let isometry = |corner: Corner| chart.isometries[corner.face()][corner.place()];
     let [here, there] = [diagonal.here[0], diagonal.there[0]];

@@ -10,10 +10,10 @@ use super::isometry::Isometry;
 use super::projection::{Extent, Projection};
 use crate::vector::Vector3;
 
-/// Distance from the seam, to its left, up to which a polygon counts as on it (radians).
+/// Distance to the left of the seam up to which a polygon counts as on the seam (radians).
 const ON_SEAM: f64 = 1e-5;
 
-/// Distance beyond the seam from which a polygon has strayed (radians).
+/// Distance beyond the seam above which a polygon has strayed (radians).
 const STRAYED: f64 = 0.01;
 
 /// Lambert's cylindrical equal-area projection.

@@ -8,10 +8,10 @@ use crate::codomain::spherical::onto_sphere;
 use crate::error::Error;
 use crate::vector::Vector3;
 
-/// A pole this near to the y axis (cosine) counts the angles of seams from another direction.
+/// Cosine of the angle between pole and y axis above which the angles of seams count from the negative z axis.
 const NEAR_Y: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The least sine of the angle between pole and seam.
+/// Least sine of the angle between pole and seam.
 const LEAST_ANGLE: f64 = 1e-6;
 
 /// How a sphere is laid out in the plane. Both keep areas.
@@ -28,30 +28,30 @@ pub enum LayoutKind {
 /// Where a layout is cut open.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Seam {
-    /// An angle about the pole (radians, counter-clockwise seen from outside above it), from the y axis, or for poles within
-    /// 45° of that from the negative z axis.
+    /// An angle about the pole (radians, counter-clockwise seen from outside above it), from the y axis; from the
+    /// negative z axis for poles within 45° of the y axis.
     Angle(f64),
-    /// A direction; what of it is perpendicular to the pole counts.
+    /// A direction; only its component perpendicular to the pole counts.
     Direction([f64; 3]),
 }
 
 /// Options of [`SphereMap::layout`](crate::SphereMap::layout).
 #[derive(Debug, Clone, Copy)]
 pub struct LayoutOptions<'a> {
-    /// Which layout; Lambert's.
+    /// Which layout. Default: Lambert's.
     pub kind: LayoutKind,
-    /// The direction of the pole that comes to lie at the top or in the middle; the z axis.
+    /// Direction of the pole at the top (Lambert) or in the middle (octahedral). Default: the z axis.
     pub pole: [f64; 3],
-    /// Where the layout begins on the left, or what lies at the upper side of the square; the y axis.
+    /// The left side of the rectangle (Lambert) or the upper side of the square (octahedral). Default: the y axis.
     pub seam: Seam,
-    /// (m,): a number for each face; faces with one number that meet at an edge are not cut apart. Each alone where `None`.
+    /// (m,): a number for each face; faces with the same number that meet at an edge are not cut apart. `None`: every face is a polygon.
     pub polygons: Option<&'a [usize]>,
-    /// (m,): target measure of each face, positive, on any scale; those of the map where `None`.
+    /// (m,): target measure of each face, positive, on any scale. `None`: the targets of the map.
     pub density: Option<ArrayView1<'a, f64>>,
     /// (n,): which vertices may be moved onto a pole, or onto one of the four singular points on the equator of the
-    /// octahedral map; all where `None`.
+    /// octahedral map. `None`: all.
     pub candidates: Option<&'a [bool]>,
-    /// In which precision the points are, and have no folds; double.
+    /// The precision of the points, in which no face is folded. Default: double.
     pub precision: Precision,
 }
 

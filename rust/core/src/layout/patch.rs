@@ -7,7 +7,7 @@ use crate::mesh::corners::VertexCorners;
 use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 
-/// Vertices that move and the faces around them, with numbers of their own.
+/// Vertices that move and the faces around them, both numbered within the patch.
 pub(super) struct Patch {
     /// The vertices that move, ascending.
     pub vertices: Vec<Vertex>,
@@ -30,7 +30,7 @@ impl Patch {
         chosen: &[Face],
         rings: usize,
     ) -> Self {
-        // 1. Vertices, ring by ring
+        // 1. Collect vertices ring by ring.
         let mut vertices = Marked::new(chart.places.len());
         let mut faces = Marked::new(chart.faces.len());
         chosen.iter().for_each(|&face| faces.add(face));
@@ -46,7 +46,7 @@ impl Patch {
                 corners.of(vertices.list[k]).iter().for_each(|&corner| faces.add(corner.face()));
             }
         }
-        // 2. Faces that share a corner at a pole
+        // 2. Add faces that share a corner at a pole.
         for group in &chart.polar {
             if group.iter().any(|&corner| faces.is_marked[corner.face()]) {
                 group.iter().for_each(|&corner| faces.add(corner.face()));

@@ -90,9 +90,9 @@ impl Diagonal {
     }
 }
 
-/// Every edge between two faces with one label.
+/// Every edge between two faces with the same label.
 fn diagonals(faces: &[[Vertex; 3]], labels: &[usize]) -> Vec<Diagonal> {
-    // 1. Edges of labels that several faces have
+    // 1. Collect the edges of faces whose label occurs several times.
     let mut sorted = labels.to_vec();
     sorted.sort_unstable();
     let repeats: Vec<usize> =
@@ -106,7 +106,7 @@ fn diagonals(faces: &[[Vertex; 3]], labels: &[usize]) -> Vec<Diagonal> {
             }));
         }
     }
-    // 2. Two edges with the same label and ends are a diagonal
+    // 2. Join each two edges with the same label and ends to a diagonal.
     edges.sort_unstable();
     let pairs = edges.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2));
     pairs.filter_map(|pair| Some(Diagonal::new(faces, pair.first()?.3, pair.get(1)?.3))).collect()

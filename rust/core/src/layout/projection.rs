@@ -6,12 +6,12 @@ use crate::vector::Vector3;
 
 /// An equal-area projection of the unit sphere, cut open along arcs that end at its singular points.
 ///
-/// In its coordinates of the sphere the third axis points to the pole, the first to the seam.
+/// The first axis of its coordinates points to the seam, the third to the pole.
 pub(super) trait Projection: Sync {
     /// The points of the sphere at which the layout is not flat.
     const SINGULAR: &'static [Vector3];
 
-    /// Area in the plane over area on the sphere, for [`Projection::place`].
+    /// Area in the plane, by [`Projection::place`], over area on the sphere.
     const SCALE: f64;
 
     /// Whether the singular points are tips of cones, whose images are points. Otherwise they are poles, whose images are
@@ -24,8 +24,8 @@ pub(super) trait Projection: Sync {
     /// The image of a point of the sphere.
     fn place(point: Vector3) -> [f64; 2];
 
-    /// The isometry that takes the image of the end of the shorter great arc next to that of its start, across the cuts
-    /// between them.
+    /// The isometry that takes the image of the end of the shorter great arc, across the cuts on the way, next to the image
+    /// of its start.
     fn crossing(start: Vector3, end: Vector3) -> Isometry;
 
     /// The isometry that moves a polygon into the layout.

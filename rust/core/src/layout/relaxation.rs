@@ -21,40 +21,40 @@ use crate::mesh::corners::VertexCorners;
 use crate::mesh::{Face, Vertex};
 use crate::parallel;
 
-/// What the observer is told.
+/// The progress message.
 const MESSAGE: &str = "Evening out areas";
 
-/// The number of steps toward targets of triangles.
+/// Number of steps toward the targets of triangles.
 const FIRST_STEPS: usize = 3;
 
 /// Limit on the work of all further steps: the faces of their patches, as a multiple of all faces.
 const WORK: usize = 4;
 
-/// The least such limit, in faces, so that coarse meshes converge.
+/// Least limit on the work, in faces, so that coarse meshes converge.
 const LEAST_WORK: usize = 400_000;
 
 /// Relative decrease of the energy below which a step counts as without effect.
 const LITTLE: f64 = 2e-3;
 
-/// The number of rings of faces, around those that are off, whose vertices move at first.
+/// Number of rings, around the faces whose areas are off, whose vertices move at first.
 const RINGS: usize = 2;
 
-/// The least damping, also that of the first step.
+/// Least damping; the first step has it.
 const LEAST_DAMPING: f64 = 1e-2;
 
 /// Factors of the damping of vertices where a rejected step raises the energy, and of all vertices after an accepted one.
 const DAMPING_FACTORS: [f64; 2] = [10.0, 1.0 / 3.0];
 
-/// The number of rejected steps in a row after which the relaxation stops.
+/// Number of rejected steps in a row after which the relaxation stops.
 const REJECTIONS: usize = 8;
 
-/// How often a step is shortened at faces that would fold; in the second half their vertices do not move at all.
+/// Limit on shortening a step at faces that would fold; in the second half of the rounds their vertices do not move.
 const SHORTENINGS: usize = 20;
 
-/// The least area of a face, as a fraction of its target.
+/// Least area of a face, as a fraction of its target.
 const LEAST_AREA: f64 = 0.4;
 
-/// The least area of a face that is smaller already, as a fraction of its present area.
+/// Least area of a face that is already smaller than [`LEAST_AREA`], as a fraction of its present area.
 const LEAST_SHRINKING: f64 = 0.9;
 
 /// Bounds of the share that a triangle keeps of its polygon, as multiples of its share on the surface.
@@ -65,11 +65,11 @@ const SHARES: [f64; 2] = [0.6, 1.6];
 pub(super) struct Goal<'a> {
     /// (m,): target areas in the plane.
     pub targets: &'a [f64],
-    /// (n,): whether each vertex stays.
+    /// (n,): whether each vertex stays in its place.
     pub fixed: &'a [bool],
     /// The corners at each vertex.
     pub corners: &'a VertexCorners,
-    /// Relative deviation from its target above which the area of a face is off.
+    /// Relative deviation from its target above which the area of a face counts as off.
     pub tolerance: f64,
     /// Bound of the rounding of coordinates in the precision asked for.
     pub rounding: f64,
@@ -85,9 +85,9 @@ pub(super) fn relax<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'_>, wa
     }
 }
 
-/// Moves vertices on from [`relax`] until the areas of polygons are proportional to their targets, with adaptive damping.
+/// Continues [`relax`] until the areas of polygons are proportional to their targets, with adaptive damping.
 ///
-/// Converged if no area is off in the end.
+/// Returns [`Status::Converged`] if no area is off in the end.
 pub(super) fn even_out<P: Projection>(
     chart: &mut Chart<'_, P>,
     polygons: &Polygons,
@@ -121,7 +121,8 @@ pub(super) fn even_out<P: Projection>(
     Status::Stalled
 }
 
-/// Targets with the total of `areas`: each polygon has its share of it, and each triangle its present share of its polygon.
+/// Targets that add up to the sum of `areas`: each polygon keeps its share of the sum, each triangle its present share of
+/// the polygon.
 fn shared_out(areas: &[f64], targets: &[f64], polygons: &Polygons) -> Vec<f64> {
     let scale = areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
     let [mut wanted, mut kept] = [vec![0.0; polygons.count], vec![0.0; polygons.count]];
@@ -141,9 +142,9 @@ fn shared_out(areas: &[f64], targets: &[f64], polygons: &Polygons) -> Vec<f64> {
 
 /// The outcome of a step.
 struct Step {
-    /// Relative decrease of the energy of the faces looked at; 0 if the step was rejected.
+    /// Relative decrease of the energy of the patch; 0 if the step was rejected.
     gain: f64,
-    /// The number of faces looked at.
+    /// The number of faces of the patch.
     n_faces: usize,
 }
 
@@ -155,7 +156,7 @@ struct Relaxation<'a, 'c, P> {
     areas: Vec<f64>,
     /// (n,): the damping of each vertex.
     damping: Vec<f64>,
-    /// The faces that are off, ascending.
+    /// The faces whose areas are off, ascending.
     off: Vec<Face>,
 }
 
@@ -167,20 +168,20 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
         Self { chart, goal, areas, damping, off }
     }
 
-    /// Takes one step with the vertices within some rings around faces that are off, if it lowers the energy.
+    /// Takes one step with the vertices within `rings` rings around the faces that are off, if it lowers the energy.
     fn descend(&mut self, rings: usize, watch: &Watch<'_>) -> Step {
-        // 1. Where
+        // 1. Choose the patch.
         let patch = Patch::around(self.chart, self.goal.corners, self.goal.fixed, &self.off, rings);
         let targets = patch.of_faces(self.goal.targets);
         let images = patch.images(self.chart);
         let areas = signed_areas(&images);
-        // 2. The step
+        // 2. Take the step.
         let damping = patch.of_vertices(&self.damping);
         let step = AreaSystem::new(self.chart, &patch, &images, &areas, &targets).step(&damping, watch);
         let start = patch.of_vertices(&self.chart.places);
         let limits = Limits::new(&images, &areas, &targets, self.goal.rounding);
         let moved = limits.moved(self.chart, &patch, &start, &step);
-        // 3. Accepted or rejected
+        // 3. Accept or reject it.
         let energies = |areas: &[f64]| -> Vec<f64> {
             parallel::map(areas.len(), |face| residual(areas[face], targets[face])[0].powi(2))
         };
@@ -197,7 +198,7 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
         Step { gain, n_faces: patch.faces.len() }
     }
 
-    /// Takes note of the areas after a step, and damps the next one less.
+    /// Records the areas after a step, and lowers the damping.
     fn accept(&mut self, patch: &Patch, areas: &[f64]) {
         for (&face, &area) in patch.faces.iter().zip(areas) {
             self.areas[face] = area;
@@ -210,7 +211,7 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
         }
     }
 
-    /// Damps the vertices at which a step has raised the energy of the faces.
+    /// Raises the damping of vertices where a step has raised the energy of the faces.
     fn damp(&mut self, patch: &Patch, before: &[f64], after: &[f64]) {
         for (index, &vertex) in patch.vertices.iter().enumerate() {
             let faces = patch.corners.of(Vertex::new(index)).iter().map(|&corner| corner.face());
@@ -222,7 +223,7 @@ impl<'a, 'c, P: Projection> Relaxation<'a, 'c, P> {
 }
 
 impl Goal<'_> {
-    /// Whether this area of a face is off its target.
+    /// Whether an area of a face is off its target.
     fn is_off(&self, face: Face, area: f64) -> bool {
         let target = self.targets[face];
         (area - target).abs() > self.tolerance * target
@@ -266,7 +267,7 @@ impl Limits {
                 [x + length * u, y + length * v]
             });
             patch.put(chart, &places);
-            // 1. Faces that have become too small, vertices that have left the layout
+            // 1. Find faces that have become too small and vertices that have left the layout.
             let images = patch.images(chart);
             let is_folded = nearly_folded(&images, self.rounding);
             let areas = signed_areas(&images);
@@ -278,7 +279,7 @@ impl Limits {
             if !is_bad.contains(&true) && !leaving.contains(&true) {
                 return areas;
             }
-            // 2. Their vertices go less far
+            // 2. Shorten the steps of their vertices.
             let factor = if shortening < SHORTENINGS / 2 { 0.5 } else { 0.0 };
             parallel::fill_with_old(&mut lengths, |vertex, length| {
                 let at_bad_face =

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::mesh::Vertex;
 use crate::vector::Vector3;
 
-/// An icosahedron turned somehow, with every face split in four `level` times on the unit sphere.
+/// An icosahedron in general position, with every face split in four `level` times on the unit sphere.
 pub(super) fn turned_ball(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
     let golden = 0.5 + 1.25f64.sqrt();
     let quarters = [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]];
@@ -33,7 +33,7 @@ pub(super) fn small_triangles() -> impl Iterator<Item = [Vector3; 3]> {
     })
 }
 
-/// The triangles of sides of the least length, counter-clockwise seen from outside.
+/// The triangles whose sides have the least length, counter-clockwise seen from outside.
 fn faces_of_icosahedron(points: &[Vector3]) -> Vec<[Vertex; 3]> {
     let is_side = |a: usize, b: usize| points[a].distance(points[b]) < 1.1;
     let mut faces = Vec::new();

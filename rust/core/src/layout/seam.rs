@@ -12,20 +12,20 @@ use crate::mesh::corners::VertexCorners;
 #[derive(Debug, Clone)]
 pub struct Layout {
     /// (k, 2): the points, in the order of their vertices. The whole image has the area of the sphere. In single precision
-    /// all of them are numbers of that.
+    /// all coordinates are numbers of that precision.
     pub points: Array2<f64>,
-    /// (m, 3): the faces between points, counter-clockwise; face by face those of the map, or of its refinement.
+    /// (m, 3): the faces between points, counter-clockwise, in the order of the faces of the map or of its refinement.
     pub faces: Array2<u32>,
-    /// (k,): the vertex of each point, ascending; split points are numbered on from the vertices.
+    /// (k,): the vertex of each point, ascending; split points are numbered after the vertices.
     pub vertex_of: Vec<Vertex>,
     /// [`Status::Converged`] where areas are as even as asked for; [`Status::Stalled`] where they hardly get more even;
-    /// [`Status::Cancelled`] where the observer ended that. No face is folded in any case.
+    /// [`Status::Cancelled`] where the observer ended the relaxation. No face is folded in any case.
     pub status: Status,
     /// Wall time of the whole call.
     pub seconds: f64,
 }
 
-/// Points, and faces between them.
+/// The points of a layout and the faces between them.
 pub(super) struct Split {
     /// (k, 2), in the order of their vertices.
     pub points: Vec<Point>,

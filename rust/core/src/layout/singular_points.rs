@@ -19,25 +19,25 @@ use crate::mesh::corners::VertexCorners;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// The number of vertices tried first; further ones are tried only while all fold faces.
+/// Number of vertices tried first; further ones are tried only while all fold faces.
 const FIRST_CANDIDATES: usize = 6;
 
-/// The largest number of vertices tried.
+/// Largest number of vertices tried.
 const CANDIDATES: usize = 30;
 
-/// The number of vertices nearest to a singular point whose faces are looked at.
+/// Largest number of vertices in the neighborhood of a singular point.
 const NEIGHBORHOOD: usize = 150;
 
-/// The largest distance of these vertices, so that coarse meshes do not reach the next singular point.
+/// Radius of a neighborhood, so that on coarse meshes it does not reach the next singular point.
 const FAR: f64 = 0.9;
 
-/// The least number of these vertices.
+/// Least number of vertices in a neighborhood.
 const FEWEST: usize = 12;
 
-/// The cost of a folded face.
+/// Cost of a folded face.
 const FOLD_PENALTY: f64 = 100.0;
 
-/// The cost of moving a vertex, per squared distance in units of a typical face area.
+/// Cost of moving a vertex, per squared distance in units of a typical face area.
 const DETOUR: f64 = 0.25;
 
 /// Squared distance, in units of a typical face area, up to which a vertex at a singular point is kept there, as on a UV sphere.
@@ -66,10 +66,10 @@ pub(super) struct Placed {
     pub is_singular: Vec<bool>,
 }
 
-/// Moves a vertex onto each singular point, the best one but for `rank` others; `None` if there is no room for the motions.
+/// Moves a vertex onto each singular point, the best one after skipping `rank`; `None` if there is no room for the motions.
 ///
 /// # Errors
-/// [`Error::CancelledEarly`] by the watch.
+/// [`Error::CancelledEarly`] if the watch cancels.
 pub(super) fn place_singular_points<P: Projection>(
     mesh: &SphereMesh<'_>,
     rank: usize,
@@ -114,11 +114,11 @@ struct Neighborhood {
 
 impl Neighborhood {
     fn new(mesh: &SphereMesh<'_>, points: &[Vector3], is_singular: &[bool], goal: Vector3) -> Self {
-        // 1. Vertices
+        // 1. Take the nearest vertices.
         let distances = parallel::map(points.len(), |vertex| points[vertex].distance(goal));
         let within = distances.iter().filter(|&&distance| distance < FAR).count();
         let vertices = nearest(&distances, within.clamp(FEWEST, NEIGHBORHOOD));
-        // 2. The faces between them
+        // 2. Take the faces between them.
         const OUTSIDE: Vertex = Vertex(u32::MAX);
         let mut number = vec![OUTSIDE; points.len()];
         for (index, &vertex) in vertices.iter().enumerate() {

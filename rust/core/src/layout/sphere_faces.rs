@@ -20,7 +20,7 @@ pub struct SphereFaces {
     pub image: Surface,
     /// (m,): the target measure of each face, positive, on any scale.
     pub targets: Vec<f64>,
-    /// (m,): the face of the map that each of them is a part of, ascending; all whole where `None`.
+    /// (m,): the face of the map that each face is a part of, ascending. `None`: no face is split.
     pub face_of: Option<Vec<usize>>,
     /// The number of vertices of the map; the vertices of `image` after these are split points.
     pub n_vertices: usize,
@@ -56,13 +56,13 @@ impl SphereFaces {
         }
     }
 
-    /// How many faces the map has, which may be split.
+    /// The number of faces of the map, before splitting.
     fn n_whole_faces(&self) -> usize {
         let last_part = |face_of: &Vec<usize>| face_of.last().map_or(0, |&face| face + 1);
         self.face_of.as_ref().map_or(self.image.n_faces(), last_part)
     }
 
-    /// The label of the polygon of each face; the parts of a face have one.
+    /// The label of each face's polygon; the parts of a split face have the same label.
     pub(super) fn labels(&self, polygons: Option<&[usize]>) -> Result<Option<Vec<usize>>, Error> {
         if let Some(polygons) = polygons {
             check_length("polygons", polygons.len(), self.n_whole_faces(), "one number per face")?;
@@ -74,7 +74,8 @@ impl SphereFaces {
         })
     }
 
-    /// The areas wanted, with the sum of the sphere's; the parts of a face share its density in proportion to their targets.
+    /// The target areas, which add up to the area of the sphere; the parts of a split face share its density in proportion to
+    /// their targets.
     pub(super) fn areas(&self, density: Option<ArrayView1<'_, f64>>) -> Result<Vec<f64>, Error> {
         let mut areas = normalized_density(&self.targets, self.image.n_faces())?;
         if let Some(density) = density {

@@ -2,7 +2,7 @@
 //! Motions of the sphere that preserve areas and take a given point to another.
 //!
 //! A twist turns each circle about a center rigidly: by the same angle up to the circle of the two points, by less farther
-//! out, and not at all where points have to stay. In the coordinate log tan (δ/2) of the distance δ from the center, an angle
+//! out, and not at all where points are fixed. In the coordinate log tan (δ/2) of the distance δ from the center, an angle
 //! that falls linearly shears uniformly; here it falls by a smooth step.
 
 use crate::vector::Vector3;
@@ -10,7 +10,7 @@ use crate::vector::Vector3;
 /// Width of the rigid ring beyond the circle of the moved point, as a fraction of the way to where the sphere rests.
 const RIGID: f64 = 0.15;
 
-/// Distance from which the sphere rests, as a fraction of that of the nearest point that has to stay.
+/// Distance from which the sphere rests, as a fraction of the distance of the nearest fixed point.
 const AT_FIXED: f64 = 0.999;
 
 /// Largest distance from the center at which the sphere still turns (radians).
@@ -28,13 +28,13 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// A motion of the sphere.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Motion {
-    /// By a matrix, given by its rows.
+    /// A rotation by a matrix, given by its rows.
     Rotation([Vector3; 3]),
-    /// By an angle that depends on the distance from a center.
+    /// A turn by an angle that depends on the distance from a center.
     Twist(Twist),
 }
 
-/// A turn about a center by `angle` up to the distance `near`, by less and less up to `far`, by nothing beyond.
+/// A turn about a center: by `angle` up to the distance `near`, less and less up to `far`, not at all beyond.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Twist {
     center: Vector3,

@@ -14,19 +14,19 @@ use super::relaxation::Goal;
 use crate::control::Watch;
 use crate::mesh::{Corner, Vertex};
 
-/// Least area relative to the target from which a vertex stays.
+/// Least area of its faces, relative to their targets, at which a vertex stays in its place.
 const GOOD: f64 = 0.25;
 
-/// The number of sweeps without success after which another ring of faces is included.
+/// Number of sweeps without success after which another ring of faces is included.
 const GROWING: usize = 3;
 
-/// The number of sweeps without success after which the search stops.
+/// Number of sweeps without success after which the search stops.
 const PATIENCE: usize = 12;
 
-/// The number of directions of the pattern search.
+/// Number of directions of the pattern search.
 const DIRECTIONS: usize = 12;
 
-/// The number of its steps, tried or halved.
+/// Number of rounds of the pattern search; each moves the vertex or halves the step.
 const TRIALS: usize = 14;
 
 /// Moves vertices until no face is folded, or no move helps.
@@ -34,7 +34,7 @@ pub(super) fn unfold<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'_>, w
     let mut images = chart.images();
     let (mut fewest, mut sweeps_since) = (usize::MAX, 0);
     loop {
-        // 1. What is folded, and whether it has become less
+        // 1. Find the folded faces, and whether they have become fewer.
         let is_folded = nearly_folded(&images, goal.rounding);
         let mut faces: Vec<usize> = (0..is_folded.len()).filter(|&face| is_folded[face]).collect();
         (fewest, sweeps_since) =
@@ -42,11 +42,11 @@ pub(super) fn unfold<P: Projection>(chart: &mut Chart<'_, P>, goal: &Goal<'_>, w
         if faces.is_empty() || sweeps_since > PATIENCE || !watch.goes_on() {
             return;
         }
-        // 2. The vertices around it
+        // 2. Include rings of faces around them after sweeps without success.
         for _ in 0..sweeps_since / GROWING {
             faces = faces_around(&vertices_of(chart.faces, &faces), goal);
         }
-        // 3. Each to its best place
+        // 3. Move each of their vertices to its best place.
         for vertex in vertices_of(chart.faces, &faces) {
             if !goal.fixed[vertex] {
                 improve(chart, &mut images, goal, vertex);
@@ -79,7 +79,7 @@ fn improve<P: Projection>(
 ) {
     let corners = goal.corners.of(vertex);
     let split = |corner: Corner| (corner.face(), corner.place());
-    // 1. The search
+    // 1. Search the best place.
     let worst = |place: Point| {
         if !P::is_within(place) {
             return f64::NEG_INFINITY;
@@ -115,7 +115,7 @@ fn improve<P: Projection>(
             step /= 2.0;
         }
     }
-    // 2. The move
+    // 2. Move the vertex there.
     chart.places[vertex] = best.1;
     for &corner in corners {
         let (face, k) = split(corner);

@@ -61,7 +61,7 @@ pub fn loop_length(points: &[Vector3], vertices: &[Vertex]) -> f64 {
     (0..vertices.len()).map(|i| points[vertices[i]].distance(points[vertices[next(i)]])).sum()
 }
 
-/// Centres points on their bounding box and scales its diagonal to one; returns them with the diagonal.
+/// Centers points on their bounding box and scales its diagonal to one; returns them with the diagonal.
 ///
 /// Coordinates may be finite numbers of any size. Points that all coincide become zeros with scale 1.
 pub fn normalized(vertices: &[impl Copy + Into<Vector3>]) -> (Vec<Vector3>, f64) {

@@ -36,9 +36,9 @@ fn bumpy(level: u32, random: &mut Random) -> TestMesh {
 /// Up to `count` paths that run straight on from somewhere, without a vertex in common.
 fn paths(count: usize, random: &mut Random, level: u32) -> Vec<Vec<usize>> {
     let sphere = icosphere(level);
-    let mut neighbours = vec![Vec::new(); sphere.vertices.len()];
+    let mut neighbors = vec![Vec::new(); sphere.vertices.len()];
     for &[a, b, c] in &sphere.faces {
-        [[a, b], [b, c], [c, a]].iter().for_each(|&[p, q]| neighbours[p as usize].push(q as usize));
+        [[a, b], [b, c], [c, a]].iter().for_each(|&[p, q]| neighbors[p as usize].push(q as usize));
     }
     let mut is_free = vec![true; sphere.vertices.len()];
     let mut found = Vec::new();
@@ -47,7 +47,7 @@ fn paths(count: usize, random: &mut Random, level: u32) -> Vec<Vec<usize>> {
         let mut path = vec![start];
         let ahead = |&&v: &&usize| dot(sphere.vertices[v], towards);
         while path.len() <= steps && is_free[start] {
-            let last = &neighbours[path[path.len() - 1]];
+            let last = &neighbors[path[path.len() - 1]];
             let free = last.iter().filter(|&&v| is_free[v] && !path.contains(&v));
             let Some(&next) = free.max_by(|a, b| ahead(a).total_cmp(&ahead(b))) else { break };
             path.push(next);

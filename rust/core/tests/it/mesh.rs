@@ -59,7 +59,7 @@ fn angle_defects_add_up_to_the_euler_characteristic() {
 }
 
 #[test]
-fn corners_know_their_neighbours() {
+fn corners_know_their_neighbors() {
     for test in common::orientable() {
         let mesh = test.mesh();
         let ends = |corner: Corner| {
@@ -333,7 +333,7 @@ fn unvalidated_faces_are_oriented_where_that_is_possible() {
     let found: Vec<usize> = (0..faces.len()).filter(|&face| orientation.flipped[face]).collect();
     assert_eq!(found, [strip.faces.len() + 5]);
     assert_eq!(orientation.first_faces, [0, strip.faces.len()].map(Face::new));
-    // Edges of three faces do not connect, a face that repeats a vertex is no neighbour of itself.
+    // Edges of three faces do not connect, a face that repeats a vertex is no neighbor of itself.
     assert_eq!(
         consistent(5, &faces_of_indices(&[[0, 1, 2], [0, 1, 3], [0, 1, 4]])).first_faces,
         [0, 1, 2].map(Face)

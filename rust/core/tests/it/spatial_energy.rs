@@ -95,7 +95,7 @@ fn area_gradient(mesh: &TriangleMesh, map: &[Vector3]) -> Vec<Vector3> {
 }
 
 #[test]
-fn the_normalised_energy_is_that_of_the_papers_definition() {
+fn the_normalized_energy_is_that_of_the_papers_definition() {
     for mesh in surfaces() {
         let (map, targets) = (some_map(&mesh), some_targets(&mesh));
         let energy = SpatialStretchEnergy::new(&mesh, &targets);
@@ -281,7 +281,7 @@ fn hessians() -> impl Iterator<Item = (TriangleMesh, Vec<Vector3>, Vec<f64>, CsM
 }
 
 #[test]
-fn the_hessian_is_symmetric_and_couples_neighbours_only() {
+fn the_hessian_is_symmetric_and_couples_neighbors_only() {
     for (mesh, map, _, hessian) in hessians() {
         let n = map.len();
         assert_eq!((hessian.rows(), hessian.cols()), (3 * n, 3 * n));

@@ -107,7 +107,7 @@ fn gradient_descent_beats_the_fixed_point_and_both_the_start() {
 }
 
 #[test]
-fn the_normalised_energy_never_rises_in_gradient_descent() {
+fn the_normalized_energy_never_rises_in_gradient_descent() {
     let mesh = bumpy();
     for line_search in LINE_SEARCHES {
         let after = |iterations| {
@@ -164,13 +164,13 @@ fn overlap(mesh: &TriangleMesh, map: &[Vector3], targets: &[f64], rotation: [Poi
         face.iter().for_each(|&v| weights[v] += target);
     }
     let total: f64 = weights.iter().sum();
-    let centre = [0, 1, 2].map(|axis| {
+    let center = [0, 1, 2].map(|axis| {
         mesh.points().iter().zip(&weights).map(|(p, weight)| weight * p[axis]).sum::<f64>() / total
     });
     let term = |v: usize| {
         let point = mesh.points()[v];
         weights[v]
-            * dot(rotation.map(|row| dot(row, map[v])), [0, 1, 2].map(|axis| point[axis] - centre[axis]))
+            * dot(rotation.map(|row| dot(row, map[v])), [0, 1, 2].map(|axis| point[axis] - center[axis]))
     };
     (0..map.len()).map(term).sum()
 }

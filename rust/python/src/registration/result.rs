@@ -43,10 +43,12 @@ pub struct Registration {
     /// (m_t, 3) int64: the target faces as oriented.
     #[pyo3(get)]
     target_faces: Py<PyArray2<i64>>,
-    /// DiskMap or SphereMap: the map of the source alone.
+    /// DiskMap or SphereMap: the map of the source alone. By curves: a rough map onto the sphere, which may have folds
+    /// and has no iterations.
     #[pyo3(get)]
     source_map: Py<PyAny>,
-    /// DiskMap or SphereMap: the map of the target alone.
+    /// DiskMap or SphereMap: the map of the target alone. By curves: a rough map onto the sphere, which may have folds
+    /// and has no iterations.
     #[pyo3(get)]
     target_map: Py<PyAny>,
     /// (k,) float64: the final distance of each landmark from its partner, in the parameter domain of radius 1. By

@@ -83,12 +83,12 @@ fn around_a_circle(energy: &Energy<'_>) -> PlanarMap {
     let (mesh, outline) = (energy.mesh, &energy.mesh.boundary_loops()[0]);
     let point = |k: usize| mesh.points()[outline[k % outline.len()]];
     let lengths: Vec<f64> = (0..outline.len()).map(|k| point(k + 1).distance(point(k))).collect();
-    let (total, mut travelled) = (lengths.iter().sum::<f64>(), 0.0);
+    let (total, mut traveled) = (lengths.iter().sum::<f64>(), 0.0);
     let mut map = vec![[0.0; 2]; mesh.n_vertices()];
     for (&v, length) in outline.iter().zip(lengths) {
-        let angle = TAU * travelled / total;
+        let angle = TAU * traveled / total;
         map[v] = [angle.cos(), angle.sin()];
-        travelled += length;
+        traveled += length;
     }
     map
 }

@@ -17,7 +17,7 @@ use crate::vector::Vector3;
 /// A later start replaces an earlier one only if its energy is below this part of it, so that rounding breaks no tie.
 const MARGIN: f64 = 0.9;
 
-/// There is no plan view where the area vectors of the faces add up to less than this part of the area.
+/// Least sum of the area vectors, relative to the area, for a plan view.
 const STEEPEST: f64 = 0.05;
 
 /// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.

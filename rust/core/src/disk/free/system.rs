@@ -20,7 +20,7 @@ const RESIDUALS: [f64; 2] = [1e-4, 0.1];
 /// Limit of the conjugate gradient steps.
 const MOST_INNER: usize = 60;
 
-/// What the system is made of at a map.
+/// The terms of the system at a map.
 pub(super) struct Linearized<'a> {
     pub map: &'a [[f64; 2]],
     pub gradient: &'a [[f64; 2]],

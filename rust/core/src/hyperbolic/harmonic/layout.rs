@@ -80,7 +80,7 @@ pub(super) struct Laplace {
 }
 
 impl Laplace {
-    /// Analyses the pattern of `faces` for the vertices that are not held.
+    /// Analyzes the pattern of `faces` for the vertices that are not held.
     pub(super) fn new(faces: &[[Vertex; 3]], is_held: Vec<bool>) -> Result<Self, Error> {
         let dofs: Vec<u8> = is_held.iter().map(|&held| u8::from(!held)).collect();
         let analysis = Analysis::new(dofs.len(), faces, &dofs, Order::Sparse)?;

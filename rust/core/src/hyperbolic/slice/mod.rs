@@ -76,7 +76,7 @@ pub(super) fn slice_pair(
 /// Cuts a piece open along its features and along arcs; returns the chain too.
 ///
 /// # Errors
-/// Those of [`slice_pair`], without a side.
+/// The errors of [`slice_pair`], without a side.
 pub(super) fn slice_alone(piece: &Piece, watch: &Watch<'_>) -> Result<(Sliced, Vec<(usize, bool)>), Error> {
     let chain = chain::order(piece, piece);
     let features = chain::features(piece, &chain);

@@ -161,7 +161,7 @@ pub fn star(level: u32, radii: &[f64]) -> TestMesh {
     radial("star", level, |_| *next.next().expect("a cycle has no end"))
 }
 
-/// A bijection onto the sphere: unit rows, every face positive around the centre, the sphere covered once.
+/// A bijection onto the sphere: unit rows, every face positive around the center, the sphere covered once.
 pub fn assert_bijective(mesh: &TriangleMesh, map: &[impl Coordinates], context: &str) {
     assert_eq!(map.len(), mesh.n_vertices());
     for &x in map {
@@ -249,7 +249,7 @@ pub fn image_areas(mesh: &TriangleMesh, map: &[impl Coordinates]) -> Vec<f64> {
     mesh.faces().iter().map(area).collect()
 }
 
-/// (E_A, E): the authalic energy and the normalised stretch energy (|M|/A) Σ a²/|τ|, scaled to |M| = A.
+/// (E_A, E): the authalic energy and the normalized stretch energy (|M|/A) Σ a²/|τ|, scaled to |M| = A.
 pub fn energy_of(mesh: &TriangleMesh, map: &[impl Coordinates], targets: &[f64]) -> (f64, f64) {
     let areas = image_areas(mesh, map);
     let (area, total): (f64, f64) = (areas.iter().sum(), targets.iter().sum());

@@ -105,7 +105,7 @@ pub fn grid(nu: u32, nv: u32) -> TestMesh {
     known("grid", (points.collect(), faces), 1, 1, Some(0))
 }
 
-/// Rings about a centre, `6 r` vertices on ring `r`, at (x, y) in the unit disk.
+/// Rings about a center, `6 r` vertices on ring `r`, at (x, y) in the unit disk.
 fn hexagonal_disk(rings: u32) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
     let first = |ring: u32| {
         if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) }
@@ -226,7 +226,7 @@ pub fn icosphere(level: u32) -> TestMesh {
     for [a, b] in [[-1., t], [1., t], [-1., -t], [1., -t]] {
         vertices.extend([[a, b, 0.], [0., a, b], [b, 0., a]]);
     }
-    // The faces of an icosahedron are its triples of mutual neighbours, seen from outside.
+    // The faces of an icosahedron are its triples of mutual neighbors, seen from outside.
     let near = |a: u32, b: u32| distance(vertices[a as usize], vertices[b as usize]) < 2.1;
     let mut faces = Vec::new();
     for [a, b, c] in triples(12).filter(|&[a, b, c]| near(a, b) && near(b, c) && near(c, a)) {

@@ -19,8 +19,8 @@ use std::time::{Duration, Instant};
 /// assert!(observer.progress(0.5, "half"));
 /// ```
 pub trait Observer: Send {
-    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message. A long step also calls it
-    /// from within, on any thread, with the last fraction. `false` cancels, and the run returns its best map so far.
+    /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message. A long step also calls
+    /// it from within, on any thread, with the last fraction. `false` cancels, and the run returns its best map so far.
     fn progress(&mut self, fraction: f64, message: &str) -> bool;
 }
 

@@ -163,8 +163,8 @@ pub fn folded_in_plane(faces: &[[Vertex; 3]], map: &[[f64; 2]]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Plane(map), factor: 1.0 })
 }
 
-/// Faces whose exact orientation around the origin is not positive, ascending: the folds of an outward oriented map onto
-/// the sphere. Coordinates must be finite and moderate.
+/// Faces whose exact orientation around the origin is not positive, ascending: the folds of an outward oriented map
+/// onto the sphere. Coordinates must be finite and moderate.
 pub fn folded_on_sphere(faces: &[[Vertex; 3]], map: &[Vector3]) -> Vec<usize> {
     folded(faces, Scaled { image: Image::Sphere(map), factor: 1.0 })
 }
@@ -292,8 +292,8 @@ fn assembled(
 /// Measures a map of faces that consist of parts: the area of a face is the sum over its parts, its σ₁/σ₂ their mean by
 /// target, and it is folded where a part is.
 ///
-/// `of_parts` has the figures of the parts by [`distortion`], the other arguments are as there; `face_of` has the face of
-/// each part, ascending from 0 without gaps.
+/// `of_parts` has the figures of the parts by [`distortion`], the other arguments are as there; `face_of` has the face
+/// of each part, ascending from 0 without gaps.
 ///
 /// # Errors
 /// As [`distortion`].

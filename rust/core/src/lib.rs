@@ -3,14 +3,14 @@
 //!
 //! An authalic map preserves areas: a face that covers one percent of the surface covers one percent of the image.
 //! [`disk_map`] maps a surface with one boundary to the unit disk or onto a rectangle, [`sphere_map`] a closed surface
-//! onto the unit sphere, which [`SphereMap::layout`] lays out in the plane. No result has a folded face; exact predicates
-//! decide. [`register_disks`] and [`register_spheres`] map one surface onto another by landmark points,
-//! [`register_hyperbolic`] by landmark curves. [`untangle()`] removes the folds of a given map, [`distortion()`] measures
-//! any map.
+//! onto the unit sphere, which [`SphereMap::layout`] lays out in the plane. No result has a folded face; exact
+//! predicates decide. [`register_disks`] and [`register_spheres`] map one surface onto another by landmark points,
+//! [`register_hyperbolic`] by landmark curves. [`untangle()`] removes the folds of a given map, [`distortion()`]
+//! measures any map.
 //!
-//! All of them take a [`Surface`]: vertices (n, 3) and faces (m, 3) as arrays of the crate [`ndarray`], checked once and
-//! never copied again. Results are arrays too, or lists. A [`Vertex`], [`Face`] or [`Corner`] converts to its index; lists
-//! of elements to report, as of folded faces, hold the indices themselves.
+//! All of them take a [`Surface`]: vertices (n, 3) and faces (m, 3) as arrays of the crate [`ndarray`], checked once
+//! and never copied again. Results are arrays too, or lists. A [`Vertex`], [`Face`] or [`Corner`] converts to its
+//! index; lists of elements to report, as of folded faces, hold the indices themselves.
 //!
 //! # A disk
 //!
@@ -105,8 +105,8 @@
 //!
 //! # Errors and determinism
 //!
-//! Only broken input and failed numerics are errors; they name the elements at fault as data ([`Error`]). A run that stops
-//! early returns its best map with a [`Status`]. Results do not depend on the number of threads.
+//! Only broken input and failed numerics are errors; they name the elements at fault as data ([`Error`]). A run that
+//! stops early returns its best map with a [`Status`]. Results do not depend on the number of threads.
 //!
 //! # Feature flags
 //!

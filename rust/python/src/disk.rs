@@ -82,9 +82,9 @@ impl DiskMap {
 /// boundary : {"sliding", "arc_length", "free", "rectangle"}
 ///     "sliding" (default): boundary vertices slide along the circle in their order. "arc_length": they stay at arcs
 ///     proportional to the edge lengths, as in the papers. "free": they take any outline that does not cross itself,
-///     scaled into the unit disk; with an `angle_weight` it suits angles and areas, and holes are as free as the longest
-///     loop. "rectangle": four lie at the corners of a rectangle and the others slide along its sides; its lower left
-///     corner is (0, 0), its longer side 1. The last two are for "gauss_newton" only.
+///     scaled into the unit disk; with an `angle_weight` it suits angles and areas, and holes are as free as the
+///     longest loop. "rectangle": four lie at the corners of a rectangle and the others slide along its sides; its
+///     lower left corner is (0, 0), its longer side 1. The last two are for "gauss_newton" only.
 /// density : (m,) real array, optional
 ///     Positive target measure of each face, on any scale. Default: the face areas.
 /// angle_weight : float

@@ -65,8 +65,8 @@ impl Untangled {
 /// fixed : (k,) integer or (n,) bool array, optional
 ///     Vertices that stay in place, in addition to those of the boundary.
 /// tolerance : float
-///     Least area, in [0, 1), of a face that was folded or lost area to a folded one, in units of its fair share: the area
-///     of the region that moves, divided in proportion to the areas on the surface. Default .01.
+///     Least area, in [0, 1), of a face that was folded or lost area to a folded one, in units of its fair share: the
+///     area of the region that moves, divided in proportion to the areas on the surface. Default .01.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between and within steps; False cancels, and the map is returned if it has no folds any more.
 ///

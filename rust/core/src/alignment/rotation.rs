@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The best rotation of points onto points.
 //!
-//! Horn (1987), *Closed-form solution of absolute orientation using unit quaternions*: its quaternion is the eigenvector
-//! of the largest eigenvalue of a symmetric 4 × 4 matrix. It never reflects.
+//! Horn (1987), *Closed-form solution of absolute orientation using unit quaternions*: its quaternion is the
+//! eigenvector of the largest eigenvalue of a symmetric 4 × 4 matrix. It never reflects.
 
 use crate::parallel;
 use crate::sparse::top_eigenvector;

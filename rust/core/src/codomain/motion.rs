@@ -59,8 +59,8 @@ impl Motion {
         }
     }
 
-    /// The retraction: the place reached from `x` by `unknowns` along its frame, straight in the plane, by a rotation on
-    /// the circle, by normalization on the sphere.
+    /// The retraction: the place reached from `x` by `unknowns` along its frame, straight in the plane, by a rotation
+    /// on the circle, by normalization on the sphere.
     pub(crate) fn moved(self, x: Vector3, frame: &Frame, unknowns: [f64; 2]) -> Vector3 {
         let [a, b] = unknowns;
         match self {

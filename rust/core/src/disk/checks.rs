@@ -81,8 +81,11 @@ fn check_initial(
         let vertices = Elements::collect(boundary.iter().copied()).expect("a loop has vertices");
         return Err(MapError::InitialBoundary {
             vertices,
-            reason: "it must run once around the unit circle, counter-clockwise (mirror the map if it runs clockwise)".into(),
-        }.into());
+            reason: "it must run once around the unit circle, counter-clockwise \
+                     (mirror the map if it runs clockwise)"
+                .into(),
+        }
+        .into());
     }
     Ok(())
 }

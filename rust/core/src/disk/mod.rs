@@ -127,8 +127,8 @@ pub(crate) fn map_disk(
     Ok(DiskMap { uv: from_rows(uv), status, seconds: history.seconds(), history, distortion })
 }
 
-/// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the rotation
-/// folds a sliver.
+/// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the
+/// rotation folds a sliver.
 fn turned(mesh: &TriangleMesh, map: PlanarMap) -> PlanarMap {
     let boundary = &mesh.boundary_loops()[0];
     let [x, y] = map[boundary[0]];

@@ -25,11 +25,12 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// A map computed on the mesh in elimination order. `compute` is told whether the observer has ended the run already.
+    /// A map computed on the mesh in elimination order. `compute` is told whether the observer has ended the run
+    /// already.
     ///
     /// # Errors
-    /// The errors of `compute`, with faces as given; [`Error::CancelledEarly`] where the observer has ended the run already and
-    /// the surface is large.
+    /// The errors of `compute`, with faces as given; [`Error::CancelledEarly`] where the observer has ended the run
+    /// already and the surface is large.
     pub(super) fn in_elimination_order(
         &self,
         observer: &mut dyn Observer,
@@ -52,7 +53,8 @@ impl Run<'_> {
         Ok((by_order.given(&map), status))
     }
 
-    /// The given face that stands for `face`: itself, or for a face that fills a hole its neighbor across the hole's edge.
+    /// The given face that stands for `face`: itself, or for a face that fills a hole its neighbor across the hole's
+    /// edge.
     pub(super) fn given_face(&self, face: usize) -> usize {
         // the third corner of a fan's face is its apex, which faces the edge
         let beside =

@@ -3,8 +3,8 @@
 
 use crate::vector::Vector3;
 
-/// The centroid of the kernel of a polygon, in coordinates along `basis` from `center`. The kernel holds the points from
-/// which all edges, given by their ends, run counter-clockwise.
+/// The centroid of the kernel of a polygon, in coordinates along `basis` from `center`. The kernel holds the points
+/// from which all edges, given by their ends, run counter-clockwise.
 ///
 /// `center` is a corner of the polygon from which all edges but its own two run so. `room` is a buffer.
 pub(super) fn kernel_centroid(

@@ -21,11 +21,11 @@ pub struct SparseColumns {
     pub indptr: Array1<usize>,
 }
 
-/// Hessian of the stretch energy of the map `image` (n, 3) into space, by its 3n coordinates: x of all vertices, then y,
-/// then z.
+/// Hessian of the stretch energy of the map `image` (n, 3) into space, by its 3n coordinates: x of all vertices, then
+/// y, then z.
 ///
-/// `density` (m,) is a positive target measure of each face on any scale; the face areas where `None`. Targets are rescaled
-/// so that they sum to the image's area. Translations are in the kernel.
+/// `density` (m,) is a positive target measure of each face on any scale; the face areas where `None`. Targets are
+/// rescaled so that they sum to the image's area. Translations are in the kernel.
 ///
 /// # Errors
 /// A surface that is no oriented manifold, arrays of another shape, coordinates that are not finite, a density that is

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The penalty on landmarks away from their places, λ Σ |x_i − q_i|².
 //!
-//! Liu & Yueh (2023), section 6; Sutti & Yueh (2024), section 6.6. The Hessian omits indefinite terms, which arise on the
-//! sphere for a landmark more than a quarter turn away from its place.
+//! Liu & Yueh (2023), section 6; Sutti & Yueh (2024), section 6.6. The Hessian omits indefinite terms, which arise on
+//! the sphere for a landmark more than a quarter turn away from its place.
 
 use super::authalic::{AuthalicEnergy, Element};
 use crate::codomain::motion::Frame;

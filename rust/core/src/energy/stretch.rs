@@ -127,8 +127,8 @@ impl<'a> StretchEnergy<'a> {
 
     /// The weights of L_S(f), one per corner for the edge opposite it, targets rescaled to the image's area.
     ///
-    /// The barrier profile weighs each face by its stiffness ψ''(ρ)/2, so that steps stay in proportion to the faces that
-    /// are nearly folded.
+    /// The barrier profile weighs each face by its stiffness ψ''(ρ)/2, so that steps stay in proportion to the faces
+    /// that are nearly folded.
     pub fn laplacian_weights(&self, map: &[[f64; 2]]) -> Vec<f64> {
         let scale = self.area(map) / self.total_target;
         parallel::map(3 * self.targets.len(), |corner| {

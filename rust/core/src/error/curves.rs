@@ -28,7 +28,7 @@ pub enum CurveError {
 
     /// Closed surfaces were given without a curve.
     #[error(
-        "no curves on closed surfaces: give at least one pair, or register by landmark points"
+        "no curves on closed surfaces: give at least one pair, or register by landmark points, which needs no curves"
     )]
     NoCurves,
 
@@ -156,8 +156,8 @@ pub enum CurveError {
 
     /// The surfaces have different numbers of boundary loops.
     #[error(
-        "boundary loops come in pairs too, but beside the curves the source has {source_count} and the target {target_count}: \
-         fill the holes that have no partner"
+        "boundary loops come in pairs too, but beside the curves the source has {source_count} \
+         and the target {target_count}: fill the holes that have no partner"
     )]
     LoopCounts {
         /// How many loops the source has that are no curves.
@@ -182,8 +182,8 @@ pub enum CurveError {
 
     /// A closed curve has different numbers of boundary loops on its sides.
     #[error(
-        "closed curve {closed} has {source_count} boundary loops inside it on the source but {target_count} on the target: \
-         fill the holes that have no partner"
+        "closed curve {closed} has {source_count} boundary loops inside it on the source \
+         but {target_count} on the target: fill the holes that have no partner"
     )]
     LoopSides {
         /// The closed curve.
@@ -216,9 +216,9 @@ pub enum CurveError {
 
     /// The curves of one surface look like a mirror image of the other's.
     #[error(
-        "the curves fit far better when one surface is mirrored: if they are mirror images like a left and a right hemisphere, \
-         mirror one of them (negate x and flip its faces); if only the faces of an open one look to the other side, flip these; \
-         or check the order of the curves"
+        "the curves fit far better when one surface is mirrored: \
+         if they are mirror images like a left and a right hemisphere, mirror one of them (negate x and flip its faces); \
+         if only the faces of an open one look to the other side, flip these; or check the order of the curves"
     )]
     Mirrored,
 

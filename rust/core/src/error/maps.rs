@@ -51,7 +51,10 @@ pub enum MapError {
     },
 
     /// Positions on a sphere are not finite, or at its center.
-    #[error("{name} points nowhere at {}: give finite positions around the origin, none in it", .vertices.named("vertex"))]
+    #[error(
+        "{name} points nowhere at {}: give finite positions around the origin, none in it",
+        .vertices.named("vertex")
+    )]
     NoDirection {
         /// The argument.
         name: &'static str,
@@ -83,8 +86,8 @@ pub enum MapError {
 
     /// The outline of a map turns too little for what it bounds.
     #[error(
-        "the outline makes folds inevitable, at present in {}: it turns {turns} times counter-clockwise, and a map without \
-         folds needs {needed}; draw the outline anew, or map the part by disk_map",
+        "the outline makes folds inevitable, at present in {}: it turns {turns} times counter-clockwise, \
+         and a map without folds needs {needed}; draw the outline anew, or map the part by disk_map",
         .faces.named("face")
     )]
     OutlineFolds {

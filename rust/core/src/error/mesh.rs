@@ -38,7 +38,8 @@ pub enum MeshError {
 
     /// A face names a vertex that does not exist.
     #[error(
-        "{} out of range: {value} is not one of the {n_vertices} vertices; indices start at 0, so subtract 1 if yours start at 1",
+        "{} out of range: {value} is not one of the {n_vertices} vertices; \
+         indices start at 0, so subtract 1 if yours start at 1",
         .faces.named("face")
     )]
     IndexOutOfRange {
@@ -110,7 +111,10 @@ pub enum MeshError {
     },
 
     /// One surface was asked for and the mesh falls into several pieces.
-    #[error("the mesh is {} separate pieces, first faces {faces}: map each piece by itself (cut returns them)", .faces.count)]
+    #[error(
+        "the mesh is {} separate pieces, first faces {faces}: map each piece by itself (cut returns them)",
+        .faces.count
+    )]
     SeveralComponents {
         /// The lowest face of each component.
         faces: Elements,
@@ -163,7 +167,8 @@ pub enum MeshError {
 
     /// A surface that must have genus 0 has handles.
     #[error(
-        "the surface has genus {genus} (handles like a torus), but may have none: cut each handle open by seams, or fill it"
+        "the surface has genus {genus} (handles like a torus), but may have none: \
+         cut each handle open by seams, or fill it"
     )]
     GenusNotZero {
         /// The number of handles.

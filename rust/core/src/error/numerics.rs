@@ -19,7 +19,8 @@ pub enum NumericsError {
 
     /// No hyperbolic metric with geodesic boundary was found.
     #[error(
-        "no hyperbolic metric with these boundaries was found in double precision, left over: {}; remove the slivers there",
+        "no hyperbolic metric with these boundaries was found in double precision, left over: {}; \
+         remove the slivers there",
         .faces.named("face")
     )]
     NoHyperbolicMetric {
@@ -44,7 +45,8 @@ pub enum NumericsError {
 
     /// No map without folded faces was found.
     #[error(
-        "no map without folds was found in double precision, left over: {}; cut the long thin parts there open by seams",
+        "no map without folds was found in double precision, left over: {}; \
+         cut the long thin parts there open by seams",
         .folded.named("face")
     )]
     NoEmbedding {
@@ -54,8 +56,8 @@ pub enum NumericsError {
 
     /// A layout of a sphere folds faces, wherever its singular points are put.
     #[error(
-        "{} would fold in a layout in {precision}: try another kind, pole or seam, subdivide the mesh there, or map it with \
-         a larger angle_weight",
+        "{} would fold in a layout in {precision}: try another kind, pole or seam, subdivide the mesh there, \
+         or map it with a larger angle_weight",
         .faces.named("face")
     )]
     LayoutFolds {

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The normal equations of the areas of a patch, solved roughly by conjugate gradients.
 //!
-//! With the residuals r of the areas ([`residual`]) and their slopes J = ∂r/∂x in the places x of the vertices, a damped
-//! Gauss–Newton step d of the energy Σ r² solves
+//! With the residuals r of the areas ([`residual`]) and their slopes J = ∂r/∂x in the places x of the vertices, a
+//! damped Gauss–Newton step d of the energy Σ r² solves
 //!
 //! ```text
 //! (JᵀJ + μ D) d = −Jᵀ r,     D the diagonal of JᵀJ, μ the damping of each vertex
 //! ```
 //!
-//! (Levenberg, A Method for the Solution of Certain Non-Linear Problems in Least Squares, 1944; Marquardt, An Algorithm for
-//! Least-Squares Estimation of Nonlinear Parameters, 1963). D scales each axis separately: triangles at a pole are a thousand
-//! times as wide as they are high. The errors are local, so a few iterations with the preconditioner D suffice.
+//! (Levenberg, A Method for the Solution of Certain Non-Linear Problems in Least Squares, 1944; Marquardt, An Algorithm
+//! for Least-Squares Estimation of Nonlinear Parameters, 1963). D scales each axis separately: triangles at a pole are
+//! a thousand times as wide as they are high. The errors are local, so a few iterations with the preconditioner D
+//! suffice.
 
 use super::chart::{Chart, Point};
 use super::patch::Patch;

@@ -23,7 +23,8 @@ use crate::mesh::{Vertex, index_array};
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// Number of attempts, the first with the best vertices for the singular points, the second with the second best, and so on.
+/// Number of attempts, the first with the best vertices for the singular points, the second with the second best, and
+/// so on.
 const RANKS: usize = 4;
 
 /// Number of further attempts on coarse meshes, each with the mesh turned about the pole.
@@ -106,8 +107,8 @@ impl<'a, P: Projection> Run<'a, P> {
     /// Tries the choices of vertices for the singular points in turn.
     ///
     /// # Errors
-    /// [`NumericsError::LayoutFolds`] if every choice leaves folds, [`Error::CancelledEarly`] if the observer cancels before
-    /// there is a layout without folds.
+    /// [`NumericsError::LayoutFolds`] if every choice leaves folds, [`Error::CancelledEarly`] if the observer cancels
+    /// before there is a layout without folds.
     pub fn laid_out(&self, observer: &mut dyn Observer) -> Result<Layout, Error> {
         let turns = if self.points.len() > COARSE { 0 } else { TURNS };
         let attempts = (0..RANKS).map(|rank| (rank, 0.0)).chain((1..=turns).map(|k| (0, TURN * k as f64)));

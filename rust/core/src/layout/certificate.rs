@@ -33,7 +33,8 @@ impl Precision {
         }
     }
 
-    /// A bound of the rounding of the coordinates of these images, with room for moving and scaling the layout afterwards.
+    /// A bound of the rounding of the coordinates of these images, with room for moving and scaling the layout
+    /// afterwards.
     pub(super) fn rounding(self, images: &[[Point; 3]]) -> f64 {
         let epsilon = match self {
             Self::Single => f64::from(f32::EPSILON),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Develops a mesh of the sphere into the plane, face by face and polygon by polygon.
 //!
-//! An edge is a great arc. The cuts that it crosses give the isometry that takes the image of its end next to that of its
-//! start. Composed along the edges of a polygon, these isometries join its corners. Then the polygon as a whole is moved into
-//! the layout.
+//! An edge is a great arc. The cuts that it crosses give the isometry that takes the image of its end next to that of
+//! its start. Composed along the edges of a polygon, these isometries join its corners. Then the polygon as a whole is
+//! moved into the layout.
 
 use std::marker::PhantomData;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The isometries of the plane that glue a layout together: translations by a lattice, and half turns.
 //!
-//! Both layouts are flat except at a few singular points. So two images of a point of the sphere differ by a translation by
-//! whole periods (Lambert's cylinder), or by a half turn and such a translation (the octahedral square). In periods, the
-//! coefficients are integers, so that isometries are composed and compared exactly.
+//! Both layouts are flat except at a few singular points. So two images of a point of the sphere differ by a
+//! translation by whole periods (Lambert's cylinder), or by a half turn and such a translation (the octahedral square).
+//! In periods, the coefficients are integers, so that isometries are composed and compared exactly.
 
 /// The map x ↦ ±x + shift, the shift in periods of the layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Lambert's cylindrical equal-area projection (1772; Snyder, Map Projections: A Working Manual, 1987, §10).
 //!
-//! The point at longitude λ and height z = sin φ goes to (λ, z): a rectangle of width 2π and height 2, with the areas of
-//! the sphere by the theorem of Archimedes. The seam is the meridian λ = 0, the poles are the upper and the lower side.
+//! The point at longitude λ and height z = sin φ goes to (λ, z): a rectangle of width 2π and height 2, with the areas
+//! of the sphere by the theorem of Archimedes. The seam is the meridian λ = 0, the poles are the upper and the lower
+//! side.
 
 use std::f64::consts::TAU;
 

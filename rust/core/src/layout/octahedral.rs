@@ -8,9 +8,9 @@
 //! (u, v) = r (1 − 2φ/π, 2φ/π),
 //! ```
 //!
-//! which keeps areas up to the factor 1/π; the southern hemisphere is folded outwards, (u, v) ↦ (1 − v, 1 − u). Each side of
-//! the square is glued to itself by a half turn about its middle, a point of the equator. So there are four cuts, from each
-//! of these points along its meridian to the south pole.
+//! which keeps areas up to the factor 1/π; the southern hemisphere is folded outwards, (u, v) ↦ (1 − v, 1 − u). Each
+//! side of the square is glued to itself by a half turn about its middle, a point of the equator. So there are four
+//! cuts, from each of these points along its meridian to the south pole.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 

@@ -44,7 +44,8 @@ pub struct LayoutOptions<'a> {
     pub pole: [f64; 3],
     /// The left side of the rectangle (Lambert) or the upper side of the square (octahedral). Default: the y axis.
     pub seam: Seam,
-    /// (m,): a number for each face; faces with the same number that meet at an edge are not cut apart. `None`: every face is a polygon.
+    /// (m,): a number for each face; faces with the same number that meet at an edge are not cut apart. `None`: every
+    /// face is a polygon.
     pub polygons: Option<&'a [usize]>,
     /// (m,): target measure of each face, positive, on any scale. `None`: the targets of the map.
     pub density: Option<ArrayView1<'a, f64>>,

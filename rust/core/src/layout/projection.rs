@@ -14,8 +14,8 @@ pub(super) trait Projection: Sync {
     /// Area in the plane, by [`Projection::place`], over area on the sphere.
     const SCALE: f64;
 
-    /// Whether the singular points are tips of cones, whose images are points. Otherwise they are poles, whose images are
-    /// lines.
+    /// Whether the singular points are tips of cones, whose images are points. Otherwise they are poles, whose images
+    /// are lines.
     const HAS_CONES: bool;
 
     /// The periods in which [`Isometry`] counts translations.
@@ -24,8 +24,8 @@ pub(super) trait Projection: Sync {
     /// The image of a point of the sphere.
     fn place(point: Vector3) -> [f64; 2];
 
-    /// The isometry that takes the image of the end of the shorter great arc, across the cuts on the way, next to the image
-    /// of its start.
+    /// The isometry that takes the image of the end of the shorter great arc, across the cuts on the way, next to the
+    /// image of its start.
     fn crossing(start: Vector3, end: Vector3) -> Isometry;
 
     /// The isometry that moves a polygon into the layout.

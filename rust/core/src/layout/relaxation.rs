@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Evens out the area errors that straight edges make near poles and across creases.
 //!
-//! Levenberg–Marquardt steps lower a sum of squares of area errors over the places of the vertices ([`AreaSystem`]). The
-//! damping rises only at vertices where a step has raised the sum. A step moves only vertices near faces whose areas are off, so that most of a fine mesh stays as
-//! the projection has it. Vertices of faces that would fold move less far.
+//! Levenberg–Marquardt steps lower a sum of squares of area errors over the places of the vertices ([`AreaSystem`]).
+//! The damping rises only at vertices where a step has raised the sum. A step moves only vertices near faces whose
+//! areas are off, so that most of a fine mesh stays as the projection has it. Vertices of faces that would fold move
+//! less far.
 //!
-//! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have by
-//! then, so that rows of quads stay rows.
+//! At first every triangle has its own target. Then only polygons have: their triangles keep the shares that they have
+//! by then, so that rows of quads stay rows.
 //!
 //! Cost: per step about forty passes over the faces near those that are off.
 
@@ -42,7 +43,8 @@ const RINGS: usize = 2;
 /// Least damping; the first step has it.
 const LEAST_DAMPING: f64 = 1e-2;
 
-/// Factors of the damping of vertices where a rejected step raises the energy, and of all vertices after an accepted one.
+/// Factors of the damping of vertices where a rejected step raises the energy, and of all vertices after an accepted
+/// one.
 const DAMPING_FACTORS: [f64; 2] = [10.0, 1.0 / 3.0];
 
 /// Number of rejected steps in a row after which the relaxation stops.
@@ -121,8 +123,8 @@ pub(super) fn even_out<P: Projection>(
     Status::Stalled
 }
 
-/// Targets that add up to the sum of `areas`: each polygon keeps its share of the sum, each triangle its present share of
-/// the polygon.
+/// Targets that add up to the sum of `areas`: each polygon keeps its share of the sum, each triangle its present share
+/// of the polygon.
 fn shared_out(areas: &[f64], targets: &[f64], polygons: &Polygons) -> Vec<f64> {
     let scale = areas.iter().sum::<f64>() / targets.iter().sum::<f64>();
     let [mut wanted, mut kept] = [vec![0.0; polygons.count], vec![0.0; polygons.count]];
@@ -251,8 +253,8 @@ impl Limits {
         Self { was_folded, least, rounding }
     }
 
-    /// Moves the vertices of a patch by a step, shortened at faces that would fold, and returns the areas. Nothing moves if no
-    /// shortening helps.
+    /// Moves the vertices of a patch by a step, shortened at faces that would fold, and returns the areas. Nothing
+    /// moves if no shortening helps.
     fn moved<P: Projection>(
         &self,
         chart: &mut Chart<'_, P>,

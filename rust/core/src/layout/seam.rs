@@ -11,8 +11,8 @@ use crate::mesh::corners::VertexCorners;
 /// A map onto the sphere laid out in the plane, cut open along a seam.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// (k, 2): the points, in the order of their vertices. The whole image has the area of the sphere. In single precision
-    /// all coordinates are numbers of that precision.
+    /// (k, 2): the points, in the order of their vertices. The whole image has the area of the sphere. In single
+    /// precision all coordinates are numbers of that precision.
     pub points: Array2<f64>,
     /// (m, 3): the faces between points, counter-clockwise, in the order of the faces of the map or of its refinement.
     pub faces: Array2<u32>,

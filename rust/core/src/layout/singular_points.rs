@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Moves a vertex onto each singular point of a layout by motions of the sphere that preserve areas.
 //!
-//! A face with a singular point inside would fold. A rotation takes a vertex onto the first singular point; twists that keep
-//! the earlier ones take vertices onto the others. Among the vertices near a singular point, the one is chosen whose faces
-//! distort areas least.
+//! A face with a singular point inside would fold. A rotation takes a vertex onto the first singular point; twists that
+//! keep the earlier ones take vertices onto the others. Among the vertices near a singular point, the one is chosen
+//! whose faces distort areas least.
 //!
 //! Cost: one pass over all vertices per singular point; the choice looks at a few hundred faces.
 
@@ -40,7 +40,8 @@ const FOLD_PENALTY: f64 = 100.0;
 /// Cost of moving a vertex, per squared distance in units of a typical face area.
 const DETOUR: f64 = 0.25;
 
-/// Squared distance, in units of a typical face area, up to which a vertex at a singular point is kept there, as on a UV sphere.
+/// Squared distance, in units of a typical face area, up to which a vertex at a singular point is kept there, as on a
+/// UV sphere.
 const IN_PLACE: f64 = 0.1;
 
 /// A mesh of the sphere with the targets of its layout.
@@ -66,7 +67,8 @@ pub(super) struct Placed {
     pub is_singular: Vec<bool>,
 }
 
-/// Moves a vertex onto each singular point, the best one after skipping `rank`; `None` if there is no room for the motions.
+/// Moves a vertex onto each singular point, the best one after skipping `rank`; `None` if there is no room for the
+/// motions.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`] if the watch cancels.
@@ -145,8 +147,8 @@ impl Neighborhood {
         }
     }
 
-    /// The vertices that may be moved onto the point, best first. Vertices beyond the `enough` nearest are tried only while
-    /// all fold faces.
+    /// The vertices that may be moved onto the point, best first. Vertices beyond the `enough` nearest are tried only
+    /// while all fold faces.
     fn ranked<P: Projection>(&self, goal: Vector3, placed: &[Vector3], enough: usize) -> Vec<Vertex> {
         let typical_area = median(&self.targets);
         let mut costs: Vec<(f64, Vertex)> = Vec::new();

@@ -74,8 +74,8 @@ impl SphereFaces {
         })
     }
 
-    /// The target areas, which add up to the area of the sphere; the parts of a split face share its density in proportion to
-    /// their targets.
+    /// The target areas, which add up to the area of the sphere; the parts of a split face share its density in
+    /// proportion to their targets.
     pub(super) fn areas(&self, density: Option<ArrayView1<'_, f64>>) -> Result<Vec<f64>, Error> {
         let mut areas = normalized_density(&self.targets, self.image.n_faces())?;
         if let Some(density) = density {

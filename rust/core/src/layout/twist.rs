@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Motions of the sphere that preserve areas and take a given point to another.
 //!
-//! A twist turns each circle about a center rigidly: by the same angle up to the circle of the two points, by less farther
-//! out, and not at all where points are fixed. In the coordinate log tan (δ/2) of the distance δ from the center, an angle
-//! that falls linearly shears uniformly; here it falls by a smooth step.
+//! A twist turns each circle about a center rigidly: by the same angle up to the circle of the two points, by less
+//! farther out, and not at all where points are fixed. In the coordinate log tan (δ/2) of the distance δ from the
+//! center, an angle that falls linearly shears uniformly; here it falls by a smooth step.
 
 use crate::vector::Vector3;
 
@@ -60,8 +60,8 @@ impl Motion {
         )
     }
 
-    /// The twist of least shear that takes `start` to `goal` and keeps the points `fixed`; `None` if there is no room for
-    /// one.
+    /// The twist of least shear that takes `start` to `goal` and keeps the points `fixed`; `None` if there is no room
+    /// for one.
     pub fn twist(start: Vector3, goal: Vector3, fixed: &[Vector3]) -> Option<Self> {
         if start.distance(goal) < 1e-15 {
             return Some(Self::rotation(goal, goal));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Unfolds the few faces that straight edges fold in a layout.
 //!
-//! Local optimization (Freitag & Plassmann, Local Optimization-Based Simplicial Mesh Untangling and Improvement, 2000): each
-//! vertex in turn moves to the place that maximizes the least area of its faces, relative to their targets. The area of a
-//! face is linear in the place of a vertex, so the least area is concave, and a pattern search finds its maximum.
+//! Local optimization (Freitag & Plassmann, Local Optimization-Based Simplicial Mesh Untangling and Improvement, 2000):
+//! each vertex in turn moves to the place that maximizes the least area of its faces, relative to their targets. The
+//! area of a face is linear in the place of a vertex, so the least area is concave, and a pattern search finds its
+//! maximum.
 
 use std::f64::consts::PI;
 

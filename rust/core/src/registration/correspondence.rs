@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where each vertex of one surface lies on another, and what follows from that: positions, data carried over, morphs.
 //!
-//! Both surfaces lie in a common domain, the unit sphere or the disk in the plane z = 1, so that data at corners of faces
-//! can be read on the right side of a seam. Data come and go in the order of the vertices and faces as given, whatever
-//! faces were flipped to orient a surface.
+//! Both surfaces lie in a common domain, the unit sphere or the disk in the plane z = 1, so that data at corners of
+//! faces can be read on the right side of a seam. Data come and go in the order of the vertices and faces as given,
+//! whatever faces were flipped to orient a surface.
 
 use std::sync::Arc;
 
@@ -103,8 +103,8 @@ impl Correspondence {
         from_rows(self.locations.iter().map(|location| location.barycentric).collect())
     }
 
-    /// The area of each source face's image over its own, (m,), with the source scaled to the area of its image: 1 where
-    /// g preserves areas. All are 0 where the image has no area.
+    /// The area of each source face's image over its own, (m,), with the source scaled to the area of its image: 1
+    /// where g preserves areas. All are 0 where the image has no area.
     pub fn area_ratio(&self) -> Array1<f64> {
         self.area_ratio.clone().into()
     }
@@ -127,8 +127,8 @@ impl Correspondence {
         Ok(Array2::from_shape_vec((self.locations.len(), width), pulled).expect("one row per vertex"))
     }
 
-    /// Data of the corners of the target's faces, (m_t, 3, k), at those of the source, (m, 3, k), both in the order of the
-    /// faces as given. Each corner takes the value on that side of a seam of the data on which its face lies.
+    /// Data of the corners of the target's faces, (m_t, 3, k), at those of the source, (m, 3, k), both in the order of
+    /// the faces as given. Each corner takes the value on that side of a seam of the data on which its face lies.
     ///
     /// # Errors
     /// [`Error::InvalidArray`] where there is not one row per corner of the target.
@@ -152,8 +152,8 @@ impl Correspondence {
         nearest_vertices(&self.target.faces, &self.locations)
     }
 
-    /// The corner of the target, 3 × face + corner as given, nearest to each corner of the source, (3 m,), on that side of
-    /// a seam on which its face lies.
+    /// The corner of the target, 3 × face + corner as given, nearest to each corner of the source, (3 m,), on that side
+    /// of a seam on which its face lies.
     pub fn nearest_corners(&self) -> Vec<Corner> {
         nearest_given_corners(&self.source.given_faces(), &self.target.given_faces(), &self.locations)
     }

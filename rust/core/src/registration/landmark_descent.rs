@@ -3,10 +3,11 @@
 //! maps h₀ and h₁ of Sutti & Yueh (2024), section 6.6, applied to the surface's own map.
 //!
 //! The papers minimize E_S(h) + λ Σ |h(x_i) − q_i|² from a few fixed-point steps. A landmark is a single vertex, and in
-//! two dimensions a single point can be pulled anywhere at next to no cost: such steps pull spikes out of the map and fold
-//! the faces around it. So the start is a smooth area-preserving [`flow`](super::flow) that takes the landmarks along,
-//! and from there the guarded Gauss–Newton descent lowers the papers' energy without ever folding a face. λ grows tenfold
-//! until the landmarks meet or come no nearer; at last they are moved the rest of the way, of the order of rounding.
+//! two dimensions a single point can be pulled anywhere at next to no cost: such steps pull spikes out of the map and
+//! fold the faces around it. So the start is a smooth area-preserving [`flow`](super::flow) that takes the landmarks
+//! along, and from there the guarded Gauss–Newton descent lowers the papers' energy without ever folding a face. λ
+//! grows tenfold until the landmarks meet or come no nearer; at last they are moved the rest of the way, of the order
+//! of rounding.
 //!
 //! Cost: the flow, and about ten factorizations with two unknowns per vertex.
 

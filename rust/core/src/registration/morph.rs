@@ -10,11 +10,11 @@ use crate::error::Error;
 use crate::parallel;
 use crate::vector::Vector3;
 
-/// The morph (1 − t) v + t g(v) along a registration, (n, 3), from the source's `vertices` (n, 3) at t = 0 to their places
-/// on the target at t = 1.
+/// The morph (1 − t) v + t g(v) along a registration, (n, 3), from the source's `vertices` (n, 3) at t = 0 to their
+/// places on the target at t = 1.
 ///
-/// With `align` the places are brought onto the vertices first, by the best similarity by area, so that the shape changes
-/// but does not travel.
+/// With `align` the places are brought onto the vertices first, by the best similarity by area, so that the shape
+/// changes but does not travel.
 ///
 /// # Errors
 /// [`Error::InvalidArray`] for vertices of another shape, [`Error::InvalidOption`] for a t that is not finite.

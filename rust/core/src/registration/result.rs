@@ -21,8 +21,8 @@ pub type SphereRegistration = Registration<SphereMap>;
 pub struct Registration<Map> {
     /// g: the location of each source vertex on the target.
     pub correspondence: Correspondence,
-    /// The source's vertices, (n, 2) or (n, 3), in the parameter domain with the landmarks in place: h∘f on the disk, h₀∘f₀
-    /// on the sphere.
+    /// The source's vertices, (n, 2) or (n, 3), in the parameter domain with the landmarks in place: h∘f on the disk,
+    /// h₀∘f₀ on the sphere.
     pub registered: Array2<f64>,
     /// The target's vertices in that domain: g on the disk, h₁∘f₁ on the sphere. On the disk they are moved only where
     /// moving the source's landmarks alone misses some.
@@ -50,8 +50,8 @@ pub struct Registration<Map> {
 }
 
 impl<Map: Clone> Registration<Map> {
-    /// The registration of the target onto the source: g⁻¹, from the same maps to the domain. Cost: one point location per
-    /// vertex of the target.
+    /// The registration of the target onto the source: g⁻¹, from the same maps to the domain. Cost: one point location
+    /// per vertex of the target.
     ///
     /// # Errors
     /// [`Error::CancelledEarly`] where the observer ends it.

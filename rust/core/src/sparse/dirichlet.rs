@@ -10,8 +10,8 @@ use crate::mesh::TriangleMesh;
 /// `factor` must have analyzed its pattern.
 ///
 /// # Errors
-/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where L_II is not positive definite
-/// to working precision, [`Error::CancelledEarly`] by the watch.
+/// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where L_II is not positive
+/// definite to working precision, [`Error::CancelledEarly`] by the watch.
 pub(crate) fn solve_dirichlet(
     mesh: &TriangleMesh,
     laplacian: &mut Laplacian,

@@ -46,9 +46,9 @@ pub fn solve_general(matrix: &CsMat<f64>, rhs: &mut [f64]) -> Result<(), Error> 
     }
 }
 
-/// Solves `A x = b` in place for a dense symmetric positive definite matrix, whose lower triangle is read and overwritten
-/// by its Cholesky factor. `rhs` holds one or more columns, one after another. Returns false, and leaves `rhs` undefined,
-/// where a pivot is not positive and finite.
+/// Solves `A x = b` in place for a dense symmetric positive definite matrix, whose lower triangle is read and
+/// overwritten by its Cholesky factor. `rhs` holds one or more columns, one after another. Returns false, and leaves
+/// `rhs` undefined, where a pivot is not positive and finite.
 pub(crate) fn solve_positive_definite(matrix: &mut [f64], rhs: &mut [f64]) -> bool {
     let n = matrix.len().isqrt();
     let columns = rhs.len().checked_div(n).unwrap_or(0);

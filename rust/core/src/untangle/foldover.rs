@@ -8,8 +8,8 @@
 //! f = (½ tr JᵀJ + D² + 1) / χ(D),     χ(D) = ½ (D + √(ε² + D²)),
 //! ```
 //!
-//! the sum over the faces is finite on folded maps as long as ε > 0. The ε falls from step to step by the paper's rule, so
-//! that folded faces become ever more expensive.
+//! the sum over the faces is finite on folded maps as long as ε > 0. The ε falls from step to step by the paper's rule,
+//! so that folded faces become ever more expensive.
 //!
 //! Cost: one factorization of the patch for each of up to [`ITERATIONS`] steps, a dozen as a rule.
 

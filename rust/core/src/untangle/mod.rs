@@ -56,8 +56,8 @@ pub struct Untangled {
     pub distortion: Distortion,
 }
 
-/// Removes the folds of `image`, a map of `surface` into the plane (n, 2) or onto a sphere around the origin (n, 3), and
-/// changes as little as possible.
+/// Removes the folds of `image`, a map of `surface` into the plane (n, 2) or onto a sphere around the origin (n, 3),
+/// and changes as little as possible.
 ///
 /// Each component keeps the orientation of most of its area. A map without folds comes back as it is.
 ///

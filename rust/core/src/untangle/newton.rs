@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Projected Newton steps for a sum of energies of the faces of a patch.
 //!
-//! The Hessian of every face is exact with its negative eigenvalues set to zero, so that the direction descends; a step is
-//! halved until the energy falls. Cost of a step: one sparse Cholesky factorization, a few passes over the faces.
+//! The Hessian of every face is exact with its negative eigenvalues set to zero, so that the direction descends; a step
+//! is halved until the energy falls. Cost of a step: one sparse Cholesky factorization, a few passes over the faces.
 
 use super::patch::Patch;
 use super::triangle::{Corners, Hessian};

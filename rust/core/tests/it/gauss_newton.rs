@@ -262,7 +262,8 @@ fn check_random(seed: u64) {
     }
 }
 
-/// A thousand surfaces of all kinds: `cargo test --release --features metis --test it thousand -- --ignored --nocapture`.
+/// A thousand surfaces of all kinds:
+/// `cargo test --release --features metis --test it thousand -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_thousand_random_surfaces_are_mapped_one_to_one() {

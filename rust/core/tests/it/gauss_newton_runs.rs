@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! How a run of the default method goes and ends: energies, angles against areas, densities, start maps, cancel, threads,
-//! and that neither place, size nor numbering of a surface matters.
+//! How a run of the default method goes and ends: energies, angles against areas, densities, start maps, cancel,
+//! threads, and that neither place, size nor numbering of a surface matters.
 
 use crate::common::closed::{
     assert_bijective, bumpy, dot, image_areas, radial, rotation, round_tube, spiky_spheres,
@@ -46,8 +46,8 @@ fn rough() -> TriangleMesh {
 
 // Energies
 
-/// Area and angle terms of the energy over the total target, Σ T ψ(ρ) and Σ T ((m − 1) + ½ β (m − 1)²), for areas on the
-/// scale of the targets. In the plane m = ½ (σ₁/σ₂ + σ₂/σ₁).
+/// Area and angle terms of the energy over the total target, Σ T ψ(ρ) and Σ T ((m − 1) + ½ β (m − 1)²), for areas on
+/// the scale of the targets. In the plane m = ½ (σ₁/σ₂ + σ₂/σ₁).
 fn energy_terms(areas: &[f64], targets: &[f64], angles: &Array1<f64>) -> [f64; 2] {
     let mut terms = [0.0; 2];
     for ((area, target), angle) in areas.iter().zip(targets).zip(angles) {

@@ -17,7 +17,8 @@ fn surface() -> Surface {
     Surface::new(aview2(&stretched), aview2(&ball.faces)).unwrap()
 }
 
-/// The signs of the areas of all faces, in integers: the coordinates are numbers of single precision and multiples of 2⁻⁵⁸.
+/// The signs of the areas of all faces, in integers: the coordinates are numbers of single precision and multiples of
+/// 2⁻⁵⁸.
 fn assert_opens_in_single_precision(layout: &Layout) {
     let exact = |x: f64| {
         assert_eq!(x, f64::from(x as f32), "a number of single precision");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! As-rigid-as-possible maps: every face as near to a turned copy of its rest triangle as its neighbors allow.
 //!
-//! L. Liu, L. Zhang, Y. Xu, C. Gotsman and S. J. Gortler, A local/global approach to mesh parameterization, SGP 2008. The
-//! local step turns each rest triangle as its image is turned, the global one solves a Poisson equation for the map. Cost:
-//! one factorization of one unknown per vertex, [`STEPS`] solves for both coordinates. Faces may fold.
+//! L. Liu, L. Zhang, Y. Xu, C. Gotsman and S. J. Gortler, A local/global approach to mesh parameterization, SGP 2008.
+//! The local step turns each rest triangle as its image is turned, the global one solves a Poisson equation for the
+//! map. Cost: one factorization of one unknown per vertex, [`STEPS`] solves for both coordinates. Faces may fold.
 
 use super::energy::Energy;
 use crate::codomain::planar::PlanarMap;

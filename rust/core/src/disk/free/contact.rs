@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Contacts of an outline with itself: an energy that repels near boundaries, and a bound on every step.
 //!
-//! A boundary vertex v and a boundary edge e that is neither at v nor opposite to it in its face cost κ h l b(d / h) where
-//! their distance d is below h, b(x) = −(x − 1)² ln x, as in M. Li et al., Incremental potential contact, ACM Trans. Graph.
-//! 39 (2020); h is a part of the least height of the rest triangles beside both, so that a thin strip does not repel
-//! itself, and l the median edge of the outline. The energy has compact support: an outline that does not come near to
-//! itself is not changed. A sweep over boxes finds the pairs. Cost: O(n log n) and one comparison for every two boxes
-//! that overlap in x.
+//! A boundary vertex v and a boundary edge e that is neither at v nor opposite to it in its face cost κ h l b(d / h)
+//! where their distance d is below h, b(x) = −(x − 1)² ln x, as in M. Li et al., Incremental potential contact, ACM
+//! Trans. Graph. 39 (2020); h is a part of the least height of the rest triangles beside both, so that a thin strip
+//! does not repel itself, and l the median edge of the outline. The energy has compact support: an outline that does
+//! not come near to itself is not changed. A sweep over boxes finds the pairs. Cost: O(n log n) and one comparison for
+//! every two boxes that overlap in x.
 
 use crate::mesh::Vertex;
 

@@ -5,9 +5,10 @@
 //! 2. A step ends before a face folds or an outline meets itself, and where the energy falls.
 //! 3. The descent has converged when the decrement −gᵀd of a full step almost vanishes: the map is stationary.
 //!
-//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it the Hessian
-//! takes as much of the curvature as leaves it positive definite, in the end all, and the descent converges quadratically.
-//! Cost of one iteration: one factorization of two unknowns per vertex, and some ten solves where contacts act.
+//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it the
+//! Hessian takes as much of the curvature as leaves it positive definite, in the end all, and the descent converges
+//! quadratically. Cost of one iteration: one factorization of two unknowns per vertex, and some ten solves where
+//! contacts act.
 
 use super::contact::{Contact, Stiffness};
 use super::energy::{Energy, Hessian};

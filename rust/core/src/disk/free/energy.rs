@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The energy of areas and angles of maps into the plane whose outline is free.
 //!
-//! E = Σ T (ψ(ρ) + λ f(m − 1)), with the target T of a face, the Jacobian J = (a b; c d) of its map from its rest triangle,
-//! ρ = det J, ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ), f(x) = x + β/2 x² and m − 1 = ½ [(a − d)² + (b + c)²] / ρ, which is
-//! ½ (σ₁/σ₂ + σ₂/σ₁) − 1. Rest triangles have the area of their target, and targets add up to one, so there is no scale to
-//! be found. ψ is infinite where a face folds.
+//! E = Σ T (ψ(ρ) + λ f(m − 1)), with the target T of a face, the Jacobian J = (a b; c d) of its map from its rest
+//! triangle, ρ = det J, ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ), f(x) = x + β/2 x² and m − 1 = ½ [(a − d)² + (b + c)²] / ρ, which
+//! is ½ (σ₁/σ₂ + σ₂/σ₁) − 1. Rest triangles have the area of their target, and targets add up to one, so there is no
+//! scale to be found. ψ is infinite where a face folds.
 //!
 //! The Hessian takes m − 1 as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing. Every
 //! term is positive semidefinite except the curvature of ρ, which is left out or added on demand.

@@ -14,8 +14,8 @@ const LIGHTEST: f64 = 1e-7;
 /// A weight of angles is judged where the decrement is below this part of the energy.
 const ROUGHLY: f64 = 1e-4;
 
-/// Lowers λ of `goal` until the deviation of areas is within `tolerance`, or raises it up to `most` while it stays within:
-/// `goal` ends with the heaviest such λ. Converged where there is one.
+/// Lowers λ of `goal` until the deviation of areas is within `tolerance`, or raises it up to `most` while it stays
+/// within: `goal` ends with the heaviest such λ. Converged where there is one.
 pub(super) fn least_shear(
     descent: &mut Descent<'_>,
     mut map: PlanarMap,

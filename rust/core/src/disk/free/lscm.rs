@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Spectral conformal maps: the outline of least conformal energy.
 //!
-//! P. Mullen, Y. Tong, P. Alliez and M. Desbrun, Spectral conformal parameterization, SGP 2008. Among the maps with a fixed
-//! moment of inertia of their boundary the one of least conformal energy is the first eigenvector of L_C x = μ B x after the
-//! constants, B the boundary's mass, here one per vertex. Inverse iteration with our own factorization finds it. Cost: one
-//! factorization of two unknowns per vertex and [`ITERATIONS`] solves.
+//! P. Mullen, Y. Tong, P. Alliez and M. Desbrun, Spectral conformal parameterization, SGP 2008. Among the maps with a
+//! fixed moment of inertia of their boundary the one of least conformal energy is the first eigenvector of L_C x = μ B
+//! x after the constants, B the boundary's mass, here one per vertex. Inverse iteration with our own factorization
+//! finds it. Cost: one factorization of two unknowns per vertex and [`ITERATIONS`] solves.
 
 use std::f64::consts::TAU;
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Maps with a free outline, which may take any shape that does not cross itself.
 //!
-//! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that are
-//!    one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one always.
+//! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that
+//!    are one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one
+//!    always.
 //! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
 //!    (`contact`), until the map is stationary.
 //! 3. Where contacts remain, further descents with contacts of shorter range.
 //!
-//! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start, and
-//! ten to fifty for the descent.
+//! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start,
+//! and ten to fifty for the descent.
 
 mod arap;
 mod contact;

@@ -18,7 +18,8 @@ const DISK_WEIGHT: f64 = 1.0;
 /// Iteration limit of that map.
 const DISK_ITERATIONS: usize = 15;
 
-/// A start with an energy above this has collapsed, as conformal maps of long tubes do; the map to the disk is tried too.
+/// A start with an energy above this has collapsed, as conformal maps of long tubes do; the map to the disk is tried
+/// too.
 const COLLAPSED: f64 = 1e4;
 
 /// Starts are compared with at least this weight of angles.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The linear system of faces and contacts for a Newton direction.
 //!
-//! The Hessians of the faces are factored, with the contacts' diagonal block at each vertex. Conjugate gradients with this
-//! factor solve the system of faces and contacts, whose other blocks do not fit into the pattern of the mesh. Cost: one
-//! factorization of two unknowns per vertex, and some ten solves where contacts act.
+//! The Hessians of the faces are factored, with the contacts' diagonal block at each vertex. Conjugate gradients with
+//! this factor solve the system of faces and contacts, whose other blocks do not fit into the pattern of the mesh.
+//! Cost: one factorization of two unknowns per vertex, and some ten solves where contacts act.
 
 use super::contact::Contact;
 use super::energy::{Energy, Hessian};

@@ -4,8 +4,8 @@
 //! The few steps of the papers' fixed point bring most disks near the minimum with some faces folded. Signed areas
 //! unfold these on the way of an unguarded descent, nearly always all of them. From the first map without folds the
 //! descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)) and never folds a face again.
-//! Where this leaves folds, the guarded descent starts from Tutte's embedding, or where double precision does not suffice
-//! for that, from the [progressive](crate::embedding) one.
+//! Where this leaves folds, the guarded descent starts from Tutte's embedding, or where double precision does not
+//! suffice for that, from the [progressive](crate::embedding) one.
 //!
 //! Cost: about five factorizations of the interior vertices with one unknown each, about fifteen with two.
 
@@ -54,8 +54,8 @@ impl Run<'_> {
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds, [`Error::CancelledEarly`] where the
-    /// observer ended the run before there was a map without folds.
+    /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds,
+    /// [`Error::CancelledEarly`] where the observer ended the run before there was a map without folds.
     fn gauss_newton(
         &self,
         is_cancelled: bool,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One computation from start map to a map without folds.
 //!
-//! First the papers' method as published, which may fold; then, only where it did or nearly did, unfolding and a descent
-//! behind a barrier; last of all the same descent from Tutte's embedding.
+//! First the papers' method as published, which may fold; then, only where it did or nearly did, unfolding and a
+//! descent behind a barrier; last of all the same descent from Tutte's embedding.
 
 use super::fixed_point::fixed_point;
 use super::objective::DiskObjective;

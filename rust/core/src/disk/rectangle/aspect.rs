@@ -9,8 +9,9 @@ use crate::vector::Vector3;
 /// Upper bound of an aspect and of its inverse.
 pub(super) const MOST_ASPECT: f64 = 1e4;
 
-/// A map stretched by `relaxation` times the way toward the aspect of least angle energy, and the logarithm by which the aspect has
-/// changed; as it is where that would fold a face. `corners` are the lower left and the upper right vertex.
+/// A map stretched by `relaxation` times the way toward the aspect of least angle energy, and the logarithm by which
+/// the aspect has changed; as it is where that would fold a face. `corners` are the lower left and the upper right
+/// vertex.
 pub(super) fn with_best_aspect(
     energy: &AuthalicEnergy,
     map: &SpatialMap,

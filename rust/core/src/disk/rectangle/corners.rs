@@ -2,9 +2,9 @@
 //! The four boundary vertices that go to the corners of a rectangle.
 //!
 //! Corners are sought where the boundary turns most, measured by the angles of the faces at each vertex. Of all sets of
-//! four sharp turns the one whose sides are the most alike in pairs is taken; where there are fewer than four, the longest
-//! sides are halved. An edge inside the surface between two vertices of one side would be pressed flat, so each part of the
-//! boundary that such an edge cuts off must have a corner of its own.
+//! four sharp turns the one whose sides are the most alike in pairs is taken; where there are fewer than four, the
+//! longest sides are halved. An edge inside the surface between two vertices of one side would be pressed flat, so each
+//! part of the boundary that such an edge cuts off must have a corner of its own.
 //!
 //! Scores that differ by less than [`MARGIN`] count as equal and positions decide, so that neither rounding nor the
 //! numbering of vertices does. Cost: sorting the edges of the boundary, and some ten thousand sets of four.
@@ -146,8 +146,8 @@ impl<'a> Outline<'a> {
             None => Ok(()),
             Some(vertices) => Err(MapError::NoRectangle {
                 vertices,
-                reason: "an edge inside the surface joins them along one side, and the faces between would have no area: \
-                         put a corner between them, or split the edge"
+                reason: "an edge inside the surface joins them along one side, \
+                         and the faces between would have no area: put a corner between them, or split the edge"
                     .into(),
             }.into()),
         }
@@ -284,8 +284,8 @@ impl<'a> Outline<'a> {
         self.mesh.points()[self.vertices[place]]
     }
 
-    /// The corners from the lower left one, with x to the right and z up, or y where the surface lies flat; fitting a given
-    /// aspect comes first.
+    /// The corners from the lower left one, with x to the right and z up, or y where the surface lies flat; fitting a
+    /// given aspect comes first.
     fn turned_upright(&self, corners: Corners, aspect: Option<f64>) -> Corners {
         let turned = |by: usize| -> Corners { [0, 1, 2, 3].map(|k| corners[(k + by) % 4]) };
         let score = |by: usize| {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Maps onto a rectangle: four boundary vertices at its corners, the others sliding along its sides.
 //!
-//! The rectangle is convex, so a map without folded faces whose boundary vertices keep their order is one-to-one. As on the
-//! disk a guarded Gauss–Newton descent lowers the energy of the areas with a share of the angles; a vertex on a side has
-//! one unknown.
+//! The rectangle is convex, so a map without folded faces whose boundary vertices keep their order is one-to-one. As on
+//! the disk a guarded Gauss–Newton descent lowers the energy of the areas with a share of the angles; a vertex on a
+//! side has one unknown.
 //!
-//! A free aspect is found along with the map. Stretching the rectangle one way and pressing it the other by the same factor
-//! changes no area and folds no face, so only the angles tell one aspect from another: after each descent the aspect of
-//! least angle energy is taken ([`aspect`]), until it moves no more.
+//! A free aspect is found along with the map. Stretching the rectangle one way and pressing it the other by the same
+//! factor changes no area and folds no face, so only the angles tell one aspect from another: after each descent the
+//! aspect of least angle energy is taken ([`aspect`]), until it moves no more.
 //!
-//! Inside, rectangles are centered on (0, 0) and have the area of the unit disk; results have their lower left corner in
-//! (0, 0) and a longer side of 1.
+//! Inside, rectangles are centered on (0, 0) and have the area of the unit disk; results have their lower left corner
+//! in (0, 0) and a longer side of 1.
 //!
 //! Cost: that of a disk map, and a few iterations for each correction of the aspect.
 
@@ -154,7 +154,8 @@ impl Rectangle<'_> {
         (self.with_best_aspect(problem, &map, 1.0).0, status)
     }
 
-    /// The map stretched toward the best aspect, and the logarithm by which it was off; as it is where the aspect is given.
+    /// The map stretched toward the best aspect, and the logarithm by which it was off; as it is where the aspect is
+    /// given.
     fn with_best_aspect(&self, problem: &Problem, map: &SpatialMap, relaxation: f64) -> (SpatialMap, f64) {
         match self.aspect {
             Some(_) => (map.clone(), 0.0),

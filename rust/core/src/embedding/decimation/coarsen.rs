@@ -102,8 +102,8 @@ impl Ring {
 }
 
 impl Decimation<'_> {
-    /// Collapses vertices until four are left, including the apex, or until none can collapse; `None` where the observer
-    /// ended the run.
+    /// Collapses vertices until four are left, including the apex, or until none can collapse; `None` where the
+    /// observer ended the run.
     pub(crate) fn coarsen(&mut self, observer: &mut dyn Observer) -> Option<()> {
         let surplus = self.degrees.len().saturating_sub(4);
         let mut queue = self.candidates(observer)?;
@@ -163,8 +163,8 @@ impl Decimation<'_> {
         if cost.is_finite() { cost } else { 0.0 }
     }
 
-    /// The cost of a vertex, infinite where it cannot collapse, and the corner at it that is followed by the neighbor onto
-    /// which it collapses.
+    /// The cost of a vertex, infinite where it cannot collapse, and the corner at it that is followed by the neighbor
+    /// onto which it collapses.
     fn best_collapse(&self, vertex: Vertex, ring: &mut Ring) -> (f64, Option<Corner>) {
         self.fill_ring(vertex, ring);
         let allowed = |&k: &usize| ring.apex != Some(k) && ring.keeps_the_boundary(k);

@@ -220,8 +220,8 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// The faces that share the measure of the star around a corner: those of the star that are not at the apex; where there
-    /// is only one, also the face across from the vertex, which inherits it.
+    /// The faces that share the measure of the star around a corner: those of the star that are not at the apex; where
+    /// there is only one, also the face across from the vertex, which inherits it.
     fn measured_faces(&self, corner: Corner) -> impl Iterator<Item = Face> {
         let star = self.around(corner).filter(|corner| corner.face().index() < self.mesh.n_faces());
         let is_ear = star.clone().nth(1).is_none();

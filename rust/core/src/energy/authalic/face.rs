@@ -115,8 +115,8 @@ impl Triangle {
         out
     }
 
-    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² without the Hessians of Q, D and a, `curvature` from the
-    /// composite, 0, to the exact one, 1; returns the factor of the Hessian of Q.
+    /// Adds `weight` times the Hessian of (m − 1) + ½ β (m − 1)² without the Hessians of Q, D and a, `curvature` from
+    /// the composite, 0, to the exact one, 1; returns the factor of the Hessian of Q.
     pub(super) fn add_angle(
         &self,
         element: &mut Element,
@@ -147,7 +147,8 @@ impl Triangle {
         by_quadratic
     }
 
-    /// Adds the Hessians of the area and of D, and the product of the gradient with the curvature of the vertices' paths.
+    /// Adds the Hessians of the area and of D, and the product of the gradient with the curvature of the vertices'
+    /// paths.
     pub(super) fn add_curvature(
         &self,
         element: &mut Element,

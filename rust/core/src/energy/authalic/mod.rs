@@ -9,15 +9,16 @@
 //! E = Σ T [ψ(ρ) + λ ((m − 1) + ½ β (m − 1)²)],     m = Q/D,     ψ(ρ) = ½ (ρ − 1)² (1 + 1/ρ),     β = 0.1.
 //! ```
 //!
-//! Σ T ψ is E_A to second order. On fine meshes m = ½ (σ₁/σ₂ + σ₂/σ₁); D makes m infinite exactly at a fold, while areas
-//! are the flat ones of E_A. A face is feasible where D is positive by more than its rounding error, so a finite energy
-//! certifies a map without folds.
+//! Σ T ψ is E_A to second order. On fine meshes m = ½ (σ₁/σ₂ + σ₂/σ₁); D makes m infinite exactly at a fold, while
+//! areas are the flat ones of E_A. A face is feasible where D is positive by more than its rounding error, so a finite
+//! energy certifies a map without folds.
 //!
 //! The composite Hessian of a face is positive semidefinite: Gauss–Newton in the area, and for m − 1 = (Q − D)/D the
-//! Hessian of a quadratic over a linear function. Its numerator C = Q − 2a, which is Q − D in the plane and nearly so on
-//! fine meshes, is convex: half the squared distance of the face from the similarity transformations. The composite Hessian
-//! omits only terms that vanish with ψ′ and with m − 1, and turning a face costs nothing. Where those do not vanish, the
-//! exact Hessian, or a part of the way to it, leads to a stationary point in far fewer iterations; it may be indefinite.
+//! Hessian of a quadratic over a linear function. Its numerator C = Q − 2a, which is Q − D in the plane and nearly so
+//! on fine meshes, is convex: half the squared distance of the face from the similarity transformations. The composite
+//! Hessian omits only terms that vanish with ψ′ and with m − 1, and turning a face costs nothing. Where those do not
+//! vanish, the exact Hessian, or a part of the way to it, leads to a stationary point in far fewer iterations; it may
+//! be indefinite.
 
 mod face;
 mod rest;
@@ -97,8 +98,8 @@ impl Sums {
 }
 
 impl AuthalicEnergy {
-    /// The energy of maps of `mesh` to `targets` (m,) on any common scale. Rest triangles flatter than `flattest` (height
-    /// over longest edge) count as that flat.
+    /// The energy of maps of `mesh` to `targets` (m,) on any common scale. Rest triangles flatter than `flattest`
+    /// (height over longest edge) count as that flat.
     pub(crate) fn new(mesh: &TriangleMesh, targets: Vec<f64>, codomain: Codomain, flattest: f64) -> Self {
         let cotangents = parallel::map(mesh.n_faces(), |face| {
             rest_cotangents(triangle(mesh.points(), mesh.faces()[face]), flattest)
@@ -222,8 +223,8 @@ impl AuthalicEnergy {
         })
     }
 
-    /// The Hessian of one face by the unknowns of its corners, positive semidefinite where `curvature` is 0. The damping,
-    /// in proportion to |ρ − 1|, is the weight of the triangle's graph Laplacian.
+    /// The Hessian of one face by the unknowns of its corners, positive semidefinite where `curvature` is 0. The
+    /// damping, in proportion to |ρ − 1|, is the weight of the triangle's graph Laplacian.
     pub(crate) fn element(
         &self,
         map: &[Vector3],

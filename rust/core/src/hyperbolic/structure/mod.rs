@@ -108,8 +108,8 @@ impl HyperbolicStructure {
         from_rows(self.positions.iter().map(|z| [z.re, z.im]).collect())
     }
 
-    /// The closed geodesics between the pants on the given surface, (B − 3) arrays (k, 3), the first point repeated at the
-    /// end.
+    /// The closed geodesics between the pants on the given surface, (B − 3) arrays (k, 3), the first point repeated at
+    /// the end.
     pub fn pants_curves(&self) -> Vec<Array2<f64>> {
         self.pants_curves.iter().map(|curve| self.in_space(curve)).collect()
     }

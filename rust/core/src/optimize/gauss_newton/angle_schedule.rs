@@ -4,11 +4,11 @@
 //! Areas are cheap to even out and angles are not: once λ is small, the shear of a map stays. So λ follows one of two
 //! paths down to the weight asked for, 0 or more, or is *held* at that weight from the outset:
 //!
-//! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts near
-//!   the minimum.
-//! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is stationary,
-//!   and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they are sheared.
-//!   A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
+//! - *balanced*: λ keeps the energy of angles at a multiple κ of E_A, smaller once areas are nearly even. For starts
+//!   near the minimum.
+//! - *staged*: λ is held at ten times, once, a tenth of, ... the energy of areas, each time until the map is
+//!   stationary, and balanced in the end where areas alone count. For long limbs, whose faces lock each other once they
+//!   are sheared. A stationary point forgets how it was reached: noise that a stage has amplified is gone at its end.
 
 /// κ, the angle energy times λ over E_A that a balanced λ aims at. Larger values spare angles and cost iterations.
 const BALANCE: f64 = 2.2;
@@ -25,7 +25,8 @@ const WITH_LANDMARKS: f64 = 0.3;
 /// Bounds of a balanced λ, which may also fall to the weight asked for.
 const BALANCED: [f64; 2] = [1e-6, 1.0];
 
-/// Lower bound of the factor by which a balanced λ falls in one iteration; after a step below [`SHORT`] it does not fall.
+/// Lower bound of the factor by which a balanced λ falls in one iteration; after a step below [`SHORT`] it does not
+/// fall.
 const FASTEST_FALL: f64 = 0.1;
 
 /// A step below this is short.
@@ -56,8 +57,8 @@ const TO_WEIGHT: Stages = Stages {
     least_slope: 1e-5,
 };
 
-/// On a balanced path with λ at the weight asked for, the descent ends when the slope promises less than this part of the
-/// energy.
+/// On a balanced path with λ at the weight asked for, the descent ends when the slope promises less than this part of
+/// the energy.
 const LEAST_SLOPE: f64 = 1e-3;
 
 /// Surfaces of fewer vertices, where iterations are cheap, are mapped as thoroughly as by stages instead.
@@ -100,7 +101,8 @@ pub(super) struct AngleSchedule {
     balance: [f64; 2],
     /// λ; NaN before the first iteration.
     weight: f64,
-    /// The stages; a balanced λ that has fallen to the weight asked for uses only their precision. `None` without stages.
+    /// The stages; a balanced λ that has fallen to the weight asked for uses only their precision. `None` without
+    /// stages.
     stages: Option<&'static Stages>,
     /// The stage and its iterations so far; `None` where λ is balanced.
     stage: Option<(usize, usize)>,

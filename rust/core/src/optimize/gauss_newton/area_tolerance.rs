@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The map of least shear whose areas are within a tolerance.
 //!
-//! The minimum of E_A + λ E_angle has less shear for larger λ, and more even areas for smaller λ. So λ falls step by step
-//! until the minimum is within the tolerance, or rises while it is, and is then raised as far as the tolerance allows. That
-//! last search uses the secant rule for the logarithms of λ and of the deviation √(E_A/A), which is close to a power of λ.
-//! It starts each descent from the minimum of a larger λ, because shear stays in a map.
+//! The minimum of E_A + λ E_angle has less shear for larger λ, and more even areas for smaller λ. So λ falls step by
+//! step until the minimum is within the tolerance, or rises while it is, and is then raised as far as the tolerance
+//! allows. That last search uses the secant rule for the logarithms of λ and of the deviation √(E_A/A), which is close
+//! to a power of λ. It starts each descent from the minimum of a larger λ, because shear stays in a map.
 
 use super::angle_schedule::AnglePath;
 use super::target_floors::{self, MappedSurface};
@@ -50,8 +50,8 @@ impl Stationary {
     }
 }
 
-/// A guarded descent through all floors of the targets, to the map of least shear within a tolerance where one is given;
-/// `problem` has the energy of the first floor, and is returned with that of the last.
+/// A guarded descent through all floors of the targets, to the map of least shear within a tolerance where one is
+/// given; `problem` has the energy of the first floor, and is returned with that of the last.
 pub(crate) fn descend(
     surface: &MappedSurface<'_>,
     problem: Problem,
@@ -67,8 +67,8 @@ pub(crate) fn descend(
     }
 }
 
-/// The map of least shear with √(E_A/A) ≤ `tolerance` that is reached from `start`; [`Status::Stalled`] where areas cannot
-/// be made that even. `problem` has the energy of the first floor, and is returned with that of the last.
+/// The map of least shear with √(E_A/A) ≤ `tolerance` that is reached from `start`; [`Status::Stalled`] where areas
+/// cannot be made that even. `problem` has the energy of the first floor, and is returned with that of the last.
 fn within_tolerance(
     surface: &MappedSurface<'_>,
     problem: Problem,

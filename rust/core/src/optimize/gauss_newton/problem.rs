@@ -30,8 +30,8 @@ pub(crate) struct GaussNewtonOptions {
     pub angle_weight: f64,
     /// The path on which λ falls.
     pub path: AnglePath,
-    /// Iterations after which a deviation below [`EVEN_ENOUGH`](super::descent) suffices; `usize::MAX` where a limit or a
-    /// tolerance was asked for.
+    /// Iterations after which a deviation below [`EVEN_ENOUGH`](super::descent) suffices; `usize::MAX` where a limit or
+    /// a tolerance was asked for.
     pub usual_iterations: usize,
     /// Iteration limit.
     pub most_iterations: usize,
@@ -48,8 +48,8 @@ const MOST_ITERATIONS: usize = 1000;
 const TOLERANCE: f64 = 2e-4;
 
 impl GaussNewtonOptions {
-    /// A guarded descent by what the caller asked for; after `usual_iterations` nearly even areas are enough for those who
-    /// asked for nothing else.
+    /// A guarded descent by what the caller asked for; after `usual_iterations` nearly even areas are enough for those
+    /// who asked for nothing else.
     pub(crate) fn guarded(
         angle_weight: f64,
         max_iterations: Option<usize>,

@@ -7,8 +7,8 @@ use crate::control::{Observer, Status};
 use crate::energy::authalic::Sums;
 use crate::energy::stretch::Profile;
 
-/// Area deviation below which a descent ends after the usual iterations: on surfaces of fewer than [`MANY`] vertices, on
-/// others, and after stages, which few surfaces need.
+/// Area deviation below which a descent ends after the usual iterations: on surfaces of fewer than [`MANY`] vertices,
+/// on others, and after stages, which few surfaces need.
 const EVEN_ENOUGH: [f64; 3] = [0.002, 0.005, 0.003];
 
 /// Area deviation below which a slow descent ends.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The linear system of one iteration: a damped or exact Hessian, its factor, the direction and the second-order correction.
+//! The linear system of one iteration: a damped or exact Hessian, its factor, the direction and the second-order
+//! correction.
 
 use super::problem::Problem;
 use crate::codomain::motion::{Frame, frames};
@@ -89,8 +90,8 @@ impl Linearized {
         Ok(Newton { frames: iterate.frames, direction, slope })
     }
 
-    /// The direction by the largest part of the exact Hessian that is positive definite, with its slope; `None` where no
-    /// part is.
+    /// The direction by the largest part of the exact Hessian that is positive definite, with its slope; `None` where
+    /// no part is.
     fn exact_direction(
         &mut self,
         problem: &Problem,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Gauss–Newton for surfaces with slivers: targets are raised to a floor that is lowered step by step.
 //!
-//! The energy of a face grows like 1/T, so a face with a millionth of the mean target rules the whole descent long before
-//! the others are in place. When the descent first raises every target to at least a hundredth of the mean, and then lowers
-//! that floor, slivers cost a few iterations each. Rest triangles are fattened too, so that cotangents stay moderate.
+//! The energy of a face grows like 1/T, so a face with a millionth of the mean target rules the whole descent long
+//! before the others are in place. When the descent first raises every target to at least a hundredth of the mean, and
+//! then lowers that floor, slivers cost a few iterations each. Rest triangles are fattened too, so that cotangents stay
+//! moderate.
 //!
 //! While a floor holds, the energies in the history are those for the raised targets.
 

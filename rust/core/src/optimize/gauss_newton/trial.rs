@@ -17,8 +17,8 @@ impl Trial {
     }
 }
 
-/// Factor that shortens a step whose slope promised `promised` and which changed the energy by `change`: to the minimum of
-/// the parabola through them, within limits.
+/// Factor that shortens a step whose slope promised `promised` and which changed the energy by `change`: to the minimum
+/// of the parabola through them, within limits.
 pub(super) fn shrinkage(change: f64, promised: f64) -> f64 {
     if change.is_finite() { (-0.5 * promised / (change - promised)).clamp(0.1, 0.6) } else { 0.5 }
 }

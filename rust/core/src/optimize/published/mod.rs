@@ -14,8 +14,8 @@ use crate::control::{Observer, Status};
 pub struct Stopping {
     /// Iteration limit; by default the paper's 50.
     pub max_iterations: usize,
-    /// The optimizer has converged when √(gᵀM⁻¹g) is below this. 10⁻⁸ is beyond the reach of 50 iterations, so that it stops
-    /// only runs that have nothing left to gain.
+    /// The optimizer has converged when √(gᵀM⁻¹g) is below this. 10⁻⁸ is beyond the reach of 50 iterations, so that it
+    /// stops only runs that have nothing left to gain.
     pub tolerance: f64,
 }
 

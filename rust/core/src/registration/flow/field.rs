@@ -3,9 +3,9 @@
 //!
 //! Its stream function ψ is a Gaussian process with a Matérn kernel φ(|x − y|) of order 5/2 on the sphere, and with
 //! b(x) b(y) φ(|x − y|) in the disk, where b = 1 − |x|² keeps ψ zero on the circle. The velocity is ∇ψ turned by a
-//! right angle, so it changes no area, and on the circle it runs along it. Both kernels have a term for rotations of the
-//! whole domain, which change no angle either: x · y on the sphere, b(x) b(y) in the disk. Given k velocities, the most
-//! probable field is a sum over the k points whose weights solve a positive definite system of 2k unknowns.
+//! right angle, so it changes no area, and on the circle it runs along it. Both kernels have a term for rotations of
+//! the whole domain, which change no angle either: x · y on the sphere, b(x) b(y) in the disk. Given k velocities, the
+//! most probable field is a sum over the k points whose weights solve a positive definite system of 2k unknowns.
 //!
 //! Cost: k³ for the weights, k for the velocity at a point.
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The elimination of one front: its panel becomes columns of the factor; its update is added to the parent.
 //!
-//! Small fronts use loops of our own, larger ones general dense kernels. The largest are cut into tiles of a fixed size,
-//! which several threads share and between which a run can be cancelled. The result of a tile does not depend on its
-//! thread.
+//! Small fronts use loops of our own, larger ones general dense kernels. The largest are cut into tiles of a fixed
+//! size, which several threads share and between which a run can be cancelled. The result of a tile does not depend on
+//! its thread.
 
 use super::kernels;
 use crate::control::Watch;

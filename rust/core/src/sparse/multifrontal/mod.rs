@@ -66,13 +66,14 @@ pub(crate) struct Analysis {
 }
 
 impl Analysis {
-    /// Orders and analyzes the matrices that faces assemble, `dofs[v]` (0 where it is held, 1 or 2) unknowns at vertex v.
+    /// Orders and analyzes the matrices that faces assemble, `dofs[v]` (0 where it is held, 1 or 2) unknowns at vertex
+    /// v.
     ///
     /// The unknowns are numbered by ascending vertex.
     ///
     /// # Errors
-    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large for
-    /// 32-bit indices.
+    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the mesh is too large
+    /// for 32-bit indices.
     pub(crate) fn new(
         n_vertices: usize,
         faces: &[[Vertex; 3]],
@@ -172,9 +173,9 @@ impl<T: Scalar> Factor<T> {
         Self { values: vec![T::ZERO; symbolic.fronts.factor_len()], scratch: Vec::new() }
     }
 
-    /// Factors the sum of the faces' matrices: `element(face)` is symmetric, two rows for each corner of the face in its
-    /// order, of which a corner with one unknown uses the first and one that is held none. It is called once for each
-    /// face that has unknowns, from any thread.
+    /// Factors the sum of the faces' matrices: `element(face)` is symmetric, two rows for each corner of the face in
+    /// its order, of which a corner with one unknown uses the first and one that is held none. It is called once for
+    /// each face that has unknowns, from any thread.
     ///
     /// # Errors
     /// [`Failure::NotPositiveDefinite`] to the precision T, [`Failure::Cancelled`] by the watch; the factor is unusable
@@ -200,7 +201,8 @@ impl<T: Scalar> Factor<T> {
         numeric::factorize(&symbolic.fronts, &mut self.values, assemble, &mut self.scratch, watch)
     }
 
-    /// Solves A x = b in place for the columns of `rhs`, each in the order of the unknowns and stored one after another.
+    /// Solves A x = b in place for the columns of `rhs`, each in the order of the unknowns and stored one after
+    /// another.
     pub(crate) fn solve(&self, analysis: &Analysis, rhs: &mut [f64]) {
         self.solve_by(&analysis.symbolic, rhs);
     }

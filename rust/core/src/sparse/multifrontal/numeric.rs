@@ -15,8 +15,8 @@ use crate::sparse::faer::Scalar;
 /// Multiplications between two questions to the watch.
 const LOOK: f64 = 1e6;
 
-/// Writes the factor of the sum of all elements; `assemble` adds one element to its front. `scratch` keeps the memory of
-/// the updates for the next factorization.
+/// Writes the factor of the sum of all elements; `assemble` adds one element to its front. `scratch` keeps the memory
+/// of the updates for the next factorization.
 pub(super) fn factorize<T: Scalar>(
     fronts: &Fronts,
     factor: &mut [T],
@@ -56,8 +56,8 @@ impl<T: Scalar> Place<'_, T> {
     }
 }
 
-/// The updates that wait for their parents, on two stacks: a front takes the updates of its children off one stack and puts
-/// its own on the other, by the parity of its depth in the tree.
+/// The updates that wait for their parents, on two stacks: a front takes the updates of its children off one stack and
+/// puts its own on the other, by the parity of its depth in the tree.
 #[derive(Debug, Clone)]
 pub(super) struct Updates<T> {
     stacks: [Stack<T>; 2],

@@ -74,7 +74,9 @@ fn counts_must_agree() {
     let error = check([&whole, &whole], &[arc.clone(), arc.clone(), arc.clone()], &[arc]).unwrap_err();
     assert!(error.to_string().contains("3 on the source and 1 on the target"), "{error}");
     assert!(error.to_string().contains("2 curves (1, 2)"), "{error}");
-    assert!(check([&whole, &whole], &[], &[]).unwrap_err().to_string().contains("or register by landmark points"));
+    assert!(
+        check([&whole, &whole], &[], &[]).unwrap_err().to_string().contains("or register by landmark points")
+    );
     assert!(check([&open, &open], &[], &[]).unwrap().is_empty());
     let error = check([&open, &whole], &[], &[]).unwrap_err();
     assert_eq!(error, CurveError::LoopCounts { source_count: 1, target_count: 0 }.into());

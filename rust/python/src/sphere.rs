@@ -26,21 +26,22 @@ pub struct SphereMap {
     /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
     #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
-    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case. A converged map need not be
-    /// even, see `distortion.area_ratio_std`; on long limbs `refine` makes it even.
+    /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case. A converged map need
+    /// not be even, see `distortion.area_ratio_std`; on long limbs `refine` makes it even.
     #[pyo3(get)]
     status: &'static str,
     /// Iterations done, fixed-point steps included.
     #[pyo3(get)]
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds: one
-    /// record per iteration, the start first, and one of step 0 where a mended map replaced a folded one. gradient_norm is
-    /// √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's metric; 0 for a start that "gauss_newton" keeps. With
+    /// Structured array with the fields iteration, authalic_energy (of unsigned areas), step, gradient_norm, seconds:
+    /// one record per iteration, the start first, and one of step 0 where a mended map replaced a folded one.
+    /// gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's metric; 0 for a start that
+    /// "gauss_newton" keeps. With
     /// `refine`, the records of all descents, even discarded ones.
     #[pyo3(get)]
     history: Py<PyAny>,
-    /// The figures of the map. The image of a split face consists of those of its parts: its area is their sum, its angle
-    /// distortion their mean, and it is folded if one of them is.
+    /// The figures of the map. The image of a split face consists of those of its parts: its area is their sum, its
+    /// angle distortion their mean, and it is folded if one of them is.
     #[pyo3(get)]
     distortion: Py<Distortion>,
     /// The split faces, with `refine`; else None.
@@ -137,25 +138,25 @@ impl SphereMap {
     /// Parameters
     /// ----------
     /// kind : {"lambert", "octahedral"}
-    ///     "lambert": Lambert's cylindrical equal-area projection (1772), (λ, z) of longitude λ and height z. About 2π wide,
-    ///     2 high; faces on the seam extend beyond the right side, and each pole becomes a line. "octahedral": the equal-area
-    ///     octahedral map (Clarberg 2008), r (1 − 2φ/π, 2φ/π) with r = √(1 − |z|) in each octant. A square of side √(4π)
-    ///     around the origin, with the pole in its middle and the opposite pole in its corners; the half turn about the middle
-    ///     of a side glues the side to itself.
+    ///     "lambert": Lambert's cylindrical equal-area projection (1772), (λ, z) of longitude λ and height z. About 2π
+    ///     wide, 2 high; faces on the seam extend beyond the right side, and each pole becomes a line. "octahedral":
+    ///     the equal-area octahedral map (Clarberg 2008), r (1 − 2φ/π, 2φ/π) with r = √(1 − |z|) in each octant. A
+    ///     square of side √(4π) around the origin, with the pole in its middle and the opposite pole in its corners;
+    ///     the half turn about the middle of a side glues the side to itself.
     /// pole : {"x", "y", "z"} or (3,) real array
     ///     The direction, in the coordinates of `positions`, of the top or the middle of the layout. Default "z".
     /// seam : float or (3,) real array
-    ///     The left side of a Lambert layout, or the upper side of the square: a direction, whose component perpendicular to
-    ///     the pole counts, or an angle about the pole in radians, counter-clockwise seen from outside above the pole. Angles
-    ///     begin at +y, for poles within 45° of ±y at −z. Default 0.
+    ///     The left side of a Lambert layout, or the upper side of the square: a direction, whose component
+    ///     perpendicular to the pole counts, or an angle about the pole in radians, counter-clockwise seen from outside
+    ///     above the pole. Angles begin at +y, for poles within 45° of ±y at −z. Default 0.
     /// polygons : (m,) integer array, optional
-    ///     The number of each face's polygon: faces with one number that meet at an edge are not cut apart, areas are those
-    ///     of polygons, and rows of quads stay rows. Default: each face is a polygon.
+    ///     The number of each face's polygon: faces with one number that meet at an edge are not cut apart, areas are
+    ///     those of polygons, and rows of quads stay rows. Default: each face is a polygon.
     /// density : (m,) real array, optional
     ///     Positive target measure of each face, on any scale. Default: the measure of the map.
     /// candidates : (k,) integer or (n,) bool array, optional
-    ///     The vertices that may be moved onto singular points: the two poles of "lambert", four points of the equator, at
-    ///     the middles of the sides, for "octahedral". Default: all.
+    ///     The vertices that may be moved onto singular points: the two poles of "lambert", four points of the equator,
+    ///     at the middles of the sides, for "octahedral". Default: all.
     /// precision : {"float64", "float32"}
     ///     The precision of the points, in which no face is folded; "float32" for programs with such UVs.
     /// progress : callable(fraction, message) -> bool, optional
@@ -173,8 +174,8 @@ impl SphereMap {
     /// ValueError
     ///     An option is out of its range.
     /// SolverError
-    ///     Faces would fold wherever the singular points are put, as on a tetrahedron; then `indices` has the first few faces
-    ///     and `count` their number. Or the call was cancelled before there was a layout without folds.
+    ///     Faces would fold wherever the singular points are put, as on a tetrahedron; then `indices` has the first few
+    ///     faces and `count` their number. Or the call was cancelled before there was a layout without folds.
     ///
     /// Examples
     /// --------
@@ -260,10 +261,11 @@ impl SphereMap {
 ///     stretch energy falls by no more than this, default 1e-6; -inf makes it take all iterations, even if the energy
 ///     rises, and return the last map instead of the best.
 /// refine : bool
-///     Split faces that keep areas uneven, as those of long limbs do, and continue the map until √(E_A/A) is below .002, or
-///     the tolerance given, in at most three rounds. `refinement` has the split points and the parts of faces. The parts
-///     never fold; the images of the vertices alone may, where a face is split. Nothing is split if that does not halve
-///     E_A, or if `max_iterations`, which applies to each descent, was reached. For "gauss_newton" only. Default False.
+///     Split faces that keep areas uneven, as those of long limbs do, and continue the map until √(E_A/A) is below
+///     .002, or the tolerance given, in at most three rounds. `refinement` has the split points and the parts of faces.
+///     The parts never fold; the images of the vertices alone may, where a face is split. Nothing is split if that does
+///     not halve E_A, or if `max_iterations`, which applies to each descent, was reached. For "gauss_newton" only.
+///     Default False.
 /// unfold : bool
 ///     Unfold the faces that the papers' methods fold. Default True.
 /// progress : callable(fraction, message) -> bool, optional

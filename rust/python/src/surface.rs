@@ -17,8 +17,8 @@ use crate::run::run;
 /// A triangle mesh that is checked once, and accepted in the place of vertices and faces.
 ///
 /// Maps, figures and cuts of a surface neither copy nor check its arrays again, and its areas and topology are computed
-/// once. The arrays are checked here; the first function that needs an oriented manifold checks that the surface is one.
-/// Surfaces never change, and threads may share them.
+/// once. The arrays are checked here; the first function that needs an oriented manifold checks that the surface is
+/// one. Surfaces never change, and threads may share them.
 ///
 /// Parameters
 /// ----------

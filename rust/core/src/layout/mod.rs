@@ -2,17 +2,17 @@
 //! Lays a map onto the sphere out in the plane, by a projection that keeps areas: [`SphereMap::layout`].
 //!
 //! 1. A layout has singular points: the poles of Lambert's cylinder ([`lambert`]), four points of the equator for the
-//!    octahedral square ([`octahedral`]). A face with one inside would fold over, so that first a vertex is moved onto each
-//!    of them by motions of the sphere that keep areas ([`singular_points`], [`twist`]).
+//!    octahedral square ([`octahedral`]). A face with one inside would fold over, so that first a vertex is moved onto
+//!    each of them by motions of the sphere that keep areas ([`singular_points`], [`twist`]).
 //! 2. The mesh is laid out face by face ([`development`]). The images of one point differ by isometries of the plane
 //!    ([`isometry`]), so that vertices can be moved in the plane without tearing the layout.
-//! 3. What straight edges do to areas, near poles and across creases, is evened out in the plane ([`relaxation`]), and what
-//!    they fold unfolded ([`unfolding`]).
-//! 4. Vertices on the seam become several points ([`seam`]). Exact predicates decide, on points in the precision asked for,
-//!    what is folded ([`certificate`]): there is a layout without folds or an error.
+//! 3. What straight edges do to areas, near poles and across creases, is evened out in the plane ([`relaxation`]), and
+//!    what they fold unfolded ([`unfolding`]).
+//! 4. Vertices on the seam become several points ([`seam`]). Exact predicates decide, on points in the precision asked
+//!    for, what is folded ([`certificate`]): there is a layout without folds or an error.
 //!
-//! Input: a map of a closed surface without folds. Cost: a few hundred passes over the faces near singular points and creases,
-//! an eighth of the map's time as a rule.
+//! Input: a map of a closed surface without folds. Cost: a few hundred passes over the faces near singular points and
+//! creases, an eighth of the map's time as a rule.
 
 mod area_system;
 mod attempts;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Our own method on the sphere: a start without folds and a guarded descent that never folds a face.
 //!
-//! On most surfaces the spherical conformal map and a few steps of the papers' fixed point lead near the minimum without
-//! folds. Where they fold, or nearly collapse long thin parts, the start is the [progressive](crate::embedding) embedding.
-//! From there the descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)).
+//! On most surfaces the spherical conformal map and a few steps of the papers' fixed point lead near the minimum
+//! without folds. Where they fold, or nearly collapse long thin parts, the start is the [progressive](crate::embedding)
+//! embedding. From there the descent goes on behind a barrier ([`gauss_newton`](crate::optimize::gauss_newton)).
 //!
 //! Cost: about six factorizations with one unknown per vertex, about twelve with two.
 
@@ -91,8 +91,8 @@ impl Run<'_> {
     /// An area-preserving map without folds.
     ///
     /// # Errors
-    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the run
-    /// before there was a map without folds.
+    /// [`NumericsError::NoEmbedding`] where every start folds, [`Error::CancelledEarly`] where the observer ended the
+    /// run before there was a map without folds.
     fn gauss_newton(
         &self,
         history: &mut History,

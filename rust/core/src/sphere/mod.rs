@@ -63,8 +63,8 @@ pub struct SphereMap {
 ///
 /// # Errors
 /// Input that is no sphere, and options out of range, are refused before any work.
-/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds in double precision; never with
-/// [`SphereMapOptions::unfold`] off.
+/// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds in double precision; never
+/// with [`SphereMapOptions::unfold`] off.
 ///
 /// ```
 /// use authalic::{Silent, SphereMapOptions, Surface, sphere_map};

@@ -38,8 +38,8 @@ const CENTERED: f64 = 1e-9;
 /// A face of the conformal map below this part of its target has collapsed beyond what a descent can mend.
 const COLLAPSED: f64 = 1e-9;
 
-/// The central projection of the surface is the start where its E_A is below this part of the conformal map's: the surface
-/// is nearly a sphere, whose vertices a conformal map moves for nothing.
+/// The central projection of the surface is the start where its E_A is below this part of the conformal map's: the
+/// surface is nearly a sphere, whose vertices a conformal map moves for nothing.
 const ROUND: f64 = 0.1;
 
 /// Upper bound of the cotangents of a rough map; its inverse is the lower bound.
@@ -47,8 +47,8 @@ const LARGEST_COTANGENT: f64 = 100.0;
 
 const MESSAGE: &str = "Start map";
 
-/// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or the progressive
-/// one where parts of it have collapsed; on a sphere the surface itself.
+/// A map without folds from which a descent can start: the conformal one, mended where a few faces fold, or the
+/// progressive one where parts of it have collapsed; on a sphere the surface itself.
 ///
 /// # Errors
 /// [`NumericsError::NoEmbedding`] where both fold in double precision, [`Error::CancelledEarly`] by the observer.
@@ -116,7 +116,8 @@ fn conformal(mesh: &TriangleMesh, weights: &[f64], watch: &Watch<'_>) -> Result<
     conformal_within(f64::INFINITY, mesh, weights, watch)
 }
 
-/// A nearly conformal map, centered, without folds except by rounding: cotangents are clamped to positive, moderate values.
+/// A nearly conformal map, centered, without folds except by rounding: cotangents are clamped to positive, moderate
+/// values.
 ///
 /// # Errors
 /// As [`conformal`], which is not to be expected, and [`Error::CancelledEarly`].

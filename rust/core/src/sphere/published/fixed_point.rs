@@ -13,8 +13,8 @@
 //! Three things differ from the paper. Its inversions mirror the map each time; here the chart changes instead, which
 //! keeps the orientation. Here E_S is taken with image and targets scaled to the sphere's area, so that a smaller image
 //! does not count as progress. The paper's median counts vertices, which on a mesh with more vertices on one hemisphere
-//! pushes area across the equator after every step; here it counts target area, which an area-preserving map does halve.
-//! On meshes of even density the two agree.
+//! pushes area across the equator after every step; here it counts target area, which an area-preserving map does
+//! halve. On meshes of even density the two agree.
 //!
 //! Cost of one iteration: one Cholesky analysis and factorization of about 0.6 n vertices.
 
@@ -37,8 +37,8 @@ const MESSAGE: &str = "Fixed-point iteration";
 pub(crate) struct FixedPointStopping {
     /// Iteration limit.
     pub max_iterations: usize,
-    /// ε: the iteration ends when E_S falls by no more than this; −∞ takes all iterations and returns the last map instead
-    /// of the best.
+    /// ε: the iteration ends when E_S falls by no more than this; −∞ takes all iterations and returns the last map
+    /// instead of the best.
     pub tolerance: f64,
 }
 

@@ -58,7 +58,8 @@ impl<'a> SphereObjective<'a> {
     /// Sets M = 2 I₃ ⊗ L_S(f) at f = `map`, made definite by a small shift.
     ///
     /// # Errors
-    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the weights are too far apart.
+    /// [`NumericsError::FactorizationFailed`](crate::NumericsError::FactorizationFailed) where the weights are too far
+    /// apart.
     pub(super) fn set_preconditioner(&mut self, map: &[Vector3], watch: &Watch<'_>) -> Result<(), Error> {
         let mut weights = self.energy.laplacian_weights(map);
         parallel::fill_with_old(&mut weights, |_, weight| 2.0 * weight);

@@ -12,7 +12,7 @@ from driver import call, check, click, picture, run, view
 from mathutils import Vector
 
 A, B = "Ball", "Egg"
-_REGISTRATION = (860, 800 - 579)  # the head of the closed panel
+_REGISTRATION = (860, 800 - 694)  # the head of the closed panel
 _CURVES = (860, 800 - 427)  # the head of the list of curves in the open one
 ROWS = (0.45, -0.05, -0.55)  # heights of the curves
 

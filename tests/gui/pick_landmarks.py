@@ -11,7 +11,7 @@ from bl_ext.user_default.authalic.overlay import points as overlay_points
 from driver import call, check, click, key, move, picture, pixel, run, send, view
 
 A, B = "Suzanne", "Her Sister"
-_REGISTRATION = (860, 800 - 579)  # the head of the closed panel
+_REGISTRATION = (860, 800 - 694)  # the head of the closed panel
 
 
 def scene() -> None:

@@ -4,7 +4,7 @@
 use std::marker::PhantomData;
 use std::time::Instant;
 
-use super::certificate::{Precision, folded, nearly_folded};
+use super::certificate::{Precision, nearly_folded};
 use super::chart::{Chart, Point};
 use super::development::{bring_back, develop};
 use super::options::LayoutOptions;
@@ -17,6 +17,7 @@ use super::sphere_faces::SphereFaces;
 use super::unfolding::unfold;
 use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status, Watch};
+use crate::distortion::folded_in_plane;
 use crate::error::{Elements, Error, NumericsError};
 use crate::mesh::corners::VertexCorners;
 use crate::mesh::{Vertex, index_array};
@@ -168,7 +169,7 @@ impl<'a, P: Projection> Run<'a, P> {
             self.straighten(&mut chart, &goal, &watch);
         }
         let split = self.split(&mut chart, goal.fixed);
-        let folded = folded(&split.faces, &split.points);
+        let folded = folded_in_plane(&split.faces, &split.points);
         if !folded.is_empty() {
             return if watch.goes_on() { Ok(Attempt::Folded(folded)) } else { Err(Error::CancelledEarly) };
         }
@@ -201,7 +202,7 @@ impl<'a, P: Projection> Run<'a, P> {
         let mut phase = Phase { whole: observer, from: 0.3, to: 1.0 };
         let mut status = even_out(chart, &self.polygons, goal, &mut phase);
         let mut split = self.split(chart, goal.fixed);
-        if !folded(&split.faces, &split.points).is_empty() {
+        if !folded_in_plane(&split.faces, &split.points).is_empty() {
             split = before;
             if status == Status::Converged {
                 status = Status::Stalled;

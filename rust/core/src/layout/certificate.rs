@@ -2,8 +2,6 @@
 //! Decides which faces are folded in the precision asked for.
 
 use super::chart::{Point, signed_area};
-use crate::distortion::folded_in_plane;
-use crate::mesh::Vertex;
 use crate::parallel;
 
 /// The precision of the points of a layout, in which no face is folded.
@@ -52,11 +50,6 @@ pub(super) fn nearly_folded(images: &[[Point; 3]], rounding: f64) -> Vec<bool> {
         let opens = signed_area([a, b, c]) > rounding * sides;
         !opens
     })
-}
-
-/// The folded faces, ascending, by exact predicates on points in the precision asked for.
-pub(super) fn folded(faces: &[[Vertex; 3]], points: &[Point]) -> Vec<usize> {
-    folded_in_plane(faces, points)
 }
 
 /// The longer side of the bounding box.

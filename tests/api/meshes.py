@@ -191,7 +191,7 @@ def rotation(seed):
 
 
 def split_in_four(mesh):
-    """Every face split in four at the midpoints of its edges."""
+    """Every face split in four at the midpoints of its edges; the vertices of the mesh come first."""
     vertices, faces = mesh
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     ends, middle = np.unique(edges, axis=0, return_inverse=True)

@@ -74,17 +74,6 @@ def identical(mesh, count):
     return Pair(mesh, mesh, landmarks, landmarks)
 
 
-def subdivided(mesh):
-    """Every face split in four; the vertices of the mesh come first."""
-    vertices, faces = mesh
-    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    ends, middle = np.unique(edges, axis=0, return_inverse=True)
-    (a, b, c), (ab, bc, ca) = faces.T, (len(vertices) + middle.reshape(-1, 3)).T
-    split = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    faces = np.concatenate([np.stack(corners, axis=1) for corners in split])
-    return meshes.Mesh(np.vstack([vertices, vertices[ends].mean(axis=1)]), faces)
-
-
 def caps(count=5):
     """Two round caps with other bumps, other noise and another grid; landmarks over each other."""
     source, target = meshes.bumpy_cap(), meshes.bumpy_cap(rings=17, around=41, noise=0.02, seed=5)

@@ -39,6 +39,11 @@ impl Vector3 {
         self.dot(self).sqrt()
     }
 
+    /// The vector of length 1 in the same direction; not finite where the length is 0.
+    pub fn normalized(self) -> Self {
+        self * (1.0 / self.norm())
+    }
+
     /// The distance to the point `other`.
     pub fn distance(self, other: Self) -> f64 {
         (self - other).norm()

@@ -71,7 +71,7 @@ impl Motion {
             Self::Plane => Vector3([x[0] + a, x[1] + b, 1.0]),
             Self::Sphere => {
                 let moved = x + (frame.axes[0] * a + frame.axes[1] * b);
-                moved * (1.0 / moved.norm())
+                moved.normalized()
             }
         }
     }

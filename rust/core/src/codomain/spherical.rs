@@ -11,5 +11,5 @@ pub(crate) fn onto_sphere(x: Vector3) -> Option<Vector3> {
         return Some(x);
     }
     let x = x * (1.0 / largest);
-    (largest > 0.0 && x.is_finite()).then(|| x * (1.0 / x.norm()))
+    (largest > 0.0 && x.is_finite()).then(|| x.normalized())
 }

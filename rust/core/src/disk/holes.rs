@@ -78,7 +78,7 @@ fn apex_of(corners: &[Vector3]) -> Vector3 {
     let mut directions = vec![Vector3::ZERO];
     directions.extend([0, 1, 2].map(Vector3::unit));
     if normal.norm() > 0.0 {
-        let unit = normal * (1.0 / normal.norm());
+        let unit = normal.normalized();
         directions.push(unit);
         directions.extend(edges(corners).take(1).map(|(from, to)| unit.cross(to - from)));
     }

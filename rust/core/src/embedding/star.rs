@@ -232,7 +232,7 @@ mod tests {
             Motion::Sphere => {
                 let angle = 1.2 * k as f64;
                 let x = Vector3([0.3 * angle.cos(), 0.5 * angle.sin(), 1.0]);
-                x * (1.0 / x.norm())
+                x.normalized()
             }
             Motion::Held | Motion::Side(_) | Motion::Plane => {
                 Vector3([0.2 + 0.3 * (1.2 * k as f64).cos(), 0.4 * (1.2 * k as f64).sin(), 1.0])

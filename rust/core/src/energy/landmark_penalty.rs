@@ -85,7 +85,7 @@ mod tests {
         let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
         let mesh = TriangleMesh::new(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]).unwrap();
         let energy = AuthalicEnergy::new(&mesh, vec![1.0; 4], Codomain::Sphere, 0.0);
-        let map: Vec<Vector3> = corners.iter().map(|&x| Vector3(x) * (1.0 / Vector3(x).norm())).collect();
+        let map: Vec<Vector3> = corners.iter().map(|&x| Vector3(x).normalized()).collect();
         let place = Vector3([0.6, 0.8, 0.0]);
         let penalty = LandmarkPenalty::new(&energy, [2, 0].map(Vertex).to_vec(), vec![map[2], place], 0.7);
         assert!((penalty.value(&map) - 0.7 * map[0].distance(place).powi(2)).abs() < 1e-15);

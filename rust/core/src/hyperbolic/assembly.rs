@@ -282,7 +282,7 @@ impl Assembly {
 fn interpolated(locations: &[Location], faces: &[[Vertex; 3]], on_sphere: &[Vector3]) -> Vec<Vector3> {
     parallel::map(locations.len(), |vertex| {
         let place = locations[vertex].point_on(on_sphere, faces);
-        place * (1.0 / place.norm())
+        place.normalized()
     })
 }
 

@@ -109,8 +109,7 @@ mod tests {
     use super::*;
 
     fn unit(x: f64, y: f64, z: f64) -> Vector3 {
-        let v = Vector3([x, y, z]);
-        v * (1.0 / v.norm())
+        Vector3([x, y, z]).normalized()
     }
 
     #[test]

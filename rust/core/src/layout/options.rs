@@ -93,7 +93,7 @@ impl LayoutOptions<'_> {
                 .filter(|seam| seam.norm() > LEAST_ANGLE)
                 .ok_or_else(|| no_direction("seam", given, "not parallel to the pole"))?,
         };
-        let first = toward_seam * (1.0 / toward_seam.norm());
+        let first = toward_seam.normalized();
         Ok([first, pole.cross(first), pole])
     }
 }

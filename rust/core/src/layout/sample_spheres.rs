@@ -12,7 +12,7 @@ pub(super) fn turned_ball(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
     let quarters = [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]];
     let mut points: Vec<Vector3> = (0..3)
         .flat_map(|axis| quarters.map(|[a, b]| Vector3::unit(axis) * a + Vector3::unit((axis + 1) % 3) * b))
-        .map(unit)
+        .map(Vector3::normalized)
         .collect();
     let mut faces = faces_of_icosahedron(&points);
     for _ in 0..level {
@@ -25,11 +25,11 @@ pub(super) fn turned_ball(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
 pub(super) fn small_triangles() -> impl Iterator<Item = [Vector3; 3]> {
     let bases = (0..3000).map(|k| {
         let t = f64::from(k);
-        unit(Vector3([(1.3 * t).sin(), (2.1 * t).cos(), (0.7 * t).sin()]))
+        Vector3([(1.3 * t).sin(), (2.1 * t).cos(), (0.7 * t).sin()]).normalized()
     });
     bases.filter(|base| base.0.iter().all(|x| x.abs() > 0.01)).map(|base| {
-        let across = unit(base.cross(Vector3([0.3, -0.2, 0.9])));
-        [across, base.cross(across), -across].map(|side| unit(base + side * 1e-4))
+        let across = base.cross(Vector3([0.3, -0.2, 0.9])).normalized();
+        [across, base.cross(across), -across].map(|side| (base + side * 1e-4).normalized())
     })
 }
 
@@ -52,7 +52,7 @@ fn split_in_four(points: &mut Vec<Vector3>, faces: &[[Vertex; 3]]) -> Vec<[Verte
     let mut middles: BTreeMap<[Vertex; 2], Vertex> = BTreeMap::new();
     let mut middle = |a: Vertex, b: Vertex| {
         *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            points.push(unit(points[a] + points[b]));
+            points.push((points[a] + points[b]).normalized());
             Vertex::new(points.len() - 1)
         })
     };
@@ -68,8 +68,4 @@ fn turned(Vector3([x, y, z]): Vector3) -> Vector3 {
     let ([sine, cosine], [s, c]) = ([0.4f64.sin(), 0.4f64.cos()], [1.1f64.sin(), 1.1f64.cos()]);
     let [y, z] = [cosine * y - sine * z, sine * y + cosine * z];
     Vector3([c * x - s * y, s * x + c * y, z])
-}
-
-fn unit(v: Vector3) -> Vector3 {
-    v * (1.0 / v.norm())
 }

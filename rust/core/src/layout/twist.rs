@@ -113,7 +113,7 @@ impl Twist {
 /// Half a turn about an axis perpendicular to a point.
 fn half_turn(point: Vector3) -> Motion {
     let least = (0..3).min_by(|&i, &j| point[i].abs().total_cmp(&point[j].abs())).unwrap_or(0);
-    let axis = unit(point.cross(Vector3::unit(least)));
+    let axis = point.cross(Vector3::unit(least)).normalized();
     Motion::Rotation([0, 1, 2].map(|i| axis * (2.0 * axis[i]) - Vector3::unit(i)))
 }
 
@@ -123,7 +123,7 @@ fn centers(start: Vector3, goal: Vector3) -> Vec<Vector3> {
     if middle.norm() < 1e-9 || across.norm() == 0.0 {
         return Vec::new();
     }
-    let (middle, across) = (unit(middle), unit(across));
+    let (middle, across) = (middle.normalized(), across.normalized());
     let center = |distance: f64, side: f64| middle * distance.cos() + across * (side * distance.sin());
     DISTANCES.iter().flat_map(|d| [-1.0, 1.0].map(|side| center(d / DEGREES, side))).collect()
 }
@@ -139,11 +139,7 @@ fn log_tan(distance: f64) -> f64 {
 
 fn turned(point: Vector3, axis: Vector3, angle: f64) -> Vector3 {
     let along = axis * point.dot(axis);
-    unit(along + (point - along) * angle.cos() + axis.cross(point) * angle.sin())
-}
-
-fn unit(v: Vector3) -> Vector3 {
-    v * (1.0 / v.norm())
+    (along + (point - along) * angle.cos() + axis.cross(point) * angle.sin()).normalized()
 }
 
 #[cfg(test)]
@@ -157,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_twist_keeps_areas_and_fixed_points() {
-        let (start, goal) = (unit(Vector3([1.0, 0.05, 0.08])), Vector3::unit(0));
+        let (start, goal) = (Vector3([1.0, 0.05, 0.08]).normalized(), Vector3::unit(0));
         let twist = Motion::twist(start, goal, &FIXED).unwrap();
         assert!(twist.image(start).distance(goal) < 1e-14);
         for point in FIXED {
@@ -177,8 +173,8 @@ mod tests {
 
     #[test]
     fn a_rotation_takes_its_start_to_its_goal() {
-        let start = unit(Vector3([0.3, -0.4, 0.5]));
-        for goal in [unit(Vector3([-1.0, 2.0, 0.1])), -start, start] {
+        let start = Vector3([0.3, -0.4, 0.5]).normalized();
+        for goal in [Vector3([-1.0, 2.0, 0.1]).normalized(), -start, start] {
             let rotation = Motion::rotation(start, goal);
             assert!(rotation.image(start).distance(goal) < 1e-14);
         }
@@ -186,7 +182,7 @@ mod tests {
 
     #[test]
     fn there_is_no_twist_where_a_fixed_point_is_in_the_way() {
-        let between = unit(Vector3([1.0, 1.0, 0.0]));
+        let between = Vector3([1.0, 1.0, 0.0]).normalized();
         assert!(Motion::twist(Vector3::unit(0), Vector3::unit(1), &[between]).is_none());
     }
 }

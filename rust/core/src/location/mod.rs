@@ -85,7 +85,7 @@ impl<'a> Locator<'a> {
     /// `x` lies in the plane z = 1, or, for a map onto the sphere, anywhere but in the origin: its direction
     /// counts. At a vertex the coordinates are exactly 1 and 0.
     pub(crate) fn locate(&self, x: Vector3) -> Location {
-        let on_map = if self.in_plane { x } else { x * (1.0 / x.norm()) };
+        let on_map = if self.in_plane { x } else { x.normalized() };
         let mut containing: Option<(Face, [f64; 3])> = None;
         self.tree.visit(on_map, |face| {
             let Some(weights) = self.weights(face, x) else { return false };
@@ -157,7 +157,7 @@ impl<'a> Locator<'a> {
 
 /// A box that contains a flat triangle and its central projection onto the unit sphere.
 fn spherical_bounds(corners: [Vector3; 3]) -> Bounds {
-    let [a, b, c] = corners.map(|x| x * (1.0 / x.norm()));
+    let [a, b, c] = corners.map(|x| x.normalized());
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     // how far q = Σ λ_i x_i moves out to the sphere: |q|² = 1 − Σ λ_i λ_j |x_i − x_j|², and Σ λ_i λ_j ≤ 1/3
     let height = 1.0 - (1.0 - longest * longest / 3.0).max(0.0).sqrt();

@@ -15,12 +15,8 @@ pub(crate) fn number(i: usize) -> f64 {
     (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-fn unit(x: Vector3) -> Vector3 {
-    x * (1.0 / x.norm())
-}
-
 fn random_direction(i: usize) -> Vector3 {
-    unit(Vector3([number(3 * i), number(3 * i + 1), number(3 * i + 2)]))
+    Vector3([number(3 * i), number(3 * i + 1), number(3 * i + 2)]).normalized()
 }
 
 /// The octahedron, each face halved along all edges some times, on the sphere.
@@ -34,7 +30,7 @@ pub(crate) fn octasphere(level: usize) -> Map {
         let mut middles = HashMap::new();
         let mut middle = |a: Vertex, b: Vertex| {
             *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                points.push(unit(points[a] + points[b]));
+                points.push((points[a] + points[b]).normalized());
                 Vertex::new(points.len() - 1)
             })
         };
@@ -49,7 +45,10 @@ pub(crate) fn octasphere(level: usize) -> Map {
 
 fn tetrahedron() -> Map {
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
-    (corners.map(Vector3).map(unit).to_vec(), faces_of_indices(&[[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]))
+    (
+        corners.map(|x| Vector3(x).normalized()).to_vec(),
+        faces_of_indices(&[[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]),
+    )
 }
 
 /// Two poles and slivers from each to the equator, a quarter of the sphere long.
@@ -89,7 +88,7 @@ pub(crate) fn rings(n: u32) -> Map {
 fn spheres() -> Vec<Map> {
     let (points, faces) = octasphere(3);
     // most of the sphere's vertices drawn to one side: x ↦ the direction of x + 0.95 e
-    let crowded = points.into_iter().map(|x| unit(x + Vector3([0.0, 0.57, 0.76]))).collect();
+    let crowded = points.into_iter().map(|x| (x + Vector3([0.0, 0.57, 0.76])).normalized()).collect();
     vec![
         octasphere(0),
         octasphere(1),
@@ -158,7 +157,7 @@ fn every_direction_is_found_where_exact_arithmetic_puts_it() {
             let location = locator.locate(x);
             assert_eq!(Some(&location.triangle), containing(&map, x).first());
             assert!(is_barycentric(location));
-            assert!(unit(place(&map, location)).distance(unit(x)) < 1e-14);
+            assert!(place(&map, location).normalized().distance(x.normalized()) < 1e-14);
         }
     }
 }

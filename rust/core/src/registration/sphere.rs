@@ -163,7 +163,7 @@ fn turned(
     let rotation = best_rotation(&ours, &theirs, &weights);
     let turned = parallel::map(f0.len(), |vertex| {
         let turned = rotate(rotation, f0[vertex]);
-        turned * (1.0 / turned.norm())
+        turned.normalized()
     });
     if folded_on_sphere(source.faces(), &turned).is_empty() { turned } else { f0 }
 }

@@ -18,7 +18,7 @@ pub(super) fn aligned(mesh: &TriangleMesh, map: SpatialMap, weights: &[f64]) -> 
     let rotation = best_rotation(&map, &centered, weights);
     let turned = parallel::map(map.len(), |vertex| {
         let turned = rotate(rotation, map[vertex]);
-        turned * (1.0 / turned.norm())
+        turned.normalized()
     });
     let folds = |map: &SpatialMap| folded_on_sphere(mesh.faces(), map).len();
     if folds(&turned) > folds(&map) { map } else { turned }

@@ -269,7 +269,7 @@ mod tests {
             let mut middle = |points: &mut Vec<Vector3>, a: u32, b: u32| {
                 *middle_of.entry([a.min(b), a.max(b)]).or_insert_with(|| {
                     let sum = points[a as usize] + points[b as usize];
-                    points.push(sum * (1.0 / sum.norm()));
+                    points.push(sum.normalized());
                     points.len() as u32 - 1
                 })
             };

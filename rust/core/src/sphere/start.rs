@@ -97,7 +97,7 @@ fn radial(mesh: &TriangleMesh, weights: &[f64]) -> Option<SpatialMap> {
     if !parallel::all(mesh.n_vertices(), |v| offset(v).norm() > 1e-6) {
         return None;
     }
-    let map = parallel::map(mesh.n_vertices(), |v| offset(v) * (1.0 / offset(v).norm()));
+    let map = parallel::map(mesh.n_vertices(), |v| offset(v).normalized());
     folded_on_sphere(mesh.faces(), &map).is_empty().then_some(map)
 }
 
@@ -152,12 +152,12 @@ fn upright(map: SpatialMap, removed: [Vertex; 3]) -> SpatialMap {
     let [a, b, c] = triangle(&map, removed);
     let face = a + (b + c);
     // a half turn about the axis between the face and the pole
-    let axis = face * (1.0 / face.norm()) + Vector3([0.0, 0.0, -1.0]);
+    let axis = face.normalized() + Vector3([0.0, 0.0, -1.0]);
     let length = axis.norm();
     let axis = if length > 1e-6 { axis * (1.0 / length) } else { Vector3([1.0, 0.0, 0.0]) };
     parallel::map(map.len(), |v| {
         let turned = axis * (2.0 * axis.dot(map[v])) - map[v];
-        turned * (1.0 / turned.norm())
+        turned.normalized()
     })
 }
 
@@ -251,7 +251,7 @@ fn centered(mut map: SpatialMap, weights: &[f64]) -> SpatialMap {
 fn boosted(x: Vector3, a: Vector3) -> Vector3 {
     let offset = x - a;
     let moved = offset * ((1.0 - a.dot(a)) / offset.dot(offset)) - a;
-    moved * (1.0 / moved.norm())
+    moved.normalized()
 }
 
 /// Cramer's rule; `None` where the three rows lie in a plane.

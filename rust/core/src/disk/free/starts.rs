@@ -130,7 +130,7 @@ fn plan_view(energy: &Energy<'_>) -> Option<PlanarMap> {
     let mut x: Vector3 = Vector3::ZERO;
     x[axis] = 1.0;
     let x = normal.cross(x).cross(normal);
-    let x = x * (1.0 / x.norm());
+    let x = x.normalized();
     let y = normal.cross(x);
     Some(of_area_one(energy, mesh.points().iter().map(|&p| [p.dot(x), p.dot(y)]).collect()))
 }

@@ -14,7 +14,7 @@ fn closed() -> (TriangleMesh, Vec<Motion>, Vec<Vector3>) {
     let corners = [[1., 1., 1.], [1.2, -1., -1.], [-1., 0.8, -1.], [-1., -1., 1.1]];
     let mesh = TriangleMesh::new(&corners, &FACES).unwrap();
     let image = [[0.6, 0.7, 0.9], [0.9, -1., -0.5], [-1., 1., -1.1], [-0.3, -1., 1.]];
-    let image = image.map(Vector3).map(|x| x * (1.0 / x.norm())).to_vec();
+    let image = image.map(Vector3).map(|x| x.normalized()).to_vec();
     (mesh, vec![Motion::Sphere; 4], image)
 }
 

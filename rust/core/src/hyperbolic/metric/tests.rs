@@ -20,7 +20,8 @@ fn icosphere(times: usize) -> Mesh {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let signs = [[-1.0, golden], [1.0, golden], [-1.0, -golden], [1.0, -golden]];
     let corner = |axis: usize, [p, q]: [f64; 2]| Vector3::from_fn(|k| [p, q, 0.0][(k + axis) % 3]);
-    let points: Vec<Vector3> = (0..3).flat_map(|axis| signs.map(|sign| unit(corner(axis, sign)))).collect();
+    let points: Vec<Vector3> =
+        (0..3).flat_map(|axis| signs.map(|sign| corner(axis, sign).normalized())).collect();
     let edge = (0..12).map(|v| points[0].distance(points[v])).filter(|&d| d > 0.0).fold(4.0, f64::min);
     let mut faces = Vec::new();
     for i in 0..12_u32 {
@@ -34,15 +35,11 @@ fn icosphere(times: usize) -> Mesh {
     (0..times).fold(Mesh { points, faces: faces_of_indices(&faces) }, |mesh, _| split(mesh))
 }
 
-fn unit(a: Vector3) -> Vector3 {
-    a * (1.0 / a.norm())
-}
-
 fn split(Mesh { mut points, faces }: Mesh) -> Mesh {
     let mut midpoints = BTreeMap::new();
     let mut midpoint = |a: Vertex, b: Vertex| {
         *midpoints.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            points.push(unit(points[a] + points[b]));
+            points.push((points[a] + points[b]).normalized());
             Vertex::new(points.len() - 1)
         })
     };

@@ -48,7 +48,7 @@ fn icosphere(level: usize) -> (Vec<Vector3>, Vec<[Vertex; 3]>) {
 }
 
 fn unit(x: Vector3) -> Vector3 {
-    x * (1.0 / x.norm())
+    x.normalized()
 }
 
 /// Each face divided into four.

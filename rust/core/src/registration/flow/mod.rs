@@ -189,7 +189,7 @@ impl CanonicalDomain {
     /// A moved point back on the domain: on the sphere, or on the circle if it was on it before.
     fn settled(self, before: Vector3, moved: Vector3) -> Vector3 {
         match self {
-            Self::Sphere => moved * (1.0 / moved.norm()),
+            Self::Sphere => moved.normalized(),
             Self::Disk if (1.0 - before[0] * before[0] - before[1] * before[1]).abs() > ON_CIRCLE => {
                 Vector3([moved[0], moved[1], 1.0])
             }

@@ -113,7 +113,7 @@ impl Objective for SphereObjective<'_> {
         parallel::map(map.len(), |vertex| {
             let moved: Vector3 =
                 Vector3::from_fn(|axis| map[vertex][axis] + step * direction[3 * vertex + axis]);
-            moved * (1.0 / moved.norm())
+            moved.normalized()
         })
     }
 }

@@ -22,7 +22,7 @@ CORE_ROOMS = (
     {"energy", "embedding", "alignment"},
     {"optimize"},
     {"disk", "sphere", "untangle"},
-    {"layout"},
+    {"layout", "seams"},
     {"registration"},
     {"hyperbolic"},
     {"testing"},

@@ -133,6 +133,9 @@ mod optimize;
 mod options;
 mod parallel;
 mod registration;
+// the public function is still to come
+#[allow(dead_code, unused_imports)]
+mod seams;
 mod sparse;
 mod sphere;
 #[doc(hidden)]

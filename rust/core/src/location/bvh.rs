@@ -64,6 +64,33 @@ impl Bounds {
     }
 }
 
+/// A half-line, prepared for boxes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ray {
+    pub origin: Vector3,
+    pub direction: Vector3,
+    /// The reciprocals of the coordinates of the direction.
+    reciprocal: Vector3,
+}
+
+impl Ray {
+    pub(super) fn new(origin: Vector3, direction: Vector3) -> Self {
+        Self { origin, direction, reciprocal: direction.map(f64::recip) }
+    }
+
+    /// Whether the ray meets a box. Where it runs within a side, 0 · ∞ is NaN, which `min` and `max` pass over.
+    fn meets(&self, bounds: &Bounds) -> bool {
+        let (mut enters, mut leaves) = (0.0, f64::INFINITY);
+        for axis in 0..3 {
+            let low = (bounds.low[axis] - self.origin[axis]) * self.reciprocal[axis];
+            let high = (bounds.high[axis] - self.origin[axis]) * self.reciprocal[axis];
+            enters = f64::max(enters, low.min(high));
+            leaves = f64::min(leaves, low.max(high));
+        }
+        enters <= leaves
+    }
+}
+
 /// A leaf over `order[first..first + count]`; with `count` 0 a fork whose children are the next node and `first`.
 #[derive(Debug, Clone, Copy)]
 struct Node {
@@ -107,6 +134,26 @@ impl Tree {
                 next = waiting.pop();
             }
         }
+    }
+
+    /// Whether `is_hit` holds for an element whose leaf's box meets the ray.
+    pub(super) fn any_along(&self, ray: &Ray, is_hit: impl Fn(Face) -> bool) -> bool {
+        let mut waiting = Stack::default();
+        let mut next = Some(0);
+        while let Some(index) = next {
+            let node = &self.nodes[index];
+            if !ray.meets(&node.bounds) {
+                next = waiting.pop();
+            } else if node.count == 0 {
+                waiting.push(node.first);
+                next = Some(index + 1);
+            } else if self.elements(node).iter().any(|&element| is_hit(element)) {
+                return true;
+            } else {
+                next = waiting.pop();
+            }
+        }
+        false
     }
 
     /// The element of the least `squared_distance`, which must not be less than that of its box; the first of equals,

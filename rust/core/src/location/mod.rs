@@ -11,6 +11,8 @@
 //! Cost: O(m log² m) for the tree, O(log m) for a point.
 
 mod bvh;
+mod nearest;
+mod rays;
 
 use robust::{Coord3D, orient3d};
 
@@ -20,6 +22,8 @@ use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 use crate::vector::Vector3;
 use bvh::{Bounds, Tree};
+pub(crate) use nearest::NearestPoint;
+pub(crate) use rays::Obstacles;
 
 /// Points located between two checks for cancellation.
 const BETWEEN_CHECKS: usize = 64;

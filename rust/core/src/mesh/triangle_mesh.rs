@@ -7,7 +7,7 @@ use super::topology::Topology;
 use super::{Corner, Face, Vertex, geometry, validate};
 use crate::error::{Elements, Error, MeshError};
 use crate::parallel;
-use crate::vector::Vector3;
+use crate::vector::{Vector3, coordinates};
 
 /// A validated triangle mesh: an oriented manifold surface without degenerate faces.
 ///
@@ -58,10 +58,25 @@ impl TriangleMesh {
         Self::of_checked(vertices, faces)
     }
 
+    /// [`Self::new`] of points that keep their coordinates, which must be of the order of 1.
+    pub(crate) fn at_given_points(points: Vec<Vector3>, faces: Vec<[Vertex; 3]>) -> Result<Self, Error> {
+        let vertices = coordinates(points.iter().copied());
+        validate::arrays(&vertices, &faces)?;
+        Self::of_normalized(&vertices, (points, 1.0), faces)
+    }
+
     /// [`Self::new`] of arrays that have passed [`validate::arrays`].
-    pub(super) fn of_checked(vertices: &[[f64; 3]], mut faces: Vec<[Vertex; 3]>) -> Result<Self, Error> {
+    pub(super) fn of_checked(vertices: &[[f64; 3]], faces: Vec<[Vertex; 3]>) -> Result<Self, Error> {
+        Self::of_normalized(vertices, geometry::normalized(vertices), faces)
+    }
+
+    /// [`Self::of_checked`] given the points that `vertices` become with their scale.
+    fn of_normalized(
+        vertices: &[[f64; 3]],
+        (points, scale): (Vec<Vector3>, f64),
+        mut faces: Vec<[Vertex; 3]>,
+    ) -> Result<Self, Error> {
         // 1. Each face by itself.
-        let (points, scale) = geometry::normalized(vertices);
         let table = EdgeTable::new(points.len(), &faces);
         validate::no_duplicates(&faces, &table)?;
         let areas = validate::positive_areas(vertices, &points, scale, &faces)?;
@@ -159,6 +174,25 @@ impl TriangleMesh {
         parallel::map(self.n_vertices(), |vertex| {
             self.vertex_corners(Vertex::new(vertex)).iter().map(|&corner| measure[corner.face()] / 3.0).sum()
         })
+    }
+
+    /// The corner across each edge; across an inner edge the lower of the two.
+    pub(crate) fn edge_corners(&self) -> impl Iterator<Item = Corner> {
+        Corner::all(self.n_faces())
+            .filter(|&corner| self.opposite(corner).is_none_or(|across| corner < across))
+    }
+
+    /// The length of the edge opposite to a corner.
+    pub(crate) fn edge_length(&self, corner: Corner) -> f64 {
+        let [a, b] = corner.half_edge(&self.faces);
+        self.points[a].distance(self.points[b])
+    }
+
+    /// The median of the lengths of the edges.
+    pub(crate) fn median_edge_length(&self) -> f64 {
+        let mut lengths: Vec<f64> = self.edge_corners().map(|corner| self.edge_length(corner)).collect();
+        let middle = lengths.len() / 2;
+        *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
     /// The corners at a vertex, in ascending order.

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Decimation by quadric error metrics (Garland & Heckbert 1997, *Surface simplification using quadric error metrics*)
+//! with half-edge collapses: a vertex v moves onto a neighbor w, and the two faces between them vanish, so that the
+//! vertices left are vertices of the mesh.
+//!
+//! - The quadric of a vertex sums the squared distances from the planes of its faces, weighed by area. Planes through the
+//!   edges and normal to the faces keep the boundary in place and, with a small weight, faces of flat regions well shaped.
+//! - The cost of a collapse is the quadric of both vertices at w over the quality of the worst face that it makes.
+//! - A collapse keeps the topology where v and w have exactly two common neighbors and both of these have more than three
+//!   neighbors (link condition). With an apex over each boundary loop the same condition keeps loops apart; a boundary
+//!   vertex collapses only along its loop.
+//! - Vertices on a mirror plane collapse only along the curve in it, and no other edge may come to lie in the plane.
+//!
+//! A queue holds all vertices by their last known costs. Most costs only rise, so the cost of a vertex whose star has
+//! changed is computed again when it comes to the front. Costs that differ by rounding are equal, and the vertex of the
+//! lower index goes first.
+//!
+//! Cost: O(n log n), with the costs of about three vertices computed per collapse.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::connectivity::Connectivity;
+use super::quadric::Quadric;
+use crate::control::Watch;
+use crate::mesh::geometry::{area_vector, triangle};
+use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
+use crate::vector::Vector3;
+
+/// Weight of the planes that keep the boundary in place, against those of the faces.
+const BOUNDARY_WEIGHT: f64 = 4.0;
+
+/// Weight of the planes normal to faces through inner edges.
+const SHAPE_WEIGHT: f64 = 2e-3;
+
+/// The quality of faces, 4√3·area/Σ edge², above which better shapes do not lower the cost.
+const GOOD_QUALITY: f64 = 0.5;
+
+/// The quality below which a face is a sliver, which no collapse makes.
+const SLIVER: f64 = 0.02;
+
+/// The cosine of the largest angle, 75°, by which a collapse turns a face.
+const LEAST_COSINE: f64 = 0.258_819_045_102_520_76;
+
+/// Bits of the mantissa of a cost that are lost to rounding.
+const ROUNDED_BITS: u32 = 20;
+
+/// Steps between two checks for cancellation.
+const BETWEEN_CHECKS: usize = 1024;
+
+/// A mesh with some of the vertices of another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Decimated {
+    /// The vertices that are left, ascending.
+    pub vertices: Vec<Vertex>,
+    /// The faces; their vertices are positions in `vertices`.
+    pub faces: Vec<[Vertex; 3]>,
+}
+
+/// Decimates a mesh until the vertices left count `target`, or until nothing can collapse; `None` if cancelled.
+///
+/// Where the mesh is half of a symmetric one, `on_plane` (n,) says which vertices lie on the mirror plane. All of these
+/// lie on the boundary and count once, other vertices twice.
+pub(super) fn decimate(
+    mesh: &TriangleMesh,
+    on_plane: Option<&[bool]>,
+    target: usize,
+    watch: &Watch<'_>,
+) -> Option<Decimated> {
+    let count = |vertex: Vertex| if on_plane.is_some_and(|on_plane| !on_plane[vertex]) { 2 } else { 1 };
+    let mut left: usize = Vertex::all(mesh.n_vertices()).map(count).sum();
+    let mut decimation = Decimation::new(mesh, on_plane);
+    let mut queue: BinaryHeap<_> =
+        Vertex::all(mesh.n_vertices()).map(|vertex| Reverse((0, vertex))).collect();
+    let mut steps = 0;
+    while left > target
+        && let Some(Reverse((_, vertex))) = queue.pop()
+    {
+        // 1. The cost of today
+        if decimation.is_outdated(vertex) {
+            let key = decimation.evaluate(vertex);
+            queue.extend(key.map(|key| Reverse((key, vertex))));
+        // 2. The collapse; its neighbors that could not collapse may do so now
+        } else {
+            decimation.collapse(vertex);
+            queue.extend(decimation.freed.drain(..).map(|vertex| Reverse((0, vertex))));
+            left -= count(vertex);
+        }
+        steps += 1;
+        if steps % BETWEEN_CHECKS == 0 && !watch.goes_on() {
+            return None;
+        }
+    }
+    Some(decimation.into_rest())
+}
+
+/// What the queue knows of a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Plan {
+    /// The star has changed since the cost was computed.
+    Outdated,
+    /// It moves onto the vertex at the next corner of this one.
+    Collapse(Corner),
+    /// It cannot collapse and is not in the queue.
+    Stuck,
+    /// It has collapsed.
+    Gone,
+}
+
+struct Decimation<'a> {
+    points: &'a [Vector3],
+    on_plane: Option<&'a [bool]>,
+    connectivity: Connectivity,
+    quadrics: Vec<Quadric>,
+    plans: Vec<Plan>,
+    /// Vertices that were stuck until their star changed.
+    freed: Vec<Vertex>,
+    ring: Ring,
+    /// For each vertex the last vertex of whose ring it was known to be.
+    in_ring_of: Vec<Option<Vertex>>,
+}
+
+impl<'a> Decimation<'a> {
+    fn new(mesh: &'a TriangleMesh, on_plane: Option<&'a [bool]>) -> Self {
+        let connectivity = Connectivity::new(mesh);
+        let in_ring_of = vec![None; connectivity.n_vertices()];
+        Self {
+            points: mesh.points(),
+            on_plane,
+            connectivity,
+            quadrics: quadrics(mesh, on_plane),
+            plans: vec![Plan::Outdated; mesh.n_vertices()],
+            freed: Vec::new(),
+            ring: Ring::default(),
+            in_ring_of,
+        }
+    }
+
+    fn is_on_plane(&self, vertex: Vertex) -> bool {
+        self.on_plane.is_some_and(|on_plane| !self.connectivity.is_apex(vertex) && on_plane[vertex])
+    }
+
+    /// Whether the cost of a vertex must be computed again: its star has changed, or a vertex beside the edge to collapse
+    /// has lost neighbors.
+    fn is_outdated(&self, vertex: Vertex) -> bool {
+        match self.plans[vertex] {
+            Plan::Collapse(corner) => !self.leaves_neighbors(corner),
+            _ => true,
+        }
+    }
+
+    fn leaves_neighbors(&self, corner: Corner) -> bool {
+        self.connectivity.beside(corner).into_iter().all(|vertex| self.connectivity.degree(vertex) > 3)
+    }
+
+    /// Plans the cheapest collapse of a vertex; returns its rounded cost, `None` if it cannot collapse.
+    fn evaluate(&mut self, vertex: Vertex) -> Option<u64> {
+        self.ring.gather(vertex, &self.connectivity, self.points);
+        for &neighbor in &self.ring.vertices {
+            self.in_ring_of[neighbor] = Some(vertex);
+        }
+        let mut best: Option<(u64, Vertex, Corner)> = None;
+        for k in 0..self.ring.vertices.len() {
+            let (onto, corner) = (self.ring.vertices[k], self.ring.corners[k]);
+            if !self.keeps_curves(vertex, k) {
+                continue;
+            }
+            let error = (self.quadrics[vertex].at(self.points[onto])
+                + self.quadrics[onto].at(self.points[onto]))
+            .max(0.0);
+            let is_worse =
+                |cost: f64| best.is_some_and(|(least, first, _)| (least, first) < (rounded(cost), onto));
+            if is_worse(error / GOOD_QUALITY) {
+                continue;
+            }
+            let Some(quality) = self.ring.quality_after(k) else { continue };
+            let cost = error / quality.min(GOOD_QUALITY);
+            if !is_worse(cost) && self.keeps_topology(vertex, corner) {
+                best = Some((rounded(cost), onto, corner));
+            }
+        }
+        self.plans[vertex] = best.map_or(Plan::Stuck, |(_, _, corner)| Plan::Collapse(corner));
+        best.map(|(key, _, _)| key)
+    }
+
+    /// Whether a collapse onto neighbor `k` of the ring keeps the boundary and the curve on the mirror plane.
+    fn keeps_curves(&self, vertex: Vertex, k: usize) -> bool {
+        let onto = self.ring.vertices[k];
+        let beside = self.ring.beside(k);
+        let is_apex = |vertex| self.connectivity.is_apex(vertex);
+        if is_apex(onto) || (self.ring.has_apex && !beside.into_iter().any(is_apex)) {
+            return false;
+        }
+        match (self.is_on_plane(vertex), self.is_on_plane(onto)) {
+            (_, false) => !self.is_on_plane(vertex),
+            (true, true) => true,
+            // a neighbor on the plane must be joined to `onto` already
+            (false, true) => {
+                let mut neighbors = self.ring.vertices.iter();
+                neighbors.all(|&v| v == onto || beside.contains(&v) || !self.is_on_plane(v))
+            }
+        }
+    }
+
+    /// The link condition for the collapse of a vertex, whose ring is marked, onto that at the next corner.
+    fn keeps_topology(&self, vertex: Vertex, corner: Corner) -> bool {
+        let onto = self.connectivity.vertex(corner.next());
+        let neighbors = self.connectivity.around(onto).map(|corner| self.connectivity.vertex(corner.next()));
+        let is_common = |neighbor: &Vertex| self.in_ring_of[*neighbor] == Some(vertex);
+        self.leaves_neighbors(corner) && neighbors.filter(is_common).count() == 2
+    }
+
+    /// Carries out the plan of a vertex.
+    fn collapse(&mut self, vertex: Vertex) {
+        let Plan::Collapse(corner) = self.plans[vertex] else { return };
+        let onto = self.connectivity.vertex(corner.next());
+        self.connectivity.collapse(corner);
+        let quadric = self.quadrics[vertex];
+        self.quadrics[onto] += quadric;
+        self.plans[vertex] = Plan::Gone;
+        let neighbors = self.connectivity.around(onto).map(|corner| self.connectivity.vertex(corner.next()));
+        for changed in neighbors.filter(|&v| !self.connectivity.is_apex(v)).chain([onto]) {
+            if self.plans[changed] == Plan::Stuck {
+                self.freed.push(changed);
+            }
+            self.plans[changed] = Plan::Outdated;
+        }
+    }
+
+    /// The vertices and faces that are left.
+    fn into_rest(self) -> Decimated {
+        let is_left = |vertex: &Vertex| self.plans[*vertex] != Plan::Gone;
+        let vertices: Vec<Vertex> = Vertex::all(self.points.len()).filter(is_left).collect();
+        let mut numbers = vec![Vertex::default(); self.points.len()];
+        for (number, &vertex) in Vertex::all(vertices.len()).zip(&vertices) {
+            numbers[vertex] = number;
+        }
+        let faces = self.connectivity.faces_left().map(|face| face.map(|vertex| numbers[vertex])).collect();
+        Decimated { vertices, faces }
+    }
+}
+
+/// A cost as a whole number that orders costs as they are, without the digits that rounding decides.
+fn rounded(cost: f64) -> u64 {
+    cost.to_bits() >> ROUNDED_BITS
+}
+
+/// The neighbors of a vertex, counterclockwise.
+#[derive(Debug, Default)]
+struct Ring {
+    /// The corners at the vertex whose next corners are the neighbors.
+    corners: Vec<Corner>,
+    vertices: Vec<Vertex>,
+    points: Vec<Vector3>,
+    /// Twice the area vector of the face from each neighbor to the next; `None` at an apex.
+    normals: Vec<Option<Vector3>>,
+    /// The quality of the worst face at the vertex.
+    quality: f64,
+    has_apex: bool,
+}
+
+impl Ring {
+    /// Collects the ring of a vertex.
+    fn gather(&mut self, vertex: Vertex, connectivity: &Connectivity, points: &[Vector3]) {
+        self.corners.clear();
+        self.vertices.clear();
+        self.points.clear();
+        self.normals.clear();
+        (self.quality, self.has_apex) = (1.0, false);
+        for corner in connectivity.around(vertex) {
+            let neighbor = connectivity.vertex(corner.next());
+            let is_apex = connectivity.is_apex(neighbor);
+            self.has_apex |= is_apex;
+            self.corners.push(corner);
+            self.vertices.push(neighbor);
+            self.points.push(if is_apex { Vector3::ZERO } else { points[neighbor] });
+        }
+        for k in 0..self.vertices.len() {
+            let next = if k + 1 == self.vertices.len() { 0 } else { k + 1 };
+            let is_virtual = [k, next].into_iter().any(|k| connectivity.is_apex(self.vertices[k]));
+            let (normal, quality) = shape(points[vertex], self.points[k], self.points[next]);
+            self.normals.push((!is_virtual).then_some(normal));
+            self.quality = if is_virtual { self.quality } else { self.quality.min(quality) };
+        }
+    }
+
+    /// The neighbors before and after one.
+    fn beside(&self, k: usize) -> [Vertex; 2] {
+        let n = self.vertices.len();
+        [self.vertices[if k == 0 { n - 1 } else { k - 1 }], self.vertices[if k + 1 == n { 0 } else { k + 1 }]]
+    }
+
+    /// The quality of the worst face after a collapse onto neighbor `k`; `None` if it turns a face too far or makes a
+    /// sliver.
+    fn quality_after(&self, k: usize) -> Option<f64> {
+        let n = self.vertices.len();
+        let (onto, least) = (self.points[k], SLIVER.min(self.quality));
+        let mut worst = 1.0;
+        for step in 1..n - 1 {
+            let from = if k + step < n { k + step } else { k + step - n };
+            let to = if from + 1 == n { 0 } else { from + 1 };
+            let Some(old) = self.normals[from] else { continue };
+            let (new, quality) = shape(onto, self.points[from], self.points[to]);
+            let cosine = old.dot(new);
+            let is_turned =
+                cosine <= 0.0 || cosine * cosine < LEAST_COSINE * LEAST_COSINE * old.dot(old) * new.dot(new);
+            if is_turned || quality < least {
+                return None;
+            }
+            worst = f64::min(worst, quality);
+        }
+        Some(worst)
+    }
+}
+
+/// The normal of a triangle, twice as long as its area, and its quality.
+fn shape(a: Vector3, b: Vector3, c: Vector3) -> (Vector3, f64) {
+    let (p, q, r) = (b - a, c - a, c - b);
+    let normal = p.cross(q);
+    let squares = p.dot(p) + q.dot(q) + r.dot(r);
+    (normal, 12f64.sqrt() * normal.norm() / squares)
+}
+
+/// The quadric of every vertex. Vertices on the mirror plane get those of the mirrored faces too, which are as far from
+/// points of the plane.
+fn quadrics(mesh: &TriangleMesh, on_plane: Option<&[bool]>) -> Vec<Quadric> {
+    let is_on_plane = |vertex: Vertex| on_plane.is_some_and(|on_plane| on_plane[vertex]);
+    let mut quadrics = vec![Quadric::default(); mesh.n_vertices()];
+    let mut add = |vertex: Vertex, quadric: Quadric| {
+        quadrics[vertex] += quadric;
+        if is_on_plane(vertex) {
+            quadrics[vertex] += quadric;
+        }
+    };
+    for (number, &face) in Face::all(mesh.n_faces()).zip(mesh.faces()) {
+        let area = mesh.face_areas()[number];
+        let normal = area_vector(triangle(mesh.points(), face)).normalized();
+        let plane = Quadric::of_plane(mesh.points()[face[0]], normal, area);
+        face.into_iter().for_each(|vertex| add(vertex, plane));
+        for corner in number.corners() {
+            let [from, to] = corner.half_edge(mesh.faces());
+            let edge = mesh.points()[to] - mesh.points()[from];
+            let is_kept = mesh.opposite(corner).is_none() && !(is_on_plane(from) && is_on_plane(to));
+            let weight = area * if is_kept { BOUNDARY_WEIGHT } else { SHAPE_WEIGHT };
+            let across = Quadric::of_plane(mesh.points()[from], normal.cross(edge).normalized(), weight);
+            [from, to].into_iter().for_each(|vertex| add(vertex, across));
+        }
+    }
+    quadrics
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Silent;
+    use crate::seams::proxy::refine::refine;
+    use crate::seams::sample_surfaces::{
+        body, greatest_distance, perforated_cylinder, plate_with_three_holes, topology, torus, uneven_body,
+    };
+    use crate::vector::coordinates;
+
+    fn decimated(mesh: &TriangleMesh, target: usize) -> Decimated {
+        decimate(mesh, None, target, &Watch::new(&mut Silent, 0.0, "")).unwrap()
+    }
+
+    fn as_mesh(mesh: &TriangleMesh, decimated: &Decimated) -> TriangleMesh {
+        let points = decimated.vertices.iter().map(|&vertex| mesh.points()[vertex]).collect();
+        TriangleMesh::at_given_points(points, decimated.faces.clone()).unwrap()
+    }
+
+    fn fine_plate() -> TriangleMesh {
+        (0..3).fold(plate_with_three_holes(), |mesh, _| refine(&mesh).unwrap().mesh)
+    }
+
+    #[test]
+    fn surfaces_of_any_topology_keep_it_and_their_shape() {
+        let cases = [
+            (torus(), 400, (1, 0, 0), 0.01),
+            (perforated_cylinder(), 500, (1, -8, 10), 0.01),
+            (fine_plate(), 300, (1, -4, 0), 1e-9),
+            (uneven_body(5), 600, (1, 2, 0), 0.01),
+        ];
+        for (mesh, target, expected, distance) in cases {
+            assert_eq!(topology(&mesh), expected);
+            let coarse = as_mesh(&mesh, &decimated(&mesh, target));
+            assert_eq!((topology(&coarse), coarse.n_vertices()), (expected, target));
+            assert!(coarse.flipped_faces().is_empty());
+            let missed = greatest_distance(mesh.points(), &coarse);
+            assert!(missed <= distance, "{missed}");
+        }
+    }
+
+    #[test]
+    fn where_nothing_more_can_collapse_the_topology_is_still_that_of_the_surface() {
+        for mesh in [torus(), perforated_cylinder(), fine_plate(), body(3)] {
+            let coarse = as_mesh(&mesh, &decimated(&mesh, 0));
+            assert_eq!(topology(&coarse), topology(&mesh));
+            assert!(coarse.n_vertices() < 150, "{}", coarse.n_vertices());
+        }
+    }
+
+    #[test]
+    fn the_outline_of_a_flat_square_keeps_its_corners() {
+        let n = 30;
+        let points: Vec<[f64; 3]> = (0..n * n).map(|k| [(k % n) as f64, (k / n) as f64, 0.0]).collect();
+        let quads = (0..n - 1).flat_map(|j| (0..n - 1).map(move |i| (j * n + i) as u32));
+        let faces: Vec<[u32; 3]> = quads.flat_map(|a| [[a, a + 1, a + 31], [a, a + 31, a + 30]]).collect();
+        let mesh = TriangleMesh::new(&points, &faces).unwrap();
+        let left = decimated(&mesh, 40).vertices;
+        for corner in [0, n - 1, n * (n - 1), n * n - 1] {
+            assert!(left.contains(&Vertex::new(corner)));
+        }
+    }
+
+    #[test]
+    fn mirrored_and_noisy_input_loses_the_same_vertices() {
+        let mesh = uneven_body(4);
+        let left = decimated(&mesh, 300).vertices;
+        let again = |points: Vec<[f64; 3]>, faces: &[[Vertex; 3]]| {
+            decimated(&TriangleMesh::new(&points, faces).unwrap(), 300).vertices
+        };
+        let noise = |k: usize| Vector3::from_fn(|axis| 1e-12 * (7.3 * k as f64 + axis as f64).sin());
+        let noisy = mesh.points().iter().enumerate().map(|(k, &point)| point + noise(k));
+        assert_eq!(again(coordinates(noisy), mesh.faces()), left);
+        let mirrored = mesh.points().iter().map(|&Vector3([x, y, z])| [-x, y, z]).collect();
+        let turned: Vec<_> = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert_eq!(again(mirrored, &turned), left);
+    }
+
+    #[test]
+    fn a_cancelled_decimation_returns_nothing() {
+        let mut cancel = |_: f64, _: &str| false;
+        let watch = Watch::new(&mut cancel, 0.0, "");
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        assert_eq!(decimate(&torus(), None, 100, &watch), None);
+    }
+}

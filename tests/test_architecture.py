@@ -18,7 +18,7 @@ CORE_ROOMS = (
     {"vector", "error", "control", "parallel"},
     {"arrays"},
     {"mesh", "options"},
-    {"sparse", "distortion", "codomain", "location"},
+    {"sparse", "distortion", "codomain", "location", "packing"},
     {"energy", "embedding", "alignment"},
     {"optimize"},
     {"disk", "sphere", "untangle"},

@@ -131,6 +131,7 @@ mod location;
 mod mesh;
 mod optimize;
 mod options;
+mod packing;
 mod parallel;
 mod registration;
 // the public function is still to come

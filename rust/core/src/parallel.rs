@@ -91,6 +91,13 @@ pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> 
     out
 }
 
+/// The values `value(0), …, value(n − 1)`, each a task of its own: for few values that take long.
+pub(crate) fn tasks<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    let mut out = vec![T::default(); n];
+    for_each_chunk(&mut out, 1, &|task, part| part[0] = value(task));
+    out
+}
+
 /// Σ value(i) over `0..n`.
 pub(crate) fn sum(n: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let mut partial = vec![0.0; n.div_ceil(CHUNK)];

@@ -13,6 +13,7 @@ mod hyperbolic;
 mod layout;
 mod mesh;
 mod optimize;
+mod packing;
 mod registration;
 mod spatial_energy;
 mod sphere;

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Packs islands into the unit square: [`pack`].
+//!
+//! All islands keep one scale, the largest for which a place is found; they are turned and moved, never mirrored.
+//!
+//! 1. An island counts as what its outline encloses ([`outline`]), at a number of angles ([`angles`]).
+//! 2. At each angle it becomes cells of a grid ([`mask`]): all that it touches, and all within the margin. So islands
+//!    that share no cell do not overlap, and keep the margin.
+//! 3. Islands are placed one by one, the largest first, each where it costs least among all places that are free
+//!    ([`placement`], [`atlas`]). Smaller islands come to lie in bays and holes of larger ones.
+//! 4. That is done again in less room, in other orders and by other rules, first on a coarse grid, then on a fine one
+//!    ([`search`]).
+//!
+//! One island alone is turned so that the smallest square holds it.
+//!
+//! Input: islands, which may overlap themselves. Cost: per placement, islands · angles · rows of the grid · words of a
+//! row, times the few rows of an island that show that a place is taken; 400 placements at the most, fewer of many islands.
+
+mod angles;
+mod atlas;
+mod mask;
+mod outline;
+mod placement;
+mod pose;
+mod search;
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::control::{Observer, Watch};
+use crate::error::Error;
+use crate::parallel;
+use angles::{angles_around, direction, square_angle, turned, turned_box, turned_size};
+pub use outline::Island;
+use outline::{Outline, Point};
+use search::{Arrangement, MESSAGE, Placed, Task, smallest_square};
+
+/// Angles all around at which an island is tried, beside the four by which it fits into the smallest square: for up to
+/// the given number of islands.
+const ANGLES: [(usize, usize); 3] = [(64, 16), (256, 8), (usize::MAX, 4)];
+
+/// The share of the square that islands take at first; where they do not fit, the square grows.
+const FIRST_SHARE: f64 = 0.45;
+
+/// Options of [`pack`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PackOptions {
+    /// The least distance between islands, and to the border of the square, in units of the square.
+    pub margin: f64,
+    /// Whether islands may be turned.
+    pub rotate: bool,
+}
+
+impl Default for PackOptions {
+    fn default() -> Self {
+        Self { margin: 0.002, rotate: true }
+    }
+}
+
+/// Where an island goes: turned about the origin, then scaled by the common scale, then moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The angle, counterclockwise.
+    pub angle: f64,
+    /// Where the origin of the island's plane goes.
+    pub offset: [f64; 2],
+}
+
+/// Where all islands go.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Packing {
+    /// The common scale.
+    pub scale: f64,
+    /// The places of the islands, in their order.
+    pub places: Vec<Place>,
+}
+
+impl Packing {
+    /// Where a point of an island goes.
+    pub fn apply(&self, island: usize, point: [f64; 2]) -> [f64; 2] {
+        let Place { angle, offset } = self.places[island];
+        let [x, y] = turned(point, direction(angle));
+        [self.scale * x + offset[0], self.scale * y + offset[1]]
+    }
+}
+
+/// Packs islands into the unit square, all by one scale.
+///
+/// # Errors
+///
+/// [`Error::InvalidOption`] for a margin that is out of range, or too large for the number of islands;
+/// [`Error::InvalidArray`] for points that are not finite and for islands without any area; [`Error::CancelledEarly`].
+pub fn pack(
+    islands: &[Island<'_>],
+    options: &PackOptions,
+    observer: &mut dyn Observer,
+) -> Result<Packing, Error> {
+    check(islands, options)?;
+    if islands.is_empty() {
+        return Ok(Packing { scale: 1.0, places: Vec::new() });
+    }
+    // 1. Outlines and angles.
+    let outlines = outlines(islands, &Watch::new(observer, 0.0, MESSAGE))?;
+    let area: f64 = outlines.iter().map(|outline| outline.area).sum();
+    if !(area > 0.0 && area.is_finite()) {
+        return Err(invalid_islands(format!("of area {area}"), "of a positive area"));
+    }
+    let angles = parallel::tasks(islands.len(), |k| tried_angles(&outlines[k].hull, islands.len(), options));
+    // 2. The smallest square that holds the islands.
+    let task = Task { outlines: &outlines, angles: &angles, margin: options.margin };
+    let arrangement = if let [outline] = &outlines[..] {
+        alone(outline, options)
+    } else {
+        parallel::install(|| smallest_square(&task, first_side(&task, area), observer))?
+    };
+    // 3. That square, within the margin, in the unit square.
+    Ok(in_unit_square(&arrangement, options.margin))
+}
+
+fn check(islands: &[Island<'_>], options: &PackOptions) -> Result<(), Error> {
+    if !(0.0..0.5).contains(&options.margin) {
+        return Err(Error::InvalidOption {
+            name: "margin",
+            found: options.margin.to_string(),
+            expected: "a number ≥ 0 and < .5".into(),
+        });
+    }
+    let is_finite = |island: &Island<'_>| island.points.as_flattened().iter().all(|x| x.is_finite());
+    match islands.iter().position(|island| !is_finite(island)) {
+        Some(island) => Err(invalid_islands(format!("not finite in island {island}"), "of finite points")),
+        None => Ok(()),
+    }
+}
+
+fn invalid_islands(found: String, expected: &str) -> Error {
+    Error::InvalidArray { name: "islands", found, expected: expected.into() }
+}
+
+fn outlines(islands: &[Island<'_>], watch: &Watch<'_>) -> Result<Vec<Outline>, Error> {
+    let outlines = parallel::tasks(islands.len(), |k| {
+        if watch.goes_on() { Outline::new(&islands[k]) } else { Outline::default() }
+    });
+    if watch.goes_on() { Ok(outlines) } else { Err(Error::CancelledEarly) }
+}
+
+/// The angles at which one of `n_islands` is tried.
+fn tried_angles(hull: &[Point], n_islands: usize, options: &PackOptions) -> Vec<f64> {
+    if !options.rotate {
+        return vec![0.0];
+    }
+    let n = ANGLES.iter().find(|&&(most, _)| n_islands <= most).map_or(0, |&(_, n)| n);
+    let mut angles = angles_around(hull, n);
+    let upright = square_angle(hull);
+    angles.extend((0..4).map(|k| upright + f64::from(k) * FRAC_PI_2));
+    angles
+}
+
+/// The side of the square to begin with: no smaller than one that holds the largest island.
+fn first_side(task: &Task<'_>, area: f64) -> f64 {
+    let squares = task.outlines.iter().zip(task.angles).map(|(outline, angles)| {
+        let sides = angles.iter().map(|&angle| longer_side(&outline.hull, angle));
+        sides.fold(f64::INFINITY, f64::min)
+    });
+    squares.fold((area / FIRST_SHARE).sqrt(), f64::max) * (1.0 + 1e-9)
+}
+
+fn longer_side(hull: &[Point], angle: f64) -> f64 {
+    let [width, height] = turned_size(hull, angle);
+    width.max(height)
+}
+
+/// The smallest square that holds one island.
+fn alone(outline: &Outline, options: &PackOptions) -> Arrangement {
+    let angle = if options.rotate { square_angle(&outline.hull) } else { 0.0 };
+    let [corner, _] = turned_box(&outline.hull, angle);
+    let place = Placed { angle, offset: corner.map(|x| -x) };
+    Arrangement { side: longer_side(&outline.hull, angle), places: vec![place] }
+}
+
+/// An arrangement scaled into the unit square without a margin around it.
+fn in_unit_square(arrangement: &Arrangement, margin: f64) -> Packing {
+    let scale = (1.0 - 2.0 * margin) / arrangement.side;
+    let places = arrangement.places.iter().map(|&Placed { angle, offset }| {
+        let offset = offset.map(|x| margin + scale * x);
+        Place { angle, offset }
+    });
+    Packing { scale, places: places.collect() }
+}

@@ -82,11 +82,6 @@ impl Connectivity {
         self.degrees[vertex] as usize
     }
 
-    /// The number of vertices, apexes among them.
-    pub(super) fn n_vertices(&self) -> usize {
-        self.corners.len()
-    }
-
     /// The vertex at a corner.
     pub(super) fn vertex(&self, corner: Corner) -> Vertex {
         self.faces[corner.face()].vertices[corner.place()]

@@ -11,9 +11,10 @@
 //!   vertex collapses only along its loop.
 //! - Vertices on a mirror plane collapse only along the curve in it, and no other edge may come to lie in the plane.
 //!
-//! A queue holds all vertices by their last known costs. Most costs only rise, so the cost of a vertex whose star has
-//! changed is computed again when it comes to the front. Costs that differ by rounding are equal, and the vertex of the
-//! lower index goes first.
+//! While there are many vertices, sweeps in the order of the vertices collapse those whose costs are among the lowest:
+//! the arrays then pass through the cache in order. At the end a queue has the cheapest vertex next. Most costs only rise,
+//! so the cost of a vertex whose star has changed is computed again when its last one is low enough. Costs that differ by
+//! rounding are equal, and the vertex of the lower index goes first.
 //!
 //! Cost: O(n log n), with the costs of about three vertices computed per collapse.
 
@@ -42,6 +43,15 @@ const SLIVER: f64 = 0.02;
 /// The cosine of the largest angle, 75°, by which a collapse turns a face.
 const LEAST_COSINE: f64 = 0.258_819_045_102_520_76;
 
+/// Vertices left to the queue by the sweeps.
+const QUEUED: usize = 8000;
+
+/// The share of the vertices, those of the lowest costs, that a sweep may collapse.
+const SWEPT: f64 = 0.3;
+
+/// The key of a vertex that cannot collapse or has done so.
+const NEVER: u64 = u64::MAX;
+
 /// Bits of the mantissa of a cost that are lost to rounding.
 const ROUNDED_BITS: u32 = 20;
 
@@ -67,41 +77,27 @@ pub(super) fn decimate(
     target: usize,
     watch: &Watch<'_>,
 ) -> Option<Decimated> {
-    let count = |vertex: Vertex| if on_plane.is_some_and(|on_plane| !on_plane[vertex]) { 2 } else { 1 };
-    let mut left: usize = Vertex::all(mesh.n_vertices()).map(count).sum();
     let mut decimation = Decimation::new(mesh, on_plane);
-    let mut queue: BinaryHeap<_> =
-        Vertex::all(mesh.n_vertices()).map(|vertex| Reverse((0, vertex))).collect();
-    let mut steps = 0;
-    while left > target
-        && let Some(Reverse((_, vertex))) = queue.pop()
+    // 1. Sweeps; the first computes all costs
+    let swept = target.max(QUEUED);
+    while decimation.left > swept
+        && let Some(limit) = decimation.lowest_keys()
     {
-        // 1. The cost of today
-        if decimation.is_outdated(vertex) {
-            let key = decimation.evaluate(vertex);
-            queue.extend(key.map(|key| Reverse((key, vertex))));
-        // 2. The collapse; its neighbors that could not collapse may do so now
-        } else {
-            decimation.collapse(vertex);
-            queue.extend(decimation.freed.drain(..).map(|vertex| Reverse((0, vertex))));
-            left -= count(vertex);
-        }
-        steps += 1;
-        if steps % BETWEEN_CHECKS == 0 && !watch.goes_on() {
-            return None;
-        }
+        decimation.sweep(limit, swept, watch)?;
     }
+    // 2. The cheapest vertex next
+    decimation.empty_queue(target, watch)?;
     Some(decimation.into_rest())
 }
 
-/// What the queue knows of a vertex.
+/// What is to become of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Plan {
     /// The star has changed since the cost was computed.
     Outdated,
     /// It moves onto the vertex at the next corner of this one.
     Collapse(Corner),
-    /// It cannot collapse and is not in the queue.
+    /// It cannot collapse.
     Stuck,
     /// It has collapsed.
     Gone,
@@ -112,28 +108,81 @@ struct Decimation<'a> {
     on_plane: Option<&'a [bool]>,
     connectivity: Connectivity,
     quadrics: Vec<Quadric>,
+    /// The value of each vertex's quadric at the vertex.
+    errors: Vec<f64>,
     plans: Vec<Plan>,
+    /// The last known costs, rounded; 0 if there is none yet.
+    keys: Vec<u64>,
+    /// What the vertices left count.
+    left: usize,
     /// Vertices that were stuck until their star changed.
     freed: Vec<Vertex>,
     ring: Ring,
-    /// For each vertex the last vertex of whose ring it was known to be.
-    in_ring_of: Vec<Option<Vertex>>,
 }
 
 impl<'a> Decimation<'a> {
     fn new(mesh: &'a TriangleMesh, on_plane: Option<&'a [bool]>) -> Self {
         let connectivity = Connectivity::new(mesh);
-        let in_ring_of = vec![None; connectivity.n_vertices()];
+        let n_on_plane =
+            on_plane.map_or(mesh.n_vertices(), |on_plane| on_plane.iter().filter(|x| **x).count());
         Self {
             points: mesh.points(),
             on_plane,
             connectivity,
             quadrics: quadrics(mesh, on_plane),
+            errors: vec![0.0; mesh.n_vertices()],
             plans: vec![Plan::Outdated; mesh.n_vertices()],
+            keys: vec![0; mesh.n_vertices()],
+            left: 2 * mesh.n_vertices() - n_on_plane,
             freed: Vec::new(),
             ring: Ring::default(),
-            in_ring_of,
         }
+    }
+
+    /// The key that a share of [`SWEPT`] of the vertices that may collapse do not exceed; `None` if none may.
+    fn lowest_keys(&self) -> Option<u64> {
+        let mut keys: Vec<u64> = self.keys.iter().copied().filter(|&key| key != NEVER).collect();
+        let rank = (SWEPT * keys.len() as f64) as usize;
+        (!keys.is_empty()).then(|| *keys.select_nth_unstable(rank).1)
+    }
+
+    /// Collapses vertices whose cost is at most `limit`, in their order, until those left count `target`; `None` if
+    /// cancelled.
+    fn sweep(&mut self, limit: u64, target: usize, watch: &Watch<'_>) -> Option<()> {
+        for vertex in Vertex::all(self.points.len()) {
+            if vertex.index() % BETWEEN_CHECKS == 0 && !watch.goes_on() {
+                return None;
+            }
+            let is_low = self.keys[vertex] <= limit && self.left > target;
+            if is_low && (!self.is_outdated(vertex) || self.evaluate(vertex) <= limit) {
+                self.collapse(vertex);
+            }
+        }
+        self.freed.clear();
+        Some(())
+    }
+
+    /// Collapses the cheapest vertex again and again until those left count `target`, or until none can collapse; `None`
+    /// if cancelled.
+    fn empty_queue(&mut self, target: usize, watch: &Watch<'_>) -> Option<()> {
+        let waiting = Vertex::all(self.points.len()).map(|vertex| (self.keys[vertex], vertex));
+        let mut queue: BinaryHeap<_> = waiting.filter(|(key, _)| *key != NEVER).map(Reverse).collect();
+        let mut steps = 0;
+        while self.left > target
+            && let Some(Reverse((_, vertex))) = queue.pop()
+        {
+            if !self.is_outdated(vertex) {
+                self.collapse(vertex);
+                queue.extend(self.freed.drain(..).map(|vertex| Reverse((0, vertex))));
+            } else if self.evaluate(vertex) != NEVER {
+                queue.push(Reverse((self.keys[vertex], vertex)));
+            }
+            steps += 1;
+            if steps % BETWEEN_CHECKS == 0 && !watch.goes_on() {
+                return None;
+            }
+        }
+        Some(())
     }
 
     fn is_on_plane(&self, vertex: Vertex) -> bool {
@@ -153,34 +202,46 @@ impl<'a> Decimation<'a> {
         self.connectivity.beside(corner).into_iter().all(|vertex| self.connectivity.degree(vertex) > 3)
     }
 
-    /// Plans the cheapest collapse of a vertex; returns its rounded cost, `None` if it cannot collapse.
-    fn evaluate(&mut self, vertex: Vertex) -> Option<u64> {
+    /// Plans the cheapest collapse of a vertex; returns its key.
+    fn evaluate(&mut self, vertex: Vertex) -> u64 {
         self.ring.gather(vertex, &self.connectivity, self.points);
-        for &neighbor in &self.ring.vertices {
-            self.in_ring_of[neighbor] = Some(vertex);
+        let mut cheapest = self.cheapest(vertex);
+        while let Some((_, k)) = cheapest
+            && !self.keeps_topology(self.ring.corners[k])
+        {
+            self.ring.is_refused[k] = true;
+            cheapest = self.cheapest(vertex);
         }
-        let mut best: Option<(u64, Vertex, Corner)> = None;
-        for k in 0..self.ring.vertices.len() {
-            let (onto, corner) = (self.ring.vertices[k], self.ring.corners[k]);
-            if !self.keeps_curves(vertex, k) {
+        let (key, plan) = match cheapest {
+            Some((key, k)) => (key, Plan::Collapse(self.ring.corners[k])),
+            None => (NEVER, Plan::Stuck),
+        };
+        (self.keys[vertex], self.plans[vertex]) = (key, plan);
+        key
+    }
+
+    /// The neighbor in the ring onto which the collapse costs least, with its key: the lowest of equals.
+    fn cheapest(&self, vertex: Vertex) -> Option<(u64, usize)> {
+        let quadric = self.quadrics[vertex];
+        let mut best: Option<(u64, usize)> = None;
+        for (k, &onto) in self.ring.vertices.iter().enumerate() {
+            if self.ring.is_refused[k] || !self.keeps_curves(vertex, k) {
                 continue;
             }
-            let error = (self.quadrics[vertex].at(self.points[onto])
-                + self.quadrics[onto].at(self.points[onto]))
-            .max(0.0);
-            let is_worse =
-                |cost: f64| best.is_some_and(|(least, first, _)| (least, first) < (rounded(cost), onto));
+            let error = (quadric.at(self.ring.points[k]) + self.errors[onto]).max(0.0);
+            let is_worse = |cost: f64| {
+                best.is_some_and(|(least, first)| (least, self.ring.vertices[first]) < (rounded(cost), onto))
+            };
             if is_worse(error / GOOD_QUALITY) {
                 continue;
             }
             let Some(quality) = self.ring.quality_after(k) else { continue };
             let cost = error / quality.min(GOOD_QUALITY);
-            if !is_worse(cost) && self.keeps_topology(vertex, corner) {
-                best = Some((rounded(cost), onto, corner));
+            if !is_worse(cost) {
+                best = Some((rounded(cost), k));
             }
         }
-        self.plans[vertex] = best.map_or(Plan::Stuck, |(_, _, corner)| Plan::Collapse(corner));
-        best.map(|(key, _, _)| key)
+        best
     }
 
     /// Whether a collapse onto neighbor `k` of the ring keeps the boundary and the curve on the mirror plane.
@@ -202,11 +263,11 @@ impl<'a> Decimation<'a> {
         }
     }
 
-    /// The link condition for the collapse of a vertex, whose ring is marked, onto that at the next corner.
-    fn keeps_topology(&self, vertex: Vertex, corner: Corner) -> bool {
+    /// The link condition for the collapse of the vertex of the ring onto that at the next corner.
+    fn keeps_topology(&self, corner: Corner) -> bool {
         let onto = self.connectivity.vertex(corner.next());
         let neighbors = self.connectivity.around(onto).map(|corner| self.connectivity.vertex(corner.next()));
-        let is_common = |neighbor: &Vertex| self.in_ring_of[*neighbor] == Some(vertex);
+        let is_common = |neighbor: &Vertex| self.ring.vertices.contains(neighbor);
         self.leaves_neighbors(corner) && neighbors.filter(is_common).count() == 2
     }
 
@@ -217,11 +278,15 @@ impl<'a> Decimation<'a> {
         self.connectivity.collapse(corner);
         let quadric = self.quadrics[vertex];
         self.quadrics[onto] += quadric;
+        self.errors[onto] += quadric.at(self.points[onto]);
         self.plans[vertex] = Plan::Gone;
+        self.keys[vertex] = NEVER;
+        self.left -= if self.on_plane.is_some_and(|on_plane| !on_plane[vertex]) { 2 } else { 1 };
         let neighbors = self.connectivity.around(onto).map(|corner| self.connectivity.vertex(corner.next()));
         for changed in neighbors.filter(|&v| !self.connectivity.is_apex(v)).chain([onto]) {
             if self.plans[changed] == Plan::Stuck {
                 self.freed.push(changed);
+                self.keys[changed] = 0;
             }
             self.plans[changed] = Plan::Outdated;
         }
@@ -254,6 +319,8 @@ struct Ring {
     points: Vec<Vector3>,
     /// Twice the area vector of the face from each neighbor to the next; `None` at an apex.
     normals: Vec<Option<Vector3>>,
+    /// Whether a collapse onto the neighbor would change the topology.
+    is_refused: Vec<bool>,
     /// The quality of the worst face at the vertex.
     quality: f64,
     has_apex: bool,
@@ -266,11 +333,13 @@ impl Ring {
         self.vertices.clear();
         self.points.clear();
         self.normals.clear();
+        self.is_refused.clear();
         (self.quality, self.has_apex) = (1.0, false);
         for corner in connectivity.around(vertex) {
             let neighbor = connectivity.vertex(corner.next());
             let is_apex = connectivity.is_apex(neighbor);
             self.has_apex |= is_apex;
+            self.is_refused.push(false);
             self.corners.push(corner);
             self.vertices.push(neighbor);
             self.points.push(if is_apex { Vector3::ZERO } else { points[neighbor] });
@@ -397,6 +466,16 @@ mod tests {
             assert_eq!(topology(&coarse), topology(&mesh));
             assert!(coarse.n_vertices() < 150, "{}", coarse.n_vertices());
         }
+    }
+
+    #[test]
+    fn a_large_mesh_is_swept_first() {
+        let mesh = uneven_body(6);
+        assert!(mesh.n_vertices() > 2 * QUEUED);
+        let coarse = as_mesh(&mesh, &decimated(&mesh, 1000));
+        assert_eq!((topology(&coarse), coarse.n_vertices()), ((1, 2, 0), 1000));
+        let some: Vec<Vector3> = mesh.points().iter().step_by(7).copied().collect();
+        assert!(greatest_distance(&some, &coarse) < 0.005);
     }
 
     #[test]

@@ -97,14 +97,7 @@ fn refined(mesh: &TriangleMesh, plane: Option<&MirrorPlane>) -> Result<Proxy, Er
     for _ in 0..rounds {
         let finer = refine(&current)?;
         // the halves of an edge that is a part are parts too
-        let mut parents: Vec<_> = finer
-            .parents
-            .iter()
-            .zip(current.n_vertices()..)
-            .map(|(&edge, middle)| (sorted(edge), middle))
-            .collect();
-        parents.sort_unstable();
-        halves = halves.iter().flat_map(|half| parts(half, &parents)).collect();
+        halves = halves.iter().flat_map(|half| parts(half, &finer.parents, current.n_vertices())).collect();
         nearest.extend(finer.parents.iter().map(|&[a, b]| nearest[a.min(b)]).collect::<Vec<_>>());
         current = finer.mesh;
     }
@@ -112,10 +105,9 @@ fn refined(mesh: &TriangleMesh, plane: Option<&MirrorPlane>) -> Result<Proxy, Er
     Ok(Proxy { halves: Some(halves), ..with_mirror(current, plane, nearest) })
 }
 
-/// The two parts of an edge, split at its midpoint.
-fn parts(half: &Half, parents: &[([Vertex; 2], usize)]) -> [Half; 2] {
-    let place = parents.partition_point(|(edge, _)| *edge < half.edge);
-    let middle = Vertex::new(parents[place].1);
+/// The two parts of an edge, split at its midpoint: the first of `parents` is halved by vertex `n`, and so on.
+fn parts(half: &Half, parents: &[[Vertex; 2]], n: usize) -> [Half; 2] {
+    let middle = Vertex::new(n + parents.partition_point(|edge| *edge < half.edge));
     half.edge.map(|end| Half { edge: sorted([end, middle]), of: half.of })
 }
 
@@ -175,6 +167,7 @@ mod tests {
         body, greatest_distance, plate_with_three_holes, topology, torus, uneven_body,
     };
     use crate::seams::symmetry::mirror_plane;
+    use crate::vector::{Vector3, coordinates};
 
     fn proxy_of(mesh: &TriangleMesh) -> (Proxy, MirrorPlane) {
         let plane = mirror_plane(mesh).unwrap();
@@ -246,6 +239,28 @@ mod tests {
             Vertex::all(points.len()).all(|v| points[mirror[v]].distance(plane.image(points[v])) < 1e-12)
         );
         assert!(!proxy.without_image.is_empty());
+    }
+
+    #[test]
+    fn mirrored_and_noisy_input_has_the_proxy_of_the_same_vertices() {
+        for mesh in [body(4), uneven_body(5), plate_with_three_holes()] {
+            let expected = proxy_of(&mesh).0;
+            let noise = |k: usize| Vector3::from_fn(|axis| 1e-12 * (7.3 * k as f64 + axis as f64).sin());
+            let noisy = mesh.points().iter().enumerate().map(|(k, &point)| point + noise(k));
+            let mirrored = mesh.points().iter().map(|&Vector3([x, y, z])| Vector3([x, y, -z]));
+            let turned: Vec<_> = mesh.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
+            for (points, faces) in [(coordinates(noisy), mesh.faces()), (coordinates(mirrored), &turned)] {
+                let (proxy, _) = proxy_of(&TriangleMesh::new(&points, faces).unwrap());
+                assert_eq!(
+                    (proxy.nearest, proxy.mirror),
+                    (expected.nearest.clone(), expected.mirror.clone())
+                );
+                assert_eq!(
+                    (proxy.halves, proxy.without_image),
+                    (expected.halves.clone(), expected.without_image.clone())
+                );
+            }
+        }
     }
 
     #[test]

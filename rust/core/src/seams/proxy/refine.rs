@@ -2,7 +2,7 @@
 //! The uniform refinement of a mesh: every face is split into four at the midpoints of its edges.
 
 use crate::error::Error;
-use crate::mesh::{Face, TriangleMesh, Vertex};
+use crate::mesh::{EdgeTable, Face, TriangleMesh, Vertex};
 
 /// A mesh whose faces are split into four.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(super) struct Refined {
     /// The mesh at the same points, followed by the midpoints. Face 4 f + k is the part of face f at its corner k, and
     /// face 4 f + 3 the middle one.
     pub mesh: TriangleMesh,
-    /// (k, 2): the ends of the edge that each midpoint halves.
+    /// (k, 2): the ends of the edge that each midpoint halves, the lower first, in ascending order.
     pub parents: Vec<[Vertex; 2]>,
 }
 
@@ -22,12 +22,11 @@ pub(super) fn refine(mesh: &TriangleMesh) -> Result<Refined, Error> {
     let mut middles = vec![Vertex::default(); 3 * mesh.n_faces()];
     let mut points = mesh.points().to_vec();
     let mut parents = Vec::new();
-    for corner in mesh.edge_corners() {
-        let [a, b] = corner.half_edge(mesh.faces());
-        middles[corner] = Vertex::new(points.len());
-        mesh.opposite(corner).into_iter().for_each(|across| middles[across] = Vertex::new(points.len()));
-        points.push((mesh.points()[a] + mesh.points()[b]) * 0.5);
-        parents.push([a, b]);
+    for (edge, corners) in EdgeTable::new(mesh.n_vertices(), mesh.faces()).edges() {
+        let [a, b] = edge.map(|end| mesh.points()[end]);
+        corners.iter().for_each(|corner| middles[corner.corner()] = Vertex::new(points.len()));
+        points.push((a + b) * 0.5);
+        parents.push(edge);
     }
     let parts = |(number, &[a, b, c]): (Face, &[Vertex; 3])| {
         let [bc, ca, ab] = number.corners().map(|corner| middles[corner]);

@@ -9,7 +9,7 @@
 
 use super::decimate::decimate;
 use crate::control::Watch;
-use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
+use crate::mesh::{EdgeTable, Face, TriangleMesh, Vertex};
 use crate::seams::symmetry::MirrorPlane;
 use crate::vector::Vector3;
 
@@ -27,8 +27,8 @@ pub(super) struct SymmetricMesh {
     pub nearest: Vec<Vertex>,
 }
 
-/// The symmetric mesh of at most `target` vertices, if it has more than `limit` of them before decimation; `Ok(None)` where
-/// it has not the topology of the surface, `None` if cancelled.
+/// The symmetric mesh of `target` vertices, or one less; `Some(None)` where it has not the topology of the surface, `None`
+/// if cancelled.
 pub(super) fn symmetric_mesh(
     mesh: &TriangleMesh,
     plane: &MirrorPlane,
@@ -59,6 +59,7 @@ fn has_equal_topology(a: &TriangleMesh, b: &TriangleMesh) -> bool {
 }
 
 /// A half of a mesh, on one side of a plane.
+#[derive(Default)]
 struct Half {
     points: Vec<Vector3>,
     faces: Vec<[Vertex; 3]>,
@@ -68,23 +69,60 @@ struct Half {
 }
 
 impl Half {
-    /// Slices off the half of a mesh to which the normal of the plane points.
+    /// Slices off the half of a mesh to which the normal of the plane points. The order of its vertices does not depend
+    /// on the orientation of the mesh.
     fn slice(mesh: &TriangleMesh, plane: &MirrorPlane) -> Self {
         let heights = snapped_heights(mesh, plane);
-        let mut slicing = Slicing {
-            mesh,
-            plane,
-            heights: &heights,
-            of_vertex: vec![None; mesh.n_vertices()],
-            of_edge: vec![None; 3 * mesh.n_faces()],
-            half: Self { points: Vec::new(), faces: Vec::new(), on_plane: Vec::new(), nearest: Vec::new() },
+        let mut half = Self::default();
+        let of_vertex = half.add_vertices(mesh, plane, &heights);
+        let of_edge = half.add_crossings(mesh, plane, &heights);
+        for face in (0..mesh.n_faces()).map(Face::new).filter(|&face| rises(mesh, face, &heights)) {
+            half.add_face(face.corners().into_iter().flat_map(|corner| {
+                // the edge to the next vertex follows
+                [of_vertex[corner.vertex(mesh.faces())], of_edge[corner.previous()]].into_iter().flatten()
+            }));
+        }
+        half
+    }
+
+    /// Adds the vertices of the mesh on the plane and above it; returns their numbers.
+    fn add_vertices(
+        &mut self,
+        mesh: &TriangleMesh,
+        plane: &MirrorPlane,
+        heights: &[f64],
+    ) -> Vec<Option<Vertex>> {
+        let above = |vertex: Vertex| {
+            let mut corners = mesh.vertex_corners(vertex).iter();
+            heights[vertex] >= 0.0 && corners.any(|corner| rises(mesh, corner.face(), heights))
         };
-        for face in Face::all(mesh.n_faces()) {
-            if mesh.faces()[face].iter().any(|&vertex| heights[vertex] > 0.0) {
-                slicing.add(face);
+        let mut numbers = vec![None; mesh.n_vertices()];
+        for vertex in Vertex::all(mesh.n_vertices()).filter(|&vertex| above(vertex)) {
+            let point = mesh.points()[vertex];
+            let is_on_plane = heights[vertex] == 0.0;
+            let point = if is_on_plane { plane.projection(point) } else { point };
+            numbers[vertex] = Some(self.push(point, is_on_plane, vertex));
+        }
+        numbers
+    }
+
+    /// Adds the vertices where edges cross the plane; returns their numbers by the corners opposite to the edges.
+    fn add_crossings(
+        &mut self,
+        mesh: &TriangleMesh,
+        plane: &MirrorPlane,
+        heights: &[f64],
+    ) -> Vec<Option<Vertex>> {
+        let mut numbers = vec![None; 3 * mesh.n_faces()];
+        for ([a, b], corners) in EdgeTable::new(mesh.n_vertices(), mesh.faces()).edges() {
+            if heights[a] * heights[b] < 0.0 {
+                let t = heights[a] / (heights[a] - heights[b]);
+                let point = mesh.points()[a] * (1.0 - t) + mesh.points()[b] * t;
+                let crossing = self.push(plane.projection(point), true, if t < 0.5 { a } else { b });
+                corners.iter().for_each(|corner| numbers[corner.corner()] = Some(crossing));
             }
         }
-        slicing.half
+        numbers
     }
 
     fn push(&mut self, point: Vector3, is_on_plane: bool, nearest: Vertex) -> Vertex {
@@ -93,6 +131,23 @@ impl Half {
         self.nearest.push(nearest);
         Vertex::new(self.points.len() - 1)
     }
+
+    /// Adds a triangle, or a quad split along its shorter diagonal.
+    fn add_face(&mut self, polygon: impl Iterator<Item = Vertex>) {
+        let polygon: Vec<Vertex> = polygon.collect();
+        let length = |a: Vertex, b: Vertex| self.points[a].distance(self.points[b]);
+        match *polygon {
+            [a, b, c] => self.faces.push([a, b, c]),
+            [a, b, c, d] if length(a, c) < length(b, d) => self.faces.extend([[a, b, c], [a, c, d]]),
+            [a, b, c, d] => self.faces.extend([[a, b, d], [b, c, d]]),
+            _ => {}
+        }
+    }
+}
+
+/// Whether a face has a vertex above the plane.
+fn rises(mesh: &TriangleMesh, face: Face, heights: &[f64]) -> bool {
+    mesh.faces()[face].iter().any(|&vertex| heights[vertex] > 0.0)
 }
 
 /// The heights of vertices over a plane: 0 for those that move onto it.
@@ -107,70 +162,6 @@ fn snapped_heights(mesh: &TriangleMesh, plane: &MirrorPlane) -> Vec<f64> {
         if height.abs() <= SNAP * shortest { 0.0 } else { height }
     };
     mesh.points().iter().zip(shortest).map(snapped).collect()
-}
-
-struct Slicing<'a> {
-    mesh: &'a TriangleMesh,
-    plane: &'a MirrorPlane,
-    heights: &'a [f64],
-    /// The vertex of the half at each vertex.
-    of_vertex: Vec<Option<Vertex>>,
-    /// The vertex of the half on the edge opposite to each corner, known to the lower of both corners.
-    of_edge: Vec<Option<Vertex>>,
-    half: Half,
-}
-
-impl Slicing<'_> {
-    /// Adds what is above the plane of a face.
-    fn add(&mut self, face: Face) {
-        let mut polygon = Vec::with_capacity(4);
-        for corner in face.corners() {
-            let vertex = corner.vertex(self.mesh.faces());
-            if self.heights[vertex] >= 0.0 {
-                polygon.push(self.vertex(vertex));
-            }
-            // the edge to the next vertex
-            let opposite = corner.previous();
-            let [from, to] = opposite.half_edge(self.mesh.faces());
-            if self.heights[from] * self.heights[to] < 0.0 {
-                polygon.push(self.crossing(opposite));
-            }
-        }
-        let length = |a: usize, b: usize| self.half.points[polygon[a]].distance(self.half.points[polygon[b]]);
-        match *polygon {
-            [a, b, c] => self.half.faces.push([a, b, c]),
-            [a, b, c, d] if length(0, 2) < length(1, 3) => self.half.faces.extend([[a, b, c], [a, c, d]]),
-            [a, b, c, d] => self.half.faces.extend([[a, b, d], [b, c, d]]),
-            _ => {}
-        }
-    }
-
-    fn vertex(&mut self, vertex: Vertex) -> Vertex {
-        if let Some(known) = self.of_vertex[vertex] {
-            return known;
-        }
-        let is_on_plane = self.heights[vertex] == 0.0;
-        let point = self.mesh.points()[vertex];
-        let point = if is_on_plane { self.plane.projection(point) } else { point };
-        let added = self.half.push(point, is_on_plane, vertex);
-        self.of_vertex[vertex] = Some(added);
-        added
-    }
-
-    /// The vertex where the edge opposite to a corner crosses the plane.
-    fn crossing(&mut self, corner: Corner) -> Vertex {
-        let lower = self.mesh.opposite(corner).map_or(corner, |across| across.min(corner));
-        if let Some(known) = self.of_edge[lower] {
-            return known;
-        }
-        let [a, b] = lower.half_edge(self.mesh.faces());
-        let t = self.heights[a] / (self.heights[a] - self.heights[b]);
-        let point = self.mesh.points()[a] * (1.0 - t) + self.mesh.points()[b] * t;
-        let nearest = if t < 0.5 { a } else { b };
-        let added = self.half.push(self.plane.projection(point), true, nearest);
-        self.of_edge[lower] = Some(added);
-        added
-    }
 }
 
 /// The points and faces of a half and its mirror image, welded along the plane, and the image of each vertex.

@@ -26,6 +26,16 @@ pub(super) struct Grid {
 }
 
 impl Grid {
+    /// The length of a side.
+    pub fn length(self) -> f64 {
+        self.side as f64 * self.cell
+    }
+
+    /// A grid of the same square with so many cells in the place of one, along a side.
+    pub fn refined(self, n: usize) -> Self {
+        Self { side: n * self.side, cell: self.cell / n as f64 }
+    }
+
     /// Words per row, with those that a shifted word reads past the end.
     fn stride(self) -> usize {
         self.side.div_ceil(WORD) + 2

@@ -8,13 +8,14 @@
 //!    that share no cell do not overlap, and keep the margin.
 //! 3. Islands are placed one by one, the largest first, each where it costs least among all places that are free
 //!    ([`placement`], [`atlas`]). Smaller islands come to lie in bays and holes of larger ones.
-//! 4. That is done again in less room, in other orders and by other rules, first on a coarse grid, then on a fine one
-//!    ([`search`]).
+//! 4. That is done again in less room, in other orders and by other rules, first on a coarse grid, then on a fine one;
+//!    the best is repeated on finer grids ([`search`]).
 //!
 //! One island alone is turned so that the smallest square holds it.
 //!
-//! Input: islands, which may overlap themselves. Cost: per placement, islands · angles · rows of the grid · words of a
-//! row, times the few rows of an island that show that a place is taken; 400 placements at the most, fewer of many islands.
+//! Input: islands, which may overlap themselves. Cost: for each placement of all islands, (angles of all islands) · (words
+//! of the grid) · (the few rows of an island that show that a place is taken). There are up to 400 placements, fewer of
+//! many islands: about a second of one core for 20 islands, two for 50.
 
 mod angles;
 mod atlas;
@@ -34,9 +35,11 @@ pub use outline::Island;
 use outline::{Outline, Point};
 use search::{Arrangement, MESSAGE, Placed, Task, smallest_square};
 
-/// Angles all around at which an island is tried, beside the four by which it fits into the smallest square: for up to
-/// the given number of islands.
-const ANGLES: [(usize, usize); 3] = [(64, 16), (256, 8), (usize::MAX, 4)];
+/// At how many angles all around an island is tried whose area is at least a share of that of all islands.
+const ANGLES: [(f64, usize); 3] = [(LARGE, 16), (0.001, 8), (0.0, 4)];
+
+/// The share of the area from which on an island is also tried as it fits into the smallest square.
+const LARGE: f64 = 0.01;
 
 /// The share of the square that islands take at first; where they do not fit, the square grows.
 const FIRST_SHARE: f64 = 0.45;
@@ -104,7 +107,8 @@ pub fn pack(
     if !(area > 0.0 && area.is_finite()) {
         return Err(invalid_islands(format!("of area {area}"), "of a positive area"));
     }
-    let angles = parallel::tasks(islands.len(), |k| tried_angles(&outlines[k].hull, islands.len(), options));
+    let angles =
+        parallel::tasks(islands.len(), |k| tried_angles(&outlines[k].hull, outlines[k].area / area, options));
     // 2. The smallest square that holds the islands.
     let task = Task { outlines: &outlines, angles: &angles, margin: options.margin };
     let arrangement = if let [outline] = &outlines[..] {
@@ -142,15 +146,17 @@ fn outlines(islands: &[Island<'_>], watch: &Watch<'_>) -> Result<Vec<Outline>, E
     if watch.goes_on() { Ok(outlines) } else { Err(Error::CancelledEarly) }
 }
 
-/// The angles at which one of `n_islands` is tried.
-fn tried_angles(hull: &[Point], n_islands: usize, options: &PackOptions) -> Vec<f64> {
+/// The angles at which an island is tried that has a share of the area of all.
+fn tried_angles(hull: &[Point], share: f64, options: &PackOptions) -> Vec<f64> {
     if !options.rotate {
         return vec![0.0];
     }
-    let n = ANGLES.iter().find(|&&(most, _)| n_islands <= most).map_or(0, |&(_, n)| n);
+    let n = ANGLES.iter().find(|&&(least, _)| share >= least).map_or(1, |&(_, n)| n);
     let mut angles = angles_around(hull, n);
-    let upright = square_angle(hull);
-    angles.extend((0..4).map(|k| upright + f64::from(k) * FRAC_PI_2));
+    if share >= LARGE {
+        let upright = square_angle(hull);
+        angles.extend((0..4).map(|k| upright + f64::from(k) * FRAC_PI_2));
+    }
     angles
 }
 

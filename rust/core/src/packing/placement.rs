@@ -114,18 +114,20 @@ fn cheapest_place(
     ceiling: &AtomicU64,
 ) -> Option<(u64, [usize; 2])> {
     let [width, height] = pose.cells;
-    let [last_x, last_y] = [limit.checked_sub(width)?, limit.checked_sub(height)?];
+    let [mut last_x, last_y] = [limit.checked_sub(width)?, limit.checked_sub(height)?];
     let mut best: Option<(u64, [usize; 2])> = None;
     for y in 0..=last_y {
         let cost = |x: usize| rule.cost(x + width, y + height, extent);
         let least = ceiling.load(Ordering::Relaxed);
-        let is_better =
-            |x: usize| cost(x) <= least && best.is_none_or(|(cost_so_far, _)| cost(x) < cost_so_far);
-        if !is_better(0) {
-            // nor is anything farther up
-            break;
+        let is_dear = |x: usize| cost(x) > least || best.is_some_and(|(cost_below, _)| cost(x) >= cost_below);
+        // the farther up, the fewer places are worth a look
+        while is_dear(last_x) {
+            last_x = match last_x.checked_sub(1) {
+                Some(x) => x,
+                None => return best,
+            };
         }
-        if let Some(x) = atlas.first_free(&pose.probes, y, last_where(last_x, is_better)) {
+        if let Some(x) = atlas.first_free(&pose.probes, y, last_x) {
             best = Some((cost(x), [x, y]));
             ceiling.fetch_min(cost(x), Ordering::Relaxed);
         }
@@ -133,32 +135,9 @@ fn cheapest_place(
     best
 }
 
-/// The last of `0..=end` where a condition holds that holds at 0 and up to some number.
-fn last_where(end: usize, holds: impl Fn(usize) -> bool) -> usize {
-    let [mut last, mut beyond] = [0, end + 1];
-    while beyond - last > 1 {
-        let middle = last.midpoint(beyond);
-        if holds(middle) {
-            last = middle;
-        } else {
-            beyond = middle;
-        }
-    }
-    last
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_condition_is_followed_to_its_last_number() {
-        for end in 0..20 {
-            for last in 0..25 {
-                assert_eq!(last_where(end, |x| x <= last), last.min(end));
-            }
-        }
-    }
 
     #[test]
     fn costs_grow_with_both_coordinates() {

@@ -12,20 +12,46 @@ use crate::parallel;
 
 pub(super) const MESSAGE: &str = "Packing islands";
 
-/// Cells along the square in which islands are placed at first, and in the end; more for many islands.
-const CELLS: [usize; 2] = [128, 512];
+/// How finely and how often islands are placed.
+struct Effort {
+    /// Cells along the square, at least.
+    cells: usize,
+    /// Cells along the square for each unit of √(number of islands), at least.
+    cells_per_root: f64,
+    /// How many plans are tried at the most.
+    max_plans: usize,
+    /// How many words of the grid the poses of all plans may look at: what limits the time.
+    max_words: usize,
+}
 
-/// Cells along the square for each unit of √(number of islands), at first and in the end.
-const CELLS_PER_ISLAND: [f64; 2] = [16.0, 32.0];
+/// What finds a square in which all islands fit.
+const COARSE: Effort = Effort { cells: 128, cells_per_root: 8.0, max_plans: 20, max_words: 10_000_000 };
 
-/// How often islands are placed anew on the coarse grid.
-const COARSE_PLANS: usize = 20;
+/// What finds the smallest.
+const FINE: Effort = Effort { cells: 512, cells_per_root: 16.0, max_plans: 400, max_words: 100_000_000 };
 
-/// How often they are on the fine grid, at the most.
-const FINE_PLANS: usize = 400;
+impl Effort {
+    /// The grid of a square.
+    fn grid(&self, task: &Task<'_>, side: f64) -> Grid {
+        let root = (task.outlines.len() as f64).sqrt();
+        let cells = self.cells.max((self.cells_per_root * root) as usize);
+        Grid { side: cells, cell: side / cells as f64 }
+    }
 
-/// Poses placed on the fine grid, over all plans: what limits the time of many islands.
-const FINE_POSES: usize = 50_000;
+    /// How many plans are tried on the grid; at the least one, whether or not that is too many.
+    fn n_plans(&self, task: &Task<'_>, grid: Grid) -> usize {
+        (self.max_words / words(task, grid)).clamp(1, self.max_plans)
+    }
+}
+
+/// How many words all poses may look at.
+fn words(task: &Task<'_>, grid: Grid) -> usize {
+    let n_poses: usize = task.angles.iter().map(Vec::len).sum();
+    (n_poses * grid.side * grid.side / u64::BITS as usize).max(1)
+}
+
+/// How much finer the grids are on which the best plan is repeated in the end.
+const REFINEMENTS: [usize; 2] = [2, 4];
 
 /// Growth of a square that is too small.
 const GROWTH: f64 = 1.3;
@@ -68,35 +94,34 @@ pub(super) struct Task<'a> {
     pub margin: f64,
 }
 
-/// The smallest square found that holds all islands, first on a coarse grid, then on a fine one.
+/// A square and the plan that led to it.
+type Planned = (Arrangement, Plan);
+
+/// The smallest square found that holds all islands.
 pub(super) fn smallest_square(
     task: &Task<'_>,
     side: f64,
     observer: &mut dyn Observer,
 ) -> Result<Arrangement, Error> {
-    let n = task.outlines.len();
-    let [coarse, fine] = [0, 1].map(|k| CELLS[k].max((CELLS_PER_ISLAND[k] * (n as f64).sqrt()) as usize));
-    let n_poses: usize = task.angles.iter().map(Vec::len).sum();
-    let fine_plans = (FINE_POSES / n_poses.max(1)).clamp(Rule::ALL.len(), FINE_PLANS);
-    let mut best = first_arrangement(task, side, coarse, &mut Phase { whole: observer, from: 0.0, to: 0.1 })?;
-    for (cells, n_plans, from, to) in [(coarse, COARSE_PLANS, 0.1, 0.2), (fine, fine_plans, 0.2, 1.0)] {
-        let mut phase = Phase { whole: observer, from, to };
-        best = improved(task, best.side, cells, n_plans, &mut phase)?.unwrap_or(best);
-    }
-    Ok(best)
+    // 1. A square on a coarse grid.
+    let rough = first_square(task, side, observer)?;
+    // 2. Smaller ones on a fine grid.
+    let grid = FINE.grid(task, rough.0.side);
+    let n_plans = FINE.n_plans(task, grid);
+    let fine = improved(task, grid, n_plans, usize::MAX, observer)?.unwrap_or(rough);
+    // 3. The smallest once more on finer grids.
+    refined(task, fine, observer)
 }
 
-/// An arrangement on a grid, in a square that grows until all islands fit.
-fn first_arrangement(
-    task: &Task<'_>,
-    side: f64,
-    cells: usize,
-    observer: &mut dyn Observer,
-) -> Result<Arrangement, Error> {
+/// A square on the coarse grid, which grows until all islands fit.
+fn first_square(task: &Task<'_>, side: f64, observer: &mut dyn Observer) -> Result<Planned, Error> {
     let mut side = side;
     for _ in 0..MAX_GROWTHS {
-        if let Some(arrangement) = improved(task, side, cells, Rule::ALL.len(), observer)? {
-            return Ok(arrangement);
+        let grid = COARSE.grid(task, side);
+        let n_plans = COARSE.n_plans(task, grid).max(Rule::ALL.len());
+        let mut beginning = Phase { whole: observer, from: 0.0, to: 0.0 };
+        if let Some(planned) = improved(task, grid, n_plans, Rule::ALL.len(), &mut beginning)? {
+            return Ok(planned);
         }
         side *= GROWTH;
     }
@@ -107,35 +132,62 @@ fn first_arrangement(
     })
 }
 
-/// The smallest square among those of a number of plans, none larger than `side`.
+/// The smallest square of a number of plans, within the grid; gives up where the first `patience` of them find none.
 fn improved(
     task: &Task<'_>,
-    side: f64,
-    cells: usize,
+    grid: Grid,
     n_plans: usize,
+    patience: usize,
     observer: &mut dyn Observer,
-) -> Result<Option<Arrangement>, Error> {
-    let grid = Grid { side: cells, cell: side / cells as f64 };
-    // what is left of the unit square within the margin is `side` at the most
-    let gap = task.margin * side / (1.0 - 2.0 * task.margin);
-    let poses = all_poses(task, gap, grid, &Watch::new(observer, 0.0, MESSAGE))?;
+) -> Result<Option<Planned>, Error> {
+    let poses = all_poses(task, grid, &Watch::new(observer, 0.0, MESSAGE))?;
     let mut numbers = Numbers(1);
-    let mut best: Option<Layout> = None;
+    let mut best: Option<(Layout, Plan)> = None;
     for k in 0..n_plans {
+        if best.is_none() && k >= patience {
+            break;
+        }
         let fraction = k as f64 / n_plans as f64;
         if !observer.progress(fraction, MESSAGE) {
             return Err(Error::CancelledEarly);
         }
         let watch = Watch::new(observer, fraction, MESSAGE);
         let plan = plan(task, k, &mut numbers);
-        let limit = best.as_ref().map_or(cells, |layout| layout.extent - 1);
-        best = tightest(&poses, &plan, limit, grid, &watch)?.or(best);
+        let limit = best.as_ref().map_or(grid.side, |(layout, _)| layout.extent - 1);
+        if let Some(layout) = tightest(&poses, &plan, limit, grid, &watch)? {
+            best = Some((layout, plan));
+        }
     }
-    Ok(best.map(|layout| arrangement(&poses, &layout, grid)))
+    Ok(best.map(|(layout, plan)| (arrangement(&poses, &layout, grid), plan)))
+}
+
+/// The arrangement made again on finer grids, by its plan and at its angles, as far as that makes the square smaller.
+fn refined(
+    task: &Task<'_>,
+    (mut best, plan): Planned,
+    observer: &mut dyn Observer,
+) -> Result<Arrangement, Error> {
+    let plan = Plan { first_pose: None, ..plan };
+    for refinement in REFINEMENTS {
+        let angles: Vec<Vec<f64>> = best.places.iter().map(|place| vec![place.angle]).collect();
+        let task = Task { angles: &angles, ..*task };
+        let grid = FINE.grid(&task, best.side).refined(refinement);
+        if words(&task, grid) > FINE.max_words / 4 {
+            break;
+        }
+        let watch = Watch::new(observer, 1.0, MESSAGE);
+        let poses = all_poses(&task, grid, &watch)?;
+        let layout = tightest(&poses, &plan, grid.side, grid, &watch)?;
+        let finer = layout.map(|layout| arrangement(&poses, &layout, grid));
+        best = finer.filter(|finer| finer.side < best.side).unwrap_or(best);
+    }
+    Ok(best)
 }
 
 /// The islands in all poses.
-fn all_poses(task: &Task<'_>, gap: f64, grid: Grid, watch: &Watch<'_>) -> Result<Vec<Vec<Pose>>, Error> {
+fn all_poses(task: &Task<'_>, grid: Grid, watch: &Watch<'_>) -> Result<Vec<Vec<Pose>>, Error> {
+    // what is left of the unit square within the margin is the whole grid at the most
+    let gap = task.margin * grid.length() / (1.0 - 2.0 * task.margin);
     let pairs: Vec<(&Outline, f64)> = task
         .outlines
         .iter()

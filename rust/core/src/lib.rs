@@ -134,14 +134,13 @@ mod options;
 mod packing;
 mod parallel;
 mod registration;
-// the public function is still to come
-#[allow(dead_code, unused_imports)]
 mod seams;
 mod sparse;
 mod sphere;
 #[doc(hidden)]
 pub mod testing;
 mod untangle;
+mod unwrap;
 mod vector;
 
 pub use control::{History, Observer, Record, Silent, Status};
@@ -163,8 +162,10 @@ pub use registration::{
     Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,
     homotopy, register_disks, register_spheres,
 };
+pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};
 pub use untangle::{UntangleOptions, Untangled, untangle};
+pub use unwrap::{Unwrap, UnwrapOptions, UnwrapSeams, unwrap};
 
 /// The examples of the crate's README.
 #[cfg(doctest)]

@@ -92,10 +92,10 @@ pub(crate) fn map<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> 
 }
 
 /// The values `value(0), …, value(n − 1)`, each a task of its own: for few values that take long.
-pub(crate) fn tasks<T: Send + Clone + Default>(n: usize, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    let mut out = vec![T::default(); n];
-    for_each_chunk(&mut out, 1, &|task, part| part[0] = value(task));
-    out
+pub(crate) fn tasks<T: Send>(n: usize, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    let mut out: Vec<Option<T>> = (0..n).map(|_| None).collect();
+    for_each_chunk(&mut out, 1, &|i, slot| slot[0] = Some(value(i)));
+    out.into_iter().flatten().collect()
 }
 
 /// Σ value(i) over `0..n`.

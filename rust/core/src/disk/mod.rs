@@ -106,7 +106,7 @@ pub(crate) fn map_disk(
             rectangle::solve(&run, &mut history, observer)?
         }
         DiskMethod::GaussNewton if options.boundary == Boundary::Free => {
-            let free = free::Free { mesh, targets: &given, options };
+            let free = free::Free { mesh, targets: &given, options, schedule: free::Schedule::Given };
             free.map(&mut history, observer)?
         }
         DiskMethod::GaussNewton => run.renumbered(&mut history, observer)?,
@@ -125,6 +125,26 @@ pub(crate) fn map_disk(
     uv.truncate(mesh.n_vertices());
     let distortion = measure(mesh.points(), mesh.faces(), Image::Plane(&uv), &given)?;
     Ok(DiskMap { uv: from_rows(uv), status, seconds: history.seconds(), history, distortion })
+}
+
+/// A map of an island to the plane whose areas are even within `tolerance`, √(E_A/A), with little shear, at whatever
+/// scale; the outline may cross itself if `overlap` holds. Some twenty factorizations; the status is
+/// [`Status::Converged`] where the tolerance is met.
+///
+/// # Errors
+/// As [`disk_map`].
+pub(crate) fn map_island(
+    mesh: &TriangleMesh,
+    tolerance: f64,
+    overlap: bool,
+    initial: Option<&[[f64; 2]]>,
+    observer: &mut dyn Observer,
+) -> Result<(PlanarMap, Status), Error> {
+    let options =
+        DiskMapOptions { boundary: Boundary::Free, overlap, initial: initial.map(aview2), ..Default::default() };
+    let schedule = free::Schedule::Quick { tolerance };
+    let free = free::Free { mesh, targets: mesh.face_areas(), options: &options, schedule };
+    free.map(&mut History::start(), observer)
 }
 
 /// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the

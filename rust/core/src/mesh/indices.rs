@@ -79,9 +79,15 @@ pub struct Corner(
     NonZeroU32,
 );
 
+/// An edge of a mesh, by its index among the edges that [`Edges`](super::Edges) numbers.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[repr(transparent)]
+pub(crate) struct Edge(pub u32);
+
 index_slices!(Vertex);
 index_slices!(Face);
 index_slices!(Corner);
+index_slices!(Edge);
 
 impl Vertex {
     /// The vertex of an index below 2³².
@@ -96,6 +102,23 @@ impl Vertex {
 
     /// The vertices with the indices `0..n`.
     pub fn all(n: usize) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
+        (0..n).map(Self::new)
+    }
+}
+
+impl Edge {
+    /// The edge of an index below 2³².
+    pub(crate) const fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// The index of the edge.
+    pub(crate) const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The edges with the indices `0..n`.
+    pub(crate) fn all(n: usize) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
         (0..n).map(Self::new)
     }
 }

@@ -7,6 +7,7 @@
 pub(crate) mod bisection;
 pub(super) mod corners;
 mod cut;
+mod edges;
 pub mod geometry;
 mod indices;
 pub mod orientation;
@@ -21,10 +22,11 @@ mod validate;
 
 pub(crate) use corners::{EdgeTable, VertexCorners};
 pub use cut::Patch;
+pub(crate) use edges::Edges;
 #[cfg(test)]
 pub(crate) use indices::faces_of_indices;
-pub(crate) use indices::index_array;
 pub use indices::{Corner, Face, Vertex};
+pub(crate) use indices::{Edge, index_array};
 pub use orientation::consistent;
 pub use surface::Surface;
 pub use topology::Topology;

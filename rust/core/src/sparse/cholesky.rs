@@ -14,15 +14,17 @@ use crate::error::{Error, NumericsError};
 use crate::mesh::TriangleMesh;
 
 /// A Cholesky factorization `P A Pᵀ = L Lᵀ` with a fill-reducing ordering P.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Cholesky {
     symbolic: Symbolic,
     factor: Factor<f64>,
 }
 
 impl Cholesky {
-    /// `analyze_on` without a mesh.
-    #[cfg(test)]
+    /// [`Self::analyze_on`] for rows that are no vertices, in an order computed for them.
+    ///
+    /// # Errors
+    /// As [`Self::analyze_on`].
     pub(crate) fn analyze(upper: &CsMat<f64>) -> Result<Self, Error> {
         Self::analyze_in(Order::Sparse, upper)
     }

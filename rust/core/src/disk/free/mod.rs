@@ -20,6 +20,7 @@ mod least_shear;
 mod lscm;
 mod meeting;
 mod outline;
+mod quick;
 mod start;
 mod starts;
 mod surface;
@@ -39,7 +40,8 @@ use descent::{Descent, Goal, Problem};
 use energy::Energy;
 use least_shear::least_shear;
 use outline::Outline;
-pub(super) use surface::Free;
+use quick::quickly;
+pub(super) use surface::{Free, Schedule};
 use surface::Prepared;
 use within_disk::{signed_area, turned};
 
@@ -81,7 +83,7 @@ impl Free<'_> {
         let initial = self.options.initial_rows().map(|map| by_order.of_vertices(map));
         let options =
             DiskMapOptions { initial: initial.as_deref().map(aview2), density: None, ..*self.options };
-        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options };
+        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule: self.schedule };
         let (map, status) = free.in_order(history, observer)?;
         Ok((by_order.given(&map), status))
     }
@@ -132,6 +134,9 @@ impl Free<'_> {
             most_iterations: self.options.max_iterations.unwrap_or(usize::MAX),
             precision: STATIONARY,
         };
+        if let Schedule::Quick { tolerance } = self.schedule {
+            return quickly(&mut descent, start, &mut goal, tolerance, history, observer);
+        }
         let mut map = start;
         let mut status = Status::MaxIterations;
         if let Some(tolerance) = self.wanted_deviation() {

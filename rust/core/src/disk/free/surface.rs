@@ -14,9 +14,21 @@ pub(super) struct Prepared<'a> {
     pub outline: &'a Outline,
 }
 
+/// How the weight of angles is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::disk) enum Schedule {
+    /// As the options say.
+    Given,
+    /// So that the deviation of areas √(E_A/A) is about a tolerance, in few iterations.
+    Quick {
+        tolerance: f64,
+    },
+}
+
 /// A surface to be mapped with a free outline.
 pub(in crate::disk) struct Free<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub options: &'a DiskMapOptions<'a>,
+    pub schedule: Schedule,
 }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A map whose areas are even to a tolerance, in few iterations.
+//!
+//! The minimum for a heavy λ comes first, which a few iterations reach from any start; then that for a lighter one.
+//! Between them the deviation √(E_A/A) is close to a power of λ, which tells the λ at which it meets the tolerance.
+
+use super::descent::{Descent, Goal};
+use crate::codomain::planar::PlanarMap;
+use crate::control::{History, Observer, Status};
+
+/// The first weights of angles.
+const WEIGHTS: [f64; 2] = [0.1, 0.01];
+
+/// The decrement in units of the energy at which the minima for these are left, and those for later ones.
+const ROUGHLY: f64 = 1e-2;
+const CLOSELY: f64 = 1e-3;
+
+/// The part of the tolerance that is aimed at, and that is enough.
+const AIM: f64 = 0.95;
+const ENOUGH: f64 = 0.8;
+
+/// The power of λ that the deviation is taken for where two minima tell none, and its bounds.
+const POWERS: [f64; 2] = [0.3, 1.2];
+
+/// The most weights tried after the first.
+const MOST: usize = 4;
+
+/// Lowers the energy from `map` for λ that fall until the deviation is within the tolerance.
+pub(super) fn quickly(
+    descent: &mut Descent<'_>,
+    mut map: PlanarMap,
+    goal: &mut Goal,
+    tolerance: f64,
+    history: &mut History,
+    observer: &mut dyn Observer,
+) -> (PlanarMap, Status) {
+    let mut minima: Vec<[f64; 2]> = Vec::new();
+    for k in 0..WEIGHTS.len() + MOST {
+        goal.precision = if k == 0 { ROUGHLY } else { CLOSELY };
+        goal.weight = match minima[..] {
+            [.., before, last] => next_weight(before, last, tolerance),
+            _ => WEIGHTS[k],
+        };
+        let status;
+        (map, status) = descent.run(map, goal, history, observer);
+        if matches!(status, Status::Cancelled | Status::MaxIterations) {
+            return (map, status);
+        }
+        let deviation = descent.deviation(&map);
+        if std::env::var("QUICK_TRACE").is_ok() {
+            eprintln!("    λ {:.2e} deviation {deviation:.4} iterations {}", goal.weight, descent.done);
+        }
+        if deviation <= tolerance && (deviation >= ENOUGH * tolerance || k == 0 || k >= WEIGHTS.len()) {
+            return (map, Status::Converged);
+        }
+        minima.push([goal.weight, deviation]);
+    }
+    (map, Status::Stalled)
+}
+
+/// The weight at which the deviation is somewhat below the tolerance, by a power through the last two minima.
+fn next_weight([weight, deviation]: [f64; 2], last: [f64; 2], tolerance: f64) -> f64 {
+    let power = (last[1] / deviation).ln() / (last[0] / weight).ln();
+    let power = if power.is_finite() { power.clamp(POWERS[0], POWERS[1]) } else { POWERS[1] };
+    last[0] * (AIM * tolerance / last[1]).powf(1.0 / power).clamp(0.05, 20.0)
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A quick cut: cones joined by cheapest paths.
+//!
+//! 1. Cones, greedily: the membrane Δu = κ with the angle defect κ as load and u = 0 at the cones and on the boundary
+//!    is solved, and the vertex of largest |u| becomes the next cone.
+//! 2. The cones are joined to the borders in that order, each by the cheapest path, until the plate predicts the
+//!    wanted shear.
+//!
+//! The cut is some percent longer than what the search makes of it, and comes after some twenty solves: the preview
+//! while a slider moves, and a second start of the search.
+
+use super::cut::Cut;
+use super::cut_graph::cut_graph;
+use super::edge_mesh::EdgeMesh;
+use super::paths::Paths;
+use super::search::{Problem, Search, State};
+use crate::control::{Observer, Watch};
+use crate::error::Error;
+use crate::mesh::Vertex;
+use crate::mesh::geometry::corner_cotangents;
+use crate::sparse::Cholesky;
+use sprs::CsMat;
+
+/// The most cones.
+const MOST_CONES: usize = 60;
+
+/// Cones that are added between two predictions of the shear.
+const STRIDE: usize = 1;
+
+impl Search<'_> {
+    /// The cut through as few cones as meet the target.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`], or a failed factorization.
+    pub(super) fn through_cones(&mut self, observer: &mut dyn Observer) -> Result<State, Error> {
+        let Problem { mesh, cost, given, target, bound, .. } = self.problem();
+        let mut cut = cut_graph(mesh, cost, given);
+        let cones = cones(mesh, &cut, observer)?;
+        let mut state: Option<State> = None;
+        for (k, &cone) in cones.iter().enumerate() {
+            let on_border = cut.border_vertices(mesh);
+            let borders: Vec<_> =
+                Vertex::all(mesh.n_vertices()).filter(|&vertex| on_border[vertex]).collect();
+            // on a closed surface the first two cones are joined to each other
+            let sources = if borders.is_empty() { vec![cones[0]] } else { borders };
+            let path = Paths::from(mesh, &sources, cost).to(mesh, cone);
+            if path.is_empty() {
+                continue;
+            }
+            cut = cut.with(&self.with_mirrored(&path));
+            if k % STRIDE != 0 || !cut.islands(mesh).are_disks() {
+                continue;
+            }
+            let next = self.state(cut.clone(), observer)?;
+            let figures = self.figures(&next.shear);
+            state = Some(next);
+            if figures.mean <= target && figures.percentile <= bound {
+                break;
+            }
+        }
+        match state {
+            Some(state) => Ok(state),
+            None => self.state(cut, observer),
+        }
+    }
+}
+
+/// The cones, the first first.
+fn cones(mesh: &EdgeMesh, cut: &Cut, observer: &mut dyn Observer) -> Result<Vec<Vertex>, Error> {
+    let defects = mesh.angle_defects();
+    let on_border = cut.border_vertices(mesh);
+    let mut is_pinned = on_border;
+    let mut cones = Vec::with_capacity(MOST_CONES);
+    if !is_pinned.contains(&true) {
+        let largest = |a: Vertex, b: Vertex| if defects[b].abs() > defects[a].abs() { b } else { a };
+        let first = Vertex::all(mesh.n_vertices()).fold(Vertex(0), largest);
+        is_pinned[first] = true;
+        cones.push(first);
+    }
+    let laplacian = laplacian(mesh);
+    let mut factor = Cholesky::analyze(&laplacian)?;
+    let mut masked = laplacian.clone();
+    while cones.len() < MOST_CONES.min(mesh.n_vertices() / 4) {
+        mask(&laplacian, &is_pinned, &mut masked);
+        let watch = Watch::new(&mut *observer, 0.0, "seeking seams");
+        factor.refactor_while(&masked, &watch)?;
+        let mut u: Vec<_> = defects
+            .iter()
+            .zip(&is_pinned)
+            .map(|(&defect, &pinned)| if pinned { 0.0 } else { defect })
+            .collect();
+        factor.solve(&mut u);
+        let largest = |a: Vertex, b: Vertex| if u[b].abs() > u[a].abs() { b } else { a };
+        let next = Vertex::all(mesh.n_vertices()).fold(Vertex(0), largest);
+        is_pinned[next] = true;
+        cones.push(next);
+    }
+    Ok(cones)
+}
+
+/// The cotangent Laplacian, upper triangle, positive semidefinite but for obtuse angles.
+fn laplacian(mesh: &EdgeMesh) -> CsMat<f64> {
+    let cotangents = corner_cotangents(mesh.mesh.points(), mesh.mesh.faces());
+    let n = mesh.n_vertices();
+    let weight = |edge| {
+        let (first, second) = mesh.edges.sides(edge);
+        let half = |corner: crate::mesh::Corner| 0.5 * cotangents[corner.face()][corner.place()];
+        half(first) + second.map_or(0.0, half)
+    };
+    let mut triplets = sprs::TriMat::new((n, n));
+    let mut diagonal = vec![0.0; n];
+    for edge in mesh.edges.all() {
+        let ([a, b], weight) = (mesh.edges.ends(edge), weight(edge));
+        triplets.add_triplet(a.index(), b.index(), -weight);
+        diagonal[a] += weight;
+        diagonal[b] += weight;
+    }
+    diagonal.iter().enumerate().for_each(|(k, &value)| triplets.add_triplet(k, k, value));
+    triplets.to_csc()
+}
+
+/// Masks the rows and columns of pins.
+fn mask(matrix: &CsMat<f64>, is_pinned: &[bool], masked: &mut CsMat<f64>) {
+    for (value, (&entry, (row, column))) in masked.data_mut().iter_mut().zip(matrix.iter()) {
+        *value = match (is_pinned[row] || is_pinned[column], row == column) {
+            (true, true) => 1.0,
+            (true, false) => 0.0,
+            _ => entry,
+        };
+    }
+}

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Corrections of what the plate predicts by maps.
+//!
+//! Where the maps of a cut are sheared more than was wanted, the search goes on from the last cut that was not enough,
+//! for a lower predicted shear: by the rule of three, then by secants. From a cut that was more than enough, it goes on
+//! for a higher one. A large component is mapped at the end only; the maps that correct are those of its stand-in.
+
+use super::cut::Cut;
+use super::maps::{self, Outlines};
+use super::one_to_one::{Seamed, chords, one_to_one};
+use super::prepared::{Level, Prepared, Wishes};
+use super::search::Solution;
+use crate::control::Observer;
+use crate::error::Error;
+use crate::mesh::Edge;
+
+/// The shear of the maps may exceed the target by this factor.
+const NEARLY: f64 = 1.008;
+
+/// Maps may fall short of the target by this part before the seams are called too long.
+const GENEROUS: f64 = 0.93;
+
+/// The most corrections, and of those by maps of a large component.
+const MOST: usize = 3;
+const MOST_LARGE: usize = 1;
+
+/// The most rounds of chords.
+const MOST_CHORDS: usize = 8;
+
+/// Bounds of the slope of shear over predicted shear.
+const SLOPES: [f64; 2] = [0.4, 3.0];
+
+/// Bounds of the excess of a predicted shear over 1 in units of that of the target.
+const EXCESSES: [f64; 2] = [0.4, 1.25];
+
+/// What corrections have found so far.
+pub(super) struct Correction<'a> {
+    prepared: &'a Prepared<'a>,
+    target: f64,
+    /// The most islands; `None` where islands may overlap themselves.
+    max_islands: Option<usize>,
+    /// Seams of the proxy that stay.
+    given: Cut,
+    /// The wanted prediction.
+    aim: f64,
+    /// Each prediction wanted, with the shear of the maps.
+    history: Vec<[f64; 2]>,
+    /// The last cut of the proxy that was not enough.
+    insufficient: Option<Cut>,
+}
+
+/// A cut of the proxy with the maps of its islands on a finer mesh.
+type Mapped = (Solution, Seamed);
+
+impl<'a> Correction<'a> {
+    pub(super) fn new(prepared: &'a Prepared<'a>, wishes: &Wishes<'_>) -> Self {
+        let target = wishes.target;
+        let given = Cut::none(&prepared.proxy);
+        let max_islands = (!wishes.overlap).then_some(wishes.max_islands);
+        Self { prepared, target, max_islands, given, aim: target, history: Vec::new(), insufficient: None }
+    }
+
+    /// The seams that are enough by the maps.
+    pub(super) fn run(mut self, solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
+        let prepared = self.prepared;
+        // 1. Chords through the proxy's islands that overlap themselves
+        let mut solution = self.with_chords(solution, observer)?;
+        // 2. Corrections by maps
+        let mut most = MOST;
+        if let Some(stand_in) = &prepared.stand_in {
+            solution = self.corrected(solution, stand_in, MOST, observer)?.0;
+            self.history.clear();
+            most = MOST_LARGE;
+        }
+        let (_, mut seamed) = self.corrected(solution, &prepared.component, most, observer)?;
+        // 3. One-to-one maps
+        if let Some(max_islands) = self.max_islands {
+            one_to_one(&mut seamed, &prepared.component, max_islands, observer)?;
+        }
+        Ok(seamed)
+    }
+
+    /// The cut of the proxy with chords where islands overlap themselves, drawn back.
+    fn with_chords(&mut self, mut solution: Solution, observer: &mut dyn Observer) -> Result<Solution, Error> {
+        let Some(max_islands) = self.max_islands else { return Ok(solution) };
+        let prepared = self.prepared;
+        for _ in 0..MOST_CHORDS {
+            let chords = chords(&prepared.proxy, &solution.state.cut, &prepared.cost, max_islands, observer)?;
+            let Some(chord) = chords.first() else { break };
+            let all = prepared.with_mirrored(&chords.concat());
+            let sound = [all, prepared.with_mirrored(chord), chord.clone()];
+            let is_sound = |edges: &Vec<Edge>| solution.state.cut.with(edges).islands(&prepared.proxy).are_disks();
+            let Some(edges) = sound.into_iter().find(is_sound) else { break };
+            if std::env::var("SEAMS_TRACE").is_ok() {
+                eprintln!("  chord of {} edges, cost {:.3}", edges.len(), edges.iter().map(|&e| prepared.cost[e]).sum::<f64>());
+            }
+            self.given.add(&edges);
+            let cut = solution.state.cut.with(&edges);
+            solution = prepared.go_on(cut, &self.given, [self.aim, self.target], observer)?;
+        }
+        Ok(solution)
+    }
+
+    /// The cheapest cut found whose maps on a mesh meet the target; the one of least shear where none does.
+    fn corrected(
+        &mut self,
+        mut solution: Solution,
+        level: &Level<'_>,
+        most: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Mapped, Error> {
+        let mut best: Option<(bool, f64, Mapped)> = None;
+        for correction in 0..=most {
+            let seamed = self.mapped(&solution, level, observer)?;
+            let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
+            if let Ok(out) = std::env::var("SEAMS_DUMP") {
+                let b: Vec<u8> = seamed.cut.seams().flat_map(|e| level.mesh.edges.ends(e)).flat_map(|v| v.0.to_le_bytes()).collect();
+                std::fs::write(format!("{out}/step{correction}.edges"), b).unwrap();
+            }
+            if std::env::var("SEAMS_TRACE").is_ok() {
+                let m = seamed.measured.unwrap();
+                eprintln!("  {} vertices: aim {:.3} predicted {:.3} {:.2} mapped {shear:.3} {:.2} SD {:.4} islands {} L {:.3} (proxy {:.3})", level.mesh.n_vertices(), self.aim, seamed.predicted.mean, seamed.predicted.percentile,
+                 m.percentile, m.area_deviation, format!("{} leaves {}/{}", seamed.islands.len(), seamed.cut.n_leaves(&level.mesh), solution.state.cut.n_leaves(&self.prepared.proxy)), seamed.cut.sum(&level.mesh.lengths), solution.state.cut.sum(&self.prepared.proxy.lengths));
+            }
+            let is_enough = shear <= NEARLY * self.target;
+            let rank = if is_enough { seamed.cut.sum(&level.cost) } else { shear };
+            if is_first(&best, is_enough, rank) {
+                best = Some((is_enough, rank, (solution.clone(), seamed)));
+            }
+            if self.is_done(shear) || correction == most {
+                break;
+            }
+            let next = self.next(&solution, shear, observer)?;
+            if next.state.cut == solution.state.cut {
+                break;
+            }
+            solution = next;
+        }
+        best.map(|(_, _, mapped)| mapped).ok_or(Error::CancelledEarly)
+    }
+
+    fn mapped(&self, solution: &Solution, level: &Level<'_>, observer: &mut dyn Observer) -> Result<Seamed, Error> {
+        let cut = self.prepared.lifted(&solution.state.cut, level);
+        let mut islands = maps::islands(&level.mesh, &cut)?;
+        maps::map_all(&mut islands, Outlines::MayCross, observer)?;
+        let measured = Some(maps::figures(&islands));
+        Ok(Seamed { cut, islands, predicted: self.prepared.predicted(solution), measured })
+    }
+
+    /// Whether maps of a shear are sheared enough and not too much.
+    fn is_done(&self, shear: f64) -> bool {
+        let is_generous = shear < 1.0 + GENEROUS * (self.target - 1.0);
+        shear <= NEARLY * self.target && !is_generous
+    }
+
+    /// The cut for the next prediction, given the shear of the maps of the last one.
+    fn next(
+        &mut self,
+        solution: &Solution,
+        shear: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Solution, Error> {
+        self.history.push([self.aim, shear]);
+        if shear > NEARLY * self.target {
+            self.insufficient = Some(solution.state.cut.clone());
+        }
+        self.aim = self.next_aim();
+        let cut = self.insufficient.as_ref().unwrap_or(&solution.state.cut).clone();
+        self.prepared.go_on(cut, &self.given, [self.aim, self.target], observer)
+    }
+
+    /// The predicted shear for which maps would have the wanted one: between the last prediction that was enough and
+    /// the last that was not, where there are both.
+    fn next_aim(&self) -> f64 {
+        let excess = self.target - 1.0;
+        let aimed = 0.995 * self.target;
+        let is_enough = |[_, shear]: &&[f64; 2]| *shear <= NEARLY * self.target;
+        let enough = self.history.iter().rev().find(is_enough);
+        let too_little = self.history.iter().rev().find(|point| !is_enough(point));
+        let next = match (enough, too_little, &self.history[..]) {
+            (Some([low, less]), Some([high, more]), _) if low < high => {
+                low + (high - low) * ((aimed - less) / (more - less)).clamp(0.2, 0.8)
+            }
+            (_, _, [.., [aim_before, shear_before], [aim, shear]]) => {
+                let (by_aim, by_shear) = (aim - aim_before, shear - shear_before);
+                let slope = if by_aim.abs() > 1e-6 { by_shear / by_aim } else { 1.0 };
+                aim + (aimed - shear) / slope.clamp(SLOPES[0], SLOPES[1])
+            }
+            (_, _, [[aim, shear]]) => 1.0 + 0.98 * (aim - 1.0) * excess / (shear - 1.0).max(0.1 * excess),
+            _ => self.aim,
+        };
+        next.clamp(1.0 + EXCESSES[0] * excess, 1.0 + EXCESSES[1] * excess)
+    }
+}
+
+/// Whether a cut is better than the best so far: one that is enough, then that of lowest rank.
+fn is_first<T>(best: &Option<(bool, f64, T)>, is_enough: bool, rank: f64) -> bool {
+    best.as_ref().is_none_or(|(was_enough, best_rank, _)| match (is_enough, *was_enough) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => rank < *best_rank,
+    })
+}

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A set of seams on a mesh: its islands, their topology, and its segments.
+//!
+//! Cost: linear in the mesh.
+
+use super::edge_mesh::EdgeMesh;
+use crate::mesh::{Corner, Edge, Face, Vertex};
+
+/// Seams on the edges of a mesh. The boundary is no seam.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Cut {
+    is_seam: Vec<bool>,
+}
+
+/// The parts of a surface between seams and boundary.
+#[derive(Debug, Clone)]
+pub(super) struct Islands {
+    /// The island of each face, (m,), numbered by their lowest faces.
+    pub of_face: Vec<u32>,
+    /// The area of each.
+    pub areas: Vec<f64>,
+    /// Vertices − edges + faces of each after cutting.
+    pub euler_characteristics: Vec<i64>,
+}
+
+/// A chain of seams between two nodes, or a closed one.
+#[derive(Debug, Clone)]
+pub(super) struct Segment {
+    /// The vertices, one more than edges; the first and the last agree where the segment is closed.
+    pub vertices: Vec<Vertex>,
+    pub edges: Vec<Edge>,
+}
+
+impl Cut {
+    /// No seams.
+    pub(super) fn none(mesh: &EdgeMesh) -> Self {
+        Self { is_seam: vec![false; mesh.n_edges()] }
+    }
+
+    pub(super) fn is_seam(&self, edge: Edge) -> bool {
+        self.is_seam[edge]
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        !self.is_seam.contains(&true)
+    }
+
+    /// The seams, ascending.
+    pub(super) fn seams(&self) -> impl Iterator<Item = Edge> + '_ {
+        Edge::all(self.is_seam.len()).filter(|&edge| self.is_seam[edge])
+    }
+
+    pub(super) fn add(&mut self, edges: &[Edge]) {
+        edges.iter().for_each(|&edge| self.is_seam[edge] = true);
+    }
+
+    pub(super) fn remove(&mut self, edges: &[Edge]) {
+        edges.iter().for_each(|&edge| self.is_seam[edge] = false);
+    }
+
+    /// The cut with more seams.
+    pub(super) fn with(&self, edges: &[Edge]) -> Self {
+        let mut cut = self.clone();
+        cut.add(edges);
+        cut
+    }
+
+    /// The cut with fewer seams.
+    pub(super) fn without(&self, edges: &[Edge]) -> Self {
+        let mut cut = self.clone();
+        cut.remove(edges);
+        cut
+    }
+
+    /// Whether an edge bounds an island: a seam, or an edge of the boundary.
+    pub(super) fn is_border(&self, mesh: &EdgeMesh, edge: Edge) -> bool {
+        self.is_seam[edge] || mesh.edges.is_boundary(edge)
+    }
+
+    /// The sum of a cost over the seams.
+    pub(super) fn sum(&self, cost: &[f64]) -> f64 {
+        self.seams().map(|edge| cost[edge]).sum()
+    }
+
+    /// The number of seams at each vertex, with the edges of the boundary where `with_boundary`.
+    pub(super) fn degrees(&self, mesh: &EdgeMesh, with_boundary: bool) -> Vec<u32> {
+        let mut degrees = vec![0; mesh.n_vertices()];
+        for edge in mesh.edges.all() {
+            if self.is_seam[edge] || (with_boundary && mesh.edges.is_boundary(edge)) {
+                mesh.edges.ends(edge).iter().for_each(|&vertex| degrees[vertex] += 1);
+            }
+        }
+        degrees
+    }
+
+    /// The number of seams that end freely within an island.
+    pub(super) fn n_leaves(&self, mesh: &EdgeMesh) -> usize {
+        self.degrees(mesh, true).iter().filter(|&&degree| degree == 1).count()
+    }
+
+    /// Whether each vertex lies on a border, (n,).
+    pub(super) fn border_vertices(&self, mesh: &EdgeMesh) -> Vec<bool> {
+        self.degrees(mesh, true).iter().map(|&degree| degree > 0).collect()
+    }
+
+    /// The islands.
+    pub(super) fn islands(&self, mesh: &EdgeMesh) -> Islands {
+        let (of_face, n) = self.label_faces(mesh);
+        let mut areas = vec![0.0; n];
+        let mut euler_characteristics = vec![0; n];
+        for (face, &island) in of_face.iter().enumerate() {
+            areas[island as usize] += mesh.areas[face];
+            euler_characteristics[island as usize] += 1;
+        }
+        for edge in mesh.edges.all() {
+            let (first, second) = mesh.faces_at(edge);
+            euler_characteristics[of_face[first] as usize] -= 1;
+            if let Some(second) = second.filter(|_| self.is_seam[edge]) {
+                euler_characteristics[of_face[second] as usize] -= 1;
+            }
+        }
+        self.count_vertices(mesh, |face| euler_characteristics[of_face[face] as usize] += 1);
+        Islands { of_face, areas, euler_characteristics }
+    }
+
+    /// The island of each face, and the number of islands.
+    fn label_faces(&self, mesh: &EdgeMesh) -> (Vec<u32>, usize) {
+        const UNLABELED: u32 = u32::MAX;
+        let mut label = vec![UNLABELED; mesh.n_faces()];
+        let mut n_islands = 0;
+        let mut pending = Vec::new();
+        for seed in Face::all(mesh.n_faces()) {
+            if label[seed] != UNLABELED {
+                continue;
+            }
+            label[seed] = n_islands;
+            pending.push(seed);
+            while let Some(face) = pending.pop() {
+                for corner in face.corners() {
+                    let across = self.across(mesh, corner).map(Corner::face);
+                    if let Some(across) = across.filter(|&across| label[across] == UNLABELED) {
+                        label[across] = n_islands;
+                        pending.push(across);
+                    }
+                }
+            }
+            n_islands += 1;
+        }
+        (label, n_islands as usize)
+    }
+
+    /// The corner across the edge opposite to a corner, unless a border lies between.
+    fn across(&self, mesh: &EdgeMesh, corner: Corner) -> Option<Corner> {
+        mesh.mesh.opposite(corner).filter(|_| !self.is_seam[mesh.edges.opposite_to(corner)])
+    }
+
+    /// Calls `visit` for each vertex of the cut mesh, with a face at it.
+    fn count_vertices(&self, mesh: &EdgeMesh, mut visit: impl FnMut(Face)) {
+        let n_seams = self.degrees(mesh, false);
+        for vertex in Vertex::all(mesh.n_vertices()) {
+            let corners = mesh.mesh.vertex_corners(vertex);
+            // a fan falls into as many parts as borders leave it, and a circle of faces is one part at least
+            if n_seams[vertex] == 0 || (n_seams[vertex] == 1 && !mesh.mesh.is_boundary(vertex)) {
+                visit(corners[0].face());
+                continue;
+            }
+            for &corner in corners {
+                // the first corner of its part, in the direction of the turn
+                if self.across(mesh, corner.next()).is_none() {
+                    visit(corner.face());
+                }
+            }
+        }
+    }
+
+    /// The segments between nodes: vertices of the boundary and those where other than two seams meet.
+    pub(super) fn segments(&self, mesh: &EdgeMesh) -> Vec<Segment> {
+        let degrees = self.degrees(mesh, false);
+        let is_node =
+            |vertex: Vertex| degrees[vertex] > 0 && (degrees[vertex] != 2 || mesh.mesh.is_boundary(vertex));
+        let mut is_used = vec![false; mesh.n_edges()];
+        let mut segments = Vec::new();
+        for vertex in Vertex::all(mesh.n_vertices()).filter(|&vertex| is_node(vertex)) {
+            for &(_, edge) in mesh.edges.around(vertex) {
+                if self.is_seam[edge] && !is_used[edge] {
+                    segments.push(self.walk(mesh, vertex, edge, is_node, &mut is_used));
+                }
+            }
+        }
+        for edge in Edge::all(mesh.n_edges()) {
+            if self.is_seam[edge] && !is_used[edge] {
+                segments.push(self.walk(mesh, mesh.edges.ends(edge)[0], edge, is_node, &mut is_used));
+            }
+        }
+        segments
+    }
+
+    /// The segment that leaves a vertex along an edge.
+    fn walk(
+        &self,
+        mesh: &EdgeMesh,
+        start: Vertex,
+        first: Edge,
+        is_node: impl Fn(Vertex) -> bool,
+        is_used: &mut [bool],
+    ) -> Segment {
+        let mut segment = Segment { vertices: vec![start], edges: Vec::new() };
+        let (mut vertex, mut next) = (start, Some(first));
+        while let Some(edge) = next {
+            is_used[edge] = true;
+            vertex = mesh.edges.other_end(edge, vertex);
+            segment.edges.push(edge);
+            segment.vertices.push(vertex);
+            let onward = mesh.edges.around(vertex).iter().map(|&(_, edge)| edge);
+            let mut onward = onward.filter(|&edge| self.is_seam[edge] && !is_used[edge]);
+            next = if is_node(vertex) || vertex == start { None } else { onward.next() };
+        }
+        segment
+    }
+}
+
+impl Islands {
+    /// The number of islands.
+    pub(super) fn len(&self) -> usize {
+        self.areas.len()
+    }
+
+    /// Whether every island is a topological disk.
+    pub(super) fn are_disks(&self) -> bool {
+        self.euler_characteristics.iter().all(|&euler| euler == 1)
+    }
+
+    /// The smallest area of an island.
+    pub(super) fn least_area(&self) -> f64 {
+        self.areas.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Segment {
+    /// Whether the segment ends where it begins.
+    pub(super) fn is_closed(&self) -> bool {
+        self.vertices.first() == self.vertices.last()
+    }
+
+    /// The segment from its last vertex to its first.
+    pub(super) fn reversed(&self) -> Self {
+        let (mut vertices, mut edges) = (self.vertices.clone(), self.edges.clone());
+        vertices.reverse();
+        edges.reverse();
+        Self { vertices, edges }
+    }
+}

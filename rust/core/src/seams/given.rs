@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What the caller gives: options are checked, the surface is cut along given seams, and factors and diagonals are
+//! carried to its parts.
+
+use ndarray::{Array2, ArrayView1, ArrayView2};
+
+use super::edge_mesh::EdgeMesh;
+use super::options::SeamOptions;
+use super::prepared::Wishes;
+use crate::arrays::rows_of;
+use crate::error::Error;
+use crate::mesh::{Edge, EdgeTable, Face, Patch, Surface, Vertex};
+use crate::vector::Vector3;
+
+/// A part of the surface between given seams.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub mesh: EdgeMesh,
+    /// The vertex of the surface of which each vertex is a copy.
+    pub vertex_of: Vec<Vertex>,
+    /// The face of the surface that each face is.
+    pub face_of: Vec<Face>,
+    /// Factors of the cost of a seam, (e,).
+    weights: Option<Vec<f64>>,
+}
+
+impl Part {
+    /// What the caller wants of the part.
+    pub(super) fn wishes(&self, options: &SeamOptions<'_>) -> Wishes<'_> {
+        Wishes {
+            target: options.target,
+            weights: self.weights.as_deref(),
+            front: options.front.map(|front| Vector3(front).normalized()),
+            symmetry: options.symmetry,
+            max_islands: options.max_islands.unwrap_or(usize::MAX),
+            overlap: options.overlap,
+            method: options.method,
+        }
+    }
+}
+
+/// The parts between the given seams, in the order of their lowest faces.
+///
+/// # Errors
+/// Options out of range, seams that are no edges, parts that are no oriented manifold.
+pub(super) fn parts(surface: &Surface, options: &SeamOptions<'_>) -> Result<Vec<Part>, Error> {
+    let table = EdgeTable::new(surface.n_vertices(), surface.face_rows());
+    check(options)?;
+    let factors = options.weights.map(|weights| EdgeFactors::new(surface, &table, weights)).transpose()?;
+    let diagonals = sorted_edges("diagonals", options.diagonals)?;
+    let patches = match options.fixed {
+        Some(fixed) => surface.cut(fixed)?,
+        None => surface.cut(Array2::zeros((0, 2)))?,
+    };
+    patches.into_iter().map(|patch| part(patch, &diagonals, factors.as_ref())).collect()
+}
+
+fn check(options: &SeamOptions<'_>) -> Result<(), Error> {
+    if !(options.target > 1.0 && options.target.is_finite()) {
+        let expected = "a finite number > 1".into();
+        return Err(Error::InvalidOption { name: "target", found: options.target.to_string(), expected });
+    }
+    if let Some(front) = options.front
+        && !(Vector3(front).is_finite() && Vector3(front).norm() > 0.0)
+    {
+        let expected = "a direction of finite length > 0".into();
+        return Err(Error::InvalidOption { name: "front", found: format!("{front:?}"), expected });
+    }
+    if options.max_islands == Some(0) {
+        let expected = "a number ≥ 1".into();
+        return Err(Error::InvalidOption { name: "max_islands", found: "0".into(), expected });
+    }
+    let weights = options.weights.iter().flatten();
+    if let Some(weight) = weights.copied().find(|&weight| !(weight > 0.0)) {
+        let expected = "positive, or inf where there must be no seam".into();
+        return Err(Error::InvalidArray { name: "weights", found: format!("{weight} somewhere"), expected });
+    }
+    Ok(())
+}
+
+fn part(
+    patch: Patch,
+    diagonals: &[[Vertex; 2]],
+    factors: Option<&EdgeFactors>,
+) -> Result<Part, Error> {
+    let face_of: Vec<_> = patch.corner_of.rows().into_iter().map(|row| Face(row[0] / 3)).collect();
+    let vertex_of = patch.vertex_of;
+    let mut mesh = EdgeMesh::new(patch.surface.mesh()?.clone());
+    let ends = |edge: Edge| sorted(mesh.edges.ends(edge).map(|vertex| vertex_of[vertex]));
+    let contains = |edges: &[[Vertex; 2]], edge: Edge| edges.binary_search(&ends(edge)).is_ok();
+    let weights = factors.map(|factors| mesh.edges.all().map(|edge| factors.at(ends(edge))).collect());
+    let is_diagonal = mesh.edges.all().map(|edge| contains(diagonals, edge)).collect();
+    mesh.is_diagonal = is_diagonal;
+    Ok(Part { mesh, vertex_of, face_of, weights })
+}
+
+/// The caller's factors at the edges.
+struct EdgeFactors {
+    edges: Vec<[Vertex; 2]>,
+    factors: Vec<f64>,
+}
+
+impl EdgeFactors {
+    /// Factors at the vertices, of which an edge has the mean, or at the edges.
+    fn new(
+        surface: &Surface,
+        table: &EdgeTable,
+        weights: ArrayView1<'_, f64>,
+    ) -> Result<Self, Error> {
+        let edges: Vec<_> = table.edges().map(|(edge, _)| edge).collect();
+        let factors = if weights.len() == surface.n_vertices() {
+            edges.iter().map(|[a, b]| 0.5 * (weights[a.index()] + weights[b.index()])).collect()
+        } else if weights.len() == edges.len() {
+            weights.to_vec()
+        } else {
+            let found = format!("of shape ({},)", weights.len());
+            let (n, e) = (surface.n_vertices(), edges.len());
+            let expected = format!("of shape ({n},), one for each vertex, or ({e},), one for each edge");
+            return Err(Error::InvalidArray { name: "weights", found, expected });
+        };
+        Ok(Self { edges, factors })
+    }
+
+    fn at(&self, edge: [Vertex; 2]) -> f64 {
+        self.edges.binary_search(&edge).map_or(1.0, |place| self.factors[place])
+    }
+}
+
+/// The rows of an array of edges, each with its lower end first, ascending.
+pub(crate) fn sorted_edges(
+    name: &'static str,
+    edges: Option<ArrayView2<'_, u32>>,
+) -> Result<Vec<[Vertex; 2]>, Error> {
+    let Some(edges) = edges else { return Ok(Vec::new()) };
+    let mut rows: Vec<_> = rows_of(name, edges)?.iter().map(|row| sorted(row.map(Vertex))).collect();
+    rows.sort_unstable();
+    Ok(rows)
+}
+
+fn sorted([a, b]: [Vertex; 2]) -> [Vertex; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The length of edges of a surface.
+pub(crate) fn length(surface: &Surface, edges: &[[Vertex; 2]]) -> f64 {
+    let points = surface.vertex_rows();
+    edges.iter().map(|&[a, b]| Vector3(points[a]).distance(Vector3(points[b]))).sum()
+}

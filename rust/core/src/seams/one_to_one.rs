@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Islands that do not overlap themselves in the plane.
+//!
+//! An island whose map crosses itself is mapped again with an outline that may not, or parted by a chord where that
+//! would shear it too much.
+
+use super::chord::chord;
+use super::cut::Cut;
+use super::edge_mesh::EdgeMesh;
+use super::maps::{self, IslandMap, MapFigures, Outlines};
+use super::overlap::overlap;
+use super::prepared::Level;
+use super::search::Figures;
+use crate::control::{Observer, Status};
+use crate::error::Error;
+use crate::mesh::Edge;
+
+/// The share of an island that may be covered twice while seams are sought.
+const TOLERATED: f64 = 0.002;
+
+/// An island that covers more of its place twice is not worth a map whose outline may not cross itself.
+const HOPELESS: f64 = 0.03;
+
+/// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
+const ACCEPTED: f64 = 0.03;
+
+/// The most chords in one component.
+const MOST_CHORDS: usize = 8;
+
+/// The seams of a component with the maps of its islands.
+#[derive(Debug, Clone)]
+pub(super) struct Seamed {
+    pub cut: Cut,
+    /// The islands; not mapped for a preview.
+    pub islands: Vec<IslandMap>,
+    pub predicted: Figures,
+    /// The figures of the maps; `None` for a preview.
+    pub measured: Option<MapFigures>,
+}
+
+/// The chords of a cut of the proxy: one for each island that overlaps itself, if an outline that may not cross itself
+/// costs too much.
+pub(super) fn chords(
+    mesh: &EdgeMesh,
+    cut: &Cut,
+    cost: &[f64],
+    max_islands: usize,
+    observer: &mut dyn Observer,
+) -> Result<Vec<Vec<Edge>>, Error> {
+    let mut islands = maps::islands(mesh, cut)?;
+    let mut room = max_islands.saturating_sub(islands.len());
+    maps::map_all(&mut islands, Outlines::MayCross, observer)?;
+    let total: f64 = islands.iter().map(IslandMap::area).sum();
+    let mut chords = Vec::new();
+    for island in &islands {
+        let overlap = overlap(island);
+        if overlap.share <= TOLERATED || room == 0 {
+            continue;
+        }
+        if overlap.share <= HOPELESS && uncrossed(island, ACCEPTED * total, observer)?.is_some() {
+            continue;
+        }
+        if let Some(chord) = chord(mesh, cut, cost, island, &overlap) {
+            chords.push(chord);
+            room -= 1;
+        }
+    }
+    Ok(chords)
+}
+
+/// The map of an island whose outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no more
+/// than `accepted`.
+fn uncrossed(
+    island: &IslandMap,
+    accepted: f64,
+    observer: &mut dyn Observer,
+) -> Result<Option<IslandMap>, Error> {
+    let mut mapped = island.clone();
+    if mapped.map(Outlines::MayNotCross, observer)? == Status::Cancelled {
+        return Err(Error::CancelledEarly);
+    }
+    let rise = maps::figures([&mapped]).mean - maps::figures([island]).mean;
+    Ok((rise * island.area() <= accepted).then_some(mapped))
+}
+
+/// Maps islands again, or parts them, until none overlaps itself.
+pub(super) fn one_to_one(
+    seamed: &mut Seamed,
+    level: &Level<'_>,
+    max_islands: usize,
+    observer: &mut dyn Observer,
+) -> Result<(), Error> {
+    let mesh = &*level.mesh;
+    let total: f64 = seamed.islands.iter().map(IslandMap::area).sum();
+    let mut n_chords = 0;
+    let mut k = 0;
+    while k < seamed.islands.len() {
+        let overlap = overlap(&seamed.islands[k]);
+        if overlap.pairs.is_empty() {
+            k += 1;
+            continue;
+        }
+        let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < max_islands;
+        let accepted = if may_part { ACCEPTED * total } else { f64::INFINITY };
+        if !may_part || overlap.share <= HOPELESS {
+            if let Some(mapped) = uncrossed(&seamed.islands[k], accepted, observer)? {
+                seamed.islands[k] = mapped;
+                k += 1;
+                continue;
+            }
+        }
+        match chord(mesh, &seamed.cut, &level.cost, &seamed.islands[k], &overlap) {
+            Some(chord) => {
+                n_chords += 1;
+                seamed.cut.add(&chord);
+                part(seamed, mesh, k, observer)?;
+            }
+            None => {
+                if let Some(mapped) = uncrossed(&seamed.islands[k], f64::INFINITY, observer)? {
+                    seamed.islands[k] = mapped;
+                }
+                k += 1;
+            }
+        }
+    }
+    seamed.measured = Some(maps::figures(&seamed.islands));
+    Ok(())
+}
+
+/// Maps the parts into which the cut now divides an island, which they replace.
+fn part(seamed: &mut Seamed, mesh: &EdgeMesh, k: usize, observer: &mut dyn Observer) -> Result<(), Error> {
+    let mut is_within = vec![false; mesh.n_faces()];
+    seamed.islands[k].face_of.iter().for_each(|&face| is_within[face] = true);
+    let mut parts = maps::islands(mesh, &seamed.cut)?;
+    parts.retain(|part| is_within[part.face_of[0]]);
+    maps::map_all(&mut parts, Outlines::MayCross, observer)?;
+    seamed.islands.splice(k..=k, parts);
+    Ok(())
+}

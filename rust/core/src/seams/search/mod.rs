@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The search for the shortest seams under which the plate predicts a wanted shear.
+//!
+//! From a first cut that leaves disks only (`start`), in rounds:
+//!
+//! 1. Grow (`grow`): slits are added that lower the predicted distortion most for their cost.
+//! 2. Straighten (`straighten`): segments are replaced by cheapest paths.
+//! 3. Draw back (`draw_back`): what raises the distortion least for the cost it spares is taken away again.
+//!
+//! The distortion of a cut is Σ A φ(k), φ(k) = k − 1 + max(0, k − P), over the faces' predicted k = σ₁/σ₂. Candidates
+//! are measured by a solve of the plate on the islands that they change. A value measured for an earlier cut stands
+//! until the candidate comes first by it; only then is it measured again (M. Minoux, Accelerated greedy algorithms for
+//! maximizing submodular set functions, 1978), so that most candidates of a step cost nothing.
+//!
+//! On a symmetric mesh every move is made together with its mirror image.
+
+mod draw_back;
+mod grow;
+mod start;
+mod state;
+mod straighten;
+
+use std::sync::Mutex;
+
+use super::cut::Cut;
+use super::edge_mesh::EdgeMesh;
+use super::plate::{Plate, Workspace};
+use crate::control::{Observer, Watch};
+use crate::error::Error;
+use crate::mesh::Edge;
+use crate::parallel;
+pub(super) use state::{Figures, State};
+
+/// ν, the price of a seam that ends within an island: combs of short slits look bad.
+const LEAF_PRICE: f64 = 0.08;
+
+/// μ, the price of an island.
+const ISLAND_PRICE: f64 = 0.35;
+
+/// Islands are not made smaller than this share of the area.
+const LEAST_ISLAND: f64 = 0.02;
+
+/// The number of rounds.
+const ROUNDS: usize = 2;
+
+/// A cut that misses the target by this factor still counts as one that meets it.
+const NEARLY: f64 = 1.005;
+
+/// What a search is given.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub mesh: &'a EdgeMesh,
+    pub plate: &'a Plate,
+    /// The cost of a seam along each edge, (e,); infinite where there must be none.
+    pub cost: &'a [f64],
+    /// The mirror image of each edge, (e,), on a symmetric mesh.
+    pub mirror: Option<&'a [Edge]>,
+    /// Seams that stay.
+    pub given: &'a Cut,
+    /// The mean of σ₁/σ₂ wanted.
+    pub target: f64,
+    /// P, the largest 99th percentile of σ₁/σ₂.
+    pub bound: f64,
+}
+
+/// A running search.
+pub(super) struct Search<'a> {
+    problem: Problem<'a>,
+    workspaces: Mutex<Vec<Workspace>>,
+    /// The fraction of the run that is done.
+    done: f64,
+    pub n_solves: usize,
+}
+
+/// A cut with its price.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    pub state: State,
+    pub price: f64,
+    pub meets_target: bool,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(problem: Problem<'a>) -> Self {
+        Self { problem, workspaces: Mutex::new(Vec::new()), done: 0.0, n_solves: 0 }
+    }
+
+    /// The cheapest cut found from a first cut on.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`], or a failed factorization.
+    pub(super) fn polish(
+        &mut self,
+        cut: Cut,
+        rounds: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Solution, Error> {
+        let target = self.problem.target;
+        let mut state = self.state(cut, observer)?;
+        let mut best: Option<Solution> = None;
+        for round in 0..rounds {
+            let is_last = round + 1 == rounds;
+            let goal = if is_last { target } else { 1.0 + 0.9 * (target - 1.0) };
+            state = self.grow(state, goal, observer)?;
+            state = self.straighten(state, observer)?;
+            state = self.grow(state, goal, observer)?;
+            state = self.draw_back(state, target, self.problem.bound, observer)?;
+            let solution = self.priced(state.clone());
+            if best.as_ref().is_none_or(|best| solution.is_better_than(best)) {
+                best = Some(solution);
+            }
+            if !is_last {
+                let [target, bound] = [1.0 + 1.5 * (target - 1.0), 1.4 * self.problem.bound];
+                state = self.draw_back(state, target, bound, observer)?;
+                state = self.straighten(state, observer)?;
+            }
+        }
+        match best {
+            Some(best) => Ok(best),
+            None => Ok(self.priced(state)),
+        }
+    }
+
+    /// The best of the cuts found from the first cut.
+    pub(super) fn run(&mut self, observer: &mut dyn Observer) -> Result<Solution, Error> {
+        let cut = self.first_cut(observer)?;
+        self.polish(cut, ROUNDS, observer)
+    }
+
+    /// The price of a cut: its cost, its leaves, and its islands but one.
+    pub(super) fn priced(&self, state: State) -> Solution {
+        let Problem { mesh, cost, target, .. } = self.problem;
+        let n_leaves = state.cut.n_leaves(mesh) as f64;
+        let n_islands = state.n_islands.saturating_sub(1) as f64;
+        let price = state.cut.sum(cost) + ISLAND_PRICE * n_islands + LEAF_PRICE * n_leaves;
+        let meets_target = self.figures(&state.shear).mean <= NEARLY * target;
+        Solution { state, price, meets_target }
+    }
+
+    /// What the search is given.
+    pub(super) fn problem(&self) -> Problem<'a> {
+        self.problem
+    }
+
+    /// The edges together with their mirror images.
+    pub(super) fn with_mirrored(&self, edges: &[Edge]) -> Vec<Edge> {
+        let mut all = edges.to_vec();
+        if let Some(mirror) = self.problem.mirror {
+            all.extend(edges.iter().map(|&edge| mirror[edge]));
+            all.sort_unstable();
+            all.dedup();
+        }
+        all
+    }
+
+    /// Solves for each of `n` candidates on all threads; candidates without a result are left out.
+    fn for_each<T: Send>(
+        &self,
+        n: usize,
+        observer: &mut dyn Observer,
+        evaluate: impl Fn(usize, &mut Workspace, &Watch<'_>) -> Result<T, Error> + Sync + Send,
+    ) -> Result<Vec<T>, Error> {
+        let watch = Watch::new(observer, self.done, "seeking seams");
+        let results = parallel::tasks(n, |candidate| {
+            let workspace = self.workspaces.lock().ok().and_then(|mut free| free.pop());
+            let mut workspace = workspace.unwrap_or_else(|| self.problem.plate.workspace());
+            let result = evaluate(candidate, &mut workspace, &watch);
+            if let Ok(mut free) = self.workspaces.lock() {
+                free.push(workspace);
+            }
+            result
+        });
+        results.into_iter().collect()
+    }
+}
+
+impl Solution {
+    /// Whether the solution meets the target and the other does not, or is cheaper.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        match (self.meets_target, other.meets_target) {
+            (true, false) => true,
+            (false, true) => false,
+            _ => self.price < other.price - 1e-9,
+        }
+    }
+}

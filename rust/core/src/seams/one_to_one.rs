@@ -15,11 +15,9 @@ use crate::control::{Observer, Status};
 use crate::error::Error;
 use crate::mesh::Edge;
 
-/// The share of an island that may be covered twice while seams are sought.
-const TOLERATED: f64 = 0.002;
-
-/// An island that covers more of its place twice is not worth a map whose outline may not cross itself.
-const HOPELESS: f64 = 0.03;
+/// An island that covers more of its place twice is parted by a chord at once: a map whose outline may not cross itself
+/// would be sheared too much.
+const HOPELESS: f64 = 0.01;
 
 /// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
 const ACCEPTED: f64 = 0.03;
@@ -38,8 +36,7 @@ pub(super) struct Seamed {
     pub measured: Option<MapFigures>,
 }
 
-/// The chords of a cut of the proxy: one for each island that overlaps itself, if an outline that may not cross itself
-/// costs too much.
+/// The chords of a cut of the proxy: one for each island that covers much of its place twice.
 pub(super) fn chords(
     mesh: &EdgeMesh,
     cut: &Cut,
@@ -48,24 +45,13 @@ pub(super) fn chords(
     observer: &mut dyn Observer,
 ) -> Result<Vec<Vec<Edge>>, Error> {
     let mut islands = maps::islands(mesh, cut)?;
-    let mut room = max_islands.saturating_sub(islands.len());
+    let room = max_islands.saturating_sub(islands.len());
     maps::map_all(&mut islands, Outlines::MayCross, observer)?;
-    let total: f64 = islands.iter().map(IslandMap::area).sum();
-    let mut chords = Vec::new();
-    for island in &islands {
+    let chord_of = |island: &IslandMap| {
         let overlap = overlap(island);
-        if overlap.share <= TOLERATED || room == 0 {
-            continue;
-        }
-        if overlap.share <= HOPELESS && uncrossed(island, ACCEPTED * total, observer)?.is_some() {
-            continue;
-        }
-        if let Some(chord) = chord(mesh, cut, cost, island, &overlap) {
-            chords.push(chord);
-            room -= 1;
-        }
-    }
-    Ok(chords)
+        if overlap.share > HOPELESS { chord(mesh, cut, cost, island, &overlap) } else { None }
+    };
+    Ok(islands.iter().filter_map(chord_of).take(room).collect())
 }
 
 /// The map of an island whose outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no more
@@ -76,11 +62,13 @@ fn uncrossed(
     observer: &mut dyn Observer,
 ) -> Result<Option<IslandMap>, Error> {
     let mut mapped = island.clone();
-    if mapped.map(Outlines::MayNotCross, observer)? == Status::Cancelled {
+    let status = mapped.map(Outlines::MayNotCross, observer)?;
+    if status == Status::Cancelled {
         return Err(Error::CancelledEarly);
     }
     let rise = maps::figures([&mapped]).mean - maps::figures([island]).mean;
-    Ok((rise * island.area() <= accepted).then_some(mapped))
+    let is_good = status == Status::Converged && rise * island.area() <= accepted;
+    Ok((is_good || accepted == f64::INFINITY).then_some(mapped))
 }
 
 /// Maps islands again, or parts them, until none overlaps itself.
@@ -99,6 +87,9 @@ pub(super) fn one_to_one(
         if overlap.pairs.is_empty() {
             k += 1;
             continue;
+        }
+        if std::env::var("SEAMS_TRACE").is_ok() {
+            eprintln!("  island {k} of {} faces: overlap {:.5}", seamed.islands[k].face_of.len(), overlap.share);
         }
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < max_islands;
         let accepted = if may_part { ACCEPTED * total } else { f64::INFINITY };

@@ -26,12 +26,14 @@ const PERCENTILE: f64 = 6.0;
 /// A component of more vertices has a stand-in.
 const LARGE: usize = 20_000;
 
-/// A symmetric cut is given up where its shear exceeds the target by this factor, where an island is smaller than this,
-/// or where two are smaller than that and a cut without symmetry is cheaper by a factor.
+/// A symmetric cut is given up where the excess of its shear over 1 exceeds that of the target by this factor.
 const MISSED: f64 = 1.15;
+
+/// A symmetric cut is given up where an island is smaller than this share of the area.
 const SLIVER: f64 = 0.004;
-const SMALL: f64 = 0.04;
-const CHEAPER: f64 = 1.1;
+
+/// A symmetric cut into several islands is given up where a cut without symmetry is cheaper by this factor.
+const CHEAPER: f64 = 1.2;
 
 /// The factor of the cost of a proxy's edge beside which seams are forbidden at one end.
 const NEARLY_FORBIDDEN: f64 = 30.0;
@@ -122,8 +124,7 @@ impl<'a> Prepared<'a> {
         let is_bad = !islands.are_disks()
             || mean > 1.0 + MISSED * (wishes.target - 1.0)
             || islands.least_area() < SLIVER;
-        let has_small = islands.areas.iter().filter(|&&area| area < SMALL).count() >= 2;
-        if !is_bad && !has_small {
+        if !is_bad && islands.len() == 1 {
             return Ok(solution);
         }
         let mirror = self.mirror.take();

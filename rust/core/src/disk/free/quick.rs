@@ -22,6 +22,12 @@ const ENOUGH: f64 = 0.8;
 /// The power of λ that the deviation is taken for where two minima tell none, and its bounds.
 const POWERS: [f64; 2] = [0.3, 1.2];
 
+/// The power grows by about this factor from one minimum to the next.
+const STEEPER: f64 = 1.2;
+
+/// The most iterations with outlines that may not cross themselves.
+const MOST_ITERATIONS: usize = 60;
+
 /// The most weights tried after the first.
 const MOST: usize = 4;
 
@@ -34,6 +40,7 @@ pub(super) fn quickly(
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (PlanarMap, Status) {
+    goal.most_iterations = if descent.is_free() { usize::MAX } else { MOST_ITERATIONS };
     let mut minima: Vec<[f64; 2]> = Vec::new();
     for k in 0..WEIGHTS.len() + MOST {
         goal.precision = if k == 0 { ROUGHLY } else { CLOSELY };
@@ -60,7 +67,7 @@ pub(super) fn quickly(
 
 /// The weight at which the deviation is somewhat below the tolerance, by a power through the last two minima.
 fn next_weight([weight, deviation]: [f64; 2], last: [f64; 2], tolerance: f64) -> f64 {
-    let power = (last[1] / deviation).ln() / (last[0] / weight).ln();
+    let power = STEEPER * (last[1] / deviation).ln() / (last[0] / weight).ln();
     let power = if power.is_finite() { power.clamp(POWERS[0], POWERS[1]) } else { POWERS[1] };
     last[0] * (AIM * tolerance / last[1]).powf(1.0 / power).clamp(0.05, 20.0)
 }

@@ -97,7 +97,9 @@ impl Search<'_> {
         }
         let cut = state.cut.without(&edges);
         let islands = cut.islands(mesh);
-        if !islands.are_disks() {
+        // islands that a given chord has parted must not become one again
+        let merges = islands.len() < state.n_islands && !self.problem.given.is_empty();
+        if merges || !islands.are_disks() {
             return None;
         }
         let price = self.spared(state, &cut, islands.len(), &edges);

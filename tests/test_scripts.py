@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,6 +31,10 @@ import bench.peers.main
 import bench.peers.methods
 import bench.peers.run
 import bench.report
+import bench.seams.figures
+import bench.seams.main
+import bench.seams.meshes
+import bench.seams.topology
 import bench.tables.main
 import bench.tables.stability
 import changes
@@ -254,6 +259,72 @@ def test_a_mirrored_chart_is_no_fold_and_scale_does_not_count():
     assert mirrored.folds == 0 and mirrored.energy < 1e-12
     image[6] = image[5] + 0.5 * (image[4] - image[5])  # one face of the second square folds onto the other
     assert bench.peers.run.measured(vertices, both, image).folds == 1
+
+
+@pytest.fixture
+def tetrahedron():
+    """A regular tetrahedron with edges of length 1: vertices, faces, and its net, a strip of four faces."""
+    vertices = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(8)
+    faces = np.array([[0, 1, 2], [1, 3, 2], [2, 3, 0], [3, 1, 0]])
+    strip = np.array([[k / 2, k % 2 * np.sqrt(0.75)] for k in range(6)])
+    strip = strip @ [[1, 0], [0, -1]]  # seen from outside, the faces run counter-clockwise
+    return vertices, faces, strip[np.array([[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]])]
+
+
+def test_the_net_of_a_tetrahedron_is_an_isometry_with_three_seams(tetrahedron):
+    vertices, faces, net = tetrahedron
+    figures = bench.seams.figures.measured(vertices, faces, 7 * net)
+    assert (figures.islands, figures.not_disks, figures.flips, figures.overlap) == (1, 0, 0, 0)
+    assert np.isclose(figures.length, 3 / 3**0.25) and figures.deviation < 1e-12
+    assert np.allclose([figures.shear, figures.shear_p99, figures.dirichlet], [1, 1, 4])
+    assert np.isclose(figures.packed, 49 * np.sqrt(3))
+
+
+def test_stretch_of_a_layout_is_measured_at_equal_area(tetrahedron):
+    vertices, faces, net = tetrahedron
+    figures = bench.seams.figures.measured(vertices, faces, net * [-2, 0.5])
+    assert figures.flips == 0 and figures.deviation < 1e-12
+    assert np.allclose([figures.shear, figures.dirichlet], [4, 8.5])
+
+
+def test_folds_and_overlap_of_a_layout_are_counted_within_islands(tetrahedron):
+    vertices, faces, net = tetrahedron
+    folded = net.copy()
+    folded[3, 1] = net[2, 0]  # the last face lies on the third
+    figures = bench.seams.figures.measured(vertices, faces, folded)
+    assert figures.flips == 1 and np.isclose(figures.overlap, 1 / 3, atol=1e-3)
+    apart = np.tile(net[0], (4, 1, 1)) + 1e-3 * np.arange(4)[:, None, None]
+    figures = bench.seams.figures.measured(vertices, faces, apart)
+    assert (figures.islands, figures.flips, figures.overlap) == (4, 0, 0)
+
+
+def test_an_island_that_is_closed_is_not_a_disk(tetrahedron):
+    _, faces, net = tetrahedron
+    islands = bench.seams.topology.islands(faces, net)
+    assert len(islands.seams) == 3 and list(islands.euler) == [1]
+    islands = bench.seams.topology.islands(faces, np.zeros((4, 3, 2)))  # all corners at one place
+    assert len(islands.seams) == 0 and list(islands.euler) == [2]
+
+
+def test_the_comparison_of_seams_has_rows_and_a_sheet(tetrahedron, monkeypatch, tmp_path):
+    vertices, faces, net = tetrahedron
+    net = (net - net.min(axis=(0, 1))) / 3
+    result = SimpleNamespace(uv=net.reshape(-1, 2), faces=np.arange(12).reshape(-1, 3), status="converged")
+    monkeypatch.setattr(authalic, "unwrap", lambda surface, target: result, raising=False)
+    chosen = ({"tetrahedron": (vertices, faces)}, ["spot"])
+    monkeypatch.setattr(bench.seams.meshes, "chosen", lambda names: chosen)
+    target = tmp_path / "seams.md"
+    bench.seams.main.main([str(target), "--absent", "xatlas=no wheel", "bpy=no wheel"])
+    text = target.read_text(encoding="utf-8")
+    assert (
+        len(re.findall(r"(?m)^\| tetrahedron \| 4 \| authalic 1\.\d+ \| 2\.28 \| 1 \| 0\.0000 \|", text)) == 2
+    )
+    assert (
+        len(re.findall(r"(?m)\| not installed: no wheel \|$", text)) == 2
+        and "does not have them: spot" in text
+    )
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
+        assert (tmp_path / picture).stat().st_size > 0, picture
 
 
 def test_the_start_of_other_tools_is_an_embedding():

@@ -38,8 +38,8 @@ class Report:
         self.line(row(cells))
 
     def figure(self, path, caption):
-        """A picture in the folder of the file."""
-        self.line(f"\n![{caption}]({path.name})\n")
+        """A picture in the folder of the file, or in a folder there."""
+        self.line(f"\n![{caption}]({path.relative_to(self.target.parent).as_posix()})\n")
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from shell import CommandFailed, Unavailable, say, tail, warn
 PACKAGES = ("libigl", "xatlas", "lapy")
 
 
-def packages(dev: Environment) -> dict[str, str]:
-    """Installs each peer into the environment; returns {package: why it is missing}."""
+def packages(dev: Environment, wanted: tuple[str, ...] = PACKAGES) -> dict[str, str]:
+    """Installs each wanted peer into the environment; returns {package: why it is missing}."""
     absent = {}
-    for package in PACKAGES:
+    for package in wanted:
         try:
             environment.add(dev, f"peer-{package}")
         except CommandFailed as failure:

@@ -65,25 +65,27 @@ class Starter:
         np.savez(source, V=mesh[0], F=mesh[1])
         target.unlink(missing_ok=True)
         python = self.python.get(method.package) or sys.executable
-        problem = self._run([python, *WORKER, kind, method.name, source, target])
+        command = [python, *WORKER, kind, method.name, source, target]
+        problem = finished(command, self.limit, self.folder / "log.txt")
         return Row(*head, problem) if problem else read(target, head, mesh)
 
-    def _run(self, command):
-        """Waits for a process; returns its problem, or an empty string."""
-        words = [str(word) for word in command]
-        with open(self.folder / "log.txt", "ab") as log:
-            process = subprocess.Popen(
-                words, env={**os.environ, **PYTHONPATH}, stdout=log, stderr=log, start_new_session=True
-            )
-            try:
-                code = process.wait(self.limit)
-            except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-                return f"stopped after {self.limit:g} s"
-        if code < 0:
-            return f"crashed: {signal.Signals(-code).name}"
-        return f"ended with code {code}, see {self.folder / 'log.txt'}" if code else ""
+
+def finished(command, limit, log_file):
+    """Waits for a process, `limit` seconds at most; returns its problem, or an empty string."""
+    words = [str(word) for word in command]
+    with open(log_file, "ab") as log:
+        process = subprocess.Popen(
+            words, env={**os.environ, **PYTHONPATH}, stdout=log, stderr=log, start_new_session=True
+        )
+        try:
+            code = process.wait(limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            return f"stopped after {limit:g} s"
+    if code < 0:
+        return f"crashed: {signal.Signals(-code).name}"
+    return f"ended with code {code}, see {log_file}" if code else ""
 
 
 def read(path, head, mesh):

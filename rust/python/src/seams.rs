@@ -257,9 +257,8 @@ pub fn seams(
         Arguments { target, fixed, weights, front, symmetry, max_islands, overlap, diagonals, method };
     let wishes = arguments.parse(given.n_vertices())?;
     // 2. The run
-    let seams = run(py, progress, move |observer| {
-        authalic::seams(&given.surface()?, &wishes.options(), observer)
-    })?;
+    let seams =
+        run(py, progress, move |observer| authalic::seams(&given.surface()?, &wishes.options(), observer))?;
     // 3. The result
     Ok(Seams {
         edges: from_indices(py, seams.edges.view()),
@@ -309,7 +308,9 @@ pub fn unwrap(
     let edges = match seams {
         SeamSource::Automatic => None,
         SeamSource::Given(None) => Some(Array2::zeros((0, 2))),
-        SeamSource::Given(Some(edges)) => Some(index_table::<2>(edges.bind(py), "seams", given.n_vertices())?),
+        SeamSource::Given(Some(edges)) => {
+            Some(index_table::<2>(edges.bind(py), "seams", given.n_vertices())?)
+        }
     };
     // 2. The run
     let map = run(py, progress, move |observer| {

@@ -140,8 +140,12 @@ pub(crate) fn map_island(
     initial: Option<&[[f64; 2]]>,
     observer: &mut dyn Observer,
 ) -> Result<(PlanarMap, Status), Error> {
-    let options =
-        DiskMapOptions { boundary: Boundary::Free, overlap, initial: initial.map(aview2), ..Default::default() };
+    let options = DiskMapOptions {
+        boundary: Boundary::Free,
+        overlap,
+        initial: initial.map(aview2),
+        ..Default::default()
+    };
     let schedule = free::Schedule::Quick { tolerance };
     let free = free::Free { mesh, targets: mesh.face_areas(), options: &options, schedule };
     free.map(&mut History::start(), observer)

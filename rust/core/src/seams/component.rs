@@ -10,6 +10,14 @@ use super::prepared::{Prepared, Wishes};
 use crate::control::{Observer, Phase};
 use crate::error::Error;
 
+/// The excess of the shear of maps over 1 falls with this power of the number of vertices, from that number on: coarse
+/// triangles are stiffer than the surface.
+const STIFFNESS: f64 = 0.13;
+const STIFF: f64 = 10_000.0;
+
+/// The largest excess of the first prediction, in units of that of the target.
+const MOST_EXCESS: f64 = 1.3;
+
 /// Seeks the seams of a component.
 ///
 /// # Errors
@@ -19,28 +27,25 @@ pub(super) fn seek(
     wishes: &Wishes<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Seamed, Error> {
-    let time = std::time::Instant::now();
-    let trace = |what: &str| {
-        if std::env::var("SEAMS_TRACE").is_ok() {
-            eprintln!("{what} {:.3} s", time.elapsed().as_secs_f64());
-        }
-    };
     // 1. The proxy
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.1 };
     let mut prepared = Prepared::new(fine, wishes, &mut phase)?;
-    trace("prepared");
     // 2. The search
     let mut phase = Phase { whole: observer, from: 0.1, to: 0.5 };
-    let solution = prepared.search(wishes, &mut phase)?;
-    trace("searched");
+    let aim = first_aim(wishes.target, fine.n_vertices());
+    let solution = prepared.search(wishes, aim, &mut phase)?;
     if wishes.method == SeamMethod::Cones {
-        let cut = prepared.lifted(&solution.state.cut, &prepared.component);
+        let cut = prepared.lifted(&solution.state.cut);
         let predicted = prepared.predicted(&solution);
         return Ok(Seamed { islands: maps::islands(fine, &cut)?, cut, predicted, measured: None });
     }
     // 3. Maps of the islands, and corrections by these
     let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
-    let seamed = Correction::new(&prepared, wishes).run(solution, &mut phase);
-    trace("mapped");
-    seamed
+    Correction::new(&prepared, wishes, aim).run(solution, &mut phase)
+}
+
+/// The predicted shear for which the maps of a mesh of so many vertices are likely to have the wanted one.
+fn first_aim(target: f64, n_vertices: usize) -> f64 {
+    let excess = (n_vertices as f64 / STIFF).powf(STIFFNESS).clamp(1.0, MOST_EXCESS);
+    1.0 + excess * (target - 1.0)
 }

@@ -3,12 +3,12 @@
 //!
 //! Where the maps of a cut are sheared more than was wanted, the search goes on from the last cut that was not enough,
 //! for a lower predicted shear: by the rule of three, then by secants. From a cut that was more than enough, it goes on
-//! for a higher one. A large component is mapped at the end only; the maps that correct are those of its stand-in.
+//! for a higher one.
 
 use super::cut::Cut;
 use super::maps::{self, Outlines};
 use super::one_to_one::{Seamed, chords, one_to_one};
-use super::prepared::{Level, Prepared, Wishes};
+use super::prepared::{Prepared, Wishes};
 use super::search::Solution;
 use crate::control::Observer;
 use crate::error::Error;
@@ -20,9 +20,14 @@ const NEARLY: f64 = 1.011;
 /// Maps may fall short of the target by this part before the seams are called too long.
 const GENEROUS: f64 = 0.93;
 
-/// The most corrections, and of those by maps of a large component.
+/// The most corrections.
 const MOST: usize = 3;
+
+/// The most corrections of a large component, whose maps take long.
 const MOST_LARGE: usize = 1;
+
+/// A component of more vertices is large.
+const LARGE: usize = 20_000;
 
 /// The most rounds of chords.
 const MOST_CHORDS: usize = 8;
@@ -31,7 +36,7 @@ const MOST_CHORDS: usize = 8;
 const SLOPES: [f64; 2] = [0.4, 3.0];
 
 /// Bounds of the excess of a predicted shear over 1 in units of that of the target.
-const EXCESSES: [f64; 2] = [0.4, 1.25];
+const EXCESSES: [f64; 2] = [0.4, 1.5];
 
 /// What corrections have found so far.
 pub(super) struct Correction<'a> {
@@ -49,39 +54,34 @@ pub(super) struct Correction<'a> {
     insufficient: Option<Cut>,
 }
 
-/// A cut of the proxy with the maps of its islands on a finer mesh.
-type Mapped = (Solution, Seamed);
-
 impl<'a> Correction<'a> {
-    pub(super) fn new(prepared: &'a Prepared<'a>, wishes: &Wishes<'_>) -> Self {
+    /// Corrections of a first prediction `aim`.
+    pub(super) fn new(prepared: &'a Prepared<'a>, wishes: &Wishes<'_>, aim: f64) -> Self {
         let target = wishes.target;
         let given = Cut::none(&prepared.proxy);
         let max_islands = (!wishes.overlap).then_some(wishes.max_islands);
-        Self { prepared, target, max_islands, given, aim: target, history: Vec::new(), insufficient: None }
+        Self { prepared, target, max_islands, given, aim, history: Vec::new(), insufficient: None }
     }
 
     /// The seams that are enough by the maps.
     pub(super) fn run(mut self, solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
-        let prepared = self.prepared;
         // 1. Chords through the proxy's islands that overlap themselves
-        let mut solution = self.with_chords(solution, observer)?;
+        let solution = self.with_chords(solution, observer)?;
         // 2. Corrections by maps
-        let mut most = MOST;
-        if let Some(stand_in) = &prepared.stand_in {
-            solution = self.corrected(solution, stand_in, MOST, observer)?.0;
-            self.history.clear();
-            most = MOST_LARGE;
-        }
-        let (_, mut seamed) = self.corrected(solution, &prepared.component, most, observer)?;
+        let mut seamed = self.corrected(solution, observer)?;
         // 3. One-to-one maps
         if let Some(max_islands) = self.max_islands {
-            one_to_one(&mut seamed, &prepared.component, max_islands, observer)?;
+            one_to_one(&mut seamed, &self.prepared.component, max_islands, observer)?;
         }
         Ok(seamed)
     }
 
     /// The cut of the proxy with chords where islands overlap themselves, drawn back.
-    fn with_chords(&mut self, mut solution: Solution, observer: &mut dyn Observer) -> Result<Solution, Error> {
+    fn with_chords(
+        &mut self,
+        mut solution: Solution,
+        observer: &mut dyn Observer,
+    ) -> Result<Solution, Error> {
         let Some(max_islands) = self.max_islands else { return Ok(solution) };
         let prepared = self.prepared;
         for _ in 0..MOST_CHORDS {
@@ -89,11 +89,9 @@ impl<'a> Correction<'a> {
             let Some(chord) = chords.first() else { break };
             let all = prepared.with_mirrored(&chords.concat());
             let sound = [all, prepared.with_mirrored(chord), chord.clone()];
-            let is_sound = |edges: &Vec<Edge>| solution.state.cut.with(edges).islands(&prepared.proxy).are_disks();
+            let is_sound =
+                |edges: &Vec<Edge>| solution.state.cut.with(edges).islands(&prepared.proxy).are_disks();
             let Some(edges) = sound.into_iter().find(is_sound) else { break };
-            if std::env::var("SEAMS_TRACE").is_ok() {
-                eprintln!("  chord of {} edges, cost {:.3}", edges.len(), edges.iter().map(|&e| prepared.cost[e]).sum::<f64>());
-            }
             self.given.add(&edges);
             let cut = solution.state.cut.with(&edges);
             solution = prepared.go_on(cut, &self.given, [self.aim, self.target], observer)?;
@@ -101,31 +99,18 @@ impl<'a> Correction<'a> {
         Ok(solution)
     }
 
-    /// The cheapest cut found whose maps on a mesh meet the target; the one of least shear where none does.
-    fn corrected(
-        &mut self,
-        mut solution: Solution,
-        level: &Level<'_>,
-        most: usize,
-        observer: &mut dyn Observer,
-    ) -> Result<Mapped, Error> {
-        let mut best: Option<(bool, f64, Mapped)> = None;
+    /// The cheapest cut found whose maps meet the target; the one of least shear where none does.
+    fn corrected(&mut self, mut solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
+        let is_large = self.prepared.component.mesh.n_vertices() > LARGE;
+        let most = if is_large { MOST_LARGE } else { MOST };
+        let mut best: Option<(bool, f64, Seamed)> = None;
         for correction in 0..=most {
-            let seamed = self.mapped(&solution, level, observer)?;
+            let seamed = self.mapped(&solution, observer)?;
             let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
-            if let Ok(out) = std::env::var("SEAMS_DUMP") {
-                let b: Vec<u8> = seamed.cut.seams().flat_map(|e| level.mesh.edges.ends(e)).flat_map(|v| v.0.to_le_bytes()).collect();
-                std::fs::write(format!("{out}/step{correction}.edges"), b).unwrap();
-            }
-            if std::env::var("SEAMS_TRACE").is_ok() {
-                let m = seamed.measured.unwrap();
-                eprintln!("  {} vertices: aim {:.3} predicted {:.3} {:.2} mapped {shear:.3} {:.2} SD {:.4} islands {} L {:.3} (proxy {:.3})", level.mesh.n_vertices(), self.aim, seamed.predicted.mean, seamed.predicted.percentile,
-                 m.percentile, m.area_deviation, format!("{} leaves {}/{}", seamed.islands.len(), seamed.cut.n_leaves(&level.mesh), solution.state.cut.n_leaves(&self.prepared.proxy)), seamed.cut.sum(&level.mesh.lengths), solution.state.cut.sum(&self.prepared.proxy.lengths));
-            }
             let is_enough = shear <= NEARLY * self.target;
-            let rank = if is_enough { seamed.cut.sum(&level.cost) } else { shear };
+            let rank = if is_enough { seamed.cut.sum(&self.prepared.component.cost) } else { shear };
             if is_first(&best, is_enough, rank) {
-                best = Some((is_enough, rank, (solution.clone(), seamed)));
+                best = Some((is_enough, rank, seamed));
             }
             if self.is_done(shear) || correction == most {
                 break;
@@ -136,12 +121,12 @@ impl<'a> Correction<'a> {
             }
             solution = next;
         }
-        best.map(|(_, _, mapped)| mapped).ok_or(Error::CancelledEarly)
+        best.map(|(_, _, seamed)| seamed).ok_or(Error::CancelledEarly)
     }
 
-    fn mapped(&self, solution: &Solution, level: &Level<'_>, observer: &mut dyn Observer) -> Result<Seamed, Error> {
-        let cut = self.prepared.lifted(&solution.state.cut, level);
-        let mut islands = maps::islands(&level.mesh, &cut)?;
+    fn mapped(&self, solution: &Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
+        let cut = self.prepared.lifted(&solution.state.cut);
+        let mut islands = maps::islands(self.prepared.component.mesh, &cut)?;
         maps::map_all(&mut islands, Outlines::MayCross, observer)?;
         let measured = Some(maps::figures(&islands));
         Ok(Seamed { cut, islands, predicted: self.prepared.predicted(solution), measured })

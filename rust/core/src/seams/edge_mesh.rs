@@ -2,7 +2,7 @@
 //! A mesh with numbered edges and what a search for seams reads off it, in units of the surface's size.
 
 use crate::mesh::geometry::{area_vector, triangle};
-use crate::mesh::{Corner, Edge, Edges, Face, TriangleMesh, Vertex};
+use crate::mesh::{Corner, Edge, Edges, Face, TriangleMesh};
 use crate::vector::Vector3;
 
 /// A mesh whose edges may become seams. Lengths are over the square root of the area, areas over the area.
@@ -102,11 +102,6 @@ impl EdgeMesh {
         let mut lengths = self.lengths.clone();
         let middle = lengths.len() / 2;
         *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
-    }
-
-    /// The edges of a path of vertices.
-    pub(super) fn path_edges(&self, path: &[Vertex]) -> Vec<Edge> {
-        path.windows(2).filter_map(|pair| self.edges.between(pair[0], pair[1])).collect()
     }
 }
 

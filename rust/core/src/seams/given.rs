@@ -78,11 +78,7 @@ fn check(options: &SeamOptions<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn part(
-    patch: Patch,
-    diagonals: &[[Vertex; 2]],
-    factors: Option<&EdgeFactors>,
-) -> Result<Part, Error> {
+fn part(patch: Patch, diagonals: &[[Vertex; 2]], factors: Option<&EdgeFactors>) -> Result<Part, Error> {
     let face_of: Vec<_> = patch.corner_of.rows().into_iter().map(|row| Face(row[0] / 3)).collect();
     let vertex_of = patch.vertex_of;
     let mut mesh = EdgeMesh::new(patch.surface.mesh()?.clone());
@@ -102,11 +98,7 @@ struct EdgeFactors {
 
 impl EdgeFactors {
     /// Factors at the vertices, of which an edge has the mean, or at the edges.
-    fn new(
-        surface: &Surface,
-        table: &EdgeTable,
-        weights: ArrayView1<'_, f64>,
-    ) -> Result<Self, Error> {
+    fn new(surface: &Surface, table: &EdgeTable, weights: ArrayView1<'_, f64>) -> Result<Self, Error> {
         let edges: Vec<_> = table.edges().map(|(edge, _)| edge).collect();
         let factors = if weights.len() == surface.n_vertices() {
             edges.iter().map(|[a, b]| 0.5 * (weights[a.index()] + weights[b.index()])).collect()

@@ -108,7 +108,8 @@ impl Lift<'_> {
         let line: Vec<_> = segment.vertices.iter().map(|&vertex| self.proxy.mesh.points()[vertex]).collect();
         let mut places = vec![0];
         add_bends(&line, 0, line.len() - 1, &mut places);
-        let mut stops: Vec<_> = places.into_iter().map(|place| self.nearest[segment.vertices[place]]).collect();
+        let mut stops: Vec<_> =
+            places.into_iter().map(|place| self.nearest[segment.vertices[place]]).collect();
         stops.dedup();
         stops
     }

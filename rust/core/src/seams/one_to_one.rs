@@ -9,7 +9,7 @@ use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::maps::{self, IslandMap, MapFigures, Outlines};
 use super::overlap::overlap;
-use super::prepared::Level;
+use super::prepared::Fine;
 use super::search::Figures;
 use crate::control::{Observer, Status};
 use crate::error::Error;
@@ -18,6 +18,9 @@ use crate::mesh::Edge;
 /// An island that covers more of its place twice is parted by a chord at once: a map whose outline may not cross itself
 /// would be sheared too much.
 const HOPELESS: f64 = 0.01;
+
+/// Larger islands are parted by a chord at once too, since such maps of them take long.
+const LARGE: usize = 20_000;
 
 /// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
 const ACCEPTED: f64 = 0.03;
@@ -74,11 +77,11 @@ fn uncrossed(
 /// Maps islands again, or parts them, until none overlaps itself.
 pub(super) fn one_to_one(
     seamed: &mut Seamed,
-    level: &Level<'_>,
+    fine: &Fine<'_>,
     max_islands: usize,
     observer: &mut dyn Observer,
 ) -> Result<(), Error> {
-    let mesh = &*level.mesh;
+    let mesh = fine.mesh;
     let total: f64 = seamed.islands.iter().map(IslandMap::area).sum();
     let mut n_chords = 0;
     let mut k = 0;
@@ -88,19 +91,17 @@ pub(super) fn one_to_one(
             k += 1;
             continue;
         }
-        if std::env::var("SEAMS_TRACE").is_ok() {
-            eprintln!("  island {k} of {} faces: overlap {:.5}", seamed.islands[k].face_of.len(), overlap.share);
-        }
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < max_islands;
         let accepted = if may_part { ACCEPTED * total } else { f64::INFINITY };
-        if !may_part || overlap.share <= HOPELESS {
+        let is_large = seamed.islands[k].face_of.len() > LARGE;
+        if !may_part || (overlap.share <= HOPELESS && !is_large) {
             if let Some(mapped) = uncrossed(&seamed.islands[k], accepted, observer)? {
                 seamed.islands[k] = mapped;
                 k += 1;
                 continue;
             }
         }
-        match chord(mesh, &seamed.cut, &level.cost, &seamed.islands[k], &overlap) {
+        match chord(mesh, &seamed.cut, &fine.cost, &seamed.islands[k], &overlap) {
             Some(chord) => {
                 n_chords += 1;
                 seamed.cut.add(&chord);

@@ -238,7 +238,7 @@ fn assemble(
 mod tests {
     use super::*;
     use crate::control::Silent;
-    use crate::mesh::{Edge, TriangleMesh};
+    use crate::mesh::TriangleMesh;
 
     /// A disk of rings in polar coordinates: `point(r, angle)` for r in (0, 1].
     fn rings(n: usize, point: impl Fn(f64, f64) -> [f64; 3]) -> EdgeMesh {
@@ -304,27 +304,5 @@ mod tests {
             }
             eprintln!("{radius} {errors:?} {}", lambert_mean(radius));
         }
-    }
-
-    #[test]
-    #[ignore]
-    fn time() {
-        let cap = |r: f64, angle: f64| {
-            let theta = 1.2 * r;
-            [theta.sin() * angle.cos(), theta.sin() * angle.sin(), theta.cos()]
-        };
-        let mesh = rings(18, cap);
-        let plate = Plate::new(&mesh).unwrap();
-        let mut silent = Silent;
-        let watch = Watch::new(&mut silent, 0.0, "");
-        let mut w = plate.workspace();
-        for _ in 0..3 {
-            let t = std::time::Instant::now();
-            for _ in 0..20 {
-                plate.solve(&mesh, &Cut::none(&mesh), None, &mut w, &watch).unwrap();
-            }
-            eprintln!("{} vertices {:?} per solve", mesh.n_vertices(), t.elapsed() / 20);
-        }
-        let _ = Edge(0);
     }
 }

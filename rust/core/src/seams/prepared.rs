@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A component made ready for the search: its proxy with the costs and the plate, and the meshes onto which seams of
-//! the proxy are lifted.
-
-use std::borrow::Cow;
+//! A component made ready for the search: its proxy with the costs and the plate, and the way of its seams back to the
+//! component.
 
 use super::cost::{Preferences, costs};
 use super::cut::Cut;
@@ -12,7 +10,7 @@ use super::lift::{Lift, Mirrors, image};
 use super::openness::openness;
 use super::options::{SeamMethod, Symmetry};
 use super::plate::Plate;
-use super::proxy::{Proxy, nearest_vertices, proxy, stand_in};
+use super::proxy::{Proxy, nearest_vertices, proxy};
 use super::search::{Figures, Problem, Search, Solution};
 use super::symmetry::{MirrorPlane, mirror_plane, mirror_vertices};
 use crate::control::Observer;
@@ -22,9 +20,6 @@ use crate::vector::Vector3;
 
 /// The largest 99th percentile of σ₁/σ₂ is 1 + this · (target − 1).
 const PERCENTILE: f64 = 6.0;
-
-/// A component of more vertices has a stand-in.
-const LARGE: usize = 20_000;
 
 /// A symmetric cut is given up where the excess of its shear over 1 exceeds that of the target by this factor.
 const MISSED: f64 = 1.15;
@@ -51,9 +46,9 @@ pub(super) struct Wishes<'a> {
     pub method: SeamMethod,
 }
 
-/// A mesh onto which seams of the proxy are lifted.
-pub(super) struct Level<'a> {
-    pub mesh: Cow<'a, EdgeMesh>,
+/// The component itself, onto which seams of the proxy are lifted.
+pub(super) struct Fine<'a> {
+    pub mesh: &'a EdgeMesh,
     /// The cost of a seam along each edge.
     pub cost: Vec<f64>,
     /// The vertex for which each vertex of the proxy stands.
@@ -71,9 +66,7 @@ pub(super) struct Prepared<'a> {
     /// The edge of the component of which each edge of a refined proxy is a part.
     parents: Option<Vec<Option<Edge>>>,
     plate: Plate,
-    pub component: Level<'a>,
-    /// A mesh of some thousand vertices in place of a large component.
-    pub stand_in: Option<Level<'static>>,
+    pub component: Fine<'a>,
 }
 
 impl<'a> Prepared<'a> {
@@ -97,38 +90,32 @@ impl<'a> Prepared<'a> {
         let sight = openness(&proxy.mesh, coarse.mirror.as_deref());
         let view = View { proxy: &proxy, openness: &sight, plane, is_symmetric: mirror.is_some() };
         let cost = view.proxy_costs(fine, wishes, parents.as_deref());
-        let component = view.level(Cow::Borrowed(fine), coarse.nearest, wishes.weights, wishes.front);
-        // 3. The stand-in
-        let is_large = fine.n_vertices() > LARGE;
-        let stand_in = match is_large {
-            true => Some(view.stand_in(fine, wishes, observer)?),
-            false => None,
-        };
-        // 4. The plate
+        let component = view.fine(fine, coarse.nearest, wishes);
+        // 3. The plate
         let plate = Plate::new(&proxy)?;
-        Ok(Self { proxy, cost, mirror, parents, plate, component, stand_in })
+        Ok(Self { proxy, cost, mirror, parents, plate, component })
     }
 
-    /// The best cut of the proxy; without symmetry where that costs too much.
+    /// The best cut of the proxy with the predicted shear `aim`; without symmetry where that costs too much.
     pub(super) fn search(
         &mut self,
         wishes: &Wishes<'_>,
+        aim: f64,
         observer: &mut dyn Observer,
     ) -> Result<Solution, Error> {
-        let solution = self.search_once(wishes, observer)?;
+        let solution = self.search_once(wishes, aim, observer)?;
         if self.mirror.is_none() {
             return Ok(solution);
         }
         let islands = solution.state.cut.islands(&self.proxy);
         let mean = self.predicted(&solution).mean;
-        let is_bad = !islands.are_disks()
-            || mean > 1.0 + MISSED * (wishes.target - 1.0)
-            || islands.least_area() < SLIVER;
+        let is_bad =
+            !islands.are_disks() || mean > 1.0 + MISSED * (aim - 1.0) || islands.least_area() < SLIVER;
         if !is_bad && islands.len() == 1 {
             return Ok(solution);
         }
         let mirror = self.mirror.take();
-        let plain = self.search_once(wishes, observer)?;
+        let plain = self.search_once(wishes, aim, observer)?;
         let is_sound = plain.state.cut.islands(&self.proxy).are_disks();
         if is_bad || (is_sound && CHEAPER * plain.price < solution.price) {
             return Ok(plain);
@@ -137,22 +124,18 @@ impl<'a> Prepared<'a> {
         Ok(solution)
     }
 
-    fn search_once(&self, wishes: &Wishes<'_>, observer: &mut dyn Observer) -> Result<Solution, Error> {
+    fn search_once(
+        &self,
+        wishes: &Wishes<'_>,
+        aim: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Solution, Error> {
         let given = Cut::none(&self.proxy);
-        let mut search = Search::new(self.problem(&given, wishes.target, wishes.target));
-        let solution = match wishes.method {
+        let mut search = Search::new(self.problem(&given, aim, wishes.target));
+        match wishes.method {
             SeamMethod::Search => search.run(observer),
             SeamMethod::Cones => search.through_cones(observer).map(|state| search.priced(state)),
-        };
-        if let (Ok(s), true) = (&solution, std::env::var("SEAMS_TRACE").is_ok()) {
-            let f = self.predicted(s);
-            eprintln!(
-                "search symmetric {}: solves {} price {:.3} L {:.3} mean {:.3} p99 {:.2} islands {} leaves {}",
-                self.mirror.is_some(), search.n_solves, s.price, s.state.cut.sum(&self.proxy.lengths), f.mean,
-                f.percentile, s.state.n_islands, s.state.cut.n_leaves(&self.proxy)
-            );
         }
-        solution
     }
 
     /// A cut for another predicted shear `aim`, from one near to it.
@@ -189,39 +172,41 @@ impl<'a> Prepared<'a> {
         Figures::of(&self.proxy.areas, &solution.state.shear)
     }
 
-    /// The seams of a cut of the proxy on a finer mesh.
-    pub(super) fn lifted(&self, cut: &Cut, level: &Level<'_>) -> Cut {
+    /// The seams of a cut of the proxy on the component.
+    pub(super) fn lifted(&self, cut: &Cut) -> Cut {
+        let fine = &self.component;
         if let Some(parents) = &self.parents {
             let edges: Vec<_> = cut.seams().filter_map(|edge| parents[edge]).collect();
-            let inner = edges.into_iter().filter(|&edge| !level.mesh.edges.is_boundary(edge));
-            return level.completed(Cut::none(&level.mesh).with(&inner.collect::<Vec<_>>()));
+            let inner = edges.into_iter().filter(|&edge| !fine.mesh.edges.is_boundary(edge));
+            return fine.completed(Cut::none(fine.mesh).with(&inner.collect::<Vec<_>>()));
         }
         let wanted = cut.islands(&self.proxy).len();
         let is_sound = |lifted: &Cut| {
-            let islands = lifted.islands(&level.mesh);
+            let islands = lifted.islands(fine.mesh);
             islands.are_disks() && islands.len() == wanted
         };
-        let mirrors = level.mirror.as_ref().zip(self.mirror.as_ref());
+        let mirrors = fine.mirror.as_ref().zip(self.mirror.as_ref());
         let mirrors = mirrors.map(|(fine, (proxy, _))| Mirrors { fine, proxy });
-        let mut lifted = self.lift(level, mirrors).of(cut);
+        let mut lifted = self.lift(mirrors).of(cut);
         if mirrors.is_some() && !is_sound(&lifted) {
-            lifted = self.lift(level, None).of(cut);
+            lifted = self.lift(None).of(cut);
         }
-        level.completed(lifted)
+        fine.completed(lifted)
     }
 
-    fn lift<'b>(&'b self, level: &'b Level<'_>, mirrors: Option<Mirrors<'b>>) -> Lift<'b> {
-        Lift { fine: &level.mesh, proxy: &self.proxy, cost: &level.cost, nearest: &level.nearest, mirrors }
+    fn lift<'b>(&'b self, mirrors: Option<Mirrors<'b>>) -> Lift<'b> {
+        let Fine { mesh, cost, nearest, .. } = &self.component;
+        Lift { fine: mesh, proxy: &self.proxy, cost, nearest, mirrors }
     }
 }
 
-impl Level<'_> {
+impl Fine<'_> {
     /// The seams with those that islands lack to be disks.
     fn completed(&self, cut: Cut) -> Cut {
-        if cut.islands(&self.mesh).are_disks() {
+        if cut.islands(self.mesh).are_disks() {
             return cut;
         }
-        cut_graph(&self.mesh, &self.cost, &cut)
+        cut_graph(self.mesh, &self.cost, &cut)
     }
 }
 
@@ -235,41 +220,22 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    fn level<'b>(
-        &self,
-        mesh: Cow<'b, EdgeMesh>,
-        nearest: Vec<Vertex>,
-        weights: Option<&[f64]>,
-        front: Option<Vector3>,
-    ) -> Level<'b> {
+    fn fine<'b>(&self, mesh: &'b EdgeMesh, nearest: Vec<Vertex>, wishes: &Wishes<'_>) -> Fine<'b> {
         let mirror = self.plane.filter(|_| self.is_symmetric);
         let mirror = mirror.and_then(|plane| mirror_vertices(&mesh.mesh, plane));
-        let lacks_image: Option<Vec<_>> = mirror.as_ref().map(|mirror| {
-            mesh.edges.all().map(|edge| image(&mesh, edge, mirror).is_none()).collect()
-        });
+        let lacks_image: Option<Vec<_>> = mirror
+            .as_ref()
+            .map(|mirror| mesh.edges.all().map(|edge| image(mesh, edge, mirror).is_none()).collect());
         let seen_from = nearest_vertices(&mesh.mesh, &self.proxy.mesh);
         let openness: Vec<_> = seen_from.iter().map(|&vertex| self.openness[vertex]).collect();
         let preferences = Preferences {
             openness: Some(&openness),
             plane: self.plane,
-            front,
-            weights,
+            front: wishes.front,
+            weights: wishes.weights,
             lacks_image: lacks_image.as_deref(),
         };
-        let cost = costs(&mesh, &preferences);
-        Level { mesh, cost, nearest, mirror }
-    }
-
-    fn stand_in(
-        &self,
-        fine: &EdgeMesh,
-        wishes: &Wishes<'_>,
-        observer: &mut dyn Observer,
-    ) -> Result<Level<'static>, Error> {
-        let mesh = EdgeMesh::new(stand_in(&fine.mesh, self.plane, observer)?.mesh);
-        let nearest = nearest_vertices(&self.proxy.mesh, &mesh.mesh);
-        let weights = wishes.weights.map(|weights| carried(fine, weights, &mesh));
-        Ok(self.level(Cow::Owned(mesh), nearest, weights.as_deref(), wishes.front))
+        Fine { mesh, cost: costs(mesh, &preferences), nearest, mirror }
     }
 
     fn proxy_costs(

@@ -48,11 +48,7 @@ pub(super) fn along(
     Ok(CutSurface { islands, edges, length, status })
 }
 
-fn mapped(
-    patch: Patch,
-    outlines: Outlines,
-    observer: &mut dyn Observer,
-) -> Result<(Island, Status), Error> {
+fn mapped(patch: Patch, outlines: Outlines, observer: &mut dyn Observer) -> Result<(Island, Status), Error> {
     let face_of: Vec<_> = patch.corner_of.rows().into_iter().map(|row| Face(row[0] / 3)).collect();
     let mesh = patch.surface.mesh()?.clone();
     let mut map = IslandMap::new(mesh);

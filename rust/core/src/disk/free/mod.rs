@@ -19,6 +19,7 @@ mod face;
 mod least_shear;
 mod lscm;
 mod meeting;
+mod mend;
 mod outline;
 mod quick;
 mod start;
@@ -41,8 +42,8 @@ use energy::Energy;
 use least_shear::least_shear;
 use outline::Outline;
 use quick::quickly;
-pub(super) use surface::{Free, Schedule};
 use surface::Prepared;
+pub(super) use surface::{Free, Schedule};
 use within_disk::{signed_area, turned};
 
 /// Ranges of the contacts, from the first descent to the last, in units of the heights beside them.
@@ -83,7 +84,8 @@ impl Free<'_> {
         let initial = self.options.initial_rows().map(|map| by_order.of_vertices(map));
         let options =
             DiskMapOptions { initial: initial.as_deref().map(aview2), density: None, ..*self.options };
-        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule: self.schedule };
+        let free =
+            Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule: self.schedule };
         let (map, status) = free.in_order(history, observer)?;
         Ok((by_order.given(&map), status))
     }

@@ -54,9 +54,6 @@ pub(super) fn quickly(
             return (map, status);
         }
         let deviation = descent.deviation(&map);
-        if std::env::var("QUICK_TRACE").is_ok() {
-            eprintln!("    λ {:.2e} deviation {deviation:.4} iterations {}", goal.weight, descent.done);
-        }
         if deviation <= tolerance && (deviation >= ENOUGH * tolerance || k == 0 || k >= WEIGHTS.len()) {
             return (map, Status::Converged);
         }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Start maps of free outline: plan view, as rigid as possible, conformal; the best of those that are one-to-one.
 
-use std::f64::consts::TAU;
-
 use super::arap::as_rigid_as_possible;
 use super::energy::Energy;
 use super::lscm::{of_area_one, spectral_conformal};
+use super::mend::{mended, turns_once_around_every_vertex};
 use super::outline::Outline;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};
-use crate::mesh::{Corner, Vertex};
 use crate::sparse::{Analysis, Failure};
 use crate::vector::Vector3;
 
@@ -54,7 +52,9 @@ pub(super) fn best_start(
     if let Some(conformal) = conformal {
         match as_rigid_as_possible(energy, conformal.clone(), watch) {
             Err(Failure::Cancelled) => return Err(Failure::Cancelled),
-            rigid => rigid.into_iter().for_each(|map| consider(of_area_one(energy, map))),
+            rigid => {
+                rigid.into_iter().for_each(|map| consider(of_area_one(energy, mended(energy, map))));
+            }
         }
         consider(conformal);
     }
@@ -73,22 +73,6 @@ pub(super) fn allowed(energy: &Energy<'_>, outline: Option<&Outline>, map: Plana
     }
     let pulled = pulled_in(energy, outline, &map);
     (energy.is_unfolded(&pulled) && outline.is_simple(&pulled)).then_some(pulled)
-}
-
-/// True if the faces around every inner vertex turn around it once.
-fn turns_once_around_every_vertex(energy: &Energy<'_>, map: &[[f64; 2]]) -> bool {
-    let mesh = energy.mesh;
-    let angle = |corner: Corner| {
-        let (face, k) = (mesh.faces()[corner.face()], corner.place());
-        let [o, p, q] = [0, 1, 2].map(|step| map[face[(k + step) % 3]]);
-        let ([a, b], [c, d]) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
-        (a * d - b * c).atan2(a * c + b * d)
-    };
-    crate::parallel::all(mesh.n_vertices(), |v| {
-        let v = Vertex::new(v);
-        mesh.is_boundary(v)
-            || mesh.vertex_corners(v).iter().map(|&corner| angle(corner)).sum::<f64>() < 1.5 * TAU
-    })
 }
 
 /// The map with vertices that touch an edge of the outline moved a little toward their neighbors.

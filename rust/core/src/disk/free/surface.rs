@@ -20,9 +20,7 @@ pub(in crate::disk) enum Schedule {
     /// As the options say.
     Given,
     /// So that the deviation of areas √(E_A/A) is about a tolerance, in few iterations.
-    Quick {
-        tolerance: f64,
-    },
+    Quick { tolerance: f64 },
 }
 
 /// A surface to be mapped with a free outline.

@@ -24,13 +24,8 @@ use decimate::decimate;
 use refine::refine;
 use symmetric::{SymmetricMesh, symmetric_mesh};
 
-const MESSAGE: &str = "Simplifying the surface";
-
 /// The vertices of a decimated proxy.
 const TARGET: usize = 1000;
-
-/// The vertices of a stand-in.
-const STAND_IN: usize = 6000;
 
 /// Meshes of up to this many vertices are not decimated.
 const LARGEST: usize = 1350;
@@ -77,8 +72,17 @@ pub(super) fn proxy(
     if mesh.n_vertices() < SMALL {
         return refined(mesh, plane);
     }
-    if mesh.n_vertices() > LARGEST {
-        return by_decimation(mesh, plane, TARGET, &Watch::new(observer, 0.0, MESSAGE));
+    let is_large = mesh.n_vertices() > LARGEST;
+    if let Some(plane) = plane.filter(|_| is_large) {
+        let watch = Watch::new(observer, 0.0, "Simplifying the surface");
+        let symmetric = symmetric_mesh(mesh, plane, TARGET, &watch).ok_or(Error::CancelledEarly)?;
+        if let Some(symmetric) = symmetric {
+            return Ok(sliced(mesh, symmetric));
+        }
+    }
+    if is_large {
+        let watch = Watch::new(observer, 0.0, "Simplifying the surface");
+        return decimated(mesh, &watch);
     }
     let nearest = Vertex::all(mesh.n_vertices()).collect();
     Ok(with_mirror(mesh.clone(), plane, nearest))
@@ -107,38 +111,9 @@ fn parts(half: &Half, parents: &[[Vertex; 2]], n: usize) -> [Half; 2] {
     half.edge.map(|end| Half { edge: sorted([end, middle]), of: half.of })
 }
 
-/// A mesh of some thousand vertices that takes the place of a large one where cuts are tried, symmetric under `plane`
-/// where that can be. Cost: O(n log n).
-///
-/// # Errors
-/// Cancelled.
-pub(super) fn stand_in(
-    mesh: &TriangleMesh,
-    plane: Option<&MirrorPlane>,
-    observer: &mut dyn Observer,
-) -> Result<Proxy, Error> {
-    by_decimation(mesh, plane, STAND_IN, &Watch::new(observer, 0.0, MESSAGE))
-}
-
-/// The proxy of about `target` vertices.
-fn by_decimation(
-    mesh: &TriangleMesh,
-    plane: Option<&MirrorPlane>,
-    target: usize,
-    watch: &Watch<'_>,
-) -> Result<Proxy, Error> {
-    if let Some(plane) = plane {
-        let symmetric = symmetric_mesh(mesh, plane, target, watch).ok_or(Error::CancelledEarly)?;
-        if let Some(symmetric) = symmetric {
-            return Ok(sliced(mesh, symmetric));
-        }
-    }
-    decimated(mesh, target, watch)
-}
-
 /// The proxy by decimation.
-fn decimated(mesh: &TriangleMesh, target: usize, watch: &Watch<'_>) -> Result<Proxy, Error> {
-    let decimated = decimate(mesh, None, target, watch).ok_or(Error::CancelledEarly)?;
+fn decimated(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Proxy, Error> {
+    let decimated = decimate(mesh, None, TARGET, watch).ok_or(Error::CancelledEarly)?;
     let points = decimated.vertices.iter().map(|&vertex| mesh.points()[vertex]).collect();
     Ok(Proxy {
         mesh: TriangleMesh::at_given_points(points, decimated.faces)?,

@@ -27,10 +27,12 @@ NAMES = {
     "Refinement",
     "Registration",
     "RegistrationWarning",
+    "Seams",
     "SolverError",
     "SphereMap",
     "Surface",
     "Untangled",
+    "Unwrap",
     "__version__",
     "cut",
     "disk_map",
@@ -40,9 +42,11 @@ NAMES = {
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
+    "seams",
     "sphere_map",
     "stretch_hessian",
     "untangle",
+    "unwrap",
 }
 REGISTRATION = {
     "source_landmarks": inspect.Parameter.empty,
@@ -50,6 +54,16 @@ REGISTRATION = {
     "weight": 1.0,
     "angle_weight": 0.0,
     "progress": None,
+}
+SEAMS = {
+    "target": 1.4,
+    "fixed": None,
+    "weights": None,
+    "front": None,
+    "symmetry": "auto",
+    "max_islands": None,
+    "overlap": False,
+    "diagonals": None,
 }
 KEYWORDS = {
     "disk_map": {
@@ -82,6 +96,8 @@ KEYWORDS = {
     },
     "stretch_hessian": {"density": None},
     "untangle": {"fixed": None, "tolerance": 0.01, "progress": None},
+    "seams": {**SEAMS, "method": "search", "progress": None},
+    "unwrap": {"seams": "auto", **SEAMS, "margin": 0.002, "rotate": True, "progress": None},
     "distortion": {"density": None},
     "cut": {"seams": None},
     "register_disks": REGISTRATION,
@@ -106,6 +122,8 @@ POSITIONAL = {
     "stretch_hessian": ["vertices", "faces", "image"],
     "distortion": ["vertices", "faces", "image"],
     "untangle": ["surface", "image"],
+    "seams": ["surface"],
+    "unwrap": ["surface"],
     "cut": ["vertices", "faces"],
     "register_disks": ["source", "target"],
     "register_spheres": ["source", "target"],
@@ -185,6 +203,8 @@ def test_a_keyword_given_by_position_is_refused(name):
         "Certificates",
         "HyperbolicStructure",
         "Untangled",
+        "Seams",
+        "Unwrap",
     ],
 )
 def test_everything_is_documented(name):
@@ -215,6 +235,8 @@ def test_every_attribute_of_the_results_is_documented():
     for kind in (
         *maps,
         authalic.Untangled,
+        authalic.Seams,
+        authalic.Unwrap,
         authalic.Layout,
         authalic.Distortion,
         authalic.Surface,
@@ -265,6 +287,22 @@ def test_a_patch_has_the_attributes_of_the_contract():
     assert (patch.genus, patch.is_disk, patch.is_closed) == (0, True, False)
 
 
+def test_seams_and_unwraps_have_the_attributes_of_the_contract():
+    seams, result = (call(meshes.bumpy_cap()) for call in (authalic.seams, authalic.unwrap))
+    numbers = {"length", "seconds", "shear", "shear_p99", "area_ratio_std", "packed", "predicted"}
+    both = {"edges", "islands", "island_of", "length", "status", "seconds"}
+    figures = {"shear", "shear_p99", "area_ratio_std", "packed"}
+    assert public_attributes(seams) == {*both, "predicted"}
+    assert public_attributes(result) == {*both, *figures, "uv", "faces", "vertex_of"}
+    for subject in (seams, result):
+        assert type(subject.islands) is int
+        assert subject.status in {"converged", "stalled"}
+        for name in numbers & public_attributes(subject):
+            assert type(getattr(subject, name)) is float
+        with pytest.raises(AttributeError):
+            subject.edges = None
+
+
 def assert_array(array, shape, dtype):
     assert array.shape == shape
     assert array.dtype == dtype
@@ -301,6 +339,18 @@ def test_arrays_of_patches_are_c_ordered_float64_and_int64():
     assert_array(patch.corner_of, (m, 3), np.int64)
     assert_array(patch.face_of, (m,), np.int64)
     assert_array(patch.boundary_loops[0], (30,), np.int64)
+
+
+def test_arrays_of_seams_and_unwraps_are_c_ordered_float64_and_int64():
+    mesh = meshes.bumpy_cap()
+    seams, result = authalic.seams(mesh, target=1.1), authalic.unwrap(mesh, target=1.1)
+    k, points = len(seams.edges), len(result.uv)
+    for subject in (seams, result):
+        assert_array(subject.edges, (k, 2), np.int64)
+        assert_array(subject.island_of, (len(mesh.faces),), np.int64)
+    assert_array(result.uv, (points, 2), np.float64)
+    assert_array(result.faces, mesh.faces.shape, np.int64)
+    assert_array(result.vertex_of, (points,), np.int64)
 
 
 def test_the_history_is_a_structured_array_from_the_start_to_the_result(any_result):

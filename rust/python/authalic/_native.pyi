@@ -22,10 +22,12 @@ __all__ = [
     "Patch",
     "Refinement",
     "Registration",
+    "Seams",
     "SolverError",
     "SphereMap",
     "Surface",
     "Untangled",
+    "Unwrap",
     "__version__",
     "cut",
     "disk_map",
@@ -35,9 +37,11 @@ __all__ = [
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
+    "seams",
     "sphere_map",
     "stretch_hessian",
     "untangle",
+    "unwrap",
 ]
 
 _Reals: TypeAlias = NDArray[np.float64]
@@ -232,6 +236,52 @@ class Untangled:
     def seconds(self) -> float: ...
 
 @final
+class Seams:
+    @property
+    def edges(self) -> _Indices: ...
+    @property
+    def islands(self) -> int: ...
+    @property
+    def island_of(self) -> _Indices: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def predicted(self) -> float: ...
+    @property
+    def status(self) -> Literal["converged", "stalled"]: ...
+    @property
+    def seconds(self) -> float: ...
+
+@final
+class Unwrap:
+    @property
+    def uv(self) -> _Reals: ...
+    @property
+    def faces(self) -> _Indices: ...
+    @property
+    def vertex_of(self) -> _Indices: ...
+    @property
+    def islands(self) -> int: ...
+    @property
+    def island_of(self) -> _Indices: ...
+    @property
+    def edges(self) -> _Indices: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def shear(self) -> float: ...
+    @property
+    def shear_p99(self) -> float: ...
+    @property
+    def area_ratio_std(self) -> float: ...
+    @property
+    def packed(self) -> float: ...
+    @property
+    def status(self) -> Literal["converged", "stalled"]: ...
+    @property
+    def seconds(self) -> float: ...
+
+@final
 class Registration:
     @property
     def positions(self) -> _Reals: ...
@@ -414,6 +464,36 @@ def untangle(
     tolerance: float = 0.01,
     progress: _Progress | None = None,
 ) -> Untangled: ...
+def seams(
+    surface: _Surface,
+    *,
+    target: float = 1.4,
+    fixed: ArrayLike | None = None,
+    weights: ArrayLike | None = None,
+    front: ArrayLike | None = None,
+    symmetry: Literal["auto", "off"] | bool | None = "auto",
+    max_islands: int | None = None,
+    overlap: bool = False,
+    diagonals: ArrayLike | None = None,
+    method: Literal["search", "cones"] = "search",
+    progress: _Progress | None = None,
+) -> Seams: ...
+def unwrap(
+    surface: _Surface,
+    *,
+    seams: Literal["auto"] | ArrayLike | None = "auto",
+    target: float = 1.4,
+    fixed: ArrayLike | None = None,
+    weights: ArrayLike | None = None,
+    front: ArrayLike | None = None,
+    symmetry: Literal["auto", "off"] | bool | None = "auto",
+    max_islands: int | None = None,
+    overlap: bool = False,
+    diagonals: ArrayLike | None = None,
+    margin: float = 0.002,
+    rotate: bool = True,
+    progress: _Progress | None = None,
+) -> Unwrap: ...
 def register_disks(
     source: _Surface,
     target: _Surface,

@@ -227,7 +227,67 @@ fn direction(object: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 
 /// Finds seams along which a surface becomes disks whose area-preserving maps are hardly sheared.
 ///
-/// Docs to come.
+/// The surface may have any genus, any number of boundary loops, and several components. The seams are short, run in
+/// creases and hidden places where they can, and leave as few islands as they can, each a topological disk. A plate that
+/// is clamped along the seams predicts the shear of the best maps; maps of the islands correct the prediction.
+///
+/// Parameters
+/// ----------
+/// surface : Surface, or (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: an orientable manifold where it is not cut along `fixed`.
+/// target : float
+///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
+///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
+///     them up to three times as long and shows hardly any shear.
+/// fixed : (k, 2) integer array, optional
+///     Seams that are given, each the two ends of an edge. They stay, and others are added.
+/// weights : (n,) or (e,) real array, optional
+///     Factors of the cost of a seam, > 0, at the vertices or at the edges in ascending order of their ends, the lower
+///     end first. Above 1 they keep seams off, below 1 they draw them, and `inf` forbids them. An edge has the mean of
+///     its two vertices.
+/// front : (3,) real array, optional
+///     A direction from which the surface is seen, of any length. Seams cost up to three times as much on faces that
+///     look there.
+/// symmetry : "auto" or "off"
+///     "auto", the default, mirrors the seams where the surface has a mirror plane, unless symmetric seams are much
+///     worse than others. True means "auto"; False and None mean "off".
+/// max_islands : int, optional
+///     The most islands, ≥ 1. Parts between `fixed` seams, and components, are not counted together: each has at least
+///     one island.
+/// overlap : bool
+///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
+/// diagonals : (d, 2) integer array, optional
+///     Edges that only triangulate polygons, each as its two ends. Seams along them cost four times as much.
+/// method : "search" or "cones"
+///     "search", the default, seeks the shortest seams and maps the islands to check them. "cones" joins the places of
+///     most curvature by cheapest paths, without a map: a preview within a fraction of a second, whose seams are somewhat
+///     longer and may miss the target.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called throughout; False cancels, and the call raises.
+///
+/// Returns
+/// -------
+/// Seams
+///
+/// Raises
+/// ------
+/// MeshError
+///     The mesh is broken, an array does not fit, or a fixed seam is no edge of the mesh.
+/// ValueError
+///     An option is out of its range.
+/// SolverError
+///     The call was cancelled, or the numerics failed.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> corners = [[3, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]
+/// >>> faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+/// >>> seams = authalic.seams((corners, faces))
+/// >>> seams.status
+/// 'converged'
+/// >>> all(patch.is_disk for patch in authalic.cut(corners, faces, seams=seams.edges))
+/// True
 #[pyfunction]
 #[pyo3(
     signature = (surface, *, target=1.4, fixed=None, weights=None, front=None, symmetry=AUTO, max_islands=None,
@@ -273,7 +333,74 @@ pub fn seams(
 
 /// Cuts a surface, maps its islands at one density, and packs them into the unit square.
 ///
-/// Docs to come.
+/// The one call from a mesh to its UVs. Every island has the same share of the texture for its area, to a few
+/// thousandths; no face is folded, and no island overlaps itself or another.
+///
+/// Parameters
+/// ----------
+/// surface : Surface, or (vertices, faces)
+///     (n, 3) real and (m, 3) integer array: an orientable manifold where it is not cut along seams.
+/// seams : "auto", (s, 2) integer array, or None
+///     "auto", the default, finds them, as `seams` does with the options below. An array has all seams, each as the two
+///     ends of an edge, and no others are made. None has no seams: the components must be disks, or have holes. The
+///     options from `target` to `diagonals` but `overlap` count for "auto" only.
+/// target : float
+///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
+///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
+///     them up to three times as long and shows hardly any shear.
+/// fixed : (k, 2) integer array, optional
+///     Seams that are given, each the two ends of an edge. They stay, and others are added.
+/// weights : (n,) or (e,) real array, optional
+///     Factors of the cost of a seam, > 0, at the vertices or at the edges in ascending order of their ends, the lower
+///     end first. Above 1 they keep seams off, below 1 they draw them, and `inf` forbids them. An edge has the mean of
+///     its two vertices.
+/// front : (3,) real array, optional
+///     A direction from which the surface is seen, of any length. Seams cost up to three times as much on faces that
+///     look there.
+/// symmetry : "auto" or "off"
+///     "auto", the default, mirrors the seams where the surface has a mirror plane, unless symmetric seams are much
+///     worse than others. True means "auto"; False and None mean "off".
+/// max_islands : int, optional
+///     The most islands, ≥ 1. Parts between `fixed` seams, and components, are not counted together: each has at least
+///     one island.
+/// overlap : bool
+///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
+/// diagonals : (d, 2) integer array, optional
+///     Edges that only triangulate polygons, each as its two ends. Seams along them cost four times as much.
+/// margin : float
+///     Least distance of islands from each other and from the border of the square, in [0, .5), in units of the
+///     square. Default .002, which is two pixels of a texture of 1,024².
+/// rotate : bool
+///     Let the packing turn islands by any angle. Default True.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called throughout; False cancels, and the call raises.
+///
+/// Returns
+/// -------
+/// Unwrap
+///
+/// Raises
+/// ------
+/// MeshError
+///     The mesh is broken, an array does not fit, a seam is no edge of the mesh, or an island along given seams is
+///     closed or has handles.
+/// ValueError
+///     An option is out of its range.
+/// SolverError
+///     The call was cancelled, or the numerics failed.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> corners = [[3, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]
+/// >>> faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+/// >>> result = authalic.unwrap((corners, faces))
+/// >>> result.faces.shape
+/// (8, 3)
+/// >>> bool(((result.uv >= 0) & (result.uv <= 1)).all())
+/// True
+/// >>> result.area_ratio_std < 0.005
+/// True
 #[pyfunction]
 #[pyo3(
     signature = (surface, *, seams=SeamSource::Automatic, target=1.4, fixed=None, weights=None, front=None,

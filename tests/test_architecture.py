@@ -23,6 +23,7 @@ CORE_ROOMS = (
     {"optimize"},
     {"disk", "sphere", "untangle"},
     {"layout", "seams"},
+    {"unwrap"},
     {"registration"},
     {"hyperbolic"},
     {"testing"},

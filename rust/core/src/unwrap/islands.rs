@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The islands along given seams, mapped.
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 
-use super::CutSurface;
 use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::{Face, Patch, Surface};
 use crate::seams::{Island, IslandMap, Outlines, length, sorted_edges};
+
+/// A surface cut into islands that are mapped.
+pub(super) struct CutSurface {
+    pub islands: Vec<Island>,
+    /// (s, 2): the seams, the lower end first, ascending.
+    pub edges: Array2<u32>,
+    /// The length of the seams, each once, over the square root of the area.
+    pub length: f64,
+    pub status: Status,
+}
 
 /// The islands between given seams and the boundary.
 ///

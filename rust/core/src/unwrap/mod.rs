@@ -20,7 +20,7 @@ use crate::mesh::{Corner, Face, Surface, Vertex};
 use crate::packing::{self, PackOptions, pack};
 use crate::parallel;
 use crate::seams::{Island, MapFigures, SeamOptions, figures, seams_and_maps};
-use islands::along;
+use islands::{CutSurface, along};
 
 /// Where the seams of an unwrap come from.
 #[derive(Debug, Clone)]
@@ -115,14 +115,6 @@ pub fn unwrap(
         let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
         packed(surface, cut, options, began, &mut phase)
     })
-}
-
-/// A surface cut into islands that are mapped.
-struct CutSurface {
-    islands: Vec<Island>,
-    edges: Array2<u32>,
-    length: f64,
-    status: Status,
 }
 
 fn automatic(

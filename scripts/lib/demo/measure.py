@@ -29,6 +29,11 @@ def layout_of(mesh):
     return Layout(positions(mesh)[vertices], uv.reshape(-1, 2).astype(float)[loops], polygon)
 
 
+def surface(mesh):
+    """The coordinates (n, 3) and triangles (m, 3) of a Blender mesh."""
+    return positions(mesh), _triangles(mesh)[1]
+
+
 def sphere_of(mesh, key):
     """Reads the triangles of a Blender mesh and their images by a shape key whose points lie on a sphere."""
     _, vertices, polygon = _triangles(mesh)

@@ -2,19 +2,25 @@
 """The meshes of the demo: built in Blender or read from files by Blender's own importers."""
 
 import heapq
+import itertools
 import math
 from pathlib import Path
 
 import bmesh
 import bpy
 import numpy as np
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
+from shell import ROOT
+
+SPOT = ROOT / "tests" / "data" / "sphere" / "spot_2930.npz"
 READERS = {
     ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
     ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
     ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
 }
+BAR_RADIUS = 0.26
+"""The radius of the bars of the frame, whose corners lie 1 from the axis."""
 EXTENT, HEIGHT, DIAGONAL = 2.35, 2.1, 3.46
 """The limits of a mesh in the scene: along any axis, in height, and across its bounding box."""
 
@@ -50,12 +56,56 @@ def closed_suzanne():
     shape = bpy.context.object
     shape.modifiers.new("Subdivision", "SUBSURF").levels = 2
     bpy.ops.object.modifier_apply(modifier="Subdivision")
-    shape.data.remesh_voxel_size, shape.data.remesh_voxel_adaptivity = 0.035, 0.0
+    return without_seams(_prepared(_remeshed(shape, 0.035, 4), "Suzanne, closed"))
+
+
+def spot():
+    """The cow Spot, a closed surface of triangles, turned upright and to the eye."""
+    with np.load(SPOT) as file:
+        vertices, faces = file["V"][:, [0, 2, 1]] * [-1, 1, 1], file["F"]
+    mesh = bpy.data.meshes.new("Spot")
+    mesh.from_pydata(vertices.tolist(), [], faces.tolist())
+    return _prepared(_linked(mesh), "Spot")
+
+
+def frame():
+    """The edges of a tetrahedron as round bars: a closed surface of genus 3."""
+    base = (Vector((math.cos(angle), math.sin(angle), 0)) for angle in (math.tau * k / 3 for k in range(3)))
+    corners = [Vector((0, 0, math.sqrt(2))), *base]
+    work = bmesh.new()
+    for corner in corners:
+        bmesh.ops.create_icosphere(work, subdivisions=4, radius=BAR_RADIUS, matrix=Matrix.Translation(corner))
+    for a, b in itertools.combinations(corners, 2):
+        turn = Vector((0, 0, 1)).rotation_difference(b - a).to_matrix().to_4x4()
+        bmesh.ops.create_cone(
+            work, cap_ends=True, segments=48, radius1=BAR_RADIUS, radius2=BAR_RADIUS,
+            depth=(b - a).length, matrix=Matrix.Translation((a + b) / 2) @ turn,
+        )  # fmt: skip
+    mesh = bpy.data.meshes.new("Frame")
+    work.to_mesh(mesh)
+    work.free()
+    shape = _remeshed(_linked(mesh), 0.055, 8)
+    shape.modifiers.new("Triangulate", "TRIANGULATE").quad_method = "SHORTEST_DIAGONAL"
+    bpy.ops.object.modifier_apply(modifier="Triangulate")
+    return _prepared(shape, "Frame of genus 3")
+
+
+def _remeshed(shape, size, iterations):
+    """One closed surface of quads around all parts of an object, by voxels whose steps are smoothed away."""
+    shape.data.remesh_voxel_size, shape.data.remesh_voxel_adaptivity = size, 0.0
     bpy.ops.object.voxel_remesh()
-    smooth = shape.modifiers.new("Smooth", "SMOOTH")  # takes away the steps of the voxels
-    smooth.factor, smooth.iterations = 0.5, 4
+    smooth = shape.modifiers.new("Smooth", "SMOOTH")
+    smooth.factor, smooth.iterations = 0.5, iterations
     bpy.ops.object.modifier_apply(modifier="Smooth")
-    return without_seams(_prepared(shape, "Suzanne, closed"))
+    return shape
+
+
+def _linked(mesh):
+    """An object with a mesh, in the scene and active."""
+    shape = bpy.data.objects.new(mesh.name, mesh)
+    bpy.context.scene.collection.objects.link(shape)
+    bpy.context.view_layer.objects.active = shape
+    return shape
 
 
 def without_seams(shape):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 
-from demo import measure, meshes, morph, report, sphere, stage, unwrap
+from demo import measure, meshes, morph, report, seams, sphere, stage, unwrap
 
 PIXELS_PER_CELL = 380
 SAMPLES = 24
@@ -27,6 +27,8 @@ def main(out, files):
     closed = closed_meshes(sources[2:])
     heat = stage.heat_material()
     results = compare(out, sources, methods, heat)
+    if hasattr(bpy.types, "AUTHALIC_OT_unwrap"):
+        results += seams.show()
     if hasattr(bpy.types, "AUTHALIC_OT_sphere_shape_key"):
         results += sphere.show(out, closed, heat)
     if hasattr(bpy.types, "AUTHALIC_OT_register"):
@@ -118,6 +120,7 @@ def finish(out):
     bpy.ops.wm.save_as_mainfile(filepath=str(out / "demo.blend"), check_existing=False, compress=True)
     for name, picture, samples in (
         ("Comparison", "comparison.png", SAMPLES),
+        ("Seams", "seams.png", seams.SAMPLES),
         ("Sphere", "sphere.png", sphere.SAMPLES),
         ("Registration", "morph.png", morph.SAMPLES),
     ):

@@ -16,6 +16,8 @@ CHECKER_SIZE = 0.085
 HEAT_RANGE = 2.0
 """The heat map goes from 2^-2 to 2^2: a quarter to four times the fair share."""
 LEGEND_WIDTH = 2.6
+CORNER_COLORS = (("X", "Red", (0.12, 0.95)), ("Y", "Blue", (0.06, 0.85)))
+"""Axes of the unit square, the channels that change along them, and their values at 0 and 1."""
 HEAT_STOPS = (
     (0.00, (0.020, 0.090, 0.330)),
     (0.25, (0.140, 0.430, 0.760)),
@@ -69,6 +71,37 @@ def heat_material():
     return material
 
 
+def color_by_place(material):
+    """Colors the bright squares of a checker by their place in the unit square."""
+    nodes, link = material.node_tree.nodes, material.node_tree.links.new
+    uv = next(node for node in nodes if node.bl_idname == "ShaderNodeUVMap")
+    place, color = nodes.new("ShaderNodeSeparateXYZ"), nodes.new("ShaderNodeCombineColor")
+    link(uv.outputs["UV"], place.inputs[0])
+    for axis, channel, (at_zero, at_one) in CORNER_COLORS:
+        ramp = nodes.new("ShaderNodeMapRange")
+        ramp.inputs["To Min"].default_value, ramp.inputs["To Max"].default_value = at_zero, at_one
+        link(place.outputs[axis], ramp.inputs["Value"])
+        link(ramp.outputs["Result"], color.inputs[channel])
+    color.inputs["Green"].default_value = 0.50
+    checker = next(node for node in nodes if node.bl_idname == "ShaderNodeTexChecker")
+    link(color.outputs["Color"], checker.inputs["Color1"])
+
+
+def lines(name, segments, radius, color):
+    """Straight segments (k, 2, 3) as round lines of one color, unlit."""
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions, curve.bevel_depth, curve.use_fill_caps = "3D", radius, True
+    for segment in segments:
+        spline = curve.splines.new("POLY")
+        spline.points.add(1)
+        for point, end in zip(spline.points, segment, strict=True):
+            point.co = (*end, 1)
+    curve.materials.append(_ink(color))
+    shape = bpy.data.objects.new(name, curve)
+    bpy.context.scene.collection.objects.link(shape)
+    return shape
+
+
 def checker_scale(surface, image):
     """The scale of UVs in the checker, from the areas of the triangles in space and in the UV plane."""
     density = float(np.sqrt(surface.sum() / max(np.abs(image).sum(), 1e-300)))
@@ -105,7 +138,7 @@ def label(text, column, row, size=0.2, align="CENTER", shade=0.02):
     curve.align_x, curve.align_y = align, "CENTER"
     shape = bpy.data.objects.new(f"Label {text[:50]}", curve)
     shape.location, shape.rotation_euler = spot(column, row), (math.pi / 2, 0, 0)
-    curve.materials.append(_ink(shade))
+    curve.materials.append(_ink((shade, shade, shade)))
     bpy.context.scene.collection.objects.link(shape)
     return shape
 
@@ -181,14 +214,14 @@ def _set_stops(ramp):
         element.position, element.color = position, (*color, 1)
 
 
-def _ink(shade):
-    name = f"Ink {shade:.2f}"
+def _ink(color):
+    name = "Ink " + " ".join(f"{value:.2f}" for value in color)
     if name not in bpy.data.materials:
         material = bpy.data.materials.new(name)
         material.use_nodes = True
         nodes = material.node_tree.nodes
         glow = nodes.new("ShaderNodeEmission")
-        glow.inputs["Color"].default_value = (shade, shade, shade, 1)
+        glow.inputs["Color"].default_value = (*color, 1)
         material.node_tree.links.new(glow.outputs[0], nodes["Material Output"].inputs["Surface"])
     return bpy.data.materials[name]
 

@@ -9,15 +9,19 @@ from .operators import landmark_curves as operators_of_curves
 from .operators import landmark_files as operators_of_files
 from .operators import landmark_pick as operator_pick
 from .operators import landmark_points as operators_of_points
+from .operators import mark_seams as operator_mark_seams
 from .operators import measure as operator_measure
 from .operators import register as operator_register
+from .operators import seam_preview as operator_seam_preview
 from .operators import sphere_shape_key as operator_sphere_shape_key
 from .operators import transfer as operator_transfer
 from .operators import unwrap as operator_unwrap
 from .overlay import curves as overlay_curves
 from .overlay import points as overlay_points
+from .overlay import seams as overlay_seams
 from .ui import curves as ui_curves
 from .ui import landmarks as ui_landmarks
+from .ui import seams as ui_seams
 from .ui import unwrap as ui_unwrap
 
 # All modules that register something with Blender, in this order; they unregister in reverse.
@@ -27,7 +31,10 @@ _MODULES = (
     landmark_points,
     overlay_points,
     overlay_curves,
+    overlay_seams,
     operator_unwrap,
+    operator_mark_seams,
+    operator_seam_preview,
     operator_fix_flips,
     operator_sphere_shape_key,
     operator_measure,
@@ -38,6 +45,7 @@ _MODULES = (
     operator_register,
     operator_transfer,
     ui_unwrap,
+    ui_seams,
     ui_curves,
     ui_landmarks,
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The edges of meshes and the vertices at their ends, in object mode and in edit mode."""
+"""The edges of meshes, the vertices at their ends and their seams, in object mode and in edit mode."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -42,6 +42,24 @@ def edges_between(mesh: bpy.types.Mesh, pairs: Sequence[Edge]) -> list[int]:
         raise NoEdge("no edge joins vertices {} and {}".format(*pairs[bad[0]]))
     edges: list[int] = order[places].tolist()
     return edges
+
+
+def mark_seams(mesh: bpy.types.Mesh, marked: Sequence[int], cleared: Sequence[int] = ()) -> None:
+    """Clears seams, then marks edges as seams; all other edges stay as they are."""
+    if mesh.is_editmode:
+        edit = bmesh.from_edit_mesh(mesh)
+        edit.edges.ensure_lookup_table()
+        for is_seam, edges in ((False, cleared), (True, marked)):
+            for edge in edges:
+                edit.edges[edge].seam = is_seam
+        bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+        return
+    seam = np.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_seam", seam)
+    seam[np.array(cleared, int)] = False
+    seam[np.array(marked, int)] = True
+    mesh.edges.foreach_set("use_seam", seam)
+    mesh.update()
 
 
 def _edited_between(edit: bmesh.types.BMesh, pairs: Sequence[Edge]) -> list[int]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The selection of vertices and edges, in object mode and in edit mode."""
+"""The selection of vertices, edges and faces, in object mode and in edit mode."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,6 +23,16 @@ def edges(obj: MeshObject) -> list[Edge]:
     edit.verts.index_update()
     chosen = [edge for edge in edit.edges if edge.select and not edge.hide]
     return [tuple(vertex.index for vertex in edge.verts) for edge in chosen]
+
+
+def has_faces(obj: MeshObject) -> bool:
+    """Whether an object in edit mode has selected, visible faces."""
+    return any(face.select and not face.hide for face in bmesh.from_edit_mesh(obj.data).faces)
+
+
+def face_count(obj: MeshObject) -> int:
+    """The number of selected faces of an object in edit mode; 0 in object mode."""
+    return obj.data.total_face_sel if obj.data.is_editmode else 0
 
 
 def active_vertices(obj: MeshObject) -> list[int]:

@@ -51,6 +51,12 @@ def local(obj: MeshObject, vertex: int, depsgraph: bpy.types.Depsgraph) -> tuple
     return element.co.copy(), element.normal.copy()
 
 
+def count(obj: MeshObject) -> int:
+    """The number of vertices of an object's mesh."""
+    mesh = obj.data
+    return len(bmesh.from_edit_mesh(mesh).verts) if mesh.is_editmode else len(mesh.vertices)
+
+
 def many(obj: MeshObject, vertices: Sequence[int], depsgraph: bpy.types.Depsgraph) -> Floats:
     """The points (k, 3) of some vertices in the coordinates of the object."""
     mesh = obj.data

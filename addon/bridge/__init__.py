@@ -6,24 +6,28 @@ from .figures import folds, measure, measure_islands
 from .flips import fix_flips
 from .islands import unwrap
 from .registrations import kept, morphed, pull, register
-from .results import Figures, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
-from .settings import UnwrapSettings
+from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
+from .seams import find_seams
+from .settings import SeamSettings, UnwrapSettings
 from .shortfall import Shortfall
 from .solver import Solver
 from .spheres import sphere_shape
 
 __all__ = (
     "Figures",
+    "FoundSeams",
     "Island",
     "Mapping",
     "Measurement",
     "Refusal",
+    "SeamSettings",
     "Shortfall",
     "Solver",
     "SphereShape",
     "Unflipped",
     "Unsuitable",
     "UnwrapSettings",
+    "find_seams",
     "fix_flips",
     "folds",
     "kept",

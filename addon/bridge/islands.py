@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UVs for the islands of surfaces: by a map onto a disk or, for closed islands, onto a sphere."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 import authalic
 
-from ..messages import problems
-from ..surfaces import spherical, suitability, triangulation
+from ..surfaces import spherical, suitability
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from .patches import checked, cut
+from .patches import SurfacePatch, checked, surface_patches
 from .progress import Progress, keep_going, one_by_one, share_of, to_the_end
-from .results import Island, Mapping, Refusal
+from .results import Island, Mapping
+from .seams import disks
 from .settings import UnwrapSettings
 from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
 from .solver import Solver
@@ -33,6 +33,8 @@ _AXES = {
     "Y": ((0, 1, 0), (0, 0, -1)),
     "Z": ((0, 0, 1), (0, 1, 0)),
 }
+# The part of the time that the search for seams takes; the maps take the rest.
+_SEAMS = 0.7
 # The part of the time that the sphere map takes; the layout takes the rest.
 _SPHERE = 0.9
 # The most vertices that a layout needs for its poles.
@@ -43,75 +45,35 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
     """Maps every island of every surface (`Surface`) to UVs, by a disk or by a sphere.
 
     When `progress` returns False, the current island keeps its best map so far, and later ones are refused.
-    Islands that cannot be mapped are refused, not raised.
+    Islands that cannot be mapped are refused, not raised. Where seams are to be found, they are found first.
     """
     result = Mapping()
-    pieces = [piece for index in range(len(surfaces)) for piece in _pieces(surfaces, index, result)]
+    if settings.seams is None:
+        patches = surface_patches(surfaces, result)
+    else:
+        result.seams, patches = disks(surfaces, settings.seams, share_of(progress, 0.0, _SEAMS))
+        result.refusals += result.seams.refusals
+        progress = share_of(progress, _SEAMS, 1.0 - _SEAMS)
+        if result.seams.ended_early:  # seams are worth nothing here without maps
+            progress = to_the_end(progress)
 
-    def mapped(piece: _Piece, step: Progress) -> None:
+    def mapped(piece: SurfacePatch, step: Progress) -> None:
         result.islands.append(_map(piece, settings, step))
 
-    one_by_one(pieces, mapped, result, progress)
+    one_by_one(patches, mapped, result, progress)
     return result
 
 
-@dataclass
-class _Piece:
-    """A patch of a surface, with the mesh's numbers for its corners, faces and vertices."""
-
-    name: str
-    index: int
-    patch: authalic.Patch
-    points: Floats
-    corners: Integers
-    polygons: Integers
-    vertices: Integers
-    pinned: bool
-
-    @property
-    def polygon(self) -> int:
-        return int(self.polygons[0])
-
-
-def _pieces(surfaces: Sequence[Surface], index: int, result: Mapping) -> Iterator[_Piece]:
-    """The islands of a surface; a surface that cannot be cut is refused as a whole."""
-    surface = surfaces[index]
-    mesh = triangulation.sound(surface)
-    used, faces = np.unique(mesh.triangles, return_inverse=True)
-    faces, points = faces.reshape(-1, 3), mesh.positions[used]
-    number = np.full(len(mesh.positions), -1)
-    number[used] = np.arange(len(used))
-    # The center of a divided polygon is no vertex of the mesh.
-    vertices = np.where(used < len(surface.positions), used, -1)
-    try:
-        patches = cut(points, faces, seams=number[surface.seams])
-    except authalic.MeshError as error:
-        reason = problems.in_words(error, mesh.polygons, vertices)
-        result.refusals.append(Refusal(surface.name, None, reason))
-        return
-    for patch in patches:
-        corners = mesh.corners.ravel()[np.asarray(patch.corner_of).ravel()]
-        yield _Piece(
-            name=surface.name,
-            index=index,
-            patch=patch,
-            points=points[patch.vertex_of],
-            corners=corners,
-            polygons=mesh.polygons[patch.face_of],
-            vertices=vertices[patch.vertex_of],
-            pinned=bool(surface.pinned is not None and surface.pinned[corners[corners >= 0]].any()),
-        )
-
-
-def _map(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
+def _map(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
     """The UVs of one island; most of its faces are counter-clockwise."""
-    if piece.pinned:
-        raise Unsuitable("has pinned UVs, which would have to move; unpin them first")
-    domain = suitability.choose(piece.patch, settings.domain, settings.fill_holes)
+    if piece.is_pinned:
+        raise Unsuitable(suitability.PINNED)
+    domain = settings.domain if settings.seams is None else "DISK"
+    domain = suitability.choose(piece.patch, domain, settings.fill_holes)
     return (_by_disk if domain == "DISK" else _by_sphere)(piece, settings, progress)
 
 
-def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
+def _by_disk(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
     native = checked(piece.patch, piece.points)
     disk_map = authalic.disk_map(
         native, fill_holes=settings.fill_holes, progress=progress, **settings.solver.disk_options()
@@ -125,7 +87,7 @@ def _by_disk(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Isl
     return island
 
 
-def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> Island:
+def _by_sphere(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
     """Lays the sphere map flat; if its faces are too thin for that, one with better shapes."""
     solver = settings.solver
     try:
@@ -140,7 +102,7 @@ def _by_sphere(piece: _Piece, settings: UnwrapSettings, progress: Progress) -> I
         raise
 
 
-def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
+def _laid_flat(piece: SurfacePatch, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
     faces = np.asarray(piece.patch.faces)
     native = checked(piece.patch, piece.points)
     sphere, over, turned = sphere_map(native, solver, share_of(progress, 0.0, _SPHERE))
@@ -157,7 +119,11 @@ def _laid_flat(piece: _Piece, settings: UnwrapSettings, solver: Solver, progress
 
 
 def _layout(
-    sphere: authalic.SphereMap, over: Floats, piece: _Piece, settings: UnwrapSettings, progress: Progress
+    sphere: authalic.SphereMap,
+    over: Floats,
+    piece: SurfacePatch,
+    settings: UnwrapSettings,
+    progress: Progress,
 ) -> authalic.Layout:
     """The layout of a sphere map by the settings; `over` lays the map over the surface, whose axes count."""
     pole, start = np.array(_AXES[settings.pole_axis], float)
@@ -177,14 +143,14 @@ def _layout(
 
 
 def _island(
-    piece: _Piece,
+    piece: SurfacePatch,
     native: authalic.Surface,
     uv: Floats,
     faces: Integers,
     turned: Booleans,
     points: Integers,
 ) -> Island:
-    """An `Island` of the piece's points (n,) with UVs (n, 2) and triangles `faces`."""
+    """An `Island` of the patch's points (n,) with UVs (n, 2) and triangles `faces`."""
     real = piece.corners >= 0
     return Island(
         name=piece.name,

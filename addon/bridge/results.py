@@ -52,12 +52,34 @@ class Refusal:
 
 
 @dataclass
+class FoundSeams:
+    """The result of `find_seams`: `edges` (k, 2) are the vertices of the new seams of each surface.
+
+    The surfaces are divided into `islands`. The `length` of the new seams, over the root of the area, and the
+    predicted `shear` are of all surfaces together. `notes` name what is sheared more than it should be.
+    `ended_early` says that it was asked to end before it was done: the last island has quick seams then.
+    """
+
+    edges: list[Integers]
+    islands: int = 0
+    length: float = 0.0
+    shear: float = 1.0
+    notes: list[str] = field(default_factory=list)
+    refusals: list[Refusal] = field(default_factory=list)
+    ended_early: bool = False
+
+
+@dataclass
 class Mapping:
-    """The result of `unwrap`; `ended_early` says that it was asked to end before it was done."""
+    """The result of `unwrap`; `ended_early` says that it was asked to end before it was done.
+
+    `seams` are those that were found for it, None where those of the surfaces count.
+    """
 
     islands: list[Island] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
     ended_early: bool = False
+    seams: FoundSeams | None = None
 
 
 @dataclass

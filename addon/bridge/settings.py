@@ -1,9 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of an unwrap. Plain data, no bpy."""
+"""The settings of an unwrap and of a search for seams. Plain data, no bpy."""
 
 from dataclasses import dataclass, field
 
 from .solver import Solver
+
+FEW_STRETCHES, FEW_SEAMS = 1.25, 1.4
+"""The shear that seams are to leave, unless a caller has a wish: of models, and of scans."""
+
+
+@dataclass
+class SeamSettings:
+    """The settings of a search for seams.
+
+    `shear` is the mean σ₁/σ₂ that the maps of the islands may have; None for the one that suits each
+    surface. With `keep_given` the seams of the surface stay and are added to, else they are ignored. `front`
+    is a direction in which seams are seen. A draft takes a fraction of a second.
+    """
+
+    shear: float | None = None
+    keep_given: bool = True
+    is_symmetric: bool = True
+    front: tuple[int, int, int] | None = None
+    max_islands: int | None = None
+    overlap: bool = False
+    is_draft: bool = False
 
 
 @dataclass
@@ -11,7 +32,8 @@ class UnwrapSettings:
     """The settings of an unwrap.
 
     `domain` is "AUTO", "DISK" or "SPHERE". Closed islands have a layout, "LAMBERT" or "OCTAHEDRAL", the axis
-    "X", "Y" or "Z" of the poles, and the angle of the seam about it.
+    "X", "Y" or "Z" of the poles, and the angle of the seam about it. With `seams` every island is cut into
+    disks first, and neither domain nor layout counts.
     """
 
     fill_holes: bool = True
@@ -20,3 +42,4 @@ class UnwrapSettings:
     layout: str = "LAMBERT"
     pole_axis: str = "Z"
     seam_direction: float = 0.0
+    seams: SeamSettings | None = None

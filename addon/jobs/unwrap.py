@@ -9,14 +9,14 @@ import bpy
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import meshes, uv_maps
+from ..blender import edges, meshes, uv_maps
 from ..blender.packing import PackSettings, pack
 from ..blender.types import MeshObject
 from ..bridge.progress import Progress
 from ..surfaces.arrays import Integers, Singles
 from ..surfaces.islands import scale_to_one_density, upright
 from ..surfaces.surface import Surface
-from . import targets
+from . import found_seams, targets
 from .job import Job
 
 _NAMED = 3
@@ -32,9 +32,13 @@ class CannotUnwrap(Exception):
 
 @dataclass
 class Settings:
-    """All options of the unwrap; an empty `uv_layer` is the active one."""
+    """All options of the unwrap; an empty `uv_layer` is the active one.
+
+    With `mark_seams` the seams that are found for it are marked on the meshes.
+    """
 
     uv_layer: str = ""
+    mark_seams: bool = True
     mapping: bridge.UnwrapSettings = field(default_factory=bridge.UnwrapSettings)
     packing: PackSettings = field(default_factory=PackSettings)
 
@@ -86,11 +90,13 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
     def finish(mapping: bridge.Mapping) -> Report:
         mapping.refusals[:0] = refusals
         _check_unchanged(chosen)
-        figures = _write(chosen, mapping, settings.packing)
+        figures = _write(chosen, mapping, settings)
         seconds = time.perf_counter() - started
         notes = _notes(chosen, mapping.islands, figures)
         if mapping.ended_early:
             notes.insert(0, messages.ENDED_EARLY)
+        if mapping.seams is not None:
+            notes[:0] = found_seams.notes(mapping.seams)
         return Report(len(mapping.islands), figures, mapping.refusals, notes, seconds)
 
     return Job(work, finish)
@@ -124,17 +130,31 @@ def _check_unchanged(chosen: Sequence[Chosen]) -> None:
             raise CannotUnwrap(f"{surface.name} has changed meanwhile; nothing was written")
 
 
-def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: PackSettings) -> bridge.Figures:
+def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: Settings) -> bridge.Figures:
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
-    _place(mapping, settings)
+    _place(mapping, settings.packing)
     parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
     figures = _figures([surface for _, _, surface in chosen], parts, mapping.islands)
     if figures is None:
         raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
+    marks = _marks(chosen, mapping) if settings.mark_seams else []
     for (obj, layer, _), (corners, uv) in zip(chosen, parts, strict=True):
         if len(corners):
             uv_maps.write(obj.data, uv_maps.ensure(obj.data, layer), corners, uv)
+    for obj, numbers in marks:
+        edges.mark_seams(obj.data, numbers)
     return figures
+
+
+def _marks(chosen: Sequence[Chosen], mapping: bridge.Mapping) -> list[tuple[MeshObject, list[int]]]:
+    """The objects with the edges to mark as seams; none where no seams were sought."""
+    if mapping.seams is None:
+        return []
+    objects = [obj for obj, _, _ in chosen]
+    try:
+        return list(zip(objects, found_seams.marks(objects, mapping.seams), strict=True))
+    except edges.NoEdge as problem:
+        raise CannotUnwrap("The meshes have changed meanwhile; nothing was written") from problem
 
 
 def _place(mapping: bridge.Mapping, settings: PackSettings) -> None:

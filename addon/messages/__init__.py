@@ -11,6 +11,7 @@ Integers = NDArray[np.integer[Any]]
 
 ENDED_EARLY = "stopped early; a longer run gives more even areas"
 ENDED_EARLY_BY_CURVES = "stopped early; a longer run preserves the shapes of faces better"
+ENDED_EARLY_SEEKING = "stopped early; a longer run finds shorter seams"
 ENDED_EARLY_FIXING = "stopped early; a longer run may fix more"
 _NAMED = 3
 _PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}

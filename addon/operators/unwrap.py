@@ -12,8 +12,9 @@ from ..blender import packing, uv_maps
 from ..blender.types import is_mesh
 from ..jobs import unwrap
 from ..jobs.job import Job
-from . import poll, solving
+from . import poll, seaming, solving
 from .modal import Modal
+from .seaming import Seaming
 from .solving import Outlining
 
 
@@ -22,7 +23,7 @@ def _layer_names(_operator: bpy.types.Operator, context: bpy.types.Context, _tex
     return uv_maps.names(obj) if is_mesh(obj) else []
 
 
-class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
+class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
     """Make each face's UV area proportional to its surface area"""
 
     bl_idname = "authalic.unwrap"
@@ -30,6 +31,25 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
     refused = (unwrap.CannotUnwrap,)
 
+    seams: EnumProperty(
+        name="Seams",
+        description="The seams along which meshes are cut",
+        items=(
+            ("GIVEN", "Given", "The seams of the mesh"),
+            ("ADD", "Add", "The seams of the mesh, and more where faces would be sheared too much"),
+            (
+                "AUTOMATIC",
+                "Automatic",
+                "New seams that leave little shear, whatever the seams of the mesh. Any closed mesh is cut open",
+            ),
+        ),
+        default="GIVEN",
+    )
+    mark_seams: BoolProperty(
+        name="Mark Seams",
+        description="Mark the seams that are found on the mesh. Those that it has stay",
+        default=True,
+    )
     domain: EnumProperty(
         name="Domain",
         description="The shape that islands are mapped onto",
@@ -130,6 +150,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
     def _settings(self) -> unwrap.Settings:
         return unwrap.Settings(
             uv_layer=self.uv_layer,
+            mark_seams=self.mark_seams,
             mapping=bridge.UnwrapSettings(
                 fill_holes=self.fill_holes,
                 solver=self.solver(),
@@ -137,23 +158,41 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, bpy.types.Operator):
                 layout=self.sphere_layout,
                 pole_axis=self.pole_axis,
                 seam_direction=self.seam_direction,
+                seams=self._search(),
             ),
             packing=packing.PackSettings(self.margin_method, self.margin),
+        )
+
+    def _search(self) -> bridge.SeamSettings | None:
+        """The search for seams, if there is to be one."""
+        if self.seams == "GIVEN":
+            return None
+        return bridge.SeamSettings(
+            shear=seaming.shear(self.properties),
+            keep_given=self.seams == "ADD",
+            overlap=self.allow_overlap,
         )
 
 
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
-    column.prop(properties, "domain")
-    row = column.row()
-    row.active = properties.domain != "SPHERE"
+    column.row().prop(properties, "seams", expand=True)
+    is_given = properties.seams == "GIVEN"
+    if not is_given:
+        seaming.draw_shear(column, properties)
+        column.prop(properties, "mark_seams")
+    shape = column.column()
+    shape.active = is_given
+    shape.prop(properties, "domain")
+    row = shape.row()
+    row.active = is_given and properties.domain != "SPHERE"
     row.prop(properties, "fill_holes")
     solving.draw_options(column, properties)
     column.prop(properties, "uv_layer", placeholder="Active")
     layout.label(text="Closed Islands")
     column = layout.column()
-    column.active = properties.domain != "DISK"
+    column.active = is_given and properties.domain != "DISK"
     for name in _SPHERE:
         column.prop(properties, name)
     column = layout.column()

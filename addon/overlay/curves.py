@@ -12,7 +12,7 @@ import bpy
 import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 from ..blender import element_marks, scene_changes, vertex_positions
 from ..blender.types import MeshObject
@@ -20,7 +20,7 @@ from ..landmarks import curves as landmark_curves
 from ..landmarks import paths
 from ..landmarks.objects import SIDES, active_source, side_object
 from ..surfaces.arrays import Edge
-from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disk, faces_eye, is_drawn, label, sources
+from .drawing import ACTIVE, BEHIND, DARK, PROBLEM, disk, faces_eye, is_drawn, label, nearer_to_eye, sources
 
 Color = tuple[float, float, float]
 End = tuple[Vector, Vector, float]
@@ -30,8 +30,6 @@ End = tuple[Vector, Vector, float]
 _COLOR_SETS = (9, 4, 3, 2, 6, 7, 5, 12, 14, 11)
 _WIDTH, _ACTIVE_WIDTH, _RIM = 3.0, 4.0, 2.5
 _DOT, _ARROW = 4.5, 11.0
-# Lines are drawn nearer to the eye than their surface, by this part of the distance.
-_NEARER = 2e-3
 _handles: list[Any] = []
 
 
@@ -102,7 +100,7 @@ def _draw_lines() -> None:
     for depth_test, alpha in passes:
         gpu.state.depth_test_set(depth_test)
         with gpu.matrix.push_pop():  # type: ignore[attr-defined]
-            gpu.matrix.load_matrix(_to_eye(context) @ gpu.matrix.get_model_view_matrix())
+            gpu.matrix.load_matrix(nearer_to_eye(context) @ gpu.matrix.get_model_view_matrix())
             for line, obj, shape in drawn:
                 _draw_line(line, obj, shape, context, alpha)
     gpu.state.depth_test_set("NONE")
@@ -141,14 +139,6 @@ def _shape(line: Line, obj: MeshObject, graph: bpy.types.Depsgraph) -> _Shape:
 
 def _end_edges(line: Line) -> tuple[Edge, Edge]:
     return line.edges[0], line.edges[-1][::-1]
-
-
-def _to_eye(context: bpy.types.Context) -> Matrix:
-    """The matrix that moves points of the view nearer to the eye, at the same pixels."""
-    view = context.region_data
-    if view.is_perspective:
-        return Matrix.Diagonal((*[1 - _NEARER] * 3, 1))
-    return Matrix.Translation((0, 0, _NEARER * view.view_distance))
 
 
 def _draw_line(line: Line, obj: MeshObject, shape: _Shape, context: bpy.types.Context, alpha: float) -> None:

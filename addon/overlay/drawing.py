@@ -9,7 +9,7 @@ import blf
 import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
 from ..blender import vertex_positions
 from ..blender.types import MeshObject, is_mesh
@@ -17,6 +17,8 @@ from ..blender.types import MeshObject, is_mesh
 PROBLEM, ACTIVE, DARK = (1.0, 0.2, 0.2), (1.0, 1.0, 1.0), (0.05, 0.05, 0.05)
 BEHIND = 0.22  # the opacity of hidden markers
 _SIDES = 24
+# Lines are drawn nearer to the eye than their surface, by this part of the distance.
+_NEARER = 2e-3
 
 
 def sources(context: bpy.types.Context) -> list[MeshObject]:
@@ -50,6 +52,14 @@ def _to_eye(context: bpy.types.Context, point: Vector) -> Vector:
     if view.is_perspective:
         return (view.view_matrix.inverted().translation - point).normalized()
     return view.view_matrix.inverted().to_3x3() @ vertex_positions.Z
+
+
+def nearer_to_eye(context: bpy.types.Context) -> Matrix:
+    """The matrix that moves points of the view nearer to the eye, at the same pixels."""
+    view = context.region_data
+    if view.is_perspective:
+        return Matrix.Diagonal((*[1 - _NEARER] * 3, 1))
+    return Matrix.Translation((0, 0, _NEARER * view.view_distance))
 
 
 def disk(center: Sequence[float] | Vector, radius: float, color: Sequence[float]) -> None:

@@ -9,6 +9,11 @@ import numpy as np
 from .. import messages
 from .arrays import Integers
 
+PINNED = "has pinned UVs, which would have to move; unpin them first"
+"""Why an island with pinned UVs is not unwrapped."""
+# What cuts open whatever can be cut open.
+_AUTOMATIC = "set Seams to Automatic"
+
 
 class Patch(Protocol):
     """The topology of a piece of a surface, as `authalic.Patch` has it."""
@@ -29,26 +34,34 @@ class Unsuitable(Exception):
 
 def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
     """ "DISK" or "SPHERE", by the topology of an island and the wanted one, which may be "AUTO"."""
-    if patch.genus is None:
-        raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
+    check_sides(patch)
     if domain == "SPHERE" and not patch.is_closed:
         raise Unsuitable(
             "has a boundary, but a sphere has none; clear its seams, fill its holes or set Domain to "
             "Automatic"
         )
     if domain == "DISK" and patch.is_closed:
-        remedy = ", or set Domain to Automatic or Sphere" if patch.genus == 0 else ""
+        remedy = f", or set Domain to Automatic or Sphere, or {_AUTOMATIC}" if patch.genus == 0 else ""
         raise Unsuitable(f"is closed; mark seams to cut it open{remedy}")
-    if patch.genus > 0:
+    if patch.genus:
         closed = "is closed and " if patch.is_closed else ""
-        raise Unsuitable(f"{closed}has {handles(patch)}, like a torus; mark seams to cut it open")
+        raise Unsuitable(
+            f"{closed}has {handles(patch)}, like a torus; mark seams to cut it open, or {_AUTOMATIC}"
+        )
     if patch.is_closed:
         return "SPHERE"
     if len(patch.boundary_loops) > 1 and not fill_holes:
         raise Unsuitable(
-            f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes or mark seams to join them"
+            f"has {len(patch.boundary_loops)} boundaries; turn on Fill Holes, mark seams to join them, or "
+            f"{_AUTOMATIC}"
         )
     return "DISK"
+
+
+def check_sides(patch: Patch) -> None:
+    """Raises `Unsuitable` if an island is one-sided."""
+    if patch.genus is None:
+        raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it")
 
 
 def check_flat(patch: Patch) -> None:

@@ -13,6 +13,7 @@ class Surface:
     `positions` (n, 3) have the shape of the mesh and the size of the object in the world. `triangles` (t, 3)
     are vertices, `corners` (t, 3) mesh corners, `polygons` (t,) polygons; `seams` (k, 2) vertices.
     `pinned` (c,) and `uv` (c, 2) of the UV layer, if there is one, have one entry per mesh corner.
+    `seam_factors` (n,), if there are some, say how dear a seam is at each vertex; infinite forbids it.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Surface:
     polygon_size: Integers
     pinned: Booleans | None = None
     uv: Singles | None = None
+    seam_factors: Floats | None = None
 
     @property
     def polygon_count(self) -> int:

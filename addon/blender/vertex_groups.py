@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The weights of vertex groups, in object mode and in edit mode."""
+
+from typing import Any
+
+import bmesh
+import numpy as np
+
+from ..surfaces.arrays import Singles
+from .types import MeshObject
+
+
+def names(obj: MeshObject) -> list[str]:
+    """The names of the vertex groups of an object."""
+    return [group.name for group in obj.vertex_groups]
+
+
+def weights(obj: MeshObject, name: str) -> Singles:
+    """The weights (n,) of all vertices in a group; 0 outside, or where the object has no such group."""
+    mesh = obj.data
+    group: Any = obj.vertex_groups.get(name)
+    number = -1 if group is None else group.index
+    if not mesh.is_editmode:
+        found = np.zeros(len(mesh.vertices), np.float32)
+        for vertex in mesh.vertices if number >= 0 else ():
+            for entry in vertex.groups:
+                if entry.group == number:
+                    found[vertex.index] = entry.weight
+        return found
+    edit = bmesh.from_edit_mesh(mesh)
+    layer = edit.verts.layers.deform.active
+    if layer is None or number < 0:
+        return np.zeros(len(edit.verts), np.float32)
+    return np.array([vertex[layer].get(number, 0.0) for vertex in edit.verts], np.float32)

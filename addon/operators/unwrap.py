@@ -40,7 +40,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
             (
                 "AUTOMATIC",
                 "Automatic",
-                "New seams that leave little shear, whatever the seams of the mesh. Any closed mesh is cut open",
+                "New seams that leave little shear; those of the mesh do not count. Opens any closed mesh",
             ),
         ),
         default="GIVEN",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panel that marks seams, and the entries in the menus of edges and UVs."""
+"""The sidebar panel that marks seams, and the entry in the Edge menu."""
 
 from typing import Any
 
@@ -41,17 +41,13 @@ def _draw_menu(self: Any, _context: Any) -> None:
 
 
 _MENUS: Any = bpy.types
-# The Edge menu, and the UV menus of the UV editor and of the 3D view.
-_NAMES = ("VIEW3D_MT_edit_mesh_edges", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 
 
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_PT_seams_view3d)
-    for name in _NAMES:
-        getattr(_MENUS, name).append(_draw_menu)
+    _MENUS.VIEW3D_MT_edit_mesh_edges.append(_draw_menu)
 
 
 def unregister() -> None:
-    for name in _NAMES:
-        getattr(_MENUS, name).remove(_draw_menu)
+    _MENUS.VIEW3D_MT_edit_mesh_edges.remove(_draw_menu)
     bpy.utils.unregister_class(AUTHALIC_PT_seams_view3d)

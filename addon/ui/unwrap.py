@@ -78,8 +78,9 @@ def _draw_uv_menu(self: Any, _context: Any) -> None:
     self.layout.operator("authalic.unwrap")
 
 
-def _draw_flips_menu(self: Any, _context: Any) -> None:
+def _draw_tools_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
+    self.layout.operator("authalic.mark_seams")
     self.layout.operator("authalic.fix_flips")
 
 
@@ -90,7 +91,7 @@ def _draw_shape_key_menu(self: Any, _context: Any) -> None:
 
 _MENUS: Any = bpy.types
 # The UV menus of the UV editor and of the 3D view.
-_FLIPS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
+_TOOLS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
     AUTHALIC_PT_sphere_shape_key_view3d,
@@ -105,15 +106,15 @@ def register() -> None:
         bpy.utils.register_class(cls)
     # This menu serves the UV editor and the 3D view.
     _MENUS.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
-    for menu in _FLIPS_MENUS:
-        getattr(_MENUS, menu).append(_draw_flips_menu)
+    for menu in _TOOLS_MENUS:
+        getattr(_MENUS, menu).append(_draw_tools_menu)
     _MENUS.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
 def unregister() -> None:
     _MENUS.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
-    for menu in _FLIPS_MENUS:
-        getattr(_MENUS, menu).remove(_draw_flips_menu)
+    for menu in _TOOLS_MENUS:
+        getattr(_MENUS, menu).remove(_draw_tools_menu)
     _MENUS.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

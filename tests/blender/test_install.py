@@ -7,7 +7,10 @@ import bpy
 import conftest
 import pytest
 
-MENUS = ("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu")
+MENUS = (
+    *("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu"),
+    "VIEW3D_MT_edit_mesh_edges",
+)
 
 
 def _menu_entries() -> list[Any]:
@@ -73,6 +76,28 @@ def test_defaults_are_declared() -> None:
         properties = getattr(bpy.ops.authalic, name).get_rna_type().properties
         named = [p for p in properties if p.identifier != "rna_type"]
         assert all(p.name and p.description and not p.description.endswith(".") for p in named)
+
+
+def test_defaults_of_seams_are_declared() -> None:
+    properties = bpy.ops.authalic.mark_seams.get_rna_type().properties
+    expected = {
+        "shear_preset": "AUTO",
+        "shear": 1.25,
+        "keep_off": "",
+        "prefer": "",
+        "symmetry": "AUTO",
+        "front": "NONE",
+        "max_islands": 0,
+        "allow_overlap": False,
+        "clear": False,
+        "draft": False,
+    }
+    named = [p for p in properties if p.identifier != "rna_type"]
+    assert {p.identifier: p.default for p in named} == expected
+    assert all(p.name and p.description and not p.description.endswith(".") for p in named)
+    of_the_unwrap = bpy.ops.authalic.unwrap.get_rna_type().properties
+    assert of_the_unwrap["seams"].default == "GIVEN" and of_the_unwrap["mark_seams"].default
+    assert all(of_the_unwrap[name].default == expected[name] for name in ("shear_preset", "shear"))
 
 
 def test_sidebar_has_options_before_the_first_use() -> None:

@@ -21,7 +21,6 @@ from .overlay import points as overlay_points
 from .overlay import seams as overlay_seams
 from .ui import curves as ui_curves
 from .ui import landmarks as ui_landmarks
-from .ui import seams as ui_seams
 from .ui import unwrap as ui_unwrap
 
 # All modules that register something with Blender, in this order; they unregister in reverse.
@@ -45,7 +44,6 @@ _MODULES = (
     operator_register,
     operator_transfer,
     ui_unwrap,
-    ui_seams,
     ui_curves,
     ui_landmarks,
 )

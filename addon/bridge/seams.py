@@ -15,7 +15,7 @@ from ..surfaces.surface import Surface
 from .patches import SurfacePatch, checked, surface_patches
 from .progress import Progress, keep_going, one_by_one, to_the_end
 from .results import FoundSeams
-from .settings import FEW_SEAMS, FEW_STRETCHES, SeamSettings
+from .settings import FEW_SEAMS, LOW_SHEAR, SeamSettings
 
 
 def find_seams(
@@ -124,4 +124,4 @@ def _shear(surface: Surface, settings: SeamSettings) -> float:
     """The shear that the seams of a surface are to leave."""
     if settings.shear is not None:
         return settings.shear
-    return FEW_SEAMS if seam_costs.is_scan(surface) else FEW_STRETCHES
+    return FEW_SEAMS if seam_costs.is_scan(surface) else LOW_SHEAR

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from .solver import Solver
 
-FEW_STRETCHES, FEW_SEAMS = 1.25, 1.4
+LOW_SHEAR, FEW_SEAMS = 1.25, 1.4
 """The shear that seams are to leave, unless a caller has a wish: of models, and of scans."""
 
 

@@ -7,9 +7,9 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 
 from ..blender.types import OperatorMixin
-from ..bridge.settings import FEW_SEAMS, FEW_STRETCHES
+from ..bridge.settings import FEW_SEAMS, LOW_SHEAR
 
-_STOPS = {"FEW_STRETCHES": FEW_STRETCHES, "FEW_SEAMS": FEW_SEAMS}
+_STOPS = {"LOW_SHEAR": LOW_SHEAR, "FEW_SEAMS": FEW_SEAMS}
 # The name of a preset that leaves the shear to the extension, and of none.
 _AUTOMATIC, _CUSTOM = "AUTO", "CUSTOM"
 # Numbered, because key maps keep numbers.
@@ -17,12 +17,12 @@ _PRESETS = (
     (
         _AUTOMATIC,
         "Automatic",
-        "Few Stretches, but Few Seams for scans: meshes whose edges are below 0.8 % of their size",
+        "Low Shear, but Few Seams for scans: meshes whose edges are below 0.8 % of their size",
         "NONE",
         0,
     ),
-    ("FEW_STRETCHES", "Few Stretches", f"Shear {FEW_STRETCHES}: shapes come before seams", "NONE", 1),
-    ("FEW_SEAMS", "Few Seams", f"Shear {FEW_SEAMS}: about a fifth less seams", "NONE", 2),
+    ("LOW_SHEAR", "Low Shear", f"Shear {LOW_SHEAR}: shapes come before seams", "NONE", 1),
+    ("FEW_SEAMS", "Few Seams", f"Shear {FEW_SEAMS}: seams are about a fifth shorter", "NONE", 2),
     (_CUSTOM, "Custom", "The value of Shear", "NONE", 3),
 )
 _SHOWN = _PRESETS[:3]
@@ -67,7 +67,7 @@ class Seaming(OperatorMixin):
         step=1,
         precision=2,
         update=_set_preset,
-        default=FEW_STRETCHES,
+        default=LOW_SHEAR,
     )
 
 

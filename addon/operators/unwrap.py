@@ -177,24 +177,24 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
-    column.row().prop(properties, "seams", expand=True)
+    column.prop(properties, "seams")
     is_given = properties.seams == "GIVEN"
-    if not is_given:
+    if is_given:
+        column.prop(properties, "domain")
+        row = column.row()
+        row.active = properties.domain != "SPHERE"
+        row.prop(properties, "fill_holes")
+    else:
         seaming.draw_shear(column, properties)
         column.prop(properties, "mark_seams")
-    shape = column.column()
-    shape.active = is_given
-    shape.prop(properties, "domain")
-    row = shape.row()
-    row.active = is_given and properties.domain != "SPHERE"
-    row.prop(properties, "fill_holes")
     solving.draw_options(column, properties)
     column.prop(properties, "uv_layer", placeholder="Active")
-    layout.label(text="Closed Islands")
-    column = layout.column()
-    column.active = is_given and properties.domain != "DISK"
-    for name in _SPHERE:
-        column.prop(properties, name)
+    if is_given:
+        layout.label(text="Closed Islands")
+        column = layout.column()
+        column.active = properties.domain != "DISK"
+        for name in _SPHERE:
+            column.prop(properties, name)
     column = layout.column()
     for name in _PACKING:
         column.prop(properties, name)

@@ -49,6 +49,7 @@ def _draw() -> None:
         return
     batches = _prepared(context)
     gpu.state.blend_set("ALPHA")
+    gpu.state.depth_mask_set(False)
     passes: tuple[tuple[Any, float], ...] = (("NONE", BEHIND), ("LESS_EQUAL", 1.0))
     for depth_test, alpha in passes:
         gpu.state.depth_test_set(depth_test)

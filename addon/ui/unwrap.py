@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels of the 3D view and the UV editor, and the entries in the UV and shape key menus."""
+"""The sidebar panels of the 3D view and the UV editor, and the entries in menus."""
 
 from typing import Any
 
 import bpy
 
 from ..blender.types import PanelMixin
-from ..operators import sphere_shape_key, unwrap
+from ..operators import mark_seams, sphere_shape_key, unwrap
+from . import text
 
 
 class _Panel(PanelMixin):
@@ -47,6 +48,32 @@ class AUTHALIC_PT_unwrap_view3d(_UnwrapPanel, bpy.types.Panel):
     bl_space_type = "VIEW_3D"
 
 
+class AUTHALIC_PT_seams_view3d(_Panel, bpy.types.Panel):
+    bl_label = "Seams"
+    bl_space_type = "VIEW_3D"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("authalic.mark_seams", text="Mark Seams", icon="EDGESEL")
+        _draw_preview(layout, context)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        # The options that the button was last used with, and will use next.
+        mark_seams.draw_options(
+            layout, context.window_manager.operator_properties_last("authalic.mark_seams")
+        )
+
+
+def _draw_preview(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    manager: Any = context.window_manager
+    is_on = manager.authalic_seam_preview
+    layout.prop(manager, "authalic_seam_preview", toggle=True, icon="HIDE_OFF" if is_on else "HIDE_ON")
+    if is_on and manager.authalic_seam_figures:
+        text.draw_problems(layout, [manager.authalic_seam_figures], context, icon="INFO")
+
+
 class AUTHALIC_PT_measure_view3d(_MeasurePanel, bpy.types.Panel):
     bl_space_type = "VIEW_3D"
 
@@ -84,6 +111,11 @@ def _draw_tools_menu(self: Any, _context: Any) -> None:
     self.layout.operator("authalic.fix_flips")
 
 
+def _draw_edge_menu(self: Any, _context: Any) -> None:
+    self.layout.separator()
+    self.layout.operator("authalic.mark_seams")
+
+
 def _draw_shape_key_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
     self.layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
@@ -94,6 +126,7 @@ _MENUS: Any = bpy.types
 _TOOLS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
+    AUTHALIC_PT_seams_view3d,
     AUTHALIC_PT_sphere_shape_key_view3d,
     AUTHALIC_PT_measure_view3d,
     AUTHALIC_PT_unwrap_image,
@@ -108,11 +141,13 @@ def register() -> None:
     _MENUS.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
     for menu in _TOOLS_MENUS:
         getattr(_MENUS, menu).append(_draw_tools_menu)
+    _MENUS.VIEW3D_MT_edit_mesh_edges.append(_draw_edge_menu)
     _MENUS.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
 def unregister() -> None:
     _MENUS.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
+    _MENUS.VIEW3D_MT_edit_mesh_edges.remove(_draw_edge_menu)
     for menu in _TOOLS_MENUS:
         getattr(_MENUS, menu).remove(_draw_tools_menu)
     _MENUS.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)

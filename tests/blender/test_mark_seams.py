@@ -162,15 +162,15 @@ def test_less_shear_takes_longer_seams() -> None:
     for name, options in {
         "low": {"shear": 1.1},
         "default": {},
-        "stretches": {"shear_preset": "FEW_STRETCHES"},
-        "seams": {"shear_preset": "FEW_SEAMS"},
+        "low shear": {"shear_preset": "LOW_SHEAR"},
+        "few seams": {"shear_preset": "FEW_SEAMS"},
         "1.4": {"shear": 1.4},
         "custom": {"shear_preset": "CUSTOM", "shear": 1.4},
     }.items():
         mark(clear=True, **options)
         lengths[name] = length(obj, marked(obj))
-    assert lengths["low"] > lengths["stretches"] == lengths["default"]
-    assert lengths["default"] > lengths["seams"] == lengths["1.4"] == lengths["custom"]
+    assert lengths["low"] > lengths["low shear"] == lengths["default"]
+    assert lengths["default"] > lengths["few seams"] == lengths["1.4"] == lengths["custom"]
 
 
 def test_presets_and_shear_follow_each_other() -> None:
@@ -181,7 +181,7 @@ def test_presets_and_shear_follow_each_other() -> None:
     properties.shear_preset = "FEW_SEAMS"
     seaming_._set_shear(properties, None)
     assert (properties.shear, properties.shear_preset) == (1.4, "FEW_SEAMS")
-    for shear, preset in ((1.3, "CUSTOM"), (1.25, "FEW_STRETCHES"), (1.4, "FEW_SEAMS")):
+    for shear, preset in ((1.3, "CUSTOM"), (1.25, "LOW_SHEAR"), (1.4, "FEW_SEAMS")):
         properties.shear = shear
         seaming_._set_preset(properties, None)
         assert properties.shear_preset == preset

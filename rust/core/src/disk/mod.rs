@@ -137,15 +137,11 @@ pub(crate) fn map_island(
     mesh: &TriangleMesh,
     tolerance: f64,
     overlap: bool,
-    initial: Option<&[[f64; 2]]>,
+    max_iterations: Option<usize>,
     observer: &mut dyn Observer,
 ) -> Result<(PlanarMap, Status), Error> {
-    let options = DiskMapOptions {
-        boundary: Boundary::Free,
-        overlap,
-        initial: initial.map(aview2),
-        ..Default::default()
-    };
+    let boundary = Boundary::Free;
+    let options = DiskMapOptions { boundary, overlap, max_iterations, ..Default::default() };
     let schedule = free::Schedule::Quick { tolerance };
     let free = free::Free { mesh, targets: mesh.face_areas(), options: &options, schedule };
     free.map(&mut History::start(), observer)

@@ -24,9 +24,6 @@ use sprs::CsMat;
 /// The most cones.
 const MOST_CONES: usize = 60;
 
-/// Cones that are added between two predictions of the shear.
-const STRIDE: usize = 1;
-
 impl Search<'_> {
     /// The cut through as few cones as meet the target.
     ///
@@ -37,7 +34,7 @@ impl Search<'_> {
         let mut cut = cut_graph(mesh, cost, given);
         let cones = cones(mesh, &cut, observer)?;
         let mut state: Option<State> = None;
-        for (k, &cone) in cones.iter().enumerate() {
+        for &cone in &cones {
             let on_border = cut.border_vertices(mesh);
             let borders: Vec<_> =
                 Vertex::all(mesh.n_vertices()).filter(|&vertex| on_border[vertex]).collect();
@@ -48,7 +45,7 @@ impl Search<'_> {
                 continue;
             }
             cut = cut.with(&self.with_mirrored(&path));
-            if k % STRIDE != 0 || !cut.islands(mesh).are_disks() {
+            if !cut.islands(mesh).are_disks() {
                 continue;
             }
             let next = self.state(cut.clone(), observer)?;

@@ -71,7 +71,7 @@ fn check(options: &SeamOptions<'_>) -> Result<(), Error> {
         return Err(Error::InvalidOption { name: "max_islands", found: "0".into(), expected });
     }
     let weights = options.weights.iter().flatten();
-    if let Some(weight) = weights.copied().find(|&weight| !(weight > 0.0)) {
+    if let Some(weight) = weights.copied().find(|&weight| weight <= 0.0 || weight.is_nan()) {
         let expected = "positive, or inf where there must be no seam".into();
         return Err(Error::InvalidArray { name: "weights", found: format!("{weight} somewhere"), expected });
     }

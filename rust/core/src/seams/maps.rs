@@ -70,9 +70,14 @@ impl IslandMap {
     }
 
     /// Maps the island.
-    pub(crate) fn map(&mut self, outlines: Outlines, observer: &mut dyn Observer) -> Result<Status, Error> {
+    pub(crate) fn map(
+        &mut self,
+        outlines: Outlines,
+        max_iterations: Option<usize>,
+        observer: &mut dyn Observer,
+    ) -> Result<Status, Error> {
         let overlap = outlines == Outlines::MayCross;
-        let (uv, status) = map_island(&self.mesh, AREA_TOLERANCE, overlap, None, observer)?;
+        let (uv, status) = map_island(&self.mesh, AREA_TOLERANCE, overlap, max_iterations, observer)?;
         self.uv = uv;
         let area: f64 = self.mesh.faces().iter().map(|&face| signed_area(face.map(|v| self.uv[v]))).sum();
         let scale = (self.area() / area).sqrt();
@@ -135,7 +140,7 @@ pub(super) fn map_all(
     let n = islands.len() as f64;
     for (k, island) in islands.iter_mut().enumerate() {
         let mut phase = Phase { whole: &mut *observer, from: k as f64 / n, to: (k + 1) as f64 / n };
-        if island.map(outlines, &mut phase)? == Status::Cancelled {
+        if island.map(outlines, None, &mut phase)? == Status::Cancelled {
             return Err(Error::CancelledEarly);
         }
     }

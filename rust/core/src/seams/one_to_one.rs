@@ -25,6 +25,9 @@ const LARGE: usize = 20_000;
 /// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
 const ACCEPTED: f64 = 0.03;
 
+/// The most iterations for such an outline, where a chord is the alternative.
+const MOST_ITERATIONS: usize = 60;
+
 /// The most chords in one component.
 const MOST_CHORDS: usize = 8;
 
@@ -57,23 +60,6 @@ pub(super) fn chords(
     Ok(islands.iter().filter_map(chord_of).take(room).collect())
 }
 
-/// The map of an island whose outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no more
-/// than `accepted`.
-fn uncrossed(
-    island: &IslandMap,
-    accepted: f64,
-    observer: &mut dyn Observer,
-) -> Result<Option<IslandMap>, Error> {
-    let mut mapped = island.clone();
-    let status = mapped.map(Outlines::MayNotCross, observer)?;
-    if status == Status::Cancelled {
-        return Err(Error::CancelledEarly);
-    }
-    let rise = maps::figures([&mapped]).mean - maps::figures([island]).mean;
-    let is_good = status == Status::Converged && rise * island.area() <= accepted;
-    Ok((is_good || accepted == f64::INFINITY).then_some(mapped))
-}
-
 /// Maps islands again, or parts them, until none overlaps itself.
 pub(super) fn one_to_one(
     seamed: &mut Seamed,
@@ -81,7 +67,6 @@ pub(super) fn one_to_one(
     max_islands: usize,
     observer: &mut dyn Observer,
 ) -> Result<(), Error> {
-    let mesh = fine.mesh;
     let total: f64 = seamed.islands.iter().map(IslandMap::area).sum();
     let mut n_chords = 0;
     let mut k = 0;
@@ -91,32 +76,45 @@ pub(super) fn one_to_one(
             k += 1;
             continue;
         }
+        // 1. An outline that does not cross itself, where that costs little
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < max_islands;
-        let accepted = if may_part { ACCEPTED * total } else { f64::INFINITY };
-        let is_large = seamed.islands[k].face_of.len() > LARGE;
-        if !may_part || (overlap.share <= HOPELESS && !is_large) {
-            if let Some(mapped) = uncrossed(&seamed.islands[k], accepted, observer)? {
-                seamed.islands[k] = mapped;
-                k += 1;
-                continue;
-            }
+        let is_promising = overlap.share <= HOPELESS && seamed.islands[k].face_of.len() <= LARGE;
+        if may_part && is_promising && uncross(&mut seamed.islands[k], ACCEPTED * total, observer)? {
+            continue;
         }
-        match chord(mesh, &seamed.cut, &fine.cost, &seamed.islands[k], &overlap) {
-            Some(chord) => {
-                n_chords += 1;
-                seamed.cut.add(&chord);
-                part(seamed, mesh, k, observer)?;
-            }
-            None => {
-                if let Some(mapped) = uncrossed(&seamed.islands[k], f64::INFINITY, observer)? {
-                    seamed.islands[k] = mapped;
-                }
-                k += 1;
-            }
+        // 2. Else a chord
+        let island = &seamed.islands[k];
+        let chord = may_part.then(|| chord(fine.mesh, &seamed.cut, &fine.cost, island, &overlap)).flatten();
+        if let Some(chord) = chord {
+            n_chords += 1;
+            seamed.cut.add(&chord);
+            part(seamed, fine.mesh, k, observer)?;
+            continue;
         }
+        // 3. Where there is none, such an outline whatever it costs
+        if seamed.islands[k].map(Outlines::MayNotCross, None, observer)? == Status::Cancelled {
+            return Err(Error::CancelledEarly);
+        }
+        k += 1;
     }
     seamed.measured = Some(maps::figures(&seamed.islands));
     Ok(())
+}
+
+/// Maps an island again so that its outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no
+/// more than `accepted`; true if so.
+fn uncross(island: &mut IslandMap, accepted: f64, observer: &mut dyn Observer) -> Result<bool, Error> {
+    let mut mapped = island.clone();
+    let status = mapped.map(Outlines::MayNotCross, Some(MOST_ITERATIONS), observer)?;
+    if status == Status::Cancelled {
+        return Err(Error::CancelledEarly);
+    }
+    let rise = maps::figures([&mapped]).mean - maps::figures([&*island]).mean;
+    let is_good = status == Status::Converged && rise * island.area() <= accepted;
+    if is_good {
+        *island = mapped;
+    }
+    Ok(is_good)
 }
 
 /// Maps the parts into which the cut now divides an island, which they replace.

@@ -61,7 +61,7 @@ fn mapped(patch: Patch, outlines: Outlines, observer: &mut dyn Observer) -> Resu
     let face_of: Vec<_> = patch.corner_of.rows().into_iter().map(|row| Face(row[0] / 3)).collect();
     let mesh = patch.surface.mesh()?.clone();
     let mut map = IslandMap::new(mesh);
-    let status = map.map(outlines, observer)?;
+    let status = map.map(outlines, None, observer)?;
     if status == Status::Cancelled {
         return Err(Error::CancelledEarly);
     }

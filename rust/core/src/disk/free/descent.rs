@@ -174,11 +174,6 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Whether outlines may cross themselves.
-    pub(super) fn is_free(&self) -> bool {
-        self.problem.outline.is_none()
-    }
-
     /// √(E_A/A) of a map.
     pub(super) fn deviation(&self, map: &[[f64; 2]]) -> f64 {
         self.problem.energy.unevenness(map).sqrt()

@@ -25,9 +25,6 @@ const POWERS: [f64; 2] = [0.3, 1.2];
 /// The power grows by about this factor from one minimum to the next.
 const STEEPER: f64 = 1.2;
 
-/// The most iterations with outlines that may not cross themselves.
-const MOST_ITERATIONS: usize = 60;
-
 /// The most weights tried after the first.
 const MOST: usize = 4;
 
@@ -40,13 +37,12 @@ pub(super) fn quickly(
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (PlanarMap, Status) {
-    goal.most_iterations = if descent.is_free() { usize::MAX } else { MOST_ITERATIONS };
     let mut minima: Vec<[f64; 2]> = Vec::new();
-    for k in 0..WEIGHTS.len() + MOST {
-        goal.precision = if k == 0 { ROUGHLY } else { CLOSELY };
-        goal.weight = match minima[..] {
-            [.., before, last] => next_weight(before, last, tolerance),
-            _ => WEIGHTS[k],
+    while minima.len() < WEIGHTS.len() + MOST {
+        (goal.weight, goal.precision) = match minima[..] {
+            [] => (WEIGHTS[0], ROUGHLY),
+            [_] => (WEIGHTS[1], CLOSELY),
+            [.., before, last] => (next_weight(before, last, tolerance), CLOSELY),
         };
         let status;
         (map, status) = descent.run(map, goal, history, observer);
@@ -54,7 +50,9 @@ pub(super) fn quickly(
             return (map, status);
         }
         let deviation = descent.deviation(&map);
-        if deviation <= tolerance && (deviation >= ENOUGH * tolerance || k == 0 || k >= WEIGHTS.len()) {
+        // after the second minimum only, a heavier weight may be worth another descent
+        let is_sheared = minima.len() == 1 && deviation < ENOUGH * tolerance;
+        if deviation <= tolerance && !is_sheared {
             return (map, Status::Converged);
         }
         minima.push([goal.weight, deviation]);

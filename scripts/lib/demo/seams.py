@@ -24,7 +24,7 @@ SQUARE = 2.2
 SEAM, BORDER = (0.70, 0.02, 0.01), (0.25, 0.25, 0.25)
 SEAM_RADIUS, OUTLINE_RADIUS, BORDER_RADIUS = 0.012, 0.008, 0.005
 FIGURES = ("islands", "length", "shear", "shear_p99", "packed", "status")
-PIXELS_PER_CELL, SAMPLES = 400, 24
+PIXELS_PER_CELL, SAMPLES = 400, 12
 
 
 def show():
@@ -36,7 +36,7 @@ def show():
     entries = [_row(row, shape, weights, checker) for row, (shape, weights) in enumerate(rows)]
     for column, heading in enumerate((*VIEWS, "UV layout")):
         stage.label(heading, column, -0.555, 0.17)
-    stage.light_and_camera((-0.5, len(VIEWS) + 0.5), (-0.68, 1.62), PIXELS_PER_CELL)
+    stage.light_and_camera((-0.55, len(VIEWS) + 0.5), (-0.68, 1.62), PIXELS_PER_CELL)
     return entries
 
 

@@ -203,7 +203,11 @@ impl<'py> FromPyObject<'_, 'py> for SeamSource {
         match given.extract::<String>().as_deref() {
             Ok("auto") => Ok(Self::Automatic),
             Ok(word) => Err(bad_option(format!("seams must be \"auto\", edges or None, but is \"{word}\""))),
-            Err(_) => Ok(Self::Given(Some(given.to_owned().unbind()))),
+            // a result of `seams` stands for its edges
+            Err(_) => match given.getattr("edges") {
+                Ok(edges) => Ok(Self::Given(Some(edges.unbind()))),
+                Err(_) => Ok(Self::Given(Some(given.to_owned().unbind()))),
+            },
         }
     }
 }

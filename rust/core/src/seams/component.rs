@@ -2,6 +2,7 @@
 //! The seams of one component.
 
 use super::correction::Correction;
+use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::maps;
 use super::one_to_one::Seamed;
@@ -34,14 +35,25 @@ pub(super) fn seek(
     let mut phase = Phase { whole: observer, from: 0.1, to: 0.5 };
     let aim = first_aim(wishes.target, fine.n_vertices());
     let solution = prepared.search(wishes, aim, &mut phase)?;
+    let cut = prepared.lifted(&solution.state.cut);
+    check_allowed(fine, &cut, wishes)?;
     if wishes.method == SeamMethod::Cones {
-        let cut = prepared.lifted(&solution.state.cut);
         let predicted = prepared.predicted(&solution);
         return Ok(Seamed { islands: maps::islands(fine, &cut)?, cut, predicted, measured: None });
     }
     // 3. Maps of the islands, and corrections by these
     let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
     Correction::new(&prepared, wishes, aim).run(solution, &mut phase)
+}
+
+/// Refuses weights that forbid every cut into disks.
+fn check_allowed(fine: &EdgeMesh, cut: &Cut, wishes: &Wishes<'_>) -> Result<(), Error> {
+    let is_forbidden = |edge| wishes.weights.is_some_and(|weights: &[f64]| weights[edge] == f64::INFINITY);
+    if cut.islands(fine).are_disks() && !cut.seams().any(is_forbidden) {
+        return Ok(());
+    }
+    let found = "inf on all edges along which the surface could be cut into disks".into();
+    Err(Error::InvalidArray { name: "weights", found, expected: "finite on some of them".into() })
 }
 
 /// The predicted shear for which the maps of a mesh of so many vertices are likely to have the wanted one.

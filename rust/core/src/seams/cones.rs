@@ -7,7 +7,7 @@
 //!    wanted shear.
 //!
 //! The cut is some percent longer than what the search makes of it, and comes after some twenty solves: the preview
-//! while a slider moves, and a second start of the search.
+//! while a slider moves.
 
 use super::cut::Cut;
 use super::cut_graph::cut_graph;

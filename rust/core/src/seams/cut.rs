@@ -79,7 +79,8 @@ impl Cut {
 
     /// The sum of a cost over the seams.
     pub(super) fn sum(&self, cost: &[f64]) -> f64 {
-        self.seams().map(|edge| cost[edge]).sum()
+        // the sum of nothing would be −0
+        self.seams().fold(0.0, |sum, edge| sum + cost[edge])
     }
 
     /// The number of seams at each vertex, with the edges of the boundary where `with_boundary`.

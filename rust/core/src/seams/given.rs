@@ -25,14 +25,14 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// What the caller wants of the part.
-    pub(super) fn wishes(&self, options: &SeamOptions<'_>) -> Wishes<'_> {
+    /// What the caller wants of the part, which may fall into so many islands.
+    pub(super) fn wishes(&self, options: &SeamOptions<'_>, max_islands: usize) -> Wishes<'_> {
         Wishes {
             target: options.target,
             weights: self.weights.as_deref(),
             front: options.front.map(|front| Vector3(front).normalized()),
             symmetry: options.symmetry,
-            max_islands: options.max_islands.unwrap_or(usize::MAX),
+            max_islands,
             overlap: options.overlap,
             method: options.method,
         }
@@ -136,5 +136,6 @@ fn sorted([a, b]: [Vertex; 2]) -> [Vertex; 2] {
 /// The length of edges of a surface.
 pub(crate) fn length(surface: &Surface, edges: &[[Vertex; 2]]) -> f64 {
     let points = surface.vertex_rows();
-    edges.iter().map(|&[a, b]| Vector3(points[a]).distance(Vector3(points[b]))).sum()
+    // the sum of nothing would be −0
+    edges.iter().fold(0.0, |sum, &[a, b]| sum + Vector3(points[a]).distance(Vector3(points[b])))
 }

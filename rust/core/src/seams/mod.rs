@@ -123,11 +123,15 @@ pub(crate) fn seams_and_maps(
     // 2. to 5. The seams of each
     let mut collected = Collected::new(surface);
     let mut done = 0;
-    for part in parts {
+    let n_parts = parts.len();
+    for (k, part) in parts.into_iter().enumerate() {
         let [from, to] = [done, done + part.mesh.n_faces()].map(|n| n as f64 / surface.n_faces() as f64);
         done += part.mesh.n_faces();
         let mut phase = Phase { whole: &mut *observer, from, to };
-        let seamed = seek(&part.mesh, &part.wishes(options), &mut phase)?;
+        // every other part is an island at least
+        let taken = collected.islands.len() + n_parts - k - 1;
+        let room = options.max_islands.unwrap_or(usize::MAX).saturating_sub(taken).max(1);
+        let seamed = seek(&part.mesh, &part.wishes(options, room), &mut phase)?;
         collected.add(&part, seamed);
     }
     collected.finish(options)

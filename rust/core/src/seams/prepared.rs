@@ -67,6 +67,7 @@ pub(super) struct Prepared<'a> {
     parents: Option<Vec<Option<Edge>>>,
     plate: Plate,
     pub component: Fine<'a>,
+    max_islands: usize,
 }
 
 impl<'a> Prepared<'a> {
@@ -93,7 +94,7 @@ impl<'a> Prepared<'a> {
         let component = view.fine(fine, coarse.nearest, wishes);
         // 3. The plate
         let plate = Plate::new(&proxy)?;
-        Ok(Self { proxy, cost, mirror, parents, plate, component })
+        Ok(Self { proxy, cost, mirror, parents, plate, component, max_islands: wishes.max_islands })
     }
 
     /// The best cut of the proxy with the predicted shear `aim`; without symmetry where that costs too much.
@@ -109,8 +110,10 @@ impl<'a> Prepared<'a> {
         }
         let islands = solution.state.cut.islands(&self.proxy);
         let mean = self.predicted(&solution).mean;
-        let is_bad =
-            !islands.are_disks() || mean > 1.0 + MISSED * (aim - 1.0) || islands.least_area() < SLIVER;
+        let is_bad = !islands.are_disks()
+            || mean > 1.0 + MISSED * (aim - 1.0)
+            || islands.least_area() < SLIVER
+            || islands.len() > self.max_islands;
         if !is_bad && islands.len() == 1 {
             return Ok(solution);
         }
@@ -162,6 +165,7 @@ impl<'a> Prepared<'a> {
             cost: &self.cost,
             mirror: self.mirror.as_ref().map(|(_, edges)| &edges[..]),
             given,
+            max_islands: self.max_islands,
             target: aim,
             bound: 1.0 + PERCENTILE * (target - 1.0),
         }

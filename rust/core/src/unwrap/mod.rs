@@ -16,7 +16,7 @@ use ndarray::{Array2, ArrayView2};
 use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
-use crate::mesh::{Corner, Face, Surface, Vertex};
+use crate::mesh::{Face, Surface, Vertex};
 use crate::packing::{self, PackOptions, pack};
 use crate::parallel;
 use crate::seams::{Island, MapFigures, SeamOptions, figures, seams_and_maps};
@@ -173,7 +173,6 @@ fn packed(
 
 /// The vertices of an island's face in the order of the corners of the surface's face.
 fn in_order_of(surface: &Surface, face: Face, own: &[Vertex; 3], island: &Island) -> [Vertex; 3] {
-    let _ = Corner::default();
     surface.face_rows()[face].map(|vertex| {
         let copy = own.iter().copied().find(|&copy| island.vertex_of[copy] == vertex);
         copy.unwrap_or(own[0])

@@ -163,7 +163,8 @@ impl Search<'_> {
             let cut = state.cut.with(&candidates[k].edges);
             let islands = cut.islands(mesh);
             let is_small = islands.len() > state.n_islands && islands.least_area() < LEAST_ISLAND;
-            if islands.are_disks() && !is_small && !candidates[k].edges.is_empty() {
+            let is_allowed = islands.len() <= state.n_islands.max(self.problem.max_islands);
+            if islands.are_disks() && is_allowed && !is_small && !candidates[k].edges.is_empty() {
                 allowed.push((k, cut, islands.len()));
             } else {
                 gains.insert(candidates[k].edges.clone(), None);

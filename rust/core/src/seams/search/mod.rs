@@ -57,6 +57,8 @@ pub(super) struct Problem<'a> {
     pub mirror: Option<&'a [Edge]>,
     /// Seams that stay.
     pub given: &'a Cut,
+    /// The most islands.
+    pub max_islands: usize,
     /// The mean of σ₁/σ₂ wanted.
     pub target: f64,
     /// P, the largest 99th percentile of σ₁/σ₂.

@@ -355,7 +355,7 @@ def test_a_surface_that_cannot_be_oriented_is_refused():
 # Real meshes
 
 
-@real_meshes.each("sphere", "seams")
+@real_meshes.each("seams")
 def test_real_surfaces_become_disks(path):
     mesh = real_meshes.load(path)
     if len(mesh.vertices) > 20_000:

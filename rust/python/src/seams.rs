@@ -17,7 +17,7 @@ use crate::run::run;
 use crate::surface::Given;
 use crate::values::Values;
 
-/// Seams of a surface.
+/// Seams of a surface, with the islands between them.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Seams {
     /// (k, 2) int64: the ends of each seam, the lower one first, ascending; the fixed seams among them.

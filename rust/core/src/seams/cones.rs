@@ -30,10 +30,17 @@ impl Search<'_> {
     /// # Errors
     /// [`Error::CancelledEarly`], or a failed factorization.
     pub(super) fn through_cones(&mut self, observer: &mut dyn Observer) -> Result<State, Error> {
-        let Problem { mesh, cost, given, target, bound, .. } = self.problem();
+        let Problem { mesh, cost, given, .. } = self.problem();
         let mut cut = cut_graph(mesh, cost, given);
         let cones = cones(mesh, &cut, observer)?;
         let mut state: Option<State> = None;
+        if cut.islands(mesh).are_disks() {
+            let whole = self.state(cut.clone(), observer)?;
+            if self.meets(&whole) {
+                return Ok(whole);
+            }
+            state = Some(whole);
+        }
         for &cone in &cones {
             let on_border = cut.border_vertices(mesh);
             let borders: Vec<_> =
@@ -49,9 +56,9 @@ impl Search<'_> {
                 continue;
             }
             let next = self.state(cut.clone(), observer)?;
-            let figures = self.figures(&next.shear);
+            let is_met = self.meets(&next);
             state = Some(next);
-            if figures.mean <= target && figures.percentile <= bound {
+            if is_met {
                 break;
             }
         }
@@ -59,6 +66,12 @@ impl Search<'_> {
             Some(state) => Ok(state),
             None => self.state(cut, observer),
         }
+    }
+
+    /// Whether the plate predicts the wanted shear.
+    fn meets(&self, state: &State) -> bool {
+        let (figures, Problem { target, bound, .. }) = (self.figures(&state.shear), self.problem());
+        figures.mean <= target && figures.percentile <= bound
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::cut::Cut;
 use super::maps::{self, Outlines};
-use super::one_to_one::{Seamed, chords, one_to_one};
+use super::one_to_one::{Limits, Seamed, chords, one_to_one};
 use super::prepared::{Prepared, Wishes};
 use super::search::Solution;
 use crate::control::Observer;
@@ -16,6 +16,9 @@ use crate::mesh::Edge;
 
 /// The shear of the maps may exceed the target by this factor.
 const NEARLY: f64 = 1.011;
+
+/// Nor may outlines that do not cross themselves raise it beyond this factor.
+const MET: f64 = 1.012;
 
 /// Maps may fall short of the target by this part before the seams are called too long.
 const GENEROUS: f64 = 0.93;
@@ -28,6 +31,10 @@ const MOST_LARGE: usize = 1;
 
 /// A component of more vertices is large.
 const LARGE: usize = 20_000;
+
+/// Where a lower prediction leaves a cut as it is, its excess is lowered further, by this factor and so many times.
+const LOWER: f64 = 0.8;
+const MOST_REPEATS: usize = 4;
 
 /// The most rounds of chords.
 const MOST_CHORDS: usize = 8;
@@ -48,7 +55,7 @@ pub(super) struct Correction<'a> {
     given: Cut,
     /// The wanted prediction.
     aim: f64,
-    /// Each prediction wanted, with the shear of the maps.
+    /// The predicted shear of each cut, with that of its maps.
     history: Vec<[f64; 2]>,
     /// The last cut of the proxy that was not enough.
     insufficient: Option<Cut>,
@@ -71,7 +78,8 @@ impl<'a> Correction<'a> {
         let mut seamed = self.corrected(solution, observer)?;
         // 3. One-to-one maps
         if let Some(max_islands) = self.max_islands {
-            one_to_one(&mut seamed, &self.prepared.component, max_islands, observer)?;
+            let limits = Limits { shear: MET * self.target, max_islands };
+            one_to_one(&mut seamed, &self.prepared.component, limits, observer)?;
         }
         Ok(seamed)
     }
@@ -145,13 +153,22 @@ impl<'a> Correction<'a> {
         shear: f64,
         observer: &mut dyn Observer,
     ) -> Result<Solution, Error> {
-        self.history.push([self.aim, shear]);
+        let predicted = self.prepared.predicted(solution).mean;
+        self.history.push([predicted, shear]);
         if shear > NEARLY * self.target {
             self.insufficient = Some(solution.state.cut.clone());
         }
+        let cut = self.insufficient.as_ref().unwrap_or(&solution.state.cut);
         self.aim = self.next_aim();
-        let cut = self.insufficient.as_ref().unwrap_or(&solution.state.cut).clone();
-        self.prepared.go_on(cut, &self.given, [self.aim, self.target], observer)
+        let mut next = self.prepared.go_on(cut.clone(), &self.given, [self.aim, self.target], observer)?;
+        for _ in 0..MOST_REPEATS {
+            if shear <= NEARLY * self.target || next.state.cut != solution.state.cut {
+                break;
+            }
+            self.aim = 1.0 + LOWER * (self.aim - 1.0);
+            next = self.prepared.go_on(cut.clone(), &self.given, [self.aim, self.target], observer)?;
+        }
+        Ok(next)
     }
 
     /// The predicted shear for which maps would have the wanted one: between the last prediction that was enough and

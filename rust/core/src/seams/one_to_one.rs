@@ -42,6 +42,15 @@ pub(super) struct Seamed {
     pub measured: Option<MapFigures>,
 }
 
+/// What one-to-one maps must keep.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// The largest mean of σ₁/σ₂.
+    pub shear: f64,
+    /// The most islands.
+    pub max_islands: usize,
+}
+
 /// The chords of a cut of the proxy: one for each island that covers much of its place twice.
 pub(super) fn chords(
     mesh: &EdgeMesh,
@@ -64,10 +73,12 @@ pub(super) fn chords(
 pub(super) fn one_to_one(
     seamed: &mut Seamed,
     fine: &Fine<'_>,
-    max_islands: usize,
+    limits: Limits,
     observer: &mut dyn Observer,
 ) -> Result<(), Error> {
     let total: f64 = seamed.islands.iter().map(IslandMap::area).sum();
+    let mean = maps::figures(&seamed.islands).mean;
+    let mut left = ACCEPTED.min((limits.shear - mean).max(0.0)) * total;
     let mut n_chords = 0;
     let mut k = 0;
     while k < seamed.islands.len() {
@@ -77,10 +88,14 @@ pub(super) fn one_to_one(
             continue;
         }
         // 1. An outline that does not cross itself, where that costs little
-        let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < max_islands;
+        let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < limits.max_islands;
         let is_promising = overlap.share <= HOPELESS && seamed.islands[k].face_of.len() <= LARGE;
-        if may_part && is_promising && uncross(&mut seamed.islands[k], ACCEPTED * total, observer)? {
-            continue;
+        if may_part && is_promising {
+            let spent = uncross(&mut seamed.islands[k], left, observer)?;
+            left -= spent.unwrap_or(0.0).max(0.0);
+            if spent.is_some() {
+                continue;
+            }
         }
         // 2. Else a chord
         let island = &seamed.islands[k];
@@ -102,19 +117,19 @@ pub(super) fn one_to_one(
 }
 
 /// Maps an island again so that its outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no
-/// more than `accepted`; true if so.
-fn uncross(island: &mut IslandMap, accepted: f64, observer: &mut dyn Observer) -> Result<bool, Error> {
+/// more than `accepted`; returns by how much.
+fn uncross(island: &mut IslandMap, accepted: f64, observer: &mut dyn Observer) -> Result<Option<f64>, Error> {
     let mut mapped = island.clone();
     let status = mapped.map(Outlines::MayNotCross, Some(MOST_ITERATIONS), observer)?;
     if status == Status::Cancelled {
         return Err(Error::CancelledEarly);
     }
-    let rise = maps::figures([&mapped]).mean - maps::figures([&*island]).mean;
-    let is_good = status == Status::Converged && rise * island.area() <= accepted;
-    if is_good {
-        *island = mapped;
+    let rise = (maps::figures([&mapped]).mean - maps::figures([&*island]).mean) * island.area();
+    if status != Status::Converged || rise > accepted {
+        return Ok(None);
     }
-    Ok(is_good)
+    *island = mapped;
+    Ok(Some(rise))
 }
 
 /// Maps the parts into which the cut now divides an island, which they replace.

@@ -139,6 +139,7 @@ fn packed(
         .map(|island| packing::Island { points: &island.map.uv, faces: island.map.mesh.faces() })
         .collect();
     let packing = pack(&shapes, &PackOptions { margin: options.margin, rotate: options.rotate }, observer)?;
+    observer.progress(1.0, "Done");
     let mut points = Vec::new();
     let mut vertex_of = Vec::new();
     let mut faces = vec![[0; 3]; surface.n_faces()];

@@ -20,8 +20,13 @@ def note() -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _look(_scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
-    if any(update.is_updated_geometry for update in graph.updates):
+    if any(update.is_updated_geometry and not _is_collection(update) for update in graph.updates):
         note()
+
+
+def _is_collection(update: bpy.types.DepsgraphUpdate) -> bool:
+    """Whether only a collection was updated, as where data that nothing uses are removed."""
+    return isinstance(update.id, bpy.types.Collection)
 
 
 @persistent  # type: ignore[untyped-decorator]

@@ -97,8 +97,6 @@ def _collect(context: bpy.types.Context, running: Job[Any, Any]) -> None:
     names, found = running.apply()
     lines = [overlay.Lines(name, edges) for name, edges in zip(names, found.edges, strict=True)]
     _show(context, lines, marking.in_words(found) if found.islands else "")
-    # Reading a mesh in edit mode may count as a change of the scene.
-    _state.meshes = _meshes(context)
 
 
 def _show(context: bpy.types.Context, lines: list[overlay.Lines], text: str) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Automatic seams behind a living window: panel, preview, Esc and undo; see README.md beside this file."""
 
+import importlib
 from collections.abc import Callable
 from typing import Any
 
@@ -66,6 +67,12 @@ def figures() -> str:
     return str(manager.authalic_seam_figures)
 
 
+def still() -> bool:
+    """Whether the preview is neither sought nor of other meshes than the present ones."""
+    state = importlib.import_module("bl_ext.user_default.authalic.operators.seam_preview")._state
+    return state.running is None and state.wanted is not None and state.wanted[0] == state.meshes
+
+
 def start(name: str, **settings: Any) -> Callable[[], None]:
     """A step that starts an operator as its button does."""
 
@@ -97,7 +104,7 @@ STEPS = [
     check("no seams at first", marked, 0),
     picture("seams_panel"),
     preview(True),
-    *[lambda: None] * 8,
+    *[lambda: None] * 15,
     check("the preview has figures", lambda: "length of new seams" in figures(), True),
     check("the preview marks nothing", marked, 0),
     picture("seams_preview"),
@@ -115,6 +122,12 @@ STEPS = [
     check("no operator runs on", running, []),
     check("seams are marked", lambda: marked() > 0, True),
     picture("seams_marked"),
+    lambda: call(bpy.ops.object.mode_set, mode="EDIT"),
+    lambda: call(bpy.ops.mesh.select_all, action="SELECT"),
+    *[lambda: None] * 15,
+    check("the preview works in edit mode", lambda: "length of new seams" in figures(), True),
+    check("and comes to rest", still, True),
+    lambda: call(bpy.ops.object.mode_set, mode="OBJECT"),
     preview(False),
     lambda: call(bpy.ops.ed.undo),
     check("undo takes the seams away", marked, 0),

@@ -51,7 +51,7 @@ ERRORS = {
     "still_folded": "{its.faces} could not be unfolded; smooth the outline there or unwrap them again",
     "layout_fold": (
         "{its.triangles} would fold over when its sphere is laid flat; try another Layout, Pole Axis or "
-        "Angle Weight, poke its n-gons, subdivide the mesh or mark seams"
+        "Angle Weight, poke its n-gons, subdivide the mesh, mark seams or set Seams to Automatic"
     ),
     "no_embedding": (
         "no map without folds was found in double precision, left over: {its.faces}; cut the long thin parts "

@@ -36,6 +36,7 @@ def disks(
     found = FoundSeams([np.empty((0, 2), int) for _ in surfaces])
     search = _Search(surfaces, settings, found)
     patches = surface_patches(surfaces, found, with_seams=settings.keep_given)
+    search.expect(patches)
     one_by_one(patches, search.cut, found, progress)
     search.finish()
     return found, search.disks
@@ -49,8 +50,15 @@ class _Search:
         self._surfaces, self._settings, self._found = surfaces, settings, found
         self._edges = [seam_costs.edge_keys(surface) for surface in surfaces]
         self._shear = [_shear(surface, settings) for surface in surfaces]
+        # the islands of each surface: those that are cut, and one at least for each patch that is left
+        self._islands = np.zeros(len(surfaces), int)
         # the sums of area, length · root of area, and shear · area
         self._sums = np.zeros(3)
+
+    def expect(self, pieces: Sequence[SurfacePatch]) -> None:
+        """Says which patches there are to be cut."""
+        for piece in pieces:
+            self._islands[piece.index] += 1
 
     def cut(self, piece: SurfacePatch, progress: Progress) -> None:
         """Cuts a patch into disks."""
@@ -63,6 +71,7 @@ class _Search:
         index, found = piece.index, self._found
         found.edges[index] = np.concatenate([found.edges[index], piece.vertices[edges]])
         found.islands += seams.islands
+        self._islands[index] += seams.islands - 1
         area = triangulation.areas(piece.points[np.asarray(piece.patch.faces)]).sum()
         self._sums += [area, seams.length * np.sqrt(area), seams.predicted * area]
         if seams.status == "stalled":
@@ -82,9 +91,11 @@ class _Search:
         is_edge, factors = self._are_edges(piece, edges), self._factors(piece, edges)
         for allowed in (factors, seam_costs.finite(factors)):
             weights = np.where(is_edge, allowed, np.inf)
-            seams = self._sought(piece, {"weights": weights, "diagonals": edges[~is_edge]}, progress)
-            if self._are_edges(piece, np.asarray(seams.edges)).all():
-                return seams
+            try:
+                return self._sought(piece, {"weights": weights, "diagonals": edges[~is_edge]}, progress)
+            except authalic.MeshError as problem:
+                if problem.kind != "invalid_array":  # which says that the weights forbid every cut
+                    raise
         raise Unsuitable("has no seams along its edges that cut it open; triangulate or remesh it")
 
     def _are_edges(self, piece: SurfacePatch, pairs: Integers) -> Booleans:
@@ -108,7 +119,7 @@ class _Search:
             "target": self._shear[piece.index],
             "symmetry": "auto" if settings.is_symmetric else "off",
             "front": settings.front,
-            "max_islands": settings.max_islands,
+            "max_islands": self._most_islands(piece),
             "overlap": settings.overlap,
         }
         if not settings.is_draft:
@@ -118,6 +129,12 @@ class _Search:
                 if problem.kind != "cancelled":
                     raise
         return authalic.seams(native, method="cones", progress=to_the_end(progress), **options)
+
+    def _most_islands(self, piece: SurfacePatch) -> int | None:
+        """The most islands that a patch may become, so that its surface has no more than wanted."""
+        if self._settings.max_islands is None:
+            return None
+        return max(1, self._settings.max_islands - int(self._islands[piece.index]) + 1)
 
 
 def _shear(surface: Surface, settings: SeamSettings) -> float:

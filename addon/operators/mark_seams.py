@@ -80,7 +80,7 @@ class AUTHALIC_OT_mark_seams(Modal, Seaming, bpy.types.Operator):
     )
     max_islands: IntProperty(
         name="Max Islands",
-        description="The most islands that a part between seams that are marked may become. 0 for no limit",
+        description="The most islands of a mesh, unless the seams that are marked make more. 0 for no limit",
         min=0,
         soft_max=50,
         default=0,

@@ -150,10 +150,10 @@ def test_the_front_is_spared() -> None:
 
 
 def test_islands_are_limited(capfd: pytest.CaptureFixture[str]) -> None:
-    obj = meshes.cube_sphere(2)
-    mark(max_islands=1)
-    assert characteristics(obj) == [1]
-    assert "1 island" in capfd.readouterr().out
+    obj = meshes.join(meshes.cube_sphere(2), meshes.torus())
+    mark(max_islands=2)
+    assert characteristics(obj) == [1, 1]
+    assert "2 islands" in capfd.readouterr().out
 
 
 def test_less_shear_takes_longer_seams() -> None:

@@ -2,6 +2,7 @@
 """Seams along which islands become disks whose maps are hardly sheared."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,13 @@ from .patches import SurfacePatch, checked, surface_patches
 from .progress import Progress, keep_going, one_by_one, to_the_end
 from .results import FoundSeams
 from .settings import FEW_SEAMS, LOW_SHEAR, SeamSettings
+
+_NO_CUT = "has no seams along its edges that cut it open; triangulate or remesh it"
+_CROSSES = "seams cross what they are to be kept off, because nothing else cuts it open"
+
+
+class _NoWay(Unsuitable):
+    """Weights forbid all seams that would cut a patch into disks."""
 
 
 def find_seams(
@@ -89,14 +97,13 @@ class _Search:
         """The seams of a patch; they run where they are forbidden only if there is no other way."""
         edges = seam_costs.triangle_edges(np.asarray(piece.patch.faces))
         is_edge, factors = self._are_edges(piece, edges), self._factors(piece, edges)
-        for allowed in (factors, seam_costs.finite(factors)):
-            weights = np.where(is_edge, allowed, np.inf)
-            try:
-                return self._sought(piece, {"weights": weights, "diagonals": edges[~is_edge]}, progress)
-            except authalic.MeshError as problem:
-                if problem.kind != "invalid_array":  # which says that the weights forbid every cut
-                    raise
-        raise Unsuitable("has no seams along its edges that cut it open; triangulate or remesh it")
+        diagonals = edges[~is_edge]
+        with suppress(_NoWay):
+            return self._sought(piece, np.where(is_edge, factors, np.inf), diagonals, progress)
+        finite = np.where(is_edge, seam_costs.finite(factors), np.inf)
+        seams = self._sought(piece, finite, diagonals, progress)
+        self._found.notes.append(f"{piece.name} at face {piece.polygon}: {_CROSSES}")
+        return seams
 
     def _are_edges(self, piece: SurfacePatch, pairs: Integers) -> Booleans:
         """Which pairs (k, 2) of vertices of a patch are edges of the mesh, and no diagonals of polygons."""
@@ -111,7 +118,20 @@ class _Search:
         # The center of a divided polygon has no factor, and no seam.
         return factors[piece.vertices[edges]].mean(axis=1)
 
-    def _sought(self, piece: SurfacePatch, options: dict[str, Any], progress: Progress) -> authalic.Seams:
+    def _sought(
+        self, piece: SurfacePatch, weights: Floats, diagonals: Integers, progress: Progress
+    ) -> authalic.Seams:
+        """The seams of a patch, with weights (e,) of its edges; raises `_NoWay` if these forbid all cuts."""
+        try:
+            return self._exact_or_quick(piece, {"weights": weights, "diagonals": diagonals}, progress)
+        except authalic.MeshError as problem:
+            if problem.kind == "invalid_array":
+                raise _NoWay(_NO_CUT) from problem
+            raise
+
+    def _exact_or_quick(
+        self, piece: SurfacePatch, options: dict[str, Any], progress: Progress
+    ) -> authalic.Seams:
         """The seams of a patch; quick ones for a draft, or if the search was asked to end."""
         settings, native = self._settings, checked(piece.patch, piece.points)
         options = {

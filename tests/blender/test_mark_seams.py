@@ -98,10 +98,11 @@ def test_seams_do_not_enter_a_group_to_keep_off() -> None:
     assert set(characteristics(obj)) == {1}
 
 
-def test_a_handle_is_cut_even_where_all_of_it_is_to_be_kept_off() -> None:
+def test_a_handle_is_cut_even_where_all_of_it_is_to_be_kept_off(capfd: pytest.CaptureFixture[str]) -> None:
     obj = meshes.torus()
     group(obj, "All", 1.0, lambda point: True)
     assert mark(keep_off="All") == {"FINISHED"}
+    assert "seams cross what they are to be kept off" in capfd.readouterr().out
     assert set(characteristics(obj)) == {1}
 
 

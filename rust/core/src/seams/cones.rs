@@ -16,8 +16,8 @@ use super::paths::Paths;
 use super::search::{Problem, Search, State};
 use crate::control::{Observer, Watch};
 use crate::error::Error;
-use crate::mesh::Vertex;
 use crate::mesh::geometry::corner_cotangents;
+use crate::mesh::{Edge, Vertex};
 use crate::sparse::Cholesky;
 use sprs::CsMat;
 
@@ -30,37 +30,22 @@ impl Search<'_> {
     /// # Errors
     /// [`Error::CancelledEarly`], or a failed factorization.
     pub(super) fn through_cones(&mut self, observer: &mut dyn Observer) -> Result<State, Error> {
-        let Problem { mesh, cost, given, .. } = self.problem();
+        let Problem { mesh, cost, given, target, bound, .. } = self.problem();
         let mut cut = cut_graph(mesh, cost, given);
         let cones = cones(mesh, &cut, observer)?;
+        let mut left = cones.iter();
         let mut state: Option<State> = None;
-        if cut.islands(mesh).are_disks() {
-            let whole = self.state(cut.clone(), observer)?;
-            if self.meets(&whole) {
-                return Ok(whole);
+        loop {
+            if cut.islands(mesh).are_disks() {
+                let next = self.state(cut.clone(), observer)?;
+                let figures = self.figures(&next.shear);
+                state = Some(next);
+                if figures.mean <= target && figures.percentile <= bound {
+                    break;
+                }
             }
-            state = Some(whole);
-        }
-        for &cone in &cones {
-            let on_border = cut.border_vertices(mesh);
-            let borders: Vec<_> =
-                Vertex::all(mesh.n_vertices()).filter(|&vertex| on_border[vertex]).collect();
-            // on a closed surface the first two cones are joined to each other
-            let sources = if borders.is_empty() { vec![cones[0]] } else { borders };
-            let path = Paths::from(mesh, &sources, cost).to(mesh, cone);
-            if path.is_empty() {
-                continue;
-            }
-            cut = cut.with(&self.with_mirrored(&path));
-            if !cut.islands(mesh).are_disks() {
-                continue;
-            }
-            let next = self.state(cut.clone(), observer)?;
-            let is_met = self.meets(&next);
-            state = Some(next);
-            if is_met {
-                break;
-            }
+            let Some(path) = left.find_map(|&cone| self.path_to(cone, &cut, cones[0])) else { break };
+            cut.add(&path);
         }
         match state {
             Some(state) => Ok(state),
@@ -68,10 +53,14 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the plate predicts the wanted shear.
-    fn meets(&self, state: &State) -> bool {
-        let (figures, Problem { target, bound, .. }) = (self.figures(&state.shear), self.problem());
-        figures.mean <= target && figures.percentile <= bound
+    /// The cheapest path to a cone from the borders, with its mirror image; on a closed surface from the first cone.
+    fn path_to(&self, cone: Vertex, cut: &Cut, first: Vertex) -> Option<Vec<Edge>> {
+        let Problem { mesh, cost, .. } = self.problem();
+        let on_border = cut.border_vertices(mesh);
+        let borders: Vec<_> = Vertex::all(mesh.n_vertices()).filter(|&vertex| on_border[vertex]).collect();
+        let sources = if borders.is_empty() { vec![first] } else { borders };
+        let path = Paths::from(mesh, &sources, cost).to(mesh, cone);
+        (!path.is_empty()).then(|| self.with_mirrored(&path))
     }
 }
 
@@ -137,5 +126,63 @@ fn mask(matrix: &CsMat<f64>, is_pinned: &[bool], masked: &mut CsMat<f64>) {
             (true, false) => 0.0,
             _ => entry,
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Silent;
+    use crate::mesh::TriangleMesh;
+    use crate::seams::plate::Plate;
+    use crate::seams::sample_surfaces::{body, cube, flat_grid, perforated_cylinder, torus};
+
+    fn through_cones(surface: TriangleMesh, target: f64) -> (EdgeMesh, State, f64) {
+        let mesh = EdgeMesh::new(surface);
+        let (plate, given) = (Plate::new(&mesh).unwrap(), Cut::none(&mesh));
+        let bound = 1.0 + 6.0 * (target - 1.0);
+        let (cost, given, mirror) = (&mesh.lengths[..], &given, None);
+        let problem = Problem { mesh: &mesh, plate: &plate, cost, mirror, given, target, bound };
+        let mut search = Search::new(problem);
+        let state = search.through_cones(&mut Silent).unwrap();
+        let mean = search.figures(&state.shear).mean;
+        (mesh, state, mean)
+    }
+
+    #[test]
+    fn cuts_through_cones_meet_the_target_and_leave_disks() {
+        for surface in [cube(8), body(4), torus(), perforated_cylinder()] {
+            for target in [1.25, 1.4] {
+                let (mesh, state, mean) = through_cones(surface.clone(), target);
+                let islands = state.cut.islands(&mesh);
+                assert!(islands.are_disks());
+                assert_eq!(islands.len(), state.n_islands);
+                assert!(mean <= target, "{mean}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_flat_needs_no_cone() {
+        let (_, state, mean) = through_cones(flat_grid(9, 7), 1.1);
+        assert!(state.cut.is_empty() && mean < 1.0 + 1e-9);
+    }
+
+    #[test]
+    fn a_lower_target_needs_longer_seams() {
+        let [long, short] = [1.15, 1.5].map(|target| {
+            let (mesh, state, _) = through_cones(body(4), target);
+            state.cut.sum(&mesh.lengths)
+        });
+        assert!(long > short);
+    }
+
+    #[test]
+    fn the_cones_of_a_cube_are_its_corners() {
+        let mesh = EdgeMesh::new(cube(6));
+        let mut corners = cones(&mesh, &Cut::none(&mesh), &mut Silent).unwrap();
+        corners.truncate(8);
+        let defects = mesh.angle_defects();
+        assert!(corners.iter().all(|&corner| (defects[corner] - 0.5 * std::f64::consts::PI).abs() < 1e-9));
     }
 }

@@ -87,3 +87,93 @@ fn normal_at(mesh: &EdgeMesh, edge: Edge) -> Vector3 {
     let sum = mesh.normal(first) + second.map_or(Vector3::ZERO, |second| mesh.normal(second));
     if sum == Vector3::ZERO { sum } else { sum.normalized() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seams::sample_surfaces::{cube, flat_grid};
+
+    fn factors(mesh: &EdgeMesh, preferences: &Preferences<'_>) -> Vec<f64> {
+        costs(mesh, preferences).iter().zip(&mesh.lengths).map(|(cost, length)| cost / length).collect()
+    }
+
+    fn assert_near(value: f64, expected: f64) {
+        assert!((value - expected).abs() < 1e-12, "{value} {expected}");
+    }
+
+    #[test]
+    fn without_preferences_the_cost_is_the_length() {
+        let mesh = EdgeMesh::new(cube(2));
+        assert_eq!(costs(&mesh, &Preferences::default()), mesh.lengths);
+    }
+
+    #[test]
+    fn creases_and_hidden_places_are_cheap() {
+        let outside = EdgeMesh::new(cube(2));
+        let inside = EdgeMesh::new(cube(2).turned_over());
+        let n = outside.n_vertices();
+        for (mesh, crease, at_crease) in [(&outside, -90.0, 1.0 / 1.8), (&inside, 90.0, 1.0 / 2.2)] {
+            for (openness, flat) in [(1.0, 1.0), (0.0, HIDDEN), (0.5, 0.675)] {
+                let openness = vec![openness; n];
+                let factors = factors(mesh, &Preferences { openness: Some(&openness), ..Default::default() });
+                for (edge, factor) in mesh.edges.all().zip(factors) {
+                    let angle = mesh.dihedral_angle(edge).to_degrees();
+                    let expected = if angle.abs() < 1e-6 { flat } else { flat * at_crease };
+                    assert!(angle.abs() < 1e-6 || (angle - crease).abs() < 1e-6);
+                    assert_near(factor, expected.clamp(LEAST, MOST));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_mirror_plane_is_cheap_and_what_breaks_the_flow_is_dear() {
+        let mut mesh = EdgeMesh::new(flat_grid(4, 4));
+        mesh.is_diagonal[0] = true;
+        let mut lacks_image = vec![false; mesh.n_edges()];
+        lacks_image[1] = true;
+        let plane = MirrorPlane { normal: Vector3::unit(0), offset: mesh.mesh.points()[2][0] };
+        let plane = Some(&plane);
+        let preferences = Preferences { plane, lacks_image: Some(&lacks_image), ..Default::default() };
+        let factors = factors(&mesh, &preferences);
+        for edge in mesh.edges.all() {
+            let in_plane = mesh.edges.ends(edge).iter().all(|vertex| vertex.0 % 5 == 2);
+            let expected = if in_plane {
+                MIRROR
+            } else if edge.0 < 2 {
+                OFF_FLOW
+            } else {
+                1.0
+            };
+            assert_near(factors[edge], expected);
+        }
+    }
+
+    #[test]
+    fn edges_that_face_the_front_are_dear() {
+        let mesh = EdgeMesh::new(cube(2));
+        let front = Some(Vector3::unit(2));
+        let factors = factors(&mesh, &Preferences { front, ..Default::default() });
+        for edge in mesh.edges.all() {
+            let (first, second) = mesh.faces_at(edge);
+            let heights = [first, second.unwrap()].map(|face| mesh.normal(face)[2].round());
+            let expected = match heights {
+                [1.0, 1.0] => 1.0 + FACING,
+                [1.0, _] | [_, 1.0] => 1.0 + FACING * 0.5f64.sqrt(),
+                _ => 1.0,
+            };
+            assert_near(factors[edge], expected);
+        }
+    }
+
+    #[test]
+    fn weights_are_factors_and_forbid() {
+        let mesh = EdgeMesh::new(flat_grid(3, 3));
+        let weights: Vec<_> =
+            mesh.edges.all().map(|edge| if edge.0 == 4 { f64::INFINITY } else { 1.5 }).collect();
+        let factors = factors(&mesh, &Preferences { weights: Some(&weights), ..Default::default() });
+        factors.iter().zip(&weights).for_each(|(factor, weight)| {
+            assert!(factor == weight || (factor - weight).abs() < 1e-12);
+        });
+    }
+}

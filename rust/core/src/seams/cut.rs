@@ -113,10 +113,14 @@ impl Cut {
             areas[island as usize] += mesh.areas[face];
             euler_characteristics[island as usize] += 1;
         }
+        let degrees = self.degrees(mesh, true);
         for edge in mesh.edges.all() {
             let (first, second) = mesh.faces_at(edge);
             euler_characteristics[of_face[first] as usize] -= 1;
-            if let Some(second) = second.filter(|_| self.is_seam[edge]) {
+            // both banks of a single seam keep both of its ends, so that it opens nothing
+            let is_open =
+                self.is_seam[edge] && mesh.edges.ends(edge).iter().any(|&vertex| degrees[vertex] > 1);
+            if let Some(second) = second.filter(|_| is_open) {
                 euler_characteristics[of_face[second] as usize] -= 1;
             }
         }
@@ -249,5 +253,108 @@ impl Segment {
         vertices.reverse();
         edges.reverse();
         Self { vertices, edges }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::arrays::from_rows;
+    use crate::mesh::{Surface, TriangleMesh};
+    use crate::seams::sample_surfaces::{
+        flat_grid, perforated_cylinder, plate_with_three_holes, random_numbers, sphere, torus,
+    };
+
+    fn surfaces() -> Vec<TriangleMesh> {
+        vec![sphere(2), torus(), plate_with_three_holes(), perforated_cylinder(), flat_grid(6, 5)]
+    }
+
+    /// A cut along a part of all inner edges.
+    fn random_cut(mesh: &EdgeMesh, share: f64, seed: u64) -> Cut {
+        let mut random = random_numbers(seed);
+        let inner = mesh.edges.all().filter(|&edge| !mesh.edges.is_boundary(edge));
+        Cut::none(mesh).with(&inner.filter(|_| random() < share).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn islands_are_the_patches_of_the_surface_that_is_cut() {
+        for (k, surface) in surfaces().into_iter().enumerate() {
+            let mesh = EdgeMesh::new(surface);
+            for share in [0.0, 0.02, 0.2, 0.5, 0.9, 1.0] {
+                let cut = random_cut(&mesh, share, k as u64);
+                let seams = cut.seams().map(|edge| mesh.edges.ends(edge).map(|vertex| vertex.0)).collect();
+                let patches = Surface::of_mesh(&mesh.mesh).cut(from_rows(seams)).unwrap();
+                let islands = cut.islands(&mesh);
+                assert_eq!(islands.len(), patches.len());
+                for (island, patch) in patches.iter().enumerate() {
+                    let faces: Vec<_> =
+                        patch.corner_of.rows().into_iter().map(|row| row[0] as usize / 3).collect();
+                    let area: f64 = faces.iter().map(|&face| mesh.areas[face]).sum();
+                    assert!(faces.iter().all(|&face| islands.of_face[face] as usize == island));
+                    assert!((islands.areas[island] - area).abs() < 1e-12);
+                    let expected = euler_characteristic(&patch.surface);
+                    assert_eq!(islands.euler_characteristics[island], expected);
+                }
+                assert_eq!(islands.are_disks(), patches.iter().all(|patch| patch.is_disk()));
+            }
+        }
+    }
+
+    /// Vertices − edges + faces, counted.
+    fn euler_characteristic(surface: &Surface) -> i64 {
+        let faces = surface.face_rows();
+        let vertices: BTreeSet<_> = faces.iter().flatten().collect();
+        let half_edges = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let edges: BTreeSet<_> = half_edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        vertices.len() as i64 - edges.len() as i64 + faces.len() as i64
+    }
+
+    #[test]
+    fn segments_cover_every_seam_once_and_end_at_nodes() {
+        for (k, surface) in surfaces().into_iter().enumerate() {
+            let mesh = EdgeMesh::new(surface);
+            for share in [0.02, 0.2, 0.6] {
+                let cut = random_cut(&mesh, share, 7 + k as u64);
+                let segments = cut.segments(&mesh);
+                let mut covered: Vec<_> = segments.iter().flat_map(|segment| segment.edges.clone()).collect();
+                covered.sort_unstable();
+                assert!(cut.seams().eq(covered));
+                let degrees = cut.degrees(&mesh, false);
+                let is_node = |&vertex: &Vertex| degrees[vertex] != 2 || mesh.mesh.is_boundary(vertex);
+                for segment in &segments {
+                    assert_eq!(mesh.path_edges(&segment.vertices), segment.edges);
+                    let [first, inner @ .., last] = &segment.vertices[..] else { panic!("no edge") };
+                    assert!(!inner.iter().any(is_node));
+                    assert!((is_node(first) && is_node(last)) || segment.is_closed());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn leaves_are_the_free_ends_of_seams() {
+        let mesh = EdgeMesh::new(flat_grid(6, 5));
+        let path =
+            |vertices: &[u32]| mesh.path_edges(&vertices.iter().copied().map(Vertex).collect::<Vec<_>>());
+        let from_boundary = Cut::none(&mesh).with(&path(&[14, 15, 16]));
+        assert_eq!(from_boundary.n_leaves(&mesh), 1);
+        let inside = from_boundary.with(&path(&[23, 24, 25]));
+        assert_eq!(inside.n_leaves(&mesh), 3);
+        assert_eq!(inside.without(&path(&[15, 16])).n_leaves(&mesh), 3);
+        assert_eq!(inside.with(&path(&[16, 24])).n_leaves(&mesh), 2);
+        assert_eq!(Cut::none(&mesh).n_leaves(&mesh), 0);
+    }
+
+    #[test]
+    fn a_closed_seam_is_one_segment() {
+        let mesh = EdgeMesh::new(flat_grid(6, 5));
+        let ring = [8, 9, 10, 17, 24, 23, 22, 15, 8].map(Vertex);
+        let cut = Cut::none(&mesh).with(&mesh.path_edges(&ring));
+        let segments = cut.segments(&mesh);
+        assert!(segments.len() == 1 && segments[0].is_closed() && segments[0].edges.len() == 8);
+        assert_eq!(segments[0].reversed().reversed().vertices, segments[0].vertices);
+        assert_eq!(cut.islands(&mesh).euler_characteristics, [0, 1]);
     }
 }

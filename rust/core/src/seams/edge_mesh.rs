@@ -103,6 +103,12 @@ impl EdgeMesh {
         let middle = lengths.len() / 2;
         *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     }
+
+    /// The edges of a path of vertices.
+    #[cfg(test)]
+    pub(super) fn path_edges(&self, path: &[crate::mesh::Vertex]) -> Vec<Edge> {
+        path.windows(2).filter_map(|pair| self.edges.between(pair[0], pair[1])).collect()
+    }
 }
 
 /// The angles opposite to the sides of a triangle of these lengths.

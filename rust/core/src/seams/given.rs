@@ -136,6 +136,114 @@ fn sorted([a, b]: [Vertex; 2]) -> [Vertex; 2] {
 /// The length of edges of a surface.
 pub(crate) fn length(surface: &Surface, edges: &[[Vertex; 2]]) -> f64 {
     let points = surface.vertex_rows();
-    // the sum of nothing would be −0
-    edges.iter().fold(0.0, |sum, &[a, b]| sum + Vector3(points[a]).distance(Vector3(points[b])))
+    let lengths = edges.iter().map(|&[a, b]| Vector3(points[a]).distance(Vector3(points[b])));
+    // the sum of no numbers is −0
+    0.0 + lengths.sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::{Array1, array};
+
+    use super::*;
+    use crate::error::ErrorKind;
+    use crate::seams::sample_surfaces::{flat_grid, random_numbers, torus};
+
+    fn grid() -> Surface {
+        Surface::of_mesh(&flat_grid(4, 3))
+    }
+
+    fn refused(options: &SeamOptions<'_>) -> ErrorKind {
+        parts(&grid(), options).unwrap_err().kind()
+    }
+
+    #[test]
+    fn weights_of_vertices_and_of_edges_reach_every_part() {
+        let surface = grid();
+        let mut random = random_numbers(1);
+        let at_vertices: Array1<f64> = (0..20).map(|_| 0.5 + random()).collect();
+        let edges: Vec<_> = EdgeTable::new(20, surface.face_rows()).edges().map(|(edge, _)| edge).collect();
+        assert!(edges.is_sorted());
+        let mean =
+            |edge: &[Vertex; 2]| 0.5 * edge.map(|vertex| at_vertices[vertex.index()]).iter().sum::<f64>();
+        let at_edges: Array1<f64> = edges.iter().map(mean).collect();
+        // from the lower to the upper side
+        let fixed = array![[2, 7], [12, 7], [12, 17]];
+        for weights in [at_vertices.view(), at_edges.view()] {
+            let options =
+                SeamOptions { weights: Some(weights), fixed: Some(fixed.view()), ..Default::default() };
+            let parts = parts(&surface, &options).unwrap();
+            assert_eq!(parts.len(), 2);
+            for part in &parts {
+                let wishes = part.wishes(&options, 9);
+                for (edge, &weight) in part.mesh.edges.all().zip(wishes.weights.unwrap()) {
+                    let ends = part.mesh.edges.ends(edge).map(|vertex| part.vertex_of[vertex]);
+                    assert_eq!(weight, mean(&sorted(ends)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn parts_are_in_the_order_of_their_lowest_faces_and_know_diagonals() {
+        let surface = grid();
+        let (fixed, diagonals) = (array![[12, 7], [2, 7], [17, 12]], array![[6, 0], [8, 14]]);
+        let options = SeamOptions {
+            fixed: Some(fixed.view()),
+            diagonals: Some(diagonals.view()),
+            ..Default::default()
+        };
+        let parts = parts(&surface, &options).unwrap();
+        let lowest: Vec<_> = parts.iter().map(|part| part.face_of[0].0).collect();
+        assert_eq!(lowest, [0, 4]);
+        for (part, diagonal) in parts.iter().zip([[0, 6], [8, 14]]) {
+            let marked = part.mesh.edges.all().filter(|&edge| part.mesh.is_diagonal[edge]);
+            let ends = |edge| part.mesh.edges.ends(edge).map(|vertex| part.vertex_of[vertex].0);
+            assert_eq!(marked.map(ends).collect::<Vec<_>>(), [diagonal]);
+        }
+    }
+
+    #[test]
+    fn options_out_of_range_are_refused() {
+        for target in [1.0, 0.0, -2.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(refused(&SeamOptions { target, ..Default::default() }), ErrorKind::InvalidOption);
+        }
+        for front in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
+            let options = SeamOptions { front: Some(front), ..Default::default() };
+            assert_eq!(refused(&options), ErrorKind::InvalidOption);
+        }
+        let options = SeamOptions { max_islands: Some(0), ..Default::default() };
+        assert_eq!(refused(&options), ErrorKind::InvalidOption);
+    }
+
+    #[test]
+    fn broken_arrays_are_refused() {
+        for weight in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+            let mut weights = Array1::ones(20);
+            weights[3] = weight;
+            let options = SeamOptions { weights: Some(weights.view()), ..Default::default() };
+            assert_eq!(refused(&options), ErrorKind::InvalidArray);
+        }
+        let weights = Array1::ones(21);
+        let options = SeamOptions { weights: Some(weights.view()), ..Default::default() };
+        assert_eq!(refused(&options), ErrorKind::InvalidArray);
+        let fixed = array![[0, 12]];
+        let options = SeamOptions { fixed: Some(fixed.view()), ..Default::default() };
+        assert_eq!(refused(&options), ErrorKind::SeamNotEdge);
+    }
+
+    #[test]
+    fn the_length_of_edges_is_in_the_unit_of_the_surface() {
+        let surface = grid();
+        let edges = sorted_edges("seams", Some(array![[6, 0], [1, 0]].view())).unwrap();
+        assert_eq!(edges, [[0, 1], [0, 6]].map(|edge: [u32; 2]| edge.map(Vertex)));
+        let unit = flat_grid(4, 3).scale();
+        assert!((length(&surface, &edges) * unit - (1.0 + 2f64.sqrt())).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_closed_surface_without_given_seams_is_one_part() {
+        let parts = parts(&Surface::of_mesh(&torus()), &SeamOptions::default()).unwrap();
+        assert_eq!((parts.len(), parts[0].mesh.mesh.euler_characteristic()), (1, 0));
+    }
 }

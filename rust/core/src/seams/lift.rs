@@ -268,3 +268,98 @@ fn distance_to(line: &[Vector3], point: Vector3) -> f64 {
     };
     line.windows(2).map(to_segment).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Silent;
+    use crate::seams::paths::Paths;
+    use crate::seams::proxy::{Proxy, proxy};
+    use crate::seams::sample_surfaces::{body, flat_grid};
+    use crate::seams::symmetry::{mirror_plane, mirror_vertices};
+
+    /// Lifts a path of the vertices (i, j) of a grid of 4 × 4 quads to one of 16 × 16, both over the same square.
+    fn lifted(path: &[[u32; 2]], is_free: impl Fn([Vector3; 2]) -> bool) -> Vec<[[u32; 2]; 2]> {
+        let [coarse, fine] = [4, 16].map(|n| EdgeMesh::new(flat_grid(n, n)));
+        let nearest: Vec<_> = (0..25).map(|k| Vertex(4 * (k % 5) + 17 * 4 * (k / 5))).collect();
+        let points = fine.mesh.points();
+        let price = |edge| match is_free(fine.edges.ends(edge).map(|vertex| points[vertex])) {
+            true => fine.lengths[edge],
+            false => f64::INFINITY,
+        };
+        let cost: Vec<_> = fine.edges.all().map(price).collect();
+        let lift = Lift { fine: &fine, proxy: &coarse, cost: &cost, nearest: &nearest, mirrors: None };
+        let path: Vec<_> = path.iter().map(|[i, j]| Vertex(i + 5 * j)).collect();
+        let seams = lift.of(&Cut::none(&coarse).with(&coarse.path_edges(&path)));
+        let place = |vertex: Vertex| [vertex.0 % 17, vertex.0 / 17];
+        seams.seams().map(|edge| fine.edges.ends(edge).map(place)).collect()
+    }
+
+    fn is_along_an_axis([a, b]: [Vector3; 2]) -> bool {
+        (a[0] - b[0]).abs() < 1e-9 || (a[1] - b[1]).abs() < 1e-9
+    }
+
+    #[test]
+    fn a_straight_seam_stays_straight() {
+        let expected: Vec<_> = (0..16).map(|i| [[i, 8], [i + 1, 8]]).collect();
+        assert_eq!(lifted(&[[0, 2], [1, 2], [2, 2], [3, 2], [4, 2]], |_| true), expected);
+        // the diagonal of the quads
+        let expected: Vec<_> = (4..12).map(|i| [[i, i], [i + 1, i + 1]]).collect();
+        assert_eq!(lifted(&[[1, 1], [2, 2], [3, 3]], |_| true), expected);
+    }
+
+    #[test]
+    fn a_seam_across_the_edges_takes_few_turns() {
+        let seams = lifted(&[[1, 1], [2, 2], [3, 3]], is_along_an_axis);
+        assert_eq!(seams.len(), 16);
+        let is_horizontal = |[[_, j], [_, l]]: &[[u32; 2]; 2]| j == l;
+        // stairs have 15 turns
+        let mut order = seams.clone();
+        order.sort_by_key(|[a, _]| a[0] + a[1]);
+        let turns =
+            order.windows(2).filter(|pair| is_horizontal(&pair[0]) != is_horizontal(&pair[1])).count();
+        assert!(turns <= 7, "{turns} turns: {order:?}");
+    }
+
+    #[test]
+    fn a_seam_of_bends_follows_them() {
+        // around three sides of a square, not across it
+        let path = [[1, 1], [2, 1], [3, 1], [3, 2], [3, 3], [2, 3], [1, 3]];
+        let seams = lifted(&path, |_| true);
+        for corner in [[4, 4], [12, 12], [4, 12], [10, 4], [12, 8], [6, 12]] {
+            let is_near = |place: &[u32; 2]| place.iter().zip(corner).all(|(x, y)| x.abs_diff(y) <= 1);
+            assert!(seams.iter().flatten().any(is_near), "{corner:?}: {seams:?}");
+        }
+    }
+
+    #[test]
+    fn mirrored_seams_stay_mirrored() {
+        let surface = body(5);
+        let plane = mirror_plane(&surface).unwrap();
+        let Proxy { mesh: coarse, nearest, mirror, .. } = proxy(&surface, Some(&plane), &mut Silent).unwrap();
+        let [fine, coarse] = [surface, coarse].map(EdgeMesh::new);
+        let (mirror, fine_mirror) = (mirror.unwrap(), mirror_vertices(&fine.mesh, &plane).unwrap());
+        let paths = Paths::from(&coarse, &[Vertex(0)], &coarse.lengths);
+        let far = Vertex::all(coarse.n_vertices())
+            .filter(|&v| mirror[v] != v)
+            .max_by(|&a, &b| paths.costs[a].total_cmp(&paths.costs[b]).then(b.cmp(&a)));
+        let path = paths.to(&coarse, far.unwrap());
+        let images = path.iter().filter_map(|&edge| image(&coarse, edge, &mirror)).collect::<Vec<_>>();
+        assert_eq!(path.len(), images.len());
+        let mirrors = Some(Mirrors { fine: &fine_mirror, proxy: &mirror });
+        let lift = Lift { fine: &fine, proxy: &coarse, cost: &fine.lengths, nearest: &nearest, mirrors };
+        let seams = lift.of(&Cut::none(&coarse).with(&path).with(&images));
+        assert!(seams.seams().count() > path.len());
+        assert!(seams.seams().all(|edge| seams.is_seam(image(&fine, edge, &fine_mirror).unwrap())));
+    }
+
+    #[test]
+    fn the_distance_from_a_line_is_that_from_its_nearest_point() {
+        let line = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]].map(Vector3);
+        for (point, expected) in
+            [([1.0, 0.0, 3.0], 3.0), ([-3.0, 4.0, 0.0], 5.0), ([3.0, 3.0, 1.0], 3f64.sqrt())]
+        {
+            assert!((distance_to(&line, Vector3(point)) - expected).abs() < 1e-12, "{point:?}");
+        }
+    }
+}

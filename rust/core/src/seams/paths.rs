@@ -79,3 +79,74 @@ pub(super) fn far_points(mesh: &EdgeMesh, start: Vertex, n: usize, length: &[f64
     }
     points
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seams::sample_surfaces::{flat_grid, perforated_cylinder, random_numbers, torus};
+
+    /// The costs by as many sweeps over all edges as there are vertices (Bellman and Ford).
+    fn swept(mesh: &EdgeMesh, sources: &[Vertex], cost: &[f64]) -> Vec<f64> {
+        let mut costs = vec![f64::INFINITY; mesh.n_vertices()];
+        sources.iter().for_each(|&source| costs[source] = 0.0);
+        for _ in 0..mesh.n_vertices() {
+            for edge in mesh.edges.all() {
+                let [a, b] = mesh.edges.ends(edge);
+                costs[b] = costs[b].min(costs[a] + cost[edge]);
+                costs[a] = costs[a].min(costs[b] + cost[edge]);
+            }
+        }
+        costs
+    }
+
+    #[test]
+    fn no_path_is_cheaper() {
+        for (k, surface) in [flat_grid(9, 7), perforated_cylinder(), torus()].into_iter().enumerate() {
+            let mesh = EdgeMesh::new(surface);
+            let mut random = random_numbers(k as u64);
+            // whole numbers, some edges closed: sums are exact
+            let mut price = || if random() < 0.3 { f64::INFINITY } else { (20.0 * random()).ceil() };
+            let cost: Vec<_> = mesh.edges.all().map(|_| price()).collect();
+            let sources = [Vertex(0), Vertex(5)];
+            let paths = Paths::from(&mesh, &sources, &cost);
+            assert_eq!(paths.costs, swept(&mesh, &sources, &cost));
+            for vertex in Vertex::all(mesh.n_vertices()) {
+                let path = paths.to(&mesh, vertex);
+                let is_reached = paths.costs[vertex].is_finite() && !sources.contains(&vertex);
+                assert_eq!(path.is_empty(), !is_reached);
+                if is_reached {
+                    assert_eq!(path.iter().map(|&edge| cost[edge]).sum::<f64>(), paths.costs[vertex]);
+                    assert!(sources.iter().any(|source| mesh.edges.ends(path[0]).contains(source)));
+                    assert!(path.iter().all(|&edge| paths.uses(&mesh, edge)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn of_equal_paths_that_with_the_lower_vertices_wins() {
+        let mesh = EdgeMesh::new(flat_grid(8, 8));
+        let paths = Paths::from(&mesh, &[Vertex(0)], &vec![1.0; mesh.n_edges()]);
+        for vertex in Vertex::all(mesh.n_vertices()).skip(1) {
+            let last = paths.to(&mesh, vertex).pop().unwrap();
+            let is_before =
+                |&&(neighbor, _): &&(Vertex, Edge)| paths.costs[neighbor] + 1.0 == paths.costs[vertex];
+            let lowest = mesh.edges.around(vertex).iter().find(is_before).unwrap().0;
+            assert_eq!(mesh.edges.other_end(last, vertex), lowest);
+        }
+    }
+
+    #[test]
+    fn every_far_point_is_the_farthest_from_those_before_it() {
+        for surface in [flat_grid(8, 8), torus()] {
+            let mesh = EdgeMesh::new(surface);
+            let start = Vertex(40);
+            let points = far_points(&mesh, start, 5, &mesh.lengths);
+            for k in 0..points.len() {
+                let before = if k == 0 { &[start] } else { &points[..k] };
+                let distances = Paths::from(&mesh, before, &mesh.lengths).costs;
+                assert_eq!(distances[points[k]], distances.iter().copied().fold(0.0, f64::max));
+            }
+        }
+    }
+}

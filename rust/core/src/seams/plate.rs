@@ -238,71 +238,132 @@ fn assemble(
 mod tests {
     use super::*;
     use crate::control::Silent;
-    use crate::mesh::TriangleMesh;
+    use crate::mesh::geometry::triangle;
+    use crate::seams::sample_surfaces::rings;
 
-    /// A disk of rings in polar coordinates: `point(r, angle)` for r in (0, 1].
-    fn rings(n: usize, point: impl Fn(f64, f64) -> [f64; 3]) -> EdgeMesh {
-        let mut vertices = vec![point(0.0, 0.0)];
-        let mut faces = Vec::new();
-        let first = |ring: usize| 1 + 3 * ring * (ring - 1);
-        for ring in 1..=n {
-            for k in 0..6 * ring {
-                let angle = std::f64::consts::TAU * k as f64 / (6 * ring) as f64;
-                vertices.push(point(ring as f64 / n as f64, angle));
-            }
-            for sector in 0..6 {
-                for k in 0..ring {
-                    let outer = |k: usize| (first(ring) + (sector * ring + k) % (6 * ring)) as u32;
-                    let inner = |k: usize| match ring {
-                        1 => 0,
-                        _ => (first(ring - 1) + (sector * (ring - 1) + k) % (6 * (ring - 1))) as u32,
-                    };
-                    faces.push([inner(k), outer(k), outer(k + 1)]);
-                    if k + 1 < ring {
-                        faces.push([inner(k), outer(k + 1), inner(k + 1)]);
-                    }
-                }
-            }
-        }
-        EdgeMesh::new(TriangleMesh::new(&vertices, &faces).unwrap())
+    fn cap(n: usize, radius: f64) -> EdgeMesh {
+        let place = |r: f64, angle: f64| {
+            let theta = radius * r;
+            [theta.sin() * angle.cos(), theta.sin() * angle.sin(), theta.cos()]
+        };
+        EdgeMesh::new(rings(n, place))
     }
 
-    fn solved(mesh: &EdgeMesh, cut: &Cut) -> Deflection {
+    /// A cone whose apex lacks the angle `defect`.
+    fn cone(n: usize, defect: f64) -> EdgeMesh {
+        let width = 1.0 - defect / std::f64::consts::TAU;
+        let height = (1.0 - width * width).sqrt();
+        let place = |r: f64, angle: f64| [width * r * angle.cos(), width * r * angle.sin(), -height * r];
+        EdgeMesh::new(rings(n, place))
+    }
+
+    /// The seams along the diameter of a disk of rings, which leave it at angle 0 and π.
+    fn diameter(mesh: &EdgeMesh, n: usize) -> Cut {
+        let spoke = |sector: usize| (1..=n).map(move |ring| 1 + 3 * ring * (ring - 1) + sector * ring);
+        let path: Vec<_> = spoke(3).rev().chain([0]).chain(spoke(0)).map(Vertex::new).collect();
+        Cut::none(mesh).with(&mesh.path_edges(&path))
+    }
+
+    fn solved(mesh: &EdgeMesh, cut: &Cut, faces: Option<&[bool]>) -> Deflection {
         let plate = Plate::new(mesh).unwrap();
         let mut silent = Silent;
         let watch = Watch::new(&mut silent, 0.0, "");
-        plate.solve(mesh, cut, None, &mut plate.workspace(), &watch).unwrap()
+        plate.solve(mesh, cut, faces, &mut plate.workspace(), &watch).unwrap()
     }
 
-    fn mean_ratio(mesh: &EdgeMesh, deflection: &Deflection) -> f64 {
-        mesh.areas.iter().zip(&deflection.shear).map(|(area, shear)| area * shear.exp()).sum()
+    fn shear(mesh: &EdgeMesh) -> Vec<f64> {
+        solved(mesh, &Cut::none(mesh), None).shear
     }
 
-    /// The mean of σ₁/σ₂ of Lambert's map of a cap: cos²(θ/2) and its inverse are its stretches.
+    fn mean(mesh: &EdgeMesh, values: impl Iterator<Item = f64>) -> f64 {
+        mesh.areas.iter().zip(values).map(|(area, value)| area * value).sum()
+    }
+
+    /// The mean of σ₁/σ₂ of Lambert's map of a cap, whose stretches are cos(θ/2) and its inverse.
     fn lambert_mean(radius: f64) -> f64 {
         let n = 100_000;
-        let weigh = |k: usize| {
-            let theta = radius * (k as f64 + 0.5) / n as f64;
+        let terms = (0..n).map(|k| {
+            let theta = radius * (f64::from(k) + 0.5) / f64::from(n);
             [theta.sin() / (0.5 * theta).cos().powi(2), theta.sin()]
-        };
-        let [sum, area] = (0..n).map(weigh).fold([0.0; 2], |sum, x| [sum[0] + x[0], sum[1] + x[1]]);
+        });
+        let [sum, area] = terms.fold([0.0; 2], |sum, x| [sum[0] + x[0], sum[1] + x[1]]);
         sum / area
     }
 
+    /// The mean error of the predicted shear of each face of a cap, and that of the mean of σ₁/σ₂.
+    fn errors_on_cap(n: usize, radius: f64) -> [f64; 2] {
+        let mesh = cap(n, radius);
+        let (shear, points) = (shear(&mesh), mesh.mesh.points());
+        let errors = mesh.mesh.faces().iter().zip(&shear).map(|(&face, shear)| {
+            let [a, b, c] = triangle(points, face);
+            let chord = points[0].distance((a + b + c) * (1.0 / 3.0)) * mesh.mesh.scale();
+            // θ²/4 at the distance θ from the apex
+            (shear - (0.5 * chord).asin().powi(2)).abs()
+        });
+        let mean_ratio = mean(&mesh, shear.iter().map(|shear| shear.exp()));
+        [mean(&mesh, errors), (mean_ratio - lambert_mean(radius)).abs()]
+    }
+
     #[test]
-    fn a_cap_is_sheared_as_by_lamberts_map() {
-        for radius in [0.4, 0.8, 1.2] {
-            let cap = |r: f64, angle: f64| {
-                let theta = radius * r;
-                [theta.sin() * angle.cos(), theta.sin() * angle.sin(), theta.cos()]
-            };
-            let mut errors = [0.0; 2];
-            for (error, n) in errors.iter_mut().zip([8, 16]) {
-                let mesh = rings(n, cap);
-                let mean = mean_ratio(&mesh, &solved(&mesh, &Cut::none(&mesh)));
-                *error = (mean - lambert_mean(radius)).abs();
+    fn a_cap_is_sheared_by_a_quarter_of_its_squared_radius() {
+        // what is left is of second order in the curvature
+        for (radius, of_face, of_mean) in [(0.4, 0.0015, 1e-4), (0.8, 0.007, 1e-3), (1.2, 0.022, 5e-3)] {
+            let errors = [8, 16, 32].map(|n| errors_on_cap(n, radius));
+            assert!(errors[2][0] < of_face && errors[2][1] < of_mean, "{radius} {errors:?}");
+            for pair in errors.windows(2).filter(|_| radius < 1.0) {
+                assert!(
+                    pair[1][0] < 0.55 * pair[0][0] && pair[1][1] < 0.55 * pair[0][1],
+                    "{radius} {errors:?}"
+                );
             }
-            eprintln!("{radius} {errors:?} {}", lambert_mean(radius));
+        }
+    }
+
+    #[test]
+    fn a_cone_is_sheared_alike_everywhere() {
+        for defect in [0.3, 0.6, 1.0] {
+            // κ / 2π to first order; on the cone itself its angle takes the place of 2π
+            let expected = defect / (std::f64::consts::TAU - defect);
+            let errors = [8, 16, 32].map(|n| {
+                let mesh = cone(n, defect);
+                mean(&mesh, shear(&mesh).iter().map(|shear| (shear - expected).abs()))
+            });
+            assert!(errors[2] < 0.08 * expected, "{defect} {errors:?}");
+            assert!(errors.windows(2).all(|pair| pair[1] < 0.6 * pair[0]), "{defect} {errors:?}");
+        }
+    }
+
+    #[test]
+    fn a_flat_plate_stays_flat() {
+        let mesh = EdgeMesh::new(rings(10, |r, angle| [r * angle.cos(), r * angle.sin(), 1.0]));
+        assert!(shear(&mesh).iter().all(|&shear| shear < 1e-9));
+    }
+
+    #[test]
+    fn a_slit_lowers_the_shear_of_a_cap() {
+        let mesh = cap(12, 1.2);
+        let ratios = |cut: &Cut| mean(&mesh, solved(&mesh, cut, None).shear.into_iter().map(f64::exp));
+        let whole = ratios(&Cut::none(&mesh));
+        let slit: Vec<_> = diameter(&mesh, 12).seams().collect();
+        let half = ratios(&Cut::none(&mesh).with(&slit[..12]));
+        let parted = ratios(&Cut::none(&mesh).with(&slit));
+        assert!(parted < half && half < whole, "{parted} {half} {whole}");
+    }
+
+    #[test]
+    fn an_island_bends_by_itself() {
+        let mesh = cap(10, 1.0);
+        let cut = diameter(&mesh, 10);
+        let islands = cut.islands(&mesh);
+        assert_eq!(islands.len(), 2);
+        let whole = solved(&mesh, &cut, None);
+        for island in 0..2 {
+            let faces: Vec<_> = islands.of_face.iter().map(|&label| label == island).collect();
+            let alone = solved(&mesh, &cut, Some(&faces));
+            for (face, &is_asked) in faces.iter().enumerate() {
+                let expected = if is_asked { whole.shear[face] } else { 0.0 };
+                assert!((alone.shear[face] - expected).abs() < 1e-9);
+            }
         }
     }
 }

@@ -74,12 +74,29 @@ pub(super) fn cup() -> TriangleMesh {
 
 /// The surface of a plate of cubes with three holes, genus 3: 64 vertices.
 pub(super) fn plate_with_three_holes() -> TriangleMesh {
-    let is_solid =
-        |[x, y, z]: [i32; 3]| (0..7).contains(&x) && (0..3).contains(&y) && z == 0 && !(y == 1 && x % 2 == 1);
+    plate_with_holes(3)
+}
+
+/// The surface of a plate of cubes with holes, one for each handle.
+pub(super) fn plate_with_holes(n: i32) -> TriangleMesh {
+    surface_of_cubes([2 * n + 1, 3, 1], |[x, y, _]| y == 1 && x % 2 == 1)
+}
+
+/// A cube of `n`³ unit cubes.
+pub(super) fn cube(n: i32) -> TriangleMesh {
+    surface_of_cubes([n; 3], |_| false)
+}
+
+/// The surface of a box of unit cubes without those that are missing.
+fn surface_of_cubes([nx, ny, nz]: [i32; 3], is_missing: impl Fn([i32; 3]) -> bool) -> TriangleMesh {
+    let is_solid = |cube: [i32; 3]| {
+        cube.iter().zip([nx, ny, nz]).all(|(&k, n)| (0..n).contains(&k)) && !is_missing(cube)
+    };
+    let places = (0..nx).flat_map(|x| (0..ny).flat_map(move |y| (0..nz).map(move |z| [x, y, z])));
     let mut numbers = BTreeMap::new();
     let mut points = Vec::new();
     let mut faces = Vec::new();
-    for cube in (0..7).flat_map(|x| (0..3).map(move |y| [x, y, 0])).filter(|&cube| is_solid(cube)) {
+    for cube in places.filter(|&cube| is_solid(cube)) {
         for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
             let mut neighbor = cube;
             neighbor[axis] += 2 * side - 1;
@@ -98,6 +115,36 @@ pub(super) fn plate_with_three_holes() -> TriangleMesh {
             });
             let [a, b, c, d] = corners;
             faces.extend(if side == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    TriangleMesh::new(&points, &faces).unwrap()
+}
+
+/// A flat grid of `columns` × `rows` unit quads; vertex `j * (columns + 1) + i` lies at (i, j).
+pub(super) fn flat_grid(columns: u32, rows: u32) -> TriangleMesh {
+    let place = |u, v| [f64::from(columns) * u, f64::from(rows) * v, 0.0];
+    grid([columns, rows], [false, false], |_, _| false, place)
+}
+
+/// A disk of `n` rings around a vertex, ring k of 6 k vertices, bent by `place(radius, angle)`, the radius up to 1.
+pub(super) fn rings(n: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> TriangleMesh {
+    let mut points = vec![place(0.0, 0.0)];
+    let mut faces = Vec::new();
+    let number = |ring: usize, k: usize| match ring {
+        0 => 0,
+        _ => (1 + 3 * ring * (ring - 1) + k % (6 * ring)) as u32,
+    };
+    for ring in 1..=n {
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / (6 * ring) as f64;
+        points.extend((0..6 * ring).map(|k| place(ring as f64 / n as f64, angle(k))));
+        for (sector, k) in (0..6).flat_map(|sector| (0..ring).map(move |k| (sector, k))) {
+            let outer = number(ring, sector * ring + k);
+            let next_outer = number(ring, sector * ring + k + 1);
+            let inner = number(ring - 1, sector * (ring - 1) + k);
+            faces.push([inner, outer, next_outer]);
+            if k + 1 < ring {
+                faces.push([inner, next_outer, number(ring - 1, sector * (ring - 1) + k + 1)]);
+            }
         }
     }
     TriangleMesh::new(&points, &faces).unwrap()
@@ -183,4 +230,14 @@ fn squared_distance(x: Vector3, [a, b, c]: [Vector3; 3]) -> f64 {
 /// Number of components, Euler characteristic and number of boundary loops.
 pub(super) fn topology(mesh: &TriangleMesh) -> (usize, i64, usize) {
     (mesh.n_components(), mesh.euler_characteristic(), mesh.boundary_loops().len())
+}
+
+/// Numbers in [0, 1) that look random, one after another from a seed.
+pub(super) fn random_numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        // Knuth's MMIX generator
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
 }

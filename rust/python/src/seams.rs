@@ -17,7 +17,7 @@ use crate::run::run;
 use crate::surface::Given;
 use crate::values::Values;
 
-/// Seams of a surface, with the islands between them.
+/// Seams of a surface, and the islands that they leave.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Seams {
     /// (k, 2) int64: the ends of each seam, the lower one first, ascending; the fixed seams among them.
@@ -51,7 +51,7 @@ impl Seams {
     }
 }
 
-/// The UVs of a surface.
+/// The UVs of a surface: one map of its islands into the unit square.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Unwrap {
     /// (k, 2) float64 in the unit square: the points, by island, then by vertex.

@@ -15,6 +15,7 @@ mod mesh;
 mod optimize;
 mod packing;
 mod registration;
+mod seams;
 mod spatial_energy;
 mod sphere;
 mod sphere_runs;

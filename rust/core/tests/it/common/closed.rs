@@ -84,6 +84,40 @@ pub fn cube(cells: u32) -> TestMesh {
     known("cube", (vertices, faces), 2, 0, Some(0))
 }
 
+/// The surface of a plate of unit cubes with holes, one for each handle.
+pub fn plate_with_holes(n: i32) -> TestMesh {
+    let is_solid = |[x, y, z]: [i32; 3]| {
+        (0..2 * n + 1).contains(&x) && (0..3).contains(&y) && z == 0 && !(y == 1 && x % 2 == 1)
+    };
+    let mut numbers = BTreeMap::new();
+    let mut vertices = Vec::new();
+    let mut faces = Vec::new();
+    let places = (0..2 * n + 1).flat_map(|x| (0..3).map(move |y| [x, y, 0]));
+    for (cube, axis) in
+        places.filter(|&place| is_solid(place)).flat_map(|place| [0, 1, 2].map(|axis| (place, axis)))
+    {
+        for side in [0, 1] {
+            let mut neighbor = cube;
+            neighbor[axis] += 2 * side - 1;
+            if is_solid(neighbor) {
+                continue;
+            }
+            let [a, b, c, d] = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[s, t]| {
+                let mut corner = cube;
+                corner[axis] += side;
+                corner[(axis + 1) % 3] += s;
+                corner[(axis + 2) % 3] += t;
+                *numbers.entry(corner).or_insert_with(|| {
+                    vertices.push(corner.map(f64::from));
+                    vertices.len() as u32 - 1
+                })
+            });
+            faces.extend(if side == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    known("plate with holes", (vertices, faces), 2 - 2 * i64::from(n), 0, Some(n as usize))
+}
+
 /// A sphere of meridians and parallels, with `columns` faces around each pole.
 pub fn parallels(rows: u32, columns: u32) -> TestMesh {
     let polar = |i: u32| PI * f64::from(i) / f64::from(rows);

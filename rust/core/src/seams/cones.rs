@@ -142,7 +142,8 @@ mod tests {
         let (plate, given) = (Plate::new(&mesh).unwrap(), Cut::none(&mesh));
         let bound = 1.0 + 6.0 * (target - 1.0);
         let (cost, given, mirror) = (&mesh.lengths[..], &given, None);
-        let problem = Problem { mesh: &mesh, plate: &plate, cost, mirror, given, target, bound };
+        let problem =
+            Problem { mesh: &mesh, plate: &plate, cost, mirror, given, max_islands: 9, target, bound };
         let mut search = Search::new(problem);
         let state = search.through_cones(&mut Silent).unwrap();
         let mean = search.figures(&state.shear).mean;

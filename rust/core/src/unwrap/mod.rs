@@ -3,7 +3,7 @@
 //!
 //! 1. Seams: found ([`seams`](crate::seams())), given, or none.
 //! 2. Every island is mapped to the plane: areas to a few thousandths, little shear, no overlap.
-//! 3. All islands have one density, and are packed into the unit square ([`packing`](crate::packing)).
+//! 3. All islands have one density, and are packed into the unit square ([`crate::packing`]).
 //!
 //! Cost: that of the seams, of the maps, and of the packing.
 

@@ -283,9 +283,9 @@ mod tests {
         let [coarse, fine] = [4, 16].map(|n| EdgeMesh::new(flat_grid(n, n)));
         let nearest: Vec<_> = (0..25).map(|k| Vertex(4 * (k % 5) + 17 * 4 * (k / 5))).collect();
         let points = fine.mesh.points();
-        let price = |edge| match is_free(fine.edges.ends(edge).map(|vertex| points[vertex])) {
-            true => fine.lengths[edge],
-            false => f64::INFINITY,
+        let price = |edge| {
+            let is_open = is_free(fine.edges.ends(edge).map(|vertex| points[vertex]));
+            if is_open { fine.lengths[edge] } else { f64::INFINITY }
         };
         let cost: Vec<_> = fine.edges.all().map(price).collect();
         let lift = Lift { fine: &fine, proxy: &coarse, cost: &cost, nearest: &nearest, mirrors: None };

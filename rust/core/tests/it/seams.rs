@@ -363,9 +363,10 @@ fn a_cancelled_run_ends_soon() {
                 cancelled = cancelled.or((!goes_on).then(Instant::now));
                 goes_on
             };
-            let error = match is_unwrap {
-                true => authalic::unwrap(&surface, &UnwrapOptions::default(), &mut observer).err(),
-                false => authalic::seams(&surface, &for_target(1.1), &mut observer).err(),
+            let error = if is_unwrap {
+                authalic::unwrap(&surface, &UnwrapOptions::default(), &mut observer).err()
+            } else {
+                authalic::seams(&surface, &for_target(1.1), &mut observer).err()
             };
             let Some(cancelled) = cancelled else { continue };
             assert_eq!(error, Some(Error::CancelledEarly), "{patience} ms");

@@ -116,7 +116,7 @@ impl Figures {
         /// The logarithm of the largest ratio that is a number of use.
         const OVERFLOW: f64 = 8.0;
         let ratio = |shear: f64| shear.min(OVERFLOW).exp();
-        let mean = areas.iter().zip(shear).map(|(area, &shear)| area * ratio(shear)).sum();
+        let mean: f64 = areas.iter().zip(shear).map(|(area, &shear)| area * ratio(shear)).sum();
         let mut order: Vec<_> = shear.iter().copied().zip(areas.iter().copied()).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut above = 0.0;
@@ -124,6 +124,7 @@ impl Figures {
             above += area;
             above > 0.01
         });
-        Self { mean, percentile: ratio(beyond.map_or(0.0, |(shear, _)| *shear)) }
+        // areas may sum to a little less than 1
+        Self { mean: mean.max(1.0), percentile: ratio(beyond.map_or(0.0, |(shear, _)| *shear)) }
     }
 }

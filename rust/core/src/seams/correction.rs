@@ -8,6 +8,7 @@
 use super::cut::Cut;
 use super::maps::{self, Outlines};
 use super::one_to_one::{Limits, Seamed, chords, one_to_one};
+use super::options::MET;
 use super::prepared::{Prepared, Wishes};
 use super::search::Solution;
 use crate::control::Observer;
@@ -16,9 +17,6 @@ use crate::mesh::Edge;
 
 /// The shear of the maps may exceed the target by this factor.
 const NEARLY: f64 = 1.011;
-
-/// Nor may outlines that do not cross themselves raise it beyond this factor.
-const MET: f64 = 1.012;
 
 /// Maps may fall short of the target by this part before the seams are called too long.
 const GENEROUS: f64 = 0.93;

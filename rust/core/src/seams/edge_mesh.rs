@@ -99,9 +99,7 @@ impl EdgeMesh {
 
     /// The median length of the edges.
     pub(super) fn median_length(&self) -> f64 {
-        let mut lengths = self.lengths.clone();
-        let middle = lengths.len() / 2;
-        *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
+        self.mesh.median_edge_length() / self.unit
     }
 
     /// The edges of a path of vertices.

@@ -51,10 +51,8 @@ use given::{Part, parts};
 pub(crate) use given::{length, sorted_edges};
 pub(crate) use maps::{IslandMap, MapFigures, Outlines, figures};
 use one_to_one::Seamed;
+use options::MET;
 pub use options::{SeamMethod, SeamOptions, Symmetry};
-
-/// A target that the maps exceed by this factor is met.
-const MET: f64 = 1.012;
 
 /// Seams of a surface.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,6 +3,9 @@
 
 use ndarray::{ArrayView1, ArrayView2};
 
+/// A target that the shear of the maps exceeds by this factor is met.
+pub(super) const MET: f64 = 1.012;
+
 /// Whether seams mirror each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]

@@ -11,7 +11,7 @@ use super::openness::openness;
 use super::options::{SeamMethod, Symmetry};
 use super::plate::Plate;
 use super::proxy::{Proxy, nearest_vertices, proxy};
-use super::search::{Figures, Problem, Search, Solution};
+use super::search::{Figures, Problem, Search, Solution, with_mirrored};
 use super::symmetry::{MirrorPlane, mirror_plane, mirror_vertices};
 use crate::control::Observer;
 use crate::error::Error;
@@ -154,8 +154,12 @@ impl<'a> Prepared<'a> {
 
     /// Edges of the proxy together with their mirror images.
     pub(super) fn with_mirrored(&self, edges: &[Edge]) -> Vec<Edge> {
-        let given = Cut::none(&self.proxy);
-        Search::new(self.problem(&given, 2.0, 2.0)).with_mirrored(edges)
+        with_mirrored(edges, self.mirrored())
+    }
+
+    /// The mirror image of each edge of the proxy, if it is symmetric.
+    fn mirrored(&self) -> Option<&[Edge]> {
+        self.mirror.as_ref().map(|(_, edges)| &edges[..])
     }
 
     fn problem<'b>(&'b self, given: &'b Cut, aim: f64, target: f64) -> Problem<'b> {
@@ -163,7 +167,7 @@ impl<'a> Prepared<'a> {
             mesh: &self.proxy,
             plate: &self.plate,
             cost: &self.cost,
-            mirror: self.mirror.as_ref().map(|(_, edges)| &edges[..]),
+            mirror: self.mirrored(),
             given,
             max_islands: self.max_islands,
             target: aim,

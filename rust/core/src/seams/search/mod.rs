@@ -146,13 +146,7 @@ impl<'a> Search<'a> {
 
     /// The edges together with their mirror images.
     pub(super) fn with_mirrored(&self, edges: &[Edge]) -> Vec<Edge> {
-        let mut all = edges.to_vec();
-        if let Some(mirror) = self.problem.mirror {
-            all.extend(edges.iter().map(|&edge| mirror[edge]));
-            all.sort_unstable();
-            all.dedup();
-        }
-        all
+        with_mirrored(edges, self.problem.mirror)
     }
 
     /// Solves for each of `n` candidates on all threads; candidates without a result are left out.
@@ -174,6 +168,17 @@ impl<'a> Search<'a> {
         });
         results.into_iter().collect()
     }
+}
+
+/// Edges together with their mirror images, on a symmetric mesh.
+pub(super) fn with_mirrored(edges: &[Edge], mirror: Option<&[Edge]>) -> Vec<Edge> {
+    let mut all = edges.to_vec();
+    if let Some(mirror) = mirror {
+        all.extend(edges.iter().map(|&edge| mirror[edge]));
+        all.sort_unstable();
+        all.dedup();
+    }
+    all
 }
 
 impl Solution {

@@ -43,9 +43,8 @@ def measure_islands(islands: Sequence[Island]) -> Figures | None:
     if not good.any():
         return None
     areas, image_areas = _areas(points[good], image[good])
-    return _figures(
-        _ratios(areas, image_areas), np.zeros(len(areas), bool), angles[good], int(np.count_nonzero(~good))
-    )
+    ratios, is_folded = _ratios(areas, image_areas), np.zeros(len(areas), bool)
+    return _figures(areas, ratios, is_folded, angles[good], int(np.count_nonzero(~good)))
 
 
 def measure(surfaces: Sequence[Surface]) -> Measurement | None:
@@ -64,7 +63,8 @@ def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     folded = np.zeros(len(areas), bool)
     folded[native.folded] = True
     ratios = _ratios(areas, np.where(folded, -image_areas, image_areas))
-    figures = _figures(ratios, folded, np.asarray(native.angle_distortion), int(np.count_nonzero(~good)))
+    angles = np.asarray(native.angle_distortion)
+    figures = _figures(areas, ratios, folded, angles, int(np.count_nonzero(~good)))
     spread = [_spread(good, values) for values in (_log2(ratios, folded), areas, folded)]
     return Measurement(**vars(figures), log2=polygons.log2_area_ratios(surfaces, *spread))
 
@@ -86,9 +86,9 @@ def _log2(ratios: Floats, folded: Booleans) -> Floats:
     return log2
 
 
-def _figures(ratios: Floats, folded: Booleans, angles: Floats, without_area: int) -> Figures:
-    """Figures of triangles with area ratios (t,) and angle distortions (t,)."""
-    log2, unfolded = _log2(ratios, folded), angles[~folded]
+def _figures(areas: Floats, ratios: Floats, folded: Booleans, angles: Floats, without_area: int) -> Figures:
+    """Figures of triangles with areas (t,), area ratios (t,) and angle distortions (t,)."""
+    log2, unfolded, weights = _log2(ratios, folded), angles[~folded], areas[~folded]
     return Figures(
         triangles=len(ratios),
         mean=float(ratios.mean()),
@@ -97,6 +97,7 @@ def _figures(ratios: Floats, folded: Booleans, angles: Floats, without_area: int
         log2_max=float(log2.max()),
         flips=int(folded.sum()),
         angle=float(unfolded.mean()) if len(unfolded) else float("inf"),
+        shear=float(np.average(unfolded, weights=weights)) if len(unfolded) else float("inf"),
         without_area=without_area,
     )
 

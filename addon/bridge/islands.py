@@ -9,7 +9,7 @@ import numpy as np
 
 import authalic
 
-from ..surfaces import spherical, suitability
+from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
@@ -17,7 +17,7 @@ from .patches import SurfacePatch, checked, surface_patches
 from .progress import Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import Island, Mapping
 from .seams import disks
-from .settings import UnwrapSettings
+from .settings import SeamSettings, UnwrapSettings
 from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
 from .solver import Solver
 from .spheres import sphere_map
@@ -33,7 +33,7 @@ _AXES = {
     "Y": ((0, 1, 0), (0, 0, -1)),
     "Z": ((0, 0, 1), (0, 1, 0)),
 }
-# The part of the time that the search for seams takes; the maps take the rest.
+# The part of the time that the search for seams takes; the maps take the rest, where the search made none.
 _SEAMS = 0.7
 # The part of the time that the sphere map takes; the layout takes the rest.
 _SPHERE = 0.9
@@ -51,10 +51,10 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
     if settings.seams is None:
         patches = surface_patches(surfaces, result)
     else:
-        result.seams, patches = disks(surfaces, settings.seams, share_of(progress, 0.0, _SEAMS))
-        result.refusals += result.seams.refusals
-        progress = share_of(progress, _SEAMS, 1.0 - _SEAMS)
-        if result.seams.ended_early:  # seams are worth nothing here without maps
+        share = 1.0 if settings.solver.is_even else _SEAMS
+        patches = _unmapped_disks(surfaces, settings, settings.seams, result, share_of(progress, 0.0, share))
+        progress = share_of(progress, share, 1.0 - share)
+        if result.seams is not None and result.seams.ended_early:  # seams are worth nothing here without maps
             progress = to_the_end(progress)
 
     def mapped(piece: SurfacePatch, step: Progress) -> None:
@@ -62,6 +62,32 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
 
     one_by_one(patches, mapped, result, progress)
     return result
+
+
+def _unmapped_disks(
+    surfaces: Sequence[Surface],
+    settings: UnwrapSettings,
+    search: SeamSettings,
+    result: Mapping,
+    progress: Progress,
+) -> list[SurfacePatch]:
+    """The disks along seams that are found; those that the search has mapped become islands of the result."""
+    result.seams, found = disks(surfaces, search, settings.solver.is_even, progress)
+    result.refusals += result.seams.refusals
+    result.islands += [_mapped_by_search(disk.piece, disk.uv) for disk in found if disk.uv is not None]
+    return [disk.piece for disk in found if disk.uv is None]
+
+
+def _mapped_by_search(piece: SurfacePatch, uv: Floats) -> Island:
+    """An island with the UVs (n, 2) of its points by the search for its seams."""
+    native, faces = checked(piece.patch, piece.points), np.asarray(piece.patch.faces)
+    turned = triangulation.signed_areas(uv[faces]) < 0
+    if 2 * np.count_nonzero(turned) + int(turned[0]) > len(turned):
+        # the island's own orientation is that of most of its faces, at a tie that of the first
+        uv, turned = uv * [-1.0, 1.0], ~turned
+    island = _island(piece, native, uv, faces, turned, np.arange(len(piece.points)))
+    island.may_turn = True
+    return island
 
 
 def _map(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:

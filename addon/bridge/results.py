@@ -56,14 +56,17 @@ class FoundSeams:
     """The result of `find_seams`: `edges` (k, 2) are the vertices of the new seams of each surface.
 
     The surfaces are divided into `islands`. The `length` of the new seams, over the root of the area, and the
-    predicted `shear` are of all surfaces together. `notes` name what is sheared more than it should be.
-    `ended_early` says that it was asked to end before it was done: the last island has quick seams then.
+    predicted `shear` are of all surfaces together. Where the wanted shear was left to the search, `presets`
+    has that of each surface that was cut, the highest of its islands. `notes` name what is sheared more than
+    it should be. `ended_early` says that it was asked to end before it was done: the last island has quick
+    seams then.
     """
 
     edges: list[Integers]
     islands: int = 0
     length: float = 0.0
     shear: float = 1.0
+    presets: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
     ended_early: bool = False
@@ -84,7 +87,10 @@ class Mapping:
 
 @dataclass
 class Figures:
-    """Area ratios, angles and flips of UVs, over the triangles of all surfaces."""
+    """Area ratios, angles and flips of UVs, over the triangles of all surfaces.
+
+    `angle` is the mean of σ₁/σ₂ over the triangles, `shear` that over the area.
+    """
 
     triangles: int
     mean: float
@@ -93,6 +99,7 @@ class Figures:
     log2_max: float
     flips: int
     angle: float
+    shear: float
     without_area: int
 
 

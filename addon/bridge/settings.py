@@ -14,8 +14,9 @@ class SeamSettings:
     """The settings of a search for seams.
 
     `shear` is the mean σ₁/σ₂ that the maps of the islands may have; None for the one that suits each
-    surface. With `keep_given` the seams of the surface stay and are added to, else they are ignored. `front`
-    is a direction in which seams are seen. A draft takes a fraction of a second.
+    island: `LOW_SHEAR`, but `FEW_SEAMS` for scans. With `keep_given` the seams of the surface stay and are
+    added to, else they are ignored. `front` is a direction in which seams are seen. A draft takes a fraction
+    of a second.
     """
 
     shear: float | None = None

@@ -46,6 +46,12 @@ class Solver:
         return self._is_ours and self.outline == "FREE"
 
     @property
+    def is_even(self) -> bool:
+        """Whether these are the options with which the library maps the islands along seams that it finds."""
+        is_even = fits("EVEN", self.angle_weight, self.outline, self.area_tolerance)
+        return self._is_ours and is_even and self.iterations == 0
+
+    @property
     def weight(self) -> float:
         """The library's weight of angles, 0 where it does not apply."""
         return weight(self.angle_weight) if self._is_ours and not self.area_tolerance else 0.0

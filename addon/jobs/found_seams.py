@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from .. import bridge, messages
 from ..blender import edges
 from ..blender.types import MeshObject
+from ..bridge.settings import LOW_SHEAR
 from ..surfaces.arrays import Edge, Integers
 
 
@@ -21,7 +22,27 @@ def pairs_of(ends: Integers) -> list[Edge]:
     return [(first, second) for first, second in ends.tolist()]
 
 
+def length(found: bridge.FoundSeams) -> str:
+    """The length of seams in words."""
+    return f"length of new seams {found.length:.2f}"
+
+
+def shear(value: float, found: bridge.FoundSeams) -> str:
+    """A shear in words, with the preset that was chosen for the meshes."""
+    preset = _preset(found)
+    return f"shear {value:.2f}{f' ({preset})' if preset else ''}"
+
+
 def notes(found: bridge.FoundSeams) -> list[str]:
     """Remarks on seams that may not be as wanted."""
     early = [messages.ENDED_EARLY_SEEKING] if found.ended_early else []
     return early + ([messages.listed(found.notes)] if found.notes else [])
+
+
+def _preset(found: bridge.FoundSeams) -> str:
+    """The preset that was chosen for the meshes; empty if it was not left to the search."""
+    scans = [name for name, shear in found.presets.items() if shear > LOW_SHEAR]
+    if not found.presets or not scans:
+        return "Low Shear" if found.presets else ""
+    few = "Few Seams" if len(found.presets) == 1 else f"Few Seams for {messages.named(scans)}"
+    return few if len(scans) == len(found.presets) else f"Low Shear, {few}"

@@ -42,8 +42,8 @@ class Job(Generic[Computed, Result]):
         return self
 
     def poll(self) -> tuple[bool, float, str]:
-        """(running, fraction, message)."""
-        return (self._thread.is_alive(), *self._state)
+        """(running, fraction, message); a cancelled job does not run, whatever its thread does."""
+        return (self._thread.is_alive() and not self._cancel.is_set(), *self._state)
 
     def cancel(self) -> None:
         """Asks the computation to stop; `apply` will raise `Cancelled` and change nothing."""
@@ -55,8 +55,12 @@ class Job(Generic[Computed, Result]):
         self._end.set()
 
     def apply(self) -> Result:
-        """Waits for the end of the computation and hands its result to `finish`."""
-        self._thread.join()
+        """Waits for the end of the computation and hands its result to `finish`.
+
+        A cancelled job raises at once: its thread has nothing to give any more.
+        """
+        if not self._cancel.is_set():
+            self._thread.join()
         if self._cancel.is_set():
             raise Cancelled("cancelled, nothing was changed")
         if self._error is not None:

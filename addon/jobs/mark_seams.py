@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 import bpy
 
 from .. import bridge, messages
-from ..blender import edges, meshes, selection, vertex_groups
+from ..blender import edges, meshes, selection
 from ..blender.types import MeshObject
 from ..bridge.progress import Progress
-from ..surfaces import seam_costs
 from ..surfaces.surface import Surface
-from . import found_seams, targets
+from . import found_seams, seam_groups, targets
 from .job import Job
+from .seam_groups import SeamGroups
 
 Chosen = tuple[MeshObject, Surface]
 """An object and its surface."""
@@ -26,13 +26,12 @@ class CannotMark(Exception):
 
 @dataclass
 class Settings:
-    """All options of marking: `keep_off` and `prefer` are vertex groups, or empty.
+    """All options of marking.
 
     Seams of the meshes stay unless `clear` is set, which finds all seams anew.
     """
 
-    keep_off: str = ""
-    prefer: str = ""
+    groups: SeamGroups = field(default_factory=SeamGroups)
     clear: bool = False
     search: bridge.SeamSettings = field(default_factory=bridge.SeamSettings)
 
@@ -58,14 +57,14 @@ class Report:
 def in_words(found: bridge.FoundSeams) -> str:
     """The figures of seams."""
     islands = messages.count(found.islands, "island")
-    return f"{islands}, length of new seams {found.length:.2f}, predicted shear {found.shear:.2f}"
+    return f"{islands}, {found_seams.length(found)}, predicted {found_seams.shear(found.shear, found)}"
 
 
 def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.FoundSeams, Report]:
     """A `Job` that finds seams on what is selected; its `apply` marks them and returns a `Report`.
 
     In edit mode of the selected faces, or of all if none is selected. Raises `targets.NothingToDo` or
-    `CannotMark` before anything is computed.
+    `seam_groups.NoGroup` before anything is computed.
     """
     started = time.perf_counter()
     objects, refusals = targets.editable(context)
@@ -88,7 +87,7 @@ def preview(
 ) -> Job[bridge.FoundSeams, tuple[list[str], bridge.FoundSeams]]:
     """A `Job` that finds quick seams on what `job` would work on; its `apply` changes nothing.
 
-    It returns the names of the objects and what was found on all of them. Raises `CannotMark`.
+    It returns the names of the objects and what was found on all of them. Raises `seam_groups.NoGroup`.
     """
     objects, _ = targets.editable(context)
     chosen = _read(context, objects, settings)
@@ -98,22 +97,13 @@ def preview(
 
 def _read(context: bpy.types.Context, objects: Sequence[MeshObject], settings: Settings) -> list[Chosen]:
     """The objects that have faces to cut, with their surfaces."""
-    groups = settings.keep_off, settings.prefer
-    _check_groups(objects, groups)
+    seam_groups.check(objects, settings.groups)
     selected_only = context.mode == "EDIT_MESH" and any(selection.has_faces(obj) for obj in objects)
     read = [(obj, meshes.read(obj, selected_only=selected_only)) for obj in objects]
     chosen = [(obj, surface) for obj, surface in read if len(surface.triangles)]
-    for obj, surface in chosen if any(groups) else ():
-        surface.seam_factors = seam_costs.vertex_factors(
-            *(vertex_groups.weights(obj, name) for name in groups)
-        )
+    for obj, surface in chosen:
+        seam_groups.apply(obj, surface, settings.groups)
     return chosen
-
-
-def _check_groups(objects: Sequence[MeshObject], groups: Sequence[str]) -> None:
-    for name in filter(None, groups):
-        if not any(name in vertex_groups.names(obj) for obj in objects):
-            raise CannotMark(f'No selected object has the vertex group "{name}"; choose another')
 
 
 def _work(chosen: Sequence[Chosen], settings: Settings) -> Callable[[Progress], bridge.FoundSeams]:

@@ -16,8 +16,9 @@ from ..bridge.progress import Progress
 from ..surfaces.arrays import Integers, Singles
 from ..surfaces.islands import scale_to_one_density, upright
 from ..surfaces.surface import Surface
-from . import found_seams, targets
+from . import found_seams, seam_groups, targets
 from .job import Job
+from .seam_groups import SeamGroups
 
 _NAMED = 3
 _FOLDS = "its faces would fold over in UV precision; cut its long or thin parts open by seams"
@@ -34,42 +35,55 @@ class CannotUnwrap(Exception):
 class Settings:
     """All options of the unwrap; an empty `uv_layer` is the active one.
 
-    With `mark_seams` the seams that are found for it are marked on the meshes.
+    With `mark_seams` the seams that are found for it are marked on the meshes; `groups` count for these seams
+    only.
     """
 
     uv_layer: str = ""
     mark_seams: bool = True
+    groups: SeamGroups = field(default_factory=SeamGroups)
     mapping: bridge.UnwrapSettings = field(default_factory=bridge.UnwrapSettings)
     packing: PackSettings = field(default_factory=PackSettings)
 
 
 @dataclass
 class Report:
-    """The number of mapped islands, their figures, and the islands that were left as they were."""
+    """The number of mapped islands, their figures, and the islands that were left as they were.
+
+    `seams` are those that were found for it, None where those of the meshes count.
+    """
 
     islands: int
     figures: bridge.Figures | None
+    seams: bridge.FoundSeams | None
     refusals: list[bridge.Refusal]
     notes: list[str]
     seconds: float
 
     def __str__(self) -> str:
         parts = [messages.count(self.islands, "island")]
+        if self.seams is not None:
+            parts.append(found_seams.length(self.seams))
         if self.figures is not None:
             parts += [
                 f"area ratio SD {self.figures.deviation:.3g}",
                 messages.count(self.figures.flips, "flip"),
-                f"angle distortion {self.figures.angle:.2f}",
+                self._shear(self.figures),
             ]
         line = ", ".join([*parts, f"{self.seconds:.2f} s"])
         left = [f"left as it was: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
 
+    def _shear(self, figures: bridge.Figures) -> str:
+        if self.seams is None:
+            return f"angle distortion {figures.angle:.2f}"
+        return found_seams.shear(figures.shear, self.seams)
+
 
 def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, Report]:
     """A `Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
 
-    Raises `targets.NothingToDo` or `CannotUnwrap` before anything is computed.
+    Raises `targets.NothingToDo`, `CannotUnwrap` or `seam_groups.NoGroup` before anything is computed.
     """
     started = time.perf_counter()
     selected_only = context.mode == "EDIT_MESH"
@@ -83,6 +97,10 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
     if not chosen:
         raise targets.NothingToDo(_why_nothing(selected_only, refusals))
     surfaces = [surface for _, _, surface in chosen]
+    if settings.mapping.seams is not None:
+        seam_groups.check(objects, settings.groups)
+        for obj, _, surface in chosen:
+            seam_groups.apply(obj, surface, settings.groups)
 
     def work(progress: Progress) -> bridge.Mapping:
         return bridge.unwrap(surfaces, settings.mapping, progress)
@@ -97,7 +115,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
             notes.insert(0, messages.ENDED_EARLY)
         if mapping.seams is not None:
             notes[:0] = found_seams.notes(mapping.seams)
-        return Report(len(mapping.islands), figures, mapping.refusals, notes, seconds)
+        return Report(len(mapping.islands), figures, mapping.seams, mapping.refusals, notes, seconds)
 
     return Job(work, finish)
 
@@ -217,6 +235,5 @@ def _notes(chosen: Sequence[Chosen], islands: Sequence[bridge.Island], figures: 
         notes.append("the flips are where Blender divides polygons in other ways; triangulate them")
     scaled = [obj.name for obj, _, _ in chosen if not meshes.has_uniform_scale(obj)]
     if scaled:
-        named = ", ".join(scaled[:_NAMED])
-        notes.append(f"{named}: non-uniform scale, areas are those of the non-scaled mesh")
+        notes.append(f"{messages.named(scaled)}: non-uniform scale, areas are those of the non-scaled mesh")
     return notes

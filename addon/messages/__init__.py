@@ -27,6 +27,12 @@ def numbers(elements: Sequence[int] | Integers) -> str:
     return ", ".join(str(int(element)) for element in elements[:_NAMED]) + (", …" * (len(elements) > _NAMED))
 
 
+def named(names: Sequence[str]) -> str:
+    """The first few of some names, and how many there are."""
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+
+
 def listed(items: Sequence[object]) -> str:
     """The first few of some messages in one line, and how many there are."""
     named = "; ".join(str(item) for item in items[:_NAMED])

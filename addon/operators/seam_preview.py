@@ -13,7 +13,7 @@ from bpy.props import BoolProperty, StringProperty
 
 from ..blender import scene_changes, selection
 from ..jobs import mark_seams as marking
-from ..jobs import targets
+from ..jobs import seam_groups, targets
 from ..jobs.job import Job
 from ..overlay import seams as overlay
 from . import mark_seams
@@ -85,7 +85,7 @@ def _start(context: bpy.types.Context, wanted: Wanted) -> None:
     _state.wanted = wanted
     try:
         _state.running = marking.preview(context, wanted[1]).start()
-    except marking.CannotMark as problem:
+    except seam_groups.NoGroup as problem:
         _show(context, [], str(problem))
 
 

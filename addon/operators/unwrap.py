@@ -2,6 +2,7 @@
 """authalic.unwrap: UVs with equal areas for every selected island."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -10,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from .. import bridge
 from ..blender import packing, uv_maps
 from ..blender.types import is_mesh
-from ..jobs import unwrap
+from ..jobs import seam_groups, unwrap
 from ..jobs.job import Job
 from . import poll, seaming, solving
 from .modal import Modal
@@ -29,7 +30,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
     bl_idname = "authalic.unwrap"
     bl_label = "Authalic Unwrap"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
-    refused = (unwrap.CannotUnwrap,)
+    refused = (unwrap.CannotUnwrap, seam_groups.NoGroup)
 
     seams: EnumProperty(
         name="Seams",
@@ -151,6 +152,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         return unwrap.Settings(
             uv_layer=self.uv_layer,
             mark_seams=self.mark_seams,
+            groups=seaming.groups(self.properties),
             mapping=bridge.UnwrapSettings(
                 fill_holes=self.fill_holes,
                 solver=self.solver(),
@@ -167,11 +169,8 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         """The search for seams, if there is to be one."""
         if self.seams == "GIVEN":
             return None
-        return bridge.SeamSettings(
-            shear=seaming.shear(self.properties),
-            keep_given=self.seams == "ADD",
-            overlap=self.allow_overlap,
-        )
+        search = seaming.search(self.properties)
+        return replace(search, keep_given=self.seams == "ADD", overlap=self.allow_overlap)
 
 
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
@@ -185,8 +184,9 @@ def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
         row.active = properties.domain != "SPHERE"
         row.prop(properties, "fill_holes")
     else:
-        seaming.draw_shear(column, properties)
-        column.prop(properties, "mark_seams")
+        box = column.box().column()
+        seaming.draw_options(box, properties)
+        box.prop(properties, "mark_seams")
     solving.draw_options(column, properties)
     column.prop(properties, "uv_layer", placeholder="Active")
     if is_given:

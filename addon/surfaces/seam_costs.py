@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where seams may run, and how dear they are there. Plain numpy, no bpy."""
+"""Where seams may run, how dear they are there, and how many there are. Plain numpy, no bpy."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -39,6 +41,12 @@ def is_scan(surface: Surface) -> bool:
     points = surface.positions[np.unique(surface.triangles)]
     lengths = np.linalg.norm(surface.positions[first] - surface.positions[second], axis=1)
     return bool(np.median(lengths) < _FINE * np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def slit_count(seams: Integers, boundary_loops: Sequence[Integers]) -> int:
+    """The number of ends of seams (k, 2) inside a surface with these boundaries."""
+    ends, count = np.unique(seams, return_counts=True)
+    return int(np.count_nonzero((count == 1) & ~np.isin(ends, np.concatenate([[], *boundary_loops]))))
 
 
 def edge_keys(surface: Surface) -> Integers:

@@ -41,8 +41,8 @@ def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
             "Automatic"
         )
     if domain == "DISK" and patch.is_closed:
-        remedy = f", or set Domain to Automatic or Sphere, or {_AUTOMATIC}" if patch.genus == 0 else ""
-        raise Unsuitable(f"is closed; mark seams to cut it open{remedy}")
+        remedy = "set Domain to Automatic or Sphere, or " if patch.genus == 0 else ""
+        raise Unsuitable(f"is closed; mark seams to cut it open, or {remedy}{_AUTOMATIC}")
     if patch.genus:
         closed = "is closed and " if patch.is_closed else ""
         raise Unsuitable(
@@ -70,7 +70,10 @@ def check_flat(patch: Patch) -> None:
         raise Unsuitable("is one-sided, like a Moebius strip; mark seams across it and unwrap it")
     if patch.is_closed or patch.genus > 0:
         kind = "closed" if patch.is_closed else "not flat"
-        raise Unsuitable(f"is {kind} in its UV map, where faces must overlap; mark seams and unwrap it")
+        raise Unsuitable(
+            f"is {kind} in its UV map, where faces must overlap; mark seams and unwrap it, or unwrap it with "
+            "Seams set to Automatic"
+        )
 
 
 def handles(patch: Patch) -> str:

@@ -97,7 +97,7 @@ KEYWORDS = {
     "stretch_hessian": {"density": None},
     "untangle": {"fixed": None, "tolerance": 0.01, "progress": None},
     "seams": {**SEAMS, "method": "search", "progress": None},
-    "unwrap": {"seams": "auto", **SEAMS, "margin": 0.002, "rotate": True, "progress": None},
+    "unwrap": {"seams": "auto", **SEAMS, "pack": True, "margin": 0.002, "rotate": True, "progress": None},
     "distortion": {"density": None},
     "cut": {"seams": None},
     "register_disks": REGISTRATION,

@@ -177,6 +177,18 @@ def test_islands_of_given_seams_must_be_open_and_without_handles(mesh, kind):
     with pytest.raises(authalic.MeshError) as caught:
         authalic.unwrap(mesh, seams=None)
     assert caught.value.kind == kind
+    assert 'unwrap with seams="auto"' in str(caught.value)
+
+
+def holed_torus():
+    mesh = meshes.torus()
+    return meshes.compact(meshes.Mesh(mesh.vertices, mesh.faces[:-2]))
+
+
+@pytest.mark.parametrize("mesh", [BUMPY, meshes.torus(), holed_torus()], ids=["closed", "torus", "open"])
+def test_a_disk_map_of_what_is_no_disk_names_the_call_that_cuts(mesh):
+    with pytest.raises(authalic.MeshError, match='unwrap with seams="auto"'):
+        authalic.disk_map(mesh)
 
 
 # Packing
@@ -189,6 +201,24 @@ def test_the_margin_keeps_islands_apart():
     points = [result.uv[np.unique(result.faces[result.island_of == island])] for island in (0, 1)]
     distance = np.linalg.norm(points[0][:, None] - points[1], axis=2).min()
     assert distance >= 0.05 - 1e-9
+
+
+def test_islands_may_be_left_to_another_packer():
+    mesh = SURFACES["two_pieces"]
+    packed, alone = authalic.unwrap(mesh), authalic.unwrap(mesh, pack=False, margin=0.7)
+    assert alone.packed == 0
+    for name in ("faces", "vertex_of", "island_of", "edges"):
+        assert np.array_equal(getattr(alone, name), getattr(packed, name))
+    for name in ("shear", "shear_p99", "area_ratio_std", "length", "islands", "status"):
+        assert getattr(alone, name) == getattr(packed, name)
+    areas = oracle.face_areas(*mesh)
+    assert oracle.signed_areas(alone.uv, alone.faces).sum() == pytest.approx(areas.sum(), rel=1e-9)
+    # each island is that of the packed map, turned, scaled and moved
+    for island in range(alone.islands):
+        shapes = [result.uv[result.faces[alone.island_of == island]] for result in (alone, packed)]
+        sides = [np.linalg.norm(shape - np.roll(shape, 1, axis=1), axis=2) for shape in shapes]
+        scale = np.sqrt(packed.packed / areas.sum())
+        assert sides[1] == pytest.approx(scale * sides[0], rel=1e-9, abs=1e-12)
 
 
 def test_islands_need_not_turn():

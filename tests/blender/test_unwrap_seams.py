@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 import meshes
+import problems
 import pytest
 import seaming
 from installed import part
@@ -20,13 +21,12 @@ def unwrap(**options: Any) -> set[str]:
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Quick seams, for tests of what is done with them."""
-    seams = part("bridge.seams").authalic.seams
-    monkeypatch.setattr(
-        part("bridge.seams").authalic,
-        "seams",
-        lambda *given, **options: seams(*given, **options | {"method": "cones"}),
-    )
+    """Quick seams, as of a search that ends at once, for tests of what is done with them."""
+
+    def unmapped(*_given: Any, **_options: Any) -> None:
+        raise problems.made("SolverError", "cancelled")
+
+    monkeypatch.setattr(part("bridge.seams").authalic, "unwrap", unmapped)
 
 
 def assert_cut_as_marked(obj: MeshObject) -> None:
@@ -147,8 +147,15 @@ def test_pinned_parts_and_one_sided_ones_are_left_alone(capfd: pytest.CaptureFix
 
 def test_refusals_offer_automatic_seams() -> None:
     meshes.torus()
+    with pytest.raises(RuntimeError, match="is closed; mark seams to cut it open, or set Seams to Automatic"):
+        unwrap(domain="DISK")
+    with pytest.raises(RuntimeError, match=r"has a handle, .*, or set Seams to Automatic"):
+        unwrap(domain="SPHERE")
     with pytest.raises(RuntimeError, match="like a torus; mark seams to cut it open, or set Seams to Auto"):
         unwrap()
+    meshes.icosphere(1)
+    with pytest.raises(RuntimeError, match=r"is closed; .*or Sphere, or set Seams to Automatic"):
+        unwrap(domain="DISK")
     meshes.add(*meshes.tube(3, 8, closed=False))
     with pytest.raises(RuntimeError, match=r"2 boundaries; turn on Fill Holes, .*or set Seams to Automatic"):
         unwrap(fill_holes=False)

@@ -490,6 +490,7 @@ def unwrap(
     max_islands: int | None = None,
     overlap: bool = False,
     diagonals: ArrayLike | None = None,
+    pack: bool = True,
     margin: float = 0.002,
     rotate: bool = True,
     progress: _Progress | None = None,

@@ -99,6 +99,12 @@ fn in_python_words(error: &Error) -> String {
         Error::Mesh(authalic::MeshError::SeveralBoundaries { .. }) => {
             format!("{error} (fill_holes=True fills them)")
         }
+        Error::Mesh(
+            authalic::MeshError::ClosedSurface { .. }
+            | authalic::MeshError::HasHandles { .. }
+            | authalic::MeshError::SphereHasHandles { .. }
+            | authalic::MeshError::GenusNotZero { .. },
+        ) => format!("{error} (unwrap with seams=\"auto\" cuts any surface open)"),
         error => error.to_string(),
     }
 }

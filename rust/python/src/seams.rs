@@ -54,7 +54,7 @@ impl Seams {
 /// The UVs of a surface: one map of its islands into the unit square.
 #[pyclass(frozen, get_all, module = "authalic")]
 pub struct Unwrap {
-    /// (k, 2) float64 in the unit square: the points, by island, then by vertex.
+    /// (k, 2) float64: the points, by island, then by vertex; in the unit square if they are packed.
     uv: Reals,
     /// (m, 3) int64: the faces between points, their corners in the order of the surface's.
     faces: Py<PyArray2<i64>>,
@@ -74,7 +74,7 @@ pub struct Unwrap {
     shear_p99: f64,
     /// The standard deviation of the area ratio, weighted by area; 0: every face has exactly its share.
     area_ratio_std: f64,
-    /// The share of the unit square that the islands cover.
+    /// The share of the unit square that the islands cover; 0 if they are not packed.
     packed: f64,
     /// "converged" if the wanted shear is reached; "stalled" if it is not.
     status: &'static str,
@@ -371,6 +371,9 @@ pub fn seams(
 ///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
 /// diagonals : (d, 2) integer array, optional
 ///     Edges that only triangulate polygons, each as its two ends. Seams along them cost four times as much.
+/// pack : bool
+///     Pack the islands into the unit square. False leaves each island where its map lies, with the areas of the surface:
+///     islands may lie over each other, for a packer of the caller's own. Default True.
 /// margin : float
 ///     Least distance of islands from each other and from the border of the square, in [0, .5), in units of the
 ///     square. Default .002, which is two pixels of a texture of 1,024².
@@ -408,9 +411,10 @@ pub fn seams(
 #[pyfunction]
 #[pyo3(
     signature = (surface, *, seams=SeamSource::Automatic, target=1.4, fixed=None, weights=None, front=None,
-        symmetry=AUTO, max_islands=None, overlap=false, diagonals=None, margin=0.002, rotate=true, progress=None),
+        symmetry=AUTO, max_islands=None, overlap=false, diagonals=None, pack=true, margin=0.002, rotate=true,
+        progress=None),
     text_signature = "(surface, *, seams=\"auto\", target=1.4, fixed=None, weights=None, front=None, \
-        symmetry=\"auto\", max_islands=None, overlap=False, diagonals=None, margin=0.002, rotate=True, progress=None)"
+        symmetry=\"auto\", max_islands=None, overlap=False, diagonals=None, pack=True, margin=0.002, rotate=True, progress=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "the options of the Python function")]
 pub fn unwrap(
@@ -425,6 +429,7 @@ pub fn unwrap(
     max_islands: Option<i64>,
     overlap: bool,
     diagonals: Option<&Bound<'_, PyAny>>,
+    pack: bool,
     margin: f64,
     rotate: bool,
     progress: Option<&Bound<'_, PyAny>>,
@@ -449,7 +454,7 @@ pub fn unwrap(
             None => UnwrapSeams::Automatic(wishes.options()),
             Some(edges) => UnwrapSeams::Given(edges.view()),
         };
-        let options = UnwrapOptions { seams, overlap, margin, rotate };
+        let options = UnwrapOptions { seams, overlap, pack, margin, rotate };
         authalic::unwrap(&given.surface()?, &options, observer)
     })?;
     // 3. The result

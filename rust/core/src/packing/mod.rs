@@ -78,6 +78,11 @@ pub struct Packing {
 }
 
 impl Packing {
+    /// Islands that stay where they are.
+    pub(crate) fn unmoved(islands: usize) -> Self {
+        Self { scale: 1.0, places: vec![Place { angle: 0.0, offset: [0.0; 2] }; islands] }
+    }
+
     /// Where a point of an island goes.
     pub fn apply(&self, island: usize, point: [f64; 2]) -> [f64; 2] {
         let Place { angle, offset } = self.places[island];

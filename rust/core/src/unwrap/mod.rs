@@ -3,7 +3,8 @@
 //!
 //! 1. Seams: found ([`seams`](crate::seams())), given, or none.
 //! 2. Every island is mapped to the plane: areas to a few thousandths, little shear, no overlap.
-//! 3. All islands have one density, and are packed into the unit square ([`crate::packing`]).
+//! 3. All islands have one density, and are packed into the unit square ([`crate::packing`]), unless the caller has a
+//!    packer.
 //!
 //! Cost: that of the seams, of the maps, and of the packing.
 
@@ -17,7 +18,7 @@ use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::{Face, Surface, Vertex};
-use crate::packing::{self, PackOptions, pack};
+use crate::packing::{self, PackOptions, Packing, pack};
 use crate::parallel;
 use crate::seams::{Island, MapFigures, SeamOptions, figures, seams_and_maps};
 use islands::{CutSurface, along};
@@ -38,6 +39,8 @@ pub struct UnwrapOptions<'a> {
     pub seams: UnwrapSeams<'a>,
     /// Let islands overlap themselves where the seams are given.
     pub overlap: bool,
+    /// Pack the islands into the unit square; else each stays where its map lies.
+    pub pack: bool,
     /// The least distance between islands, and to the border of the square, in units of the square.
     pub margin: f64,
     /// Whether packing may turn islands.
@@ -47,14 +50,16 @@ pub struct UnwrapOptions<'a> {
 impl Default for UnwrapOptions<'_> {
     fn default() -> Self {
         let PackOptions { margin, rotate } = PackOptions::default();
-        Self { seams: UnwrapSeams::Automatic(SeamOptions::default()), overlap: false, margin, rotate }
+        let seams = UnwrapSeams::Automatic(SeamOptions::default());
+        Self { seams, overlap: false, pack: true, margin, rotate }
     }
 }
 
 /// The UVs of a surface.
 #[derive(Debug, Clone)]
 pub struct Unwrap {
-    /// (k, 2) in the unit square: the points, in the order of their islands, then of their vertices.
+    /// (k, 2): the points, in the order of their islands, then of their vertices; in the unit square if they are
+    /// packed, else with the areas of the surface.
     pub uv: Array2<f64>,
     /// (m, 3): the faces between points; their corners are in the order of the surface's.
     pub faces: Array2<u32>,
@@ -74,7 +79,7 @@ pub struct Unwrap {
     pub shear_p99: f64,
     /// The standard deviation of the area ratio, weighted by area.
     pub area_ratio_std: f64,
-    /// The share of the unit square that islands cover.
+    /// The share of the unit square that islands cover; 0 if they are not packed.
     pub packed: f64,
     /// [`Status::Converged`] where the wanted shear is reached, or where seams are given; else [`Status::Stalled`].
     pub status: Status,
@@ -134,11 +139,7 @@ fn packed(
     observer: &mut dyn Observer,
 ) -> Result<Unwrap, Error> {
     let CutSurface { islands, edges, length, status } = cut;
-    let shapes: Vec<_> = islands
-        .iter()
-        .map(|island| packing::Island { points: &island.map.uv, faces: island.map.mesh.faces() })
-        .collect();
-    let packing = pack(&shapes, &PackOptions { margin: options.margin, rotate: options.rotate }, observer)?;
+    let packing = places(&islands, options, observer)?;
     observer.progress(1.0, "Done");
     let mut points = Vec::new();
     let mut vertex_of = Vec::new();
@@ -153,7 +154,7 @@ fn packed(
             island_of[face] = number as u32;
         }
     }
-    let covered: f64 = islands.iter().map(|island| island.map.area()).sum::<f64>() * packing.scale.powi(2);
+    let area: f64 = islands.iter().map(|island| island.map.area()).sum();
     let MapFigures { mean, percentile, area_deviation } = figures(islands.iter().map(|island| &island.map));
     Ok(Unwrap {
         uv: from_rows(points),
@@ -166,10 +167,26 @@ fn packed(
         shear: mean,
         shear_p99: percentile,
         area_ratio_std: area_deviation,
-        packed: covered,
+        packed: if options.pack { area * packing.scale.powi(2) } else { 0.0 },
         status,
         seconds: began.elapsed().as_secs_f64(),
     })
+}
+
+fn places(
+    islands: &[Island],
+    options: &UnwrapOptions<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Packing, Error> {
+    let &UnwrapOptions { pack: is_packed, margin, rotate, .. } = options;
+    if !is_packed {
+        return Ok(Packing::unmoved(islands.len()));
+    }
+    let shapes: Vec<_> = islands
+        .iter()
+        .map(|island| packing::Island { points: &island.map.uv, faces: island.map.mesh.faces() })
+        .collect();
+    pack(&shapes, &PackOptions { margin, rotate }, observer)
 }
 
 /// The vertices of an island's face in the order of the corners of the surface's face.

@@ -288,7 +288,7 @@ def test_a_patch_has_the_attributes_of_the_contract():
 
 
 def test_seams_and_unwraps_have_the_attributes_of_the_contract():
-    seams, result = (call(meshes.bumpy_cap()) for call in (authalic.seams, authalic.unwrap))
+    seams, result = (call(meshes.octahedron()) for call in (authalic.seams, authalic.unwrap))
     numbers = {"length", "seconds", "shear", "shear_p99", "area_ratio_std", "packed", "predicted"}
     both = {"edges", "islands", "island_of", "length", "status", "seconds"}
     figures = {"shear", "shear_p99", "area_ratio_std", "packed"}
@@ -342,7 +342,7 @@ def test_arrays_of_patches_are_c_ordered_float64_and_int64():
 
 
 def test_arrays_of_seams_and_unwraps_are_c_ordered_float64_and_int64():
-    mesh = meshes.bumpy_cap()
+    mesh = meshes.octahedron()
     seams, result = authalic.seams(mesh, target=1.1), authalic.unwrap(mesh, target=1.1)
     k, points = len(seams.edges), len(result.uv)
     for subject in (seams, result):

@@ -31,10 +31,16 @@ ERRORS = {
     "not_orientable": "is one-sided, like a Moebius strip; mark seams across it, as at {its.edges}",
     "loose_vertex": "{its.vertices} without a face: delete loose geometry",
     "several_components": "consists of {its.count} pieces where one is allowed; separate it by loose parts",
-    "closed_surface": "is closed; mark seams to cut it open",
+    "closed_surface": "is closed; mark seams to cut it open, or unwrap it with Seams set to Automatic",
     "open_surface": "has a boundary, as at {its.vertices}, but a sphere has none; fill its holes",
-    "handles": "has handles, like a torus; close them up or mark seams to cut them open",
-    "several_boundaries": "has {its.count} boundaries; turn on Fill Holes or mark seams to join them",
+    "handles": (
+        "has handles, like a torus; close them up, mark seams to cut them open, or unwrap it with Seams set "
+        "to Automatic"
+    ),
+    "several_boundaries": (
+        "has {its.count} boundaries; turn on Fill Holes, mark seams to join them, or unwrap it with Seams "
+        "set to Automatic"
+    ),
     "seam_not_edge": _REPORT,
     # Options and arrays, which the extension should get right
     "invalid_array": _REPORT,

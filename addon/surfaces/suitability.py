@@ -41,8 +41,11 @@ def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
             "Automatic"
         )
     if domain == "DISK" and patch.is_closed:
-        remedy = "set Domain to Automatic or Sphere, or " if patch.genus == 0 else ""
-        raise Unsuitable(f"is closed; mark seams to cut it open, or {remedy}{_AUTOMATIC}")
+        if patch.genus:
+            automatic = f"has {handles(patch)}, which Seams set to Automatic cuts open, and"
+            raise Unsuitable(f"{automatic} is closed; mark seams to cut it open")
+        remedy = f"set Domain to Automatic or Sphere, or {_AUTOMATIC}"
+        raise Unsuitable(f"is closed; mark seams to cut it open, or {remedy}")
     if patch.genus:
         closed = "is closed and " if patch.is_closed else ""
         raise Unsuitable(

@@ -147,7 +147,7 @@ def test_pinned_parts_and_one_sided_ones_are_left_alone(capfd: pytest.CaptureFix
 
 def test_refusals_offer_automatic_seams() -> None:
     meshes.torus()
-    with pytest.raises(RuntimeError, match="is closed; mark seams to cut it open, or set Seams to Automatic"):
+    with pytest.raises(RuntimeError, match="has a handle, which Seams set to Automatic cuts open"):
         unwrap(domain="DISK")
     with pytest.raises(RuntimeError, match=r"has a handle, .*, or set Seams to Automatic"):
         unwrap(domain="SPHERE")

@@ -45,6 +45,16 @@ def choose(name: str) -> Callable[[], None]:
     return act
 
 
+def seek(seams: str) -> Callable[[], None]:
+    """A step that says in the panel where seams come from."""
+
+    def act() -> None:
+        options().seams = seams
+        view()["area"].tag_redraw()
+
+    return act
+
+
 def start(name: str) -> Callable[[], None]:
     """A step that starts an operator as its button does."""
 
@@ -118,6 +128,9 @@ STEPS = [
     check("the outline of a circle", lambda: (options().outline, options().angle_weight), ("CIRCLE", 0.0)),
     picture("circle"),
     choose("EVEN"),
+    seek("AUTOMATIC"),
+    picture("new_seams"),
+    seek("GIVEN"),
     start("unwrap"),
     *[lambda: None] * 20,
     check("no operator runs on", running, []),

@@ -40,9 +40,37 @@ pub(crate) struct Phase<'a> {
     pub to: f64,
 }
 
+impl<'a> Phase<'a> {
+    /// The phase of a number in a sequence of unknown length: each has half of what those before it have left.
+    pub(crate) fn of_sequence(whole: &'a mut dyn Observer, number: usize) -> Self {
+        let [from, to] = [number, number + 1].map(|number| 1.0 - 0.5_f64.powi(number as i32));
+        Self { whole, from, to }
+    }
+}
+
 impl Observer for Phase<'_> {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         self.whole.progress(self.from + fraction * (self.to - self.from), message)
+    }
+}
+
+/// Passes on a fraction that never falls, for a run that does some of its steps again.
+pub(crate) struct Rising<'a> {
+    /// The observer of the whole run.
+    whole: &'a mut dyn Observer,
+    highest: f64,
+}
+
+impl<'a> Rising<'a> {
+    pub(crate) fn new(whole: &'a mut dyn Observer) -> Self {
+        Self { whole, highest: 0.0 }
+    }
+}
+
+impl Observer for Rising<'_> {
+    fn progress(&mut self, fraction: f64, message: &str) -> bool {
+        self.highest = self.highest.max(fraction);
+        self.whole.progress(self.highest, message)
     }
 }
 

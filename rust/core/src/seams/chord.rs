@@ -34,6 +34,12 @@ const NEARER: f64 = 0.8;
 /// The upper bound of searches for the faces of a sheet that are farthest apart.
 const SWEEPS: usize = 5;
 
+/// A face is farther than another one by this factor at least: less is noise.
+const FARTHER: f64 = 1.0 + 1e-9;
+
+/// Bits of the mantissa, of 23, that noise may decide of the area that two sheets share.
+const NOISY_BITS: u32 = 16;
+
 /// The price of an edge of median cost: costs that differ by less than a millionth of it are equal.
 const MEDIAN_PRICE: f64 = (1 << 20) as f64;
 
@@ -288,7 +294,9 @@ impl Sheets {
             *areas.entry(self.of_pair(pair)).or_insert(0.0) += area;
         }
         let mut ranked: Vec<([u32; 2], f64)> = areas.into_iter().collect();
-        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        // mirror images share the same area, up to the accuracy of the map
+        let rank = |area: f64| (area as f32).to_bits() >> NOISY_BITS;
+        ranked.sort_by_key(|&(_, area)| Reverse(rank(area)));
         ranked.into_iter().map(|(pair, _)| pair).collect()
     }
 
@@ -307,7 +315,8 @@ impl Sheets {
             overlap.pairs.iter().copied().filter(|&pair| self.of_pair(pair) == [sheet; 2]).collect();
         // a sweep starts from an end of the sheet
         let from_first = disk.distances(&pairs[0][..1]);
-        let farther = |best: Face, face: Face| if from_first[face] > from_first[best] { face } else { best };
+        let farther =
+            |best: Face, face: Face| if from_first[face] > FARTHER * from_first[best] { face } else { best };
         let end = pairs.as_flattened().iter().copied().fold(pairs[0][0], farther);
         let (mut farthest, mut greatest) = (pairs[0], 0.0);
         let mut start = end;
@@ -315,7 +324,7 @@ impl Sheets {
             // two faces are at least as far apart as their distances from a third differ
             let distances = disk.distances(&[start]);
             let apart = |pair: [Face; 2]| (distances[pair[0]] - distances[pair[1]]).abs();
-            let farther = |best, pair| if apart(pair) > apart(best) { pair } else { best };
+            let farther = |best, pair| if apart(pair) > FARTHER * apart(best) { pair } else { best };
             let pair = pairs.iter().copied().fold(farthest, farther);
             if apart(pair) <= greatest {
                 break;

@@ -31,11 +31,12 @@ pub(super) fn seek(
     // 1. The proxy
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.1 };
     let mut prepared = Prepared::new(fine, wishes, &mut phase)?;
+    let wishes = &prepared.within_reach(wishes);
     // 2. The search
     let mut phase = Phase { whole: observer, from: 0.1, to: 0.5 };
     let aim = first_aim(wishes.target, fine.n_vertices());
     let solution = prepared.search(wishes, aim, &mut phase)?;
-    let cut = prepared.lifted(&solution.state.cut);
+    let cut = prepared.lifted(&solution.state.cut, &mut phase)?;
     check_allowed(fine, &cut, wishes)?;
     if wishes.method == SeamMethod::Cones {
         let predicted = prepared.predicted(&solution);

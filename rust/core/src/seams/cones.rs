@@ -12,8 +12,9 @@
 use super::cut::Cut;
 use super::cut_graph::cut_graph;
 use super::edge_mesh::EdgeMesh;
-use super::paths::Paths;
-use super::search::{Problem, Search, State};
+use super::paths::{Paths, first_of_largest_part};
+use super::progress::MESSAGE;
+use super::search::{Problem, Search, State, coarse};
 use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::mesh::geometry::corner_cotangents;
@@ -33,6 +34,8 @@ impl Search<'_> {
         let Problem { mesh, cost, given, target, bound, .. } = self.problem();
         let mut cut = cut_graph(mesh, cost, given);
         let cones = cones(mesh, &cut, observer)?;
+        let within_reach = Paths::from(mesh, &[first_of_largest_part(mesh, cost)], cost).costs;
+        let first = cones.iter().copied().find(|&cone| within_reach[cone].is_finite()).unwrap_or_default();
         let mut left = cones.iter();
         let mut state: Option<State> = None;
         loop {
@@ -44,7 +47,7 @@ impl Search<'_> {
                     break;
                 }
             }
-            let Some(path) = left.find_map(|&cone| self.path_to(cone, &cut, cones[0])) else { break };
+            let Some(path) = left.find_map(|&cone| self.path_to(cone, &cut, first)) else { break };
             cut.add(&path);
         }
         match state {
@@ -53,14 +56,18 @@ impl Search<'_> {
         }
     }
 
-    /// The cheapest path to a cone from the borders, with its mirror image; on a closed surface from the first cone.
+    /// The cheapest path to a cone from the borders, with its mirror image, unless it makes too many islands; on a closed
+    /// surface from the first cone.
     fn path_to(&self, cone: Vertex, cut: &Cut, first: Vertex) -> Option<Vec<Edge>> {
-        let Problem { mesh, cost, .. } = self.problem();
+        let Problem { mesh, cost, max_islands, .. } = self.problem();
         let on_border = cut.border_vertices(mesh);
         let borders: Vec<_> = Vertex::all(mesh.n_vertices()).filter(|&vertex| on_border[vertex]).collect();
         let sources = if borders.is_empty() { vec![first] } else { borders };
         let path = Paths::from(mesh, &sources, cost).to(mesh, cone);
-        (!path.is_empty()).then(|| self.with_mirrored(&path))
+        let path = self.with_partners(&path);
+        let n_islands = |cut: &Cut| cut.islands(mesh).len();
+        let is_allowed = || n_islands(&cut.with(&path)) <= n_islands(cut).max(max_islands);
+        (!path.is_empty() && is_allowed()).then_some(path)
     }
 }
 
@@ -71,7 +78,8 @@ fn cones(mesh: &EdgeMesh, cut: &Cut, observer: &mut dyn Observer) -> Result<Vec<
     let mut is_pinned = on_border;
     let mut cones = Vec::with_capacity(MOST_CONES);
     if !is_pinned.contains(&true) {
-        let largest = |a: Vertex, b: Vertex| if defects[b].abs() > defects[a].abs() { b } else { a };
+        let largest =
+            |a: Vertex, b: Vertex| if coarse(defects[b].abs()) > coarse(defects[a].abs()) { b } else { a };
         let first = Vertex::all(mesh.n_vertices()).fold(Vertex(0), largest);
         is_pinned[first] = true;
         cones.push(first);
@@ -81,7 +89,7 @@ fn cones(mesh: &EdgeMesh, cut: &Cut, observer: &mut dyn Observer) -> Result<Vec<
     let mut masked = laplacian.clone();
     while cones.len() < MOST_CONES.min(mesh.n_vertices() / 4) {
         mask(&laplacian, &is_pinned, &mut masked);
-        let watch = Watch::new(&mut *observer, 0.0, "seeking seams");
+        let watch = Watch::new(&mut *observer, 0.0, MESSAGE);
         factor.refactor_while(&masked, &watch)?;
         let mut u: Vec<_> = defects
             .iter()
@@ -89,7 +97,7 @@ fn cones(mesh: &EdgeMesh, cut: &Cut, observer: &mut dyn Observer) -> Result<Vec<
             .map(|(&defect, &pinned)| if pinned { 0.0 } else { defect })
             .collect();
         factor.solve(&mut u);
-        let largest = |a: Vertex, b: Vertex| if u[b].abs() > u[a].abs() { b } else { a };
+        let largest = |a: Vertex, b: Vertex| if coarse(u[b].abs()) > coarse(u[a].abs()) { b } else { a };
         let next = Vertex::all(mesh.n_vertices()).fold(Vertex(0), largest);
         is_pinned[next] = true;
         cones.push(next);
@@ -142,8 +150,18 @@ mod tests {
         let (plate, given) = (Plate::new(&mesh).unwrap(), Cut::none(&mesh));
         let bound = 1.0 + 6.0 * (target - 1.0);
         let (cost, given, mirror) = (&mesh.lengths[..], &given, None);
-        let problem =
-            Problem { mesh: &mesh, plate: &plate, cost, mirror, given, max_islands: 9, target, bound };
+        let problem = Problem {
+            mesh: &mesh,
+            plate: &plate,
+            cost,
+            mirror,
+            parts: None,
+            least_rate: 0.0,
+            given,
+            max_islands: 9,
+            target,
+            bound,
+        };
         let mut search = Search::new(problem);
         let state = search.through_cones(&mut Silent).unwrap();
         let mean = search.figures(&state.shear).mean;

@@ -11,7 +11,7 @@ use super::one_to_one::{Limits, Seamed, chords, one_to_one};
 use super::options::MET;
 use super::prepared::{Prepared, Wishes};
 use super::search::Solution;
-use crate::control::Observer;
+use crate::control::{Observer, Phase};
 use crate::error::Error;
 use crate::mesh::Edge;
 
@@ -71,13 +71,16 @@ impl<'a> Correction<'a> {
     /// The seams that are enough by the maps.
     pub(super) fn run(mut self, solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
         // 1. Chords through the proxy's islands that overlap themselves
-        let solution = self.with_chords(solution, observer)?;
+        let mut phase = Phase { whole: &mut *observer, from: 0.0, to: 0.3 };
+        let solution = self.with_chords(solution, &mut phase)?;
         // 2. Corrections by maps
-        let mut seamed = self.corrected(solution, observer)?;
+        let mut phase = Phase { whole: &mut *observer, from: 0.3, to: 0.8 };
+        let mut seamed = self.corrected(solution, &mut phase)?;
         // 3. One-to-one maps
         if let Some(max_islands) = self.max_islands {
             let limits = Limits { shear: MET * self.target, max_islands };
-            one_to_one(&mut seamed, &self.prepared.component, limits, observer)?;
+            let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
+            one_to_one(&mut seamed, &self.prepared.component, limits, &mut phase)?;
         }
         Ok(seamed)
     }
@@ -90,13 +93,16 @@ impl<'a> Correction<'a> {
     ) -> Result<Solution, Error> {
         let Some(max_islands) = self.max_islands else { return Ok(solution) };
         let prepared = self.prepared;
-        for _ in 0..MOST_CHORDS {
+        for round in 0..MOST_CHORDS {
+            let observer = &mut Phase::of_sequence(&mut *observer, round);
             let chords = chords(&prepared.proxy, &solution.state.cut, &prepared.cost, max_islands, observer)?;
             let Some(chord) = chords.first() else { break };
-            let all = prepared.with_mirrored(&chords.concat());
-            let sound = [all, prepared.with_mirrored(chord), chord.clone()];
-            let is_sound =
-                |edges: &Vec<Edge>| solution.state.cut.with(edges).islands(&prepared.proxy).are_disks();
+            let all = prepared.with_partners(&chords.concat());
+            let sound = [all, prepared.with_partners(chord), chord.clone()];
+            let is_sound = |edges: &Vec<Edge>| {
+                let islands = solution.state.cut.with(edges).islands(&prepared.proxy);
+                islands.are_disks() && islands.len() <= max_islands
+            };
             let Some(edges) = sound.into_iter().find(is_sound) else { break };
             self.given.add(&edges);
             let cut = solution.state.cut.with(&edges);
@@ -111,6 +117,7 @@ impl<'a> Correction<'a> {
         let most = if is_large { MOST_LARGE } else { MOST };
         let mut best: Option<(bool, f64, Seamed)> = None;
         for correction in 0..=most {
+            let observer = &mut Phase::of_sequence(&mut *observer, correction);
             let seamed = self.mapped(&solution, observer)?;
             let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
             let is_enough = shear <= NEARLY * self.target;
@@ -131,7 +138,7 @@ impl<'a> Correction<'a> {
     }
 
     fn mapped(&self, solution: &Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
-        let cut = self.prepared.lifted(&solution.state.cut);
+        let cut = self.prepared.lifted(&solution.state.cut, observer)?;
         let mut islands = maps::islands(self.prepared.component.mesh, &cut)?;
         maps::map_all(&mut islands, Outlines::MayCross, observer)?;
         let measured = Some(maps::figures(&islands));

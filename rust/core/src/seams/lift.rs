@@ -6,7 +6,8 @@
 //! from the segment and along paths that lie there already it costs thousands of times as much. Turns cost too, on
 //! paths of directed edges: so seams follow loops of edges where there are any, in place of stairs.
 //!
-//! Where both meshes are symmetric, one segment of each pair is lifted and mirrored.
+//! Where both meshes are symmetric, one segment of each pair is lifted and mirrored, and half of a segment that is its own
+//! image.
 //!
 //! Cost: O(e' log e') a segment, e' the edges near to it.
 
@@ -15,6 +16,9 @@ use std::collections::BinaryHeap;
 
 use super::cut::{Cut, Segment};
 use super::edge_mesh::EdgeMesh;
+use super::paths::on_grid;
+use crate::control::Watch;
+use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
 
@@ -56,21 +60,28 @@ pub(super) struct Mirrors<'a> {
 
 impl Lift<'_> {
     /// The seams on the fine mesh.
-    pub(super) fn of(&self, cut: &Cut) -> Cut {
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`].
+    pub(super) fn of(&self, cut: &Cut, watch: &Watch<'_>) -> Result<Cut, Error> {
         let mut segments = cut.segments(self.proxy);
-        let length =
-            |segment: &Segment| -> f64 { segment.edges.iter().map(|&edge| self.proxy.lengths[edge]).sum() };
+        let length = |segment: &Segment| -> f64 {
+            segment.edges.iter().map(|&edge| on_grid(self.proxy.lengths[edge])).sum()
+        };
         segments.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let reach = cut.sum(&self.proxy.lengths) / cut.seams().count().max(1) as f64;
         let mut paths = PathFinder::new(self, reach * self.fine.unit);
         let mut lifted = Cut::none(self.fine);
         let mut is_taken = vec![false; self.fine.n_vertices()];
-        for segment in self.without_images(&segments) {
+        for segment in &self.without_images(&segments) {
             let mut edges = Vec::new();
             for ends in self.stops(segment).windows(2) {
+                if !watch.goes_on() {
+                    return Err(Error::CancelledEarly);
+                }
                 edges.extend(paths.cheapest([ends[0], ends[1]], segment, &is_taken));
             }
-            if let Some(mirrors) = self.mirrors {
+            if let Some(mirrors) = self.mirrors.filter(|_| !self.is_in_plane(segment)) {
                 let images: Vec<_> =
                     edges.iter().filter_map(|&edge| image(self.fine, edge, mirrors.fine)).collect();
                 edges.extend(images);
@@ -81,13 +92,13 @@ impl Lift<'_> {
             }
             lifted.add(&edges);
         }
-        lifted
+        Ok(lifted)
     }
 
-    /// The segments but those that are the mirror image of an earlier one.
-    fn without_images<'s>(&self, segments: &'s [Segment]) -> Vec<&'s Segment> {
-        let Some(mirrors) = self.mirrors else { return segments.iter().collect() };
-        let mut kept: Vec<&Segment> = Vec::new();
+    /// The segments but those that are the mirror image of an earlier one, and half of each that is its own image.
+    fn without_images(&self, segments: &[Segment]) -> Vec<Segment> {
+        let Some(mirrors) = self.mirrors else { return segments.to_vec() };
+        let mut kept: Vec<Segment> = Vec::new();
         let mut is_covered = vec![false; self.proxy.n_edges()];
         for segment in segments {
             if segment.edges.iter().all(|&edge| is_covered[edge]) {
@@ -97,9 +108,27 @@ impl Lift<'_> {
                 let image = image(self.proxy, edge, mirrors.proxy);
                 [Some(edge), image].into_iter().flatten().for_each(|edge| is_covered[edge] = true);
             }
-            kept.push(segment);
+            kept.push(self.half_of(segment).unwrap_or_else(|| segment.clone()));
         }
         kept
+    }
+
+    /// Half of a segment that crosses the mirror plane at a vertex and is its own mirror image.
+    fn half_of(&self, segment: &Segment) -> Option<Segment> {
+        let mirror = self.mirrors?.proxy;
+        let middle = segment.edges.len() / 2;
+        let mut pairs = segment.vertices.iter().zip(segment.vertices.iter().rev());
+        let crosses = !self.is_in_plane(segment) && pairs.all(|(&vertex, &image)| mirror[vertex] == image);
+        (crosses && segment.edges.len() == 2 * middle).then(|| Segment {
+            vertices: segment.vertices[..=middle].to_vec(),
+            edges: segment.edges[..middle].to_vec(),
+        })
+    }
+
+    /// Whether every vertex of a segment is its own mirror image.
+    fn is_in_plane(&self, segment: &Segment) -> bool {
+        self.mirrors
+            .is_some_and(|mirrors| segment.vertices.iter().all(|&vertex| mirrors.proxy[vertex] == vertex))
     }
 
     /// The fine vertices that the path of a segment visits: the ends, and vertices between them where the segment bends,
@@ -235,12 +264,12 @@ impl<'a> PathFinder<'a> {
         if ends.into_iter().any(is_blocked) {
             cost *= TAKEN_FACTOR;
         }
-        if distance > FAR { cost * FAR_FACTOR } else { cost }
+        on_grid(if distance > FAR { cost * FAR_FACTOR } else { cost })
     }
 
     fn turning_cost(&self, from: u32, to: u32) -> f64 {
         let cosine = self.direction(from).dot(self.direction(to)).clamp(-1.0, 1.0);
-        self.turn * (cosine.acos() / std::f64::consts::FRAC_PI_2).powf(TURN_POWER)
+        on_grid(self.turn * (cosine.acos() / std::f64::consts::FRAC_PI_2).powf(TURN_POWER))
     }
 
     fn direction(&self, edge: u32) -> Vector3 {
@@ -290,7 +319,8 @@ mod tests {
         let cost: Vec<_> = fine.edges.all().map(price).collect();
         let lift = Lift { fine: &fine, proxy: &coarse, cost: &cost, nearest: &nearest, mirrors: None };
         let path: Vec<_> = path.iter().map(|[i, j]| Vertex(i + 5 * j)).collect();
-        let seams = lift.of(&Cut::none(&coarse).with(&coarse.path_edges(&path)));
+        let cut = Cut::none(&coarse).with(&coarse.path_edges(&path));
+        let seams = lift.of(&cut, &Watch::new(&mut Silent, 0.0, "")).unwrap();
         let place = |vertex: Vertex| [vertex.0 % 17, vertex.0 / 17];
         seams.seams().map(|edge| fine.edges.ends(edge).map(place)).collect()
     }
@@ -348,7 +378,8 @@ mod tests {
         assert_eq!(path.len(), images.len());
         let mirrors = Some(Mirrors { fine: &fine_mirror, proxy: &mirror });
         let lift = Lift { fine: &fine, proxy: &coarse, cost: &fine.lengths, nearest: &nearest, mirrors };
-        let seams = lift.of(&Cut::none(&coarse).with(&path).with(&images));
+        let cut = Cut::none(&coarse).with(&path).with(&images);
+        let seams = lift.of(&cut, &Watch::new(&mut Silent, 0.0, "")).unwrap();
         assert!(seams.seams().count() > path.len());
         assert!(seams.seams().all(|edge| seams.is_seam(image(&fine, edge, &fine_mirror).unwrap())));
     }

@@ -26,6 +26,7 @@ mod edge_mesh;
 mod given;
 mod lift;
 mod maps;
+mod merge;
 mod one_to_one;
 mod openness;
 mod options;
@@ -33,6 +34,7 @@ mod overlap;
 mod paths;
 mod plate;
 mod prepared;
+mod progress;
 mod proxy;
 #[cfg(test)]
 mod sample_surfaces;
@@ -42,7 +44,7 @@ mod symmetry;
 use ndarray::Array2;
 
 use crate::arrays::from_rows;
-use crate::control::{Observer, Phase, Status};
+use crate::control::{Observer, Phase, Rising, Status};
 use crate::error::Error;
 use crate::mesh::{Face, Surface, Vertex};
 use crate::parallel;
@@ -53,6 +55,7 @@ pub(crate) use maps::{IslandMap, MapFigures, Outlines, figures};
 use one_to_one::Seamed;
 use options::MET;
 pub use options::{SeamMethod, SeamOptions, Symmetry};
+use progress::report;
 
 /// Seams of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,6 +119,8 @@ pub(crate) fn seams_and_maps(
     options: &SeamOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<(Seams, Vec<Island>), Error> {
+    let observer = &mut Rising::new(observer);
+    report(observer, 0.0)?;
     // 1. The parts between given seams
     let parts = parts(surface, options)?;
     // 2. to 5. The seams of each
@@ -132,6 +137,7 @@ pub(crate) fn seams_and_maps(
         let seamed = seek(&part.mesh, &part.wishes(options, room), &mut phase)?;
         collected.add(&part, seamed);
     }
+    report(observer, 1.0)?;
     collected.finish(options)
 }
 

@@ -11,7 +11,7 @@ use super::maps::{self, IslandMap, MapFigures, Outlines};
 use super::overlap::overlap;
 use super::prepared::Fine;
 use super::search::Figures;
-use crate::control::{Observer, Status};
+use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::Edge;
 
@@ -87,6 +87,9 @@ pub(super) fn one_to_one(
             k += 1;
             continue;
         }
+        let n_islands = seamed.islands.len() as f64;
+        let [from, to] = [k, k + 1].map(|k| k as f64 / n_islands);
+        let observer = &mut Phase { whole: &mut *observer, from, to };
         // 1. An outline that does not cross itself, where that costs little
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < limits.max_islands;
         let is_promising = overlap.share <= HOPELESS && seamed.islands[k].face_of.len() <= LARGE;
@@ -102,8 +105,8 @@ pub(super) fn one_to_one(
         let chord = may_part.then(|| chord(fine.mesh, &seamed.cut, &fine.cost, island, &overlap)).flatten();
         if let Some(chord) = chord {
             n_chords += 1;
-            seamed.cut.add(&chord);
-            part(seamed, fine.mesh, k, observer)?;
+            seamed.cut.add(&fine.with_image(&seamed.cut, chord, limits.max_islands));
+            k = part(seamed, fine.mesh, k, observer)?;
             continue;
         }
         // 3. Where there is none, such an outline whatever it costs
@@ -132,13 +135,29 @@ fn uncross(island: &mut IslandMap, accepted: f64, observer: &mut dyn Observer) -
     Ok(Some(rise))
 }
 
-/// Maps the parts into which the cut now divides an island, which they replace.
-fn part(seamed: &mut Seamed, mesh: &EdgeMesh, k: usize, observer: &mut dyn Observer) -> Result<(), Error> {
-    let mut is_within = vec![false; mesh.n_faces()];
-    seamed.islands[k].face_of.iter().for_each(|&face| is_within[face] = true);
+/// Maps the parts into which the cut now divides islands, which they replace from the first one not done on; returns its
+/// number, given that the first `n_done` were done before.
+fn part(
+    seamed: &mut Seamed,
+    mesh: &EdgeMesh,
+    n_done: usize,
+    observer: &mut dyn Observer,
+) -> Result<usize, Error> {
     let mut parts = maps::islands(mesh, &seamed.cut)?;
-    parts.retain(|part| is_within[part.face_of[0]]);
+    let mut kept = Vec::new();
+    let mut n_kept = 0;
+    for (k, island) in seamed.islands.drain(..).enumerate() {
+        let is_whole = |part: &IslandMap| {
+            part.face_of == island.face_of && part.mesh.n_vertices() == island.mesh.n_vertices()
+        };
+        if let Some(whole) = parts.iter().position(is_whole) {
+            parts.remove(whole);
+            kept.push(island);
+            n_kept += usize::from(k < n_done);
+        }
+    }
     maps::map_all(&mut parts, Outlines::MayCross, observer)?;
-    seamed.islands.splice(k..=k, parts);
-    Ok(())
+    kept.splice(n_kept..n_kept, parts);
+    seamed.islands = kept;
+    Ok(n_kept)
 }

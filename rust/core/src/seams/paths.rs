@@ -64,6 +64,13 @@ impl Paths {
     }
 }
 
+/// A cost as a multiple of a small unit: sums are exact then, and mirror images of a path cost the same whatever the
+/// noise.
+pub(super) fn on_grid(cost: f64) -> f64 {
+    const UNIT: f64 = 1.0 / (1 << 24) as f64;
+    (cost / UNIT).round().max(1.0) * UNIT
+}
+
 /// Vertices far from each other: each is the farthest from all before it, the first the farthest from `start`.
 pub(super) fn far_points(mesh: &EdgeMesh, start: Vertex, n: usize, length: &[f64]) -> Vec<Vertex> {
     let mut points = Vec::with_capacity(n);
@@ -78,6 +85,35 @@ pub(super) fn far_points(mesh: &EdgeMesh, start: Vertex, n: usize, length: &[f64
         sources = points.clone();
     }
     points
+}
+
+/// Vertices far from each other in the largest part of the mesh that edges of finite `cost` join.
+pub(super) fn far_points_within_reach(mesh: &EdgeMesh, n: usize, cost: &[f64]) -> Vec<Vertex> {
+    let open = |(&length, cost): (&f64, &f64)| if cost.is_finite() { on_grid(length) } else { f64::INFINITY };
+    let lengths: Vec<_> = mesh.lengths.iter().zip(cost).map(open).collect();
+    far_points(mesh, first_of_largest_part(mesh, cost), n, &lengths)
+}
+
+/// The lowest vertex of the largest part of the mesh that edges of finite `cost` join.
+pub(super) fn first_of_largest_part(mesh: &EdgeMesh, cost: &[f64]) -> Vertex {
+    let mut is_reached = vec![false; mesh.n_vertices()];
+    let (mut largest, mut first) = (0, Vertex(0));
+    for seed in Vertex::all(mesh.n_vertices()) {
+        let mut pending = vec![seed];
+        let mut size = 0;
+        while let Some(vertex) = pending.pop() {
+            if !is_reached[vertex] {
+                is_reached[vertex] = true;
+                size += 1;
+                let open = mesh.edges.around(vertex).iter().filter(|(_, edge)| cost[*edge].is_finite());
+                pending.extend(open.map(|(neighbor, _)| *neighbor));
+            }
+        }
+        if size > largest {
+            (largest, first) = (size, seed);
+        }
+    }
+    first
 }
 
 #[cfg(test)]
@@ -134,6 +170,20 @@ mod tests {
             let lowest = mesh.edges.around(vertex).iter().find(is_before).unwrap().0;
             assert_eq!(mesh.edges.other_end(last, vertex), lowest);
         }
+    }
+
+    #[test]
+    fn far_points_within_reach_lie_in_the_largest_part() {
+        let mesh = EdgeMesh::new(flat_grid(9, 7));
+        // columns 0 to 3, and 4 to 9
+        let column = |vertex: Vertex| vertex.0 % 10;
+        let is_open = |edge| mesh.edges.ends(edge).map(|v| column(v) > 3).iter().all(|&x| x);
+        let is_first = |edge| mesh.edges.ends(edge).map(|v| column(v) < 4).iter().all(|&x| x);
+        let price = |edge| if is_open(edge) || is_first(edge) { 1.0 } else { f64::INFINITY };
+        let cost: Vec<_> = mesh.edges.all().map(price).collect();
+        assert_eq!(first_of_largest_part(&mesh, &cost), Vertex(4));
+        let points = far_points_within_reach(&mesh, 4, &cost);
+        assert!(points.iter().all(|&vertex| column(vertex) > 3), "{points:?}");
     }
 
     #[test]

@@ -2,18 +2,23 @@
 //! A component made ready for the search: its proxy with the costs and the plate, and the way of its seams back to the
 //! component.
 
+use std::mem::swap;
+
 use super::cost::{Preferences, costs};
 use super::cut::Cut;
 use super::cut_graph::cut_graph;
 use super::edge_mesh::EdgeMesh;
 use super::lift::{Lift, Mirrors, image};
+use super::merge::merged;
 use super::openness::openness;
 use super::options::{SeamMethod, Symmetry};
+use super::paths::{Paths, far_points_within_reach, on_grid};
 use super::plate::Plate;
+use super::progress::{MESSAGE, report};
 use super::proxy::{Proxy, nearest_vertices, proxy};
-use super::search::{Figures, Problem, Search, Solution, with_mirrored};
+use super::search::{Figures, Problem, Search, Solution, with_partners};
 use super::symmetry::{MirrorPlane, mirror_plane, mirror_vertices};
-use crate::control::Observer;
+use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
@@ -29,6 +34,18 @@ const SLIVER: f64 = 0.004;
 
 /// A symmetric cut into several islands is given up where a cut without symmetry is cheaper by this factor.
 const CHEAPER: f64 = 1.2;
+
+/// Where seams are forbidden somewhere, the excess over 1 of the least possible shear comes on top of that asked for, up to
+/// so many times the latter: the plate overrates a large shear.
+const MOST_EXCESS: f64 = 2.5;
+
+/// The 99th percentile may exceed the least possible one by this factor.
+const PERCENTILE_SLACK: f64 = 2.0;
+
+/// What a slit must lower the distortion by over its price: anything, and where seams are forbidden somewhere, so that
+/// none run along the rim of such a region for little.
+const LEAST_RATE: f64 = 1e-9;
+const LEAST_RATE_WHERE_FORBIDDEN: f64 = 0.01;
 
 /// The factor of the cost of a proxy's edge beside which seams are forbidden at one end.
 const NEARLY_FORBIDDEN: f64 = 30.0;
@@ -65,9 +82,24 @@ pub(super) struct Prepared<'a> {
     mirror: Option<(Vec<Vertex>, Vec<Edge>)>,
     /// The edge of the component of which each edge of a refined proxy is a part.
     parents: Option<Vec<Option<Edge>>>,
+    /// All parts of the edge of which each edge of a refined proxy is a part.
+    parts: Option<Vec<Vec<Edge>>>,
     plate: Plate,
     pub component: Fine<'a>,
+    /// The least figures that allowed seams leave; no bounds where none are forbidden.
+    least: Figures,
+    least_rate: f64,
+    /// What a search without symmetry works with.
+    plain: Costs,
     max_islands: usize,
+}
+
+/// The costs of seams on the proxy and the component, and the mirror images of vertices and edges.
+struct Costs {
+    proxy: Vec<f64>,
+    component: Vec<f64>,
+    mirror: Option<(Vec<Vertex>, Vec<Edge>)>,
+    component_mirror: Option<Vec<Vertex>>,
 }
 
 impl<'a> Prepared<'a> {
@@ -77,24 +109,79 @@ impl<'a> Prepared<'a> {
         observer: &mut dyn Observer,
     ) -> Result<Self, Error> {
         // 1. The proxy
+        report(observer, 0.0)?;
         let plane = match wishes.symmetry {
             Symmetry::Auto => mirror_plane(&fine.mesh),
             Symmetry::Off => None,
         };
         let plane = plane.as_ref();
-        let coarse = proxy(&fine.mesh, plane, observer)?;
+        report(observer, 0.3)?;
+        let mut phase = Phase { whole: &mut *observer, from: 0.3, to: 0.6 };
+        let coarse = proxy(&fine.mesh, plane, &mut phase)?;
         let proxy = EdgeMesh::new(coarse.mesh.clone());
         let parents = coarse.halves.as_ref().map(|_| parents(fine, &proxy, &coarse));
         let mirror = coarse.mirror.clone().map(|vertices| (mirrored_edges(&proxy, &vertices), vertices));
         let mirror = mirror.map(|(edges, vertices)| (vertices, edges));
+        let parts = parents.as_ref().map(|parents| parts(parents, fine.n_edges()));
         // 2. The costs
+        report(observer, 0.6)?;
         let sight = openness(&proxy.mesh, coarse.mirror.as_deref());
         let view = View { proxy: &proxy, openness: &sight, plane, is_symmetric: mirror.is_some() };
         let cost = view.proxy_costs(fine, wishes, parents.as_deref());
-        let component = view.fine(fine, coarse.nearest, wishes);
+        report(observer, 0.8)?;
+        let mut component = view.fine(fine, coarse.nearest, wishes);
+        let plain = Costs {
+            proxy: cost.clone(),
+            component: component.cost.clone(),
+            mirror: None,
+            component_mirror: None,
+        };
+        let cost = symmetric_costs(cost, mirror.as_ref().map(|(_, edges)| &edges[..]));
+        if let Some(mirror) = &component.mirror {
+            mirror_nearest(&mut component.nearest, mirror, coarse.mirror.as_deref());
+            let images = mirrored_edges(fine, mirror);
+            component.cost = symmetric_costs(component.cost, Some(&images));
+        }
         // 3. The plate
+        report(observer, 0.9)?;
         let plate = Plate::new(&proxy)?;
-        Ok(Self { proxy, cost, mirror, parents, plate, component, max_islands: wishes.max_islands })
+        let least = Figures { mean: 1.0, percentile: 0.0 };
+        let max_islands = wishes.max_islands;
+        let mut prepared = Self {
+            proxy,
+            cost,
+            mirror,
+            parents,
+            parts,
+            plate,
+            component,
+            least,
+            least_rate: LEAST_RATE,
+            plain,
+            max_islands,
+        };
+        if wishes.weights.is_some_and(|weights| weights.contains(&f64::INFINITY)) {
+            prepared.least = prepared.least_figures(observer)?;
+            prepared.least_rate = LEAST_RATE_WHERE_FORBIDDEN;
+        }
+        Ok(prepared)
+    }
+
+    /// The figures that are left when there is a seam wherever it is allowed.
+    fn least_figures(&self, observer: &mut dyn Observer) -> Result<Figures, Error> {
+        let allowed: Vec<_> = self.proxy.edges.all().filter(|&edge| self.cost[edge].is_finite()).collect();
+        let everywhere = Cut::none(&self.proxy).with(&allowed);
+        let watch = Watch::new(observer, 1.0, MESSAGE);
+        let workspace = &mut self.plate.workspace();
+        let deflection = self.plate.solve(&self.proxy, &everywhere, None, workspace, &watch)?;
+        Ok(Figures::of(&self.proxy.areas, &deflection.shear))
+    }
+
+    /// The wishes with the target within reach of the allowed seams.
+    pub(super) fn within_reach<'w>(&self, wishes: &Wishes<'w>) -> Wishes<'w> {
+        let excess = wishes.target - 1.0;
+        let with_least = (self.least.mean - 1.0 + excess).min(MOST_EXCESS * excess);
+        Wishes { target: 1.0 + with_least, ..*wishes }
     }
 
     /// The best cut of the proxy with the predicted shear `aim`; without symmetry where that costs too much.
@@ -104,27 +191,38 @@ impl<'a> Prepared<'a> {
         aim: f64,
         observer: &mut dyn Observer,
     ) -> Result<Solution, Error> {
-        let solution = self.search_once(wishes, aim, observer)?;
+        let mut phase = Phase { whole: &mut *observer, from: 0.0, to: 0.6 };
+        let solution = self.search_once(wishes, aim, &mut phase)?;
         if self.mirror.is_none() {
             return Ok(solution);
         }
         let islands = solution.state.cut.islands(&self.proxy);
         let mean = self.predicted(&solution).mean;
         let is_bad = !islands.are_disks()
+            || solution.state.cut.seams().any(|edge| self.cost[edge] == f64::INFINITY)
             || mean > 1.0 + MISSED * (aim - 1.0)
             || islands.least_area() < SLIVER
             || islands.len() > self.max_islands;
         if !is_bad && islands.len() == 1 {
             return Ok(solution);
         }
-        let mirror = self.mirror.take();
-        let plain = self.search_once(wishes, aim, observer)?;
+        self.exchange_costs();
+        let mut phase = Phase { whole: observer, from: 0.6, to: 1.0 };
+        let plain = self.search_once(wishes, aim, &mut phase)?;
         let is_sound = plain.state.cut.islands(&self.proxy).are_disks();
         if is_bad || (is_sound && CHEAPER * plain.price < solution.price) {
             return Ok(plain);
         }
-        self.mirror = mirror;
+        self.exchange_costs();
         Ok(solution)
+    }
+
+    /// Puts the costs without symmetry in the place of those with it, or the other way round.
+    fn exchange_costs(&mut self) {
+        swap(&mut self.cost, &mut self.plain.proxy);
+        swap(&mut self.component.cost, &mut self.plain.component);
+        swap(&mut self.mirror, &mut self.plain.mirror);
+        swap(&mut self.component.mirror, &mut self.plain.component_mirror);
     }
 
     fn search_once(
@@ -152,9 +250,9 @@ impl<'a> Prepared<'a> {
         Search::new(self.problem(given, aim, target)).polish(cut, 1, observer)
     }
 
-    /// Edges of the proxy together with their mirror images.
-    pub(super) fn with_mirrored(&self, edges: &[Edge]) -> Vec<Edge> {
-        with_mirrored(edges, self.mirrored())
+    /// Edges of the proxy together with those that are seams only with them.
+    pub(super) fn with_partners(&self, edges: &[Edge]) -> Vec<Edge> {
+        with_partners(edges, self.mirrored(), self.parts.as_deref())
     }
 
     /// The mirror image of each edge of the proxy, if it is symmetric.
@@ -168,10 +266,12 @@ impl<'a> Prepared<'a> {
             plate: &self.plate,
             cost: &self.cost,
             mirror: self.mirrored(),
+            parts: self.parts.as_deref(),
+            least_rate: self.least_rate,
             given,
             max_islands: self.max_islands,
             target: aim,
-            bound: 1.0 + PERCENTILE * (target - 1.0),
+            bound: (1.0 + PERCENTILE * (target - 1.0)).max(PERCENTILE_SLACK * self.least.percentile),
         }
     }
 
@@ -181,12 +281,16 @@ impl<'a> Prepared<'a> {
     }
 
     /// The seams of a cut of the proxy on the component.
-    pub(super) fn lifted(&self, cut: &Cut) -> Cut {
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`].
+    pub(super) fn lifted(&self, cut: &Cut, observer: &mut dyn Observer) -> Result<Cut, Error> {
         let fine = &self.component;
         if let Some(parents) = &self.parents {
             let edges: Vec<_> = cut.seams().filter_map(|edge| parents[edge]).collect();
             let inner = edges.into_iter().filter(|&edge| !fine.mesh.edges.is_boundary(edge));
-            return fine.completed(Cut::none(fine.mesh).with(&inner.collect::<Vec<_>>()));
+            let seams = Cut::none(fine.mesh).with(&inner.collect::<Vec<_>>());
+            return Ok(fine.completed(seams, self.max_islands));
         }
         let wanted = cut.islands(&self.proxy).len();
         let is_sound = |lifted: &Cut| {
@@ -195,11 +299,12 @@ impl<'a> Prepared<'a> {
         };
         let mirrors = fine.mirror.as_ref().zip(self.mirror.as_ref());
         let mirrors = mirrors.map(|(fine, (proxy, _))| Mirrors { fine, proxy });
-        let mut lifted = self.lift(mirrors).of(cut);
+        let watch = Watch::new(observer, 0.0, MESSAGE);
+        let mut lifted = self.lift(mirrors).of(cut, &watch)?;
         if mirrors.is_some() && !is_sound(&lifted) {
-            lifted = self.lift(None).of(cut);
+            lifted = self.lift(None).of(cut, &watch)?;
         }
-        fine.completed(lifted)
+        Ok(fine.completed(lifted, self.max_islands))
     }
 
     fn lift<'b>(&'b self, mirrors: Option<Mirrors<'b>>) -> Lift<'b> {
@@ -209,13 +314,55 @@ impl<'a> Prepared<'a> {
 }
 
 impl Fine<'_> {
-    /// The seams with those that islands lack to be disks.
-    fn completed(&self, cut: Cut) -> Cut {
-        if cut.islands(self.mesh).are_disks() {
+    /// Edges to be cut with their mirror images, where the cut is symmetric, and both leave disks and not too many.
+    pub(super) fn with_image(&self, cut: &Cut, edges: Vec<Edge>, max_islands: usize) -> Vec<Edge> {
+        let Some(mirror) = &self.mirror else { return edges };
+        let image = |edge: Edge| image(self.mesh, edge, mirror);
+        let is_symmetric = cut.seams().all(|edge| image(edge).is_some_and(|image| cut.is_seam(image)));
+        let mut all = edges.clone();
+        all.extend(edges.iter().filter_map(|&edge| image(edge)));
+        all.sort_unstable();
+        all.dedup();
+        let islands = cut.with(&all).islands(self.mesh);
+        if is_symmetric && islands.are_disks() && islands.len() <= max_islands { all } else { edges }
+    }
+
+    /// The seams with those that islands lack to be disks, without islands beyond a number.
+    fn completed(&self, cut: Cut, max_islands: usize) -> Cut {
+        let completed = self.cut_into_disks(&cut);
+        let is_allowed = completed.seams().all(|edge| self.cost[edge].is_finite());
+        // what has been found may lie where no allowed path leads
+        let completed = if is_allowed { completed } else { self.cut_into_disks(&Cut::none(self.mesh)) };
+        merged(self.mesh, &self.cost, completed, max_islands)
+    }
+
+    /// The cut graph with some seams; a sphere is slit.
+    fn cut_into_disks(&self, seams: &Cut) -> Cut {
+        if seams.islands(self.mesh).are_disks() {
+            return seams.clone();
+        }
+        let cut = cut_graph(self.mesh, &self.cost, seams);
+        if !cut.is_empty() || cut.islands(self.mesh).are_disks() {
             return cut;
         }
-        cut_graph(self.mesh, &self.cost, &cut)
+        let points = far_points_within_reach(self.mesh, 2, &self.cost);
+        cut.with(&Paths::from(self.mesh, &points[..1], &self.cost).to(self.mesh, points[1]))
     }
+}
+
+/// Makes the vertices for which mirror images on the proxy stand mirror images too.
+fn mirror_nearest(nearest: &mut [Vertex], mirror: &[Vertex], of_proxy: Option<&[Vertex]>) {
+    for (vertex, &image) in Vertex::all(nearest.len()).zip(of_proxy.unwrap_or_default()) {
+        if image > vertex {
+            nearest[image] = mirror[nearest[vertex]];
+        }
+    }
+}
+
+/// The costs with the mean of each edge's cost and that of its mirror image in place of both.
+fn symmetric_costs(costs: Vec<f64>, mirror: Option<&[Edge]>) -> Vec<f64> {
+    let Some(mirror) = mirror else { return costs.into_iter().map(on_grid).collect() };
+    mirror.iter().zip(&costs).map(|(&image, cost)| on_grid(0.5 * (cost + costs[image]))).collect()
 }
 
 /// What all costs of seams have in common.
@@ -268,6 +415,7 @@ impl View<'_> {
             if parents.is_some_and(|parents| parents[edge].is_none()) {
                 *cost = f64::INFINITY;
             }
+            *cost = on_grid(*cost);
         }
         cost
     }
@@ -290,6 +438,16 @@ fn parents(fine: &EdgeMesh, proxy: &EdgeMesh, coarse: &Proxy) -> Vec<Option<Edge
         proxy.edges.between(a, b).into_iter().for_each(|edge| parents[edge] = None);
     }
     parents
+}
+
+/// All parts of the edge of which each edge is a part.
+fn parts(parents: &[Option<Edge>], n_edges: usize) -> Vec<Vec<Edge>> {
+    let mut parts_of = vec![Vec::new(); n_edges];
+    for (part, parent) in Edge::all(parents.len()).zip(parents) {
+        parent.iter().for_each(|&parent| parts_of[parent].push(part));
+    }
+    let parts = Edge::all(parents.len()).zip(parents);
+    parts.map(|(edge, parent)| parent.map_or_else(|| vec![edge], |parent| parts_of[parent].clone())).collect()
 }
 
 /// Factors of the edges of a mesh carried to a coarser one: each vertex of that has the mean of the edges near to it,

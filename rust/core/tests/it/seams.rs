@@ -13,9 +13,11 @@ use authalic::{
 use ndarray::{Array1, Array2, array, aview2};
 
 use super::common::closed::{capsule, cube, flat_tube, octahedron, plate_with_holes, radial, tetrahedron};
-use super::common::planar::{crossing, side, signed_area};
+use super::common::planar::{crossing, shared_area, side, signed_area};
 use super::common::random::Random;
-use super::common::{self, TestMesh, annulus, cap, ellipsoid, grid, holed_grid, torus, two_pieces};
+use super::common::{
+    self, TestMesh, annulus, cap, ellipsoid, grid, holed_grid, icosphere, torus, two_pieces,
+};
 
 type Edges = BTreeSet<[u32; 2]>;
 
@@ -60,6 +62,33 @@ fn bumpy(level: u32) -> TestMesh {
             + 0.25 * z
             + 0.1 * (5.0 * z * x + 0.3 * y).sin()
     })
+}
+
+/// A sphere whose octants mirror each other: every face of an octahedron has `n`² parts.
+fn octants(n: i32) -> TestMesh {
+    let mut numbers = std::collections::BTreeMap::new();
+    let mut vertices = Vec::new();
+    let mut number = |place: [i32; 3]| {
+        *numbers.entry(place).or_insert_with(|| {
+            let radius = place.map(|k| f64::from(k * k)).iter().sum::<f64>().sqrt();
+            vertices.push(place.map(|k| f64::from(k) / radius));
+            vertices.len() as u32 - 1
+        })
+    };
+    let mut faces = Vec::new();
+    for signs in (0..8).map(|k| [0, 1, 2].map(|bit| 1 - 2 * (k >> bit & 1))) {
+        for (i, j) in (0..n).flat_map(|i| (0..n - i).map(move |j| (i, j))) {
+            let mut at = |i: i32, j: i32| number([signs[0] * i, signs[1] * j, signs[2] * (n - i - j)]);
+            let [a, b, c] = [at(i, j), at(i + 1, j), at(i, j + 1)];
+            let mut parts = vec![[a, b, c]];
+            if i + j + 1 < n {
+                parts.push([b, at(i + 1, j + 1), c]);
+            }
+            let is_turned = signs.iter().product::<i32>() < 0;
+            faces.extend(parts.into_iter().map(|[a, b, c]| if is_turned { [a, c, b] } else { [a, b, c] }));
+        }
+    }
+    TestMesh { name: "octants", vertices, faces, ..icosphere(0) }
 }
 
 fn plank(cells: u32) -> TestMesh {
@@ -132,17 +161,19 @@ fn assert_sound_map(test: &TestMesh, map: &Unwrap) {
         assert!(side(corners.map(|point| uv[point as usize])) > 0, "{}: a folded face", test.name);
     }
     for island in 0..map.islands as u32 {
-        let own =
-            faces.iter().zip(&map.island_of).filter(|(_, label)| **label == island).map(|(face, _)| *face);
-        let outline: Vec<_> =
-            outline(&own.collect::<Vec<_>>()).iter().map(|&point| uv[point as usize]).collect();
-        assert_eq!(
-            crossing(&outline),
-            None,
-            "{}: island {island} of {} overlaps itself",
-            test.name,
-            map.islands
-        );
+        let own: Vec<_> = faces
+            .iter()
+            .zip(&map.island_of)
+            .filter(|(_, label)| **label == island)
+            .map(|(face, _)| *face)
+            .collect();
+        let outline: Vec<_> = outline(&own).iter().map(|&point| uv[point as usize]).collect();
+        // banks of a seam through a flat place touch
+        if crossing(&outline).is_some() {
+            let images: Vec<_> = own.iter().map(|face| face.map(|point| uv[point as usize])).collect();
+            let shared = shared_area(&images);
+            assert!(shared < 1e-9, "{}: island {island} overlaps itself by {shared}", test.name);
+        }
     }
     let [deviation, shear] = measured(test, map);
     assert!(
@@ -208,7 +239,6 @@ fn islands_of_any_surface_are_disks() {
 }
 
 #[test]
-#[ignore = "known miss: outlines that touch themselves in a vertex count as overlap"]
 fn maps_of_any_surface_are_even_hardly_sheared_and_one_to_one() {
     for test in surfaces() {
         for target in [1.25, 1.4] {
@@ -254,11 +284,13 @@ fn given_seams_stay() {
 }
 
 #[test]
-#[ignore = "known miss: a torus whose proxy sees only forbidden edges is refused"]
 fn forbidden_edges_are_no_seams() {
     for test in [bumpy(4), torus(24, 12)] {
-        let is_kept_off =
-            |vertex: u32| test.vertices[vertex as usize][0] > 0.3 && test.vertices[vertex as usize][1] > 0.0;
+        // a cell, so that cuts into disks lead around it
+        let is_kept_off = |vertex: u32| {
+            let [x, y, z] = test.vertices[vertex as usize];
+            x > 0.3 && y > 0.0 && z > -0.1
+        };
         let edges = all_edges(&test);
         let forbid = |is_forbidden: bool| if is_forbidden { f64::INFINITY } else { 1.0 };
         let at_edges: Array1<f64> =
@@ -277,7 +309,29 @@ fn forbidden_edges_are_no_seams() {
 }
 
 #[test]
-#[ignore = "known miss: first cuts do not know the limit"]
+fn seams_keep_off_half_of_a_surface_without_detours() {
+    // no cut of the rest is enough, and no long one is worth its length
+    let test = bumpy(4);
+    let forbid = |&[x, _, _]: &[f64; 3]| if x > 0.0 { f64::INFINITY } else { 1.0 };
+    let weights: Array1<f64> = test.vertices.iter().map(forbid).collect();
+    let seams = found(&test, &SeamOptions { weights: Some(weights.view()), ..for_target(1.25) });
+    assert_sound_seams(&test, &seams);
+    let free = found(&test, &for_target(1.25));
+    assert!(seams.length < 1.5 * free.length, "{} {}", seams.length, free.length);
+}
+
+#[test]
+fn weights_that_forbid_every_cut_into_disks_are_refused() {
+    // a piece of the tube
+    let test = torus(24, 12);
+    let forbid = |&[x, y, _]: &[f64; 3]| if x > 0.3 && y > 0.0 { f64::INFINITY } else { 1.0 };
+    let weights: Array1<f64> = test.vertices.iter().map(forbid).collect();
+    let options = SeamOptions { weights: Some(weights.view()), ..Default::default() };
+    let error = authalic::seams(&surface(&test), &options, &mut Silent).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidArray);
+}
+
+#[test]
 fn no_more_islands_than_are_wanted() {
     for test in [bumpy(4), plate_with_holes(3), capsule(24, 12), cube(7), torus(24, 12)] {
         for most in [1, 3] {
@@ -302,10 +356,14 @@ fn a_mirrored_surface_has_mirrored_seams() {
 }
 
 #[test]
-#[ignore = "known miss: chords do not mirror each other"]
 fn seams_of_a_symmetric_surface_mirror_each_other() {
-    let test = ellipsoid(4, [1.0, 1.6, 2.3]);
-    let bent = placed("bean", test, |[x, y, z]| [x, y + 0.2 * z * z, z * (1.0 + 0.1 * y)]);
+    // edges lie in the mirror plane, and limbs overlap each other
+    let bump = |[x, y, z]: [f64; 3], height: f64| height * (-9.0 * (x * x + y * y + z * z)).exp();
+    let bent = placed("body", octants(22), |x| {
+        let arms = [x[0].abs() - 0.8, x[1] - 0.4, x[2] - 0.45];
+        let radius = 1.0 + 0.2 * x[1] + bump(arms, 1.6) + bump([x[0], x[1] + 1.0, x[2] - 0.2], 0.9);
+        x.map(|x| radius * x)
+    });
     let seams = found(&bent, &for_target(1.25));
     let numbers = bent.vertices.iter().map(|&[x, y, z]| {
         let image = |other: &[f64; 3]| common::distance(*other, [-x, y, z]) < 1e-9;
@@ -384,7 +442,6 @@ fn a_cancelled_run_ends_soon() {
 }
 
 #[test]
-#[ignore = "known miss: progress falls back at each correction"]
 fn progress_rises_and_is_heard_often() {
     for test in [bumpy(4), torus(24, 12), two_pieces()] {
         let mut reports: Vec<(f64, Instant)> = Vec::new();
@@ -394,7 +451,8 @@ fn progress_rises_and_is_heard_often() {
             true
         };
         authalic::unwrap(&surface(&test), &UnwrapOptions::default(), &mut observer).unwrap();
-        assert!(reports.len() > 5, "{}", test.name);
+        let rises = reports.windows(2).filter(|pair| pair[1].0 > pair[0].0).count();
+        assert!(rises > 20, "{}: {rises}", test.name);
         assert!(reports.is_sorted_by(|a, b| a.0 <= b.0), "{}: {reports:?}", test.name);
         assert!(reports[0].0 >= 0.0 && (0.5..=1.0).contains(&reports[reports.len() - 1].0), "{}", test.name);
         let longest = reports.windows(2).map(|pair| pair[1].1 - pair[0].1).max();

@@ -8,7 +8,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::state::Trial;
-use super::{ISLAND_PRICE, LEAF_PRICE, Search, State};
+use super::{ISLAND_PRICE, LEAF_PRICE, Search, State, coarse};
 use crate::control::Observer;
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
@@ -48,7 +48,9 @@ impl Search<'_> {
         observer: &mut dyn Observer,
     ) -> Result<State, Error> {
         let mut known = Known::default();
+        let most = state.cut.sum(self.problem.cost);
         loop {
+            self.advance(1.0 - state.cut.sum(self.problem.cost) / most.max(f64::MIN_POSITIVE));
             let mut moves = self.moves(&state, &known.refused);
             match self.best_move(&state, &mut moves, (limit, bound), &mut known, observer)? {
                 Some(next) => state = next,
@@ -83,13 +85,15 @@ impl Search<'_> {
                 }
             }
         }
+        // parts of a slit may reach to the end of one edge of the mesh that was refined
+        moves.dedup_by(|a, b| a.edges == b.edges);
         moves
     }
 
     /// The move that takes edges and their mirror images away, unless it is refused.
     fn movement(&self, state: &State, edges: &[Edge], refused: &HashSet<Vec<Edge>>) -> Option<Move> {
         let mesh = self.problem.mesh;
-        let mut edges = self.with_mirrored(edges);
+        let mut edges = self.with_partners(edges);
         edges.retain(|&edge| state.cut.is_seam(edge));
         edges.sort_unstable();
         if edges.is_empty() || refused.contains(&edges) {
@@ -126,7 +130,8 @@ impl Search<'_> {
     ) -> Result<Option<State>, Error> {
         let before = self.figures(&state.shear).percentile;
         loop {
-            let rate = |step: &Move| known.increases.get(&step.edges).map(|increase| increase / step.price);
+            let rate =
+                |step: &Move| known.increases.get(&step.edges).map(|increase| coarse(increase / step.price));
             let mut order: Vec<_> = moves.iter().enumerate().map(|(k, step)| (rate(step), k)).collect();
             order.retain(|&(_, k)| !known.refused.contains(&moves[k].edges));
             // moves that were never measured come first

@@ -9,7 +9,7 @@
 use std::collections::HashMap;
 
 use super::state::Trial;
-use super::{ISLAND_PRICE, LEAF_PRICE, LEAST_ISLAND, Search, State};
+use super::{ISLAND_PRICE, LEAF_PRICE, LEAST_ISLAND, Search, State, coarse};
 use crate::control::Observer;
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
@@ -30,9 +30,6 @@ const MOST_STEPS: usize = 100;
 
 /// The number of candidates that are measured again at once; no number of threads, so that it does not matter.
 const BATCH: usize = 2;
-
-/// Slits that lower the distortion by less for their price are worth nothing.
-const LEAST_RATE: f64 = 1e-9;
 
 /// The value of a slit by its seams; `None` where it must not be.
 type Gains = HashMap<Vec<Edge>, Option<Gain>>;
@@ -61,8 +58,10 @@ impl Search<'_> {
         observer: &mut dyn Observer,
     ) -> Result<State, Error> {
         let mut gains = Gains::new();
+        let first = self.figures(&state.shear).mean;
         for _ in 0..MOST_STEPS {
             let figures = self.figures(&state.shear);
+            self.advance((first - figures.mean) / (first - goal).max(f64::MIN_POSITIVE));
             if figures.mean <= goal && figures.percentile <= self.problem.bound {
                 break;
             }
@@ -86,7 +85,7 @@ impl Search<'_> {
             let prefix = (path.len() as f64 * PREFIX) as usize;
             let prefixes = if path.len() > SHORT { vec![path.len(), prefix] } else { vec![path.len()] };
             for length in prefixes {
-                let mut edges = self.with_mirrored(&path[..length]);
+                let mut edges = self.with_partners(&path[..length]);
                 edges.retain(|&edge| !state.cut.is_seam(edge));
                 edges.sort_unstable();
                 let cost = edges.iter().map(|&edge| self.problem.cost[edge]).sum();
@@ -101,7 +100,7 @@ impl Search<'_> {
         let mesh = self.problem.mesh;
         let score = |vertex: Vertex| match distances[vertex] {
             distance if distance > 0.0 && costs[vertex].is_finite() => {
-                (state.psi[vertex] / distance).powi(2) / costs[vertex].sqrt()
+                coarse((state.psi[vertex] / distance).powi(2) / costs[vertex].sqrt())
             }
             _ => 0.0,
         };
@@ -135,7 +134,7 @@ impl Search<'_> {
         loop {
             let mut order: Vec<_> =
                 candidates.iter().enumerate().map(|(k, slit)| (rate(slit, gains), k)).collect();
-            order.retain(|(rate, _)| *rate > LEAST_RATE);
+            order.retain(|(rate, _)| *rate > self.problem.least_rate);
             order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let Some(&(best_rate, best)) = order.first() else { return Ok(None) };
             if candidates[best].trial.is_some() {
@@ -191,6 +190,8 @@ fn rate(slit: &Candidate, gains: &Gains) -> f64 {
     match gains.get(&slit.edges) {
         None => f64::INFINITY,
         Some(None) => 0.0,
-        Some(Some(gain)) => gain.decrease / (slit.cost + LEAF_PRICE + ISLAND_PRICE * gain.new_islands as f64),
+        Some(Some(gain)) => {
+            coarse(gain.decrease / (slit.cost + LEAF_PRICE + ISLAND_PRICE * gain.new_islands as f64))
+        }
     }
 }

@@ -12,7 +12,8 @@
 //! until the candidate comes first by it; only then is it measured again (M. Minoux, Accelerated greedy algorithms for
 //! maximizing submodular set functions, 1978), so that most candidates of a step cost nothing.
 //!
-//! On a symmetric mesh every move is made together with its mirror image.
+//! On a symmetric mesh every move is made together with its mirror image, on a refined one by whole edges of the mesh
+//! that was refined.
 
 mod draw_back;
 mod grow;
@@ -25,6 +26,7 @@ use std::sync::Mutex;
 use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::plate::{Plate, Workspace};
+use super::progress::{MESSAGE, report};
 use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::mesh::Edge;
@@ -46,6 +48,9 @@ const ROUNDS: usize = 2;
 /// A cut that misses the target by this factor still counts as one that meets it.
 const NEARLY: f64 = 1.005;
 
+/// Bits of the mantissa that noise may decide, of quantities that come from solves of the plate and their differences.
+const NOISY_BITS: u32 = 38;
+
 /// What a search is given.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Problem<'a> {
@@ -55,6 +60,10 @@ pub(super) struct Problem<'a> {
     pub cost: &'a [f64],
     /// The mirror image of each edge, (e,), on a symmetric mesh.
     pub mirror: Option<&'a [Edge]>,
+    /// On a refined mesh all parts of the edge of which each edge is a part, (e,).
+    pub parts: Option<&'a [Vec<Edge>]>,
+    /// What a slit must lower the distortion by over its price.
+    pub least_rate: f64,
     /// Seams that stay.
     pub given: &'a Cut,
     /// The most islands.
@@ -69,8 +78,9 @@ pub(super) struct Problem<'a> {
 pub(super) struct Search<'a> {
     problem: Problem<'a>,
     workspaces: Mutex<Vec<Workspace>>,
-    /// The fraction of the run that is done.
+    /// The fraction of the run that is done, and the fractions at which its present stage begins and ends.
     done: f64,
+    stage: [f64; 2],
     pub n_solves: usize,
 }
 
@@ -84,7 +94,7 @@ pub(super) struct Solution {
 
 impl<'a> Search<'a> {
     pub(super) fn new(problem: Problem<'a>) -> Self {
-        Self { problem, workspaces: Mutex::new(Vec::new()), done: 0.0, n_solves: 0 }
+        Self { problem, workspaces: Mutex::new(Vec::new()), done: 0.0, stage: [0.0, 1.0], n_solves: 0 }
     }
 
     /// The cheapest cut found from a first cut on.
@@ -102,15 +112,21 @@ impl<'a> Search<'a> {
         let mut best: Option<Solution> = None;
         for round in 0..rounds {
             let is_last = round + 1 == rounds;
+            let [from, to] = [round, round + 1].map(|round| round as f64 / rounds as f64);
+            let fraction = |share: f64| from + share * (to - from);
+            self.enter([fraction(0.0), fraction(0.4)]);
             let goal = if is_last { target } else { 1.0 + 0.9 * (target - 1.0) };
             state = self.grow(state, goal, observer)?;
             state = self.straighten(state, observer)?;
+            self.enter([fraction(0.4), fraction(0.5)]);
             state = self.grow(state, goal, observer)?;
+            self.enter([fraction(0.5), fraction(0.8)]);
             state = self.draw_back(state, target, self.problem.bound, observer)?;
             let solution = self.priced(state.clone());
             if best.as_ref().is_none_or(|best| solution.is_better_than(best)) {
                 best = Some(solution);
             }
+            self.enter([fraction(0.8), fraction(1.0)]);
             if !is_last {
                 let [target, bound] = [1.0 + 1.5 * (target - 1.0), 1.4 * self.problem.bound];
                 state = self.draw_back(state, target, bound, observer)?;
@@ -144,9 +160,21 @@ impl<'a> Search<'a> {
         self.problem
     }
 
-    /// The edges together with their mirror images.
-    pub(super) fn with_mirrored(&self, edges: &[Edge]) -> Vec<Edge> {
-        with_mirrored(edges, self.problem.mirror)
+    /// The edges together with those that are seams only with them.
+    pub(super) fn with_partners(&self, edges: &[Edge]) -> Vec<Edge> {
+        with_partners(edges, self.problem.mirror, self.problem.parts)
+    }
+
+    /// Begins a stage between two fractions of the run.
+    fn enter(&mut self, stage: [f64; 2]) {
+        self.stage = stage;
+        self.done = stage[0];
+    }
+
+    /// Notes the share of the present stage that is done.
+    fn advance(&mut self, share: f64) {
+        let [from, to] = self.stage;
+        self.done = self.done.max(from + share.clamp(0.0, 1.0) * (to - from));
     }
 
     /// Solves for each of `n` candidates on all threads; candidates without a result are left out.
@@ -156,7 +184,8 @@ impl<'a> Search<'a> {
         observer: &mut dyn Observer,
         evaluate: impl Fn(usize, &mut Workspace, &Watch<'_>) -> Result<T, Error> + Sync + Send,
     ) -> Result<Vec<T>, Error> {
-        let watch = Watch::new(observer, self.done, "seeking seams");
+        report(observer, self.done)?;
+        let watch = Watch::new(observer, self.done, MESSAGE);
         let results = parallel::tasks(n, |candidate| {
             let workspace = self.workspaces.lock().ok().and_then(|mut free| free.pop());
             let mut workspace = workspace.unwrap_or_else(|| self.problem.plate.workspace());
@@ -170,11 +199,27 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Edges together with their mirror images, on a symmetric mesh.
-pub(super) fn with_mirrored(edges: &[Edge], mirror: Option<&[Edge]>) -> Vec<Edge> {
+/// A value without the digits that rounding and noise decide, so that mirror images compare equal.
+pub(super) fn coarse(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() >> NOISY_BITS << NOISY_BITS)
+}
+
+/// Edges together with their mirror images, on a symmetric mesh, and with all parts of the edges of which they are parts,
+/// on a refined one.
+pub(super) fn with_partners(
+    edges: &[Edge],
+    mirror: Option<&[Edge]>,
+    parts: Option<&[Vec<Edge>]>,
+) -> Vec<Edge> {
     let mut all = edges.to_vec();
+    if let Some(parts) = parts {
+        all = edges.iter().flat_map(|&edge| parts[edge].iter().copied()).collect();
+    }
     if let Some(mirror) = mirror {
-        all.extend(edges.iter().map(|&edge| mirror[edge]));
+        let images: Vec<_> = all.iter().map(|&edge| mirror[edge]).collect();
+        all.extend(images);
+    }
+    if mirror.is_some() || parts.is_some() {
         all.sort_unstable();
         all.dedup();
     }

@@ -4,14 +4,15 @@
 //! With a boundary or handles it is the cut graph. A closed surface of genus 0 is slit between two of its far points,
 //! the pair that lowers the distortion most for the cost; on a symmetric mesh two points of the mirror curve, along it.
 
-use super::{Problem, Search};
+use super::{Problem, Search, coarse};
 use crate::control::Observer;
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
-use crate::seams::cut::{Cut, Islands};
+use crate::seams::cut::Cut;
 use crate::seams::cut_graph::cut_graph;
 use crate::seams::edge_mesh::EdgeMesh;
-use crate::seams::paths::{Paths, far_points};
+use crate::seams::merge::{by_area, joined};
+use crate::seams::paths::{Paths, far_points, far_points_within_reach};
 
 use super::LEAST_ISLAND;
 
@@ -38,17 +39,17 @@ impl Search<'_> {
             let slits = self.slits_between_far_points(&cut);
             return self.best_of(slits, observer);
         }
-        let cut = cut.with(&self.with_mirrored(&cut.seams().collect::<Vec<_>>()));
+        let cut = cut.with(&self.with_partners(&cut.seams().collect::<Vec<_>>()));
         Ok(self.absorb(cut))
     }
 
     /// The cheapest paths between far points.
     fn slits_between_far_points(&self, cut: &Cut) -> Vec<Cut> {
         let Problem { mesh, cost, .. } = self.problem;
-        let points = far_points(mesh, Vertex(0), FAR_POINTS, &mesh.lengths);
+        let points = far_points_within_reach(mesh, FAR_POINTS, cost);
         self.paths_between(&points, cost)
             .into_iter()
-            .map(|path| cut.with(&self.with_mirrored(&path)))
+            .map(|path| cut.with(&self.with_partners(&path)))
             .filter(|cut| cut.islands(mesh).are_disks())
             .collect()
     }
@@ -87,51 +88,32 @@ impl Search<'_> {
         let this = &*self;
         let prices = this.for_each(cuts.len(), observer, |k, workspace, watch| {
             let deflection = plate.solve(mesh, &cuts[k], None, workspace, watch)?;
-            Ok(this.distortion(&deflection.shear) + COST_SHARE * cuts[k].sum(cost))
+            Ok(coarse(this.distortion(&deflection.shear) + COST_SHARE * cuts[k].sum(cost)))
         })?;
         self.n_solves += cuts.len();
         let best = prices.iter().zip(&cuts).min_by(|a, b| a.0.total_cmp(b.0));
         Ok(best.map_or_else(|| Cut::none(mesh), |(_, cut)| cut.clone()))
     }
 
-    /// The cut without islands that are too small: each joins the neighbor with which it shares most.
+    /// The cut without islands that are too small or too many: each joins the neighbor with which it shares most.
     fn absorb(&self, mut cut: Cut) -> Cut {
-        let mesh = self.problem.mesh;
+        let Problem { mesh, cost, given, max_islands, .. } = self.problem;
         loop {
             let islands = cut.islands(mesh);
-            let mut order: Vec<_> = (0..islands.len()).filter(|&k| islands.areas[k] < LEAST_ISLAND).collect();
-            order.sort_by(|&a, &b| islands.areas[a].total_cmp(&islands.areas[b]).then(a.cmp(&b)));
+            let mut order = by_area(&islands);
+            order.retain(|&k| islands.areas[k] < LEAST_ISLAND || islands.len() > max_islands);
             if islands.len() < 2 {
                 return cut;
             }
-            let joined = order.into_iter().find_map(|island| self.joined(&cut, &islands, island));
+            let with_partners = |edges: &[Edge]| self.with_partners(edges);
+            let joined = order
+                .into_iter()
+                .find_map(|island| joined(mesh, cost, (&cut, given), &islands, island, with_partners));
             match joined {
                 Some(joined) => cut = joined,
                 None => return cut,
             }
         }
-    }
-
-    /// The cut in which an island has joined a neighbor.
-    fn joined(&self, cut: &Cut, islands: &Islands, island: usize) -> Option<Cut> {
-        let Problem { mesh, cost, given, .. } = self.problem;
-        let separates = |&edge: &Edge| match mesh.faces_at(edge) {
-            (first, Some(second)) => {
-                let sides = [first, second].map(|face| islands.of_face[face] as usize);
-                sides[0] != sides[1] && sides.contains(&island)
-            }
-            _ => false,
-        };
-        let mut shared: Vec<_> = cut.segments(mesh);
-        shared.retain(|segment| {
-            segment.edges.iter().all(separates) && !segment.edges.iter().any(|&edge| given.is_seam(edge))
-        });
-        let cost_of = |edges: &[Edge]| edges.iter().map(|&edge| cost[edge]).sum::<f64>();
-        shared.sort_by(|a, b| cost_of(&b.edges).total_cmp(&cost_of(&a.edges)));
-        shared.into_iter().map(|segment| cut.without(&self.with_mirrored(&segment.edges))).find(|cut| {
-            let joined = cut.islands(mesh);
-            joined.are_disks() && joined.len() < islands.len()
-        })
     }
 }
 

@@ -6,6 +6,7 @@ use crate::control::Observer;
 use crate::error::Error;
 use crate::seams::cut::{Cut, Segment};
 use crate::seams::paths::Paths;
+use crate::seams::progress::report;
 
 /// Segments of fewer edges stay as they are.
 const FEWEST: usize = 3;
@@ -15,6 +16,7 @@ impl Search<'_> {
     pub(super) fn straighten(&mut self, state: State, observer: &mut dyn Observer) -> Result<State, Error> {
         let mut cut = state.cut;
         for segment in cut.segments(self.problem.mesh) {
+            report(observer, self.done)?;
             let stays =
                 segment.edges.iter().any(|&edge| self.problem.given.is_seam(edge) || !cut.is_seam(edge));
             if !stays && !segment.is_closed() && segment.edges.len() >= FEWEST {
@@ -28,7 +30,7 @@ impl Search<'_> {
     fn straightened(&self, cut: &Cut, segment: &Segment) -> Option<Cut> {
         let (mesh, cost) = (self.problem.mesh, self.problem.cost);
         let [first, last] = [segment.vertices[0], segment.vertices[segment.edges.len()]];
-        let rest = cut.without(&self.with_mirrored(&segment.edges));
+        let rest = cut.without(&self.with_partners(&segment.edges));
         let mut is_taken = rest.border_vertices(mesh);
         is_taken[first] = false;
         is_taken[last] = false;
@@ -39,7 +41,7 @@ impl Search<'_> {
         if path.is_empty() {
             return None;
         }
-        let straightened = rest.with(&self.with_mirrored(&path));
+        let straightened = rest.with(&self.with_partners(&path));
         let islands = straightened.islands(mesh);
         let is_cheaper = straightened.sum(cost) < cut.sum(cost) - 1e-12;
         (is_cheaper && islands.are_disks() && islands.len() <= cut.islands(mesh).len())

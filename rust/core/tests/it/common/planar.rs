@@ -68,6 +68,47 @@ pub fn side(corners: [Point; 3]) -> i32 {
     orient2d(a, b, c).partial_cmp(&0.0).expect("finite coordinates") as i32
 }
 
+/// The sum of the areas that every two of some counterclockwise triangles share.
+pub fn shared_area(triangles: &[[Point; 3]]) -> f64 {
+    let span = |triangle: &[Point; 3], axis: usize| {
+        let [a, b, c] = triangle.map(|point| point[axis]);
+        [a.min(b).min(c), a.max(b).max(c)]
+    };
+    let mut sum = 0.0;
+    for (k, first) in triangles.iter().enumerate() {
+        for second in &triangles[k + 1..] {
+            let overlap = |axis: usize| {
+                let ([low, high], [from, to]) = (span(first, axis), span(second, axis));
+                low < to && from < high
+            };
+            if overlap(0) && overlap(1) {
+                let sides = (0..3).map(|k| [first[k], first[(k + 1) % 3]]);
+                let shared = sides.fold(second.to_vec(), |polygon, line| left_of(line, &polygon));
+                sum += signed_area(&shared).max(0.0);
+            }
+        }
+    }
+    sum
+}
+
+/// What of a convex polygon lies on the left of a line.
+fn left_of([from, to]: [Point; 2], polygon: &[Point]) -> Vec<Point> {
+    let height = |x: Point| (to[0] - from[0]) * (x[1] - from[1]) - (to[1] - from[1]) * (x[0] - from[0]);
+    let mut kept = Vec::new();
+    for (k, &here) in polygon.iter().enumerate() {
+        let next = polygon[(k + 1) % polygon.len()];
+        let heights = [height(here), height(next)];
+        if heights[0] >= 0.0 {
+            kept.push(here);
+        }
+        if heights[0] * heights[1] < 0.0 {
+            let t = heights[0] / (heights[0] - heights[1]);
+            kept.push([0, 1].map(|axis| here[axis] + t * (next[axis] - here[axis])));
+        }
+    }
+    kept
+}
+
 /// The signed area of a polygon.
 pub fn signed_area(corners: &[Point]) -> f64 {
     let next = |k: usize| corners[(k + 1) % corners.len()];

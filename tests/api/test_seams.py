@@ -373,3 +373,14 @@ def test_real_surfaces_become_disks(path):
     if len(mesh.vertices) > 20_000:
         pytest.skip("takes long")
     assert_sound(mesh, authalic.seams(mesh))
+
+
+@pytest.mark.parametrize("name", ["hand_1", "holes3", "horsequad", "max_planck", "suzanne", "torus"])
+def test_mirrored_and_noisy_real_surfaces_have_the_same_seams(name):
+    mesh = real_meshes.load(real_meshes.file(f"seams/{name}.npz"))
+    expected = authalic.seams(mesh).edges
+    mirrored = meshes.Mesh(mesh.vertices * [-1, 1, 1], mesh.faces[:, [0, 2, 1]])
+    np.testing.assert_array_equal(authalic.seams(mirrored).edges, expected)
+    noise = np.random.default_rng(3).uniform(-1e-12, 1e-12, mesh.vertices.shape)
+    noisy = meshes.Mesh(mesh.vertices * (1 + noise), mesh.faces)
+    np.testing.assert_array_equal(authalic.seams(noisy).edges, expected)

@@ -3,6 +3,7 @@
 
 use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
+use super::progress::report;
 use crate::control::{Observer, Phase, Status};
 use crate::disk::map_island;
 use crate::error::Error;
@@ -140,6 +141,7 @@ pub(super) fn map_all(
     let n = islands.len() as f64;
     for (k, island) in islands.iter_mut().enumerate() {
         let mut phase = Phase { whole: &mut *observer, from: k as f64 / n, to: (k + 1) as f64 / n };
+        report(&mut phase, 0.0)?;
         if island.map(outlines, None, &mut phase)? == Status::Cancelled {
             return Err(Error::CancelledEarly);
         }

@@ -10,6 +10,7 @@ use super::edge_mesh::EdgeMesh;
 use super::maps::{self, IslandMap, MapFigures, Outlines};
 use super::overlap::overlap;
 use super::prepared::Fine;
+use super::progress::report;
 use super::search::Figures;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
@@ -101,10 +102,12 @@ pub(super) fn one_to_one(
             }
         }
         // 2. Else a chord
+        report(observer, 0.0)?;
         let island = &seamed.islands[k];
         let chord = may_part.then(|| chord(fine.mesh, &seamed.cut, &fine.cost, island, &overlap)).flatten();
         if let Some(chord) = chord {
             n_chords += 1;
+            report(observer, 0.0)?;
             seamed.cut.add(&fine.with_image(&seamed.cut, chord, limits.max_islands));
             k = part(seamed, fine.mesh, k, observer)?;
             continue;

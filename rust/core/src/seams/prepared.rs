@@ -314,17 +314,23 @@ impl<'a> Prepared<'a> {
 }
 
 impl Fine<'_> {
-    /// Edges to be cut with their mirror images, where the cut is symmetric, and both leave disks and not too many.
+    /// Edges through an island with their mirror images through another one, where the cut is symmetric, and both leave
+    /// disks and not too many.
     pub(super) fn with_image(&self, cut: &Cut, edges: Vec<Edge>, max_islands: usize) -> Vec<Edge> {
         let Some(mirror) = &self.mirror else { return edges };
         let image = |edge: Edge| image(self.mesh, edge, mirror);
+        let labels = cut.islands(self.mesh).of_face;
+        let island_at = |edge: Edge| labels[self.mesh.faces_at(edge).0];
+        let is_elsewhere =
+            |&edge: &Edge| image(edge).is_some_and(|image| island_at(image) != island_at(edge));
         let is_symmetric = cut.seams().all(|edge| image(edge).is_some_and(|image| cut.is_seam(image)));
         let mut all = edges.clone();
         all.extend(edges.iter().filter_map(|&edge| image(edge)));
         all.sort_unstable();
         all.dedup();
         let islands = cut.with(&all).islands(self.mesh);
-        if is_symmetric && islands.are_disks() && islands.len() <= max_islands { all } else { edges }
+        let is_sound = islands.are_disks() && islands.len() <= max_islands;
+        if is_symmetric && is_sound && edges.iter().all(is_elsewhere) { all } else { edges }
     }
 
     /// The seams with those that islands lack to be disks, without islands beyond a number.

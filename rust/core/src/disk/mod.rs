@@ -33,6 +33,7 @@ use crate::mesh::{Surface, TriangleMesh};
 use crate::parallel;
 
 use crate::codomain::planar::PlanarMap;
+use free::QuickStart;
 pub(crate) use holes::closed;
 pub use options::{Boundary, DiskMapOptions, DiskMethod};
 use run::Run;
@@ -107,7 +108,8 @@ pub(crate) fn map_disk(
         }
         DiskMethod::GaussNewton if options.boundary == Boundary::Free => {
             let free = free::Free { mesh, targets: &given, options, schedule: free::Schedule::Given };
-            free.map(&mut history, observer)?
+            let (map, status, _) = free.map(&mut history, observer)?;
+            (map, status)
         }
         DiskMethod::GaussNewton => run.renumbered(&mut history, observer)?,
         DiskMethod::FixedPoint | DiskMethod::ConjugateGradient => run.solve(&mut history, observer)?,
@@ -127,24 +129,59 @@ pub(crate) fn map_disk(
     Ok(DiskMap { uv: from_rows(uv), status, seconds: history.seconds(), history, distortion })
 }
 
-/// A map of an island to the plane whose areas are even within `tolerance`, √(E_A/A), with little shear, at whatever
-/// scale; the outline may cross itself if `overlap` holds. Some twenty factorizations; the status is
-/// [`Status::Converged`] where the tolerance is met.
+/// How an island is mapped.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct IslandGoal<'a> {
+    /// The deviation √(E_A/A) of areas.
+    pub tolerance: f64,
+    /// Let the outline cross itself.
+    pub overlap: bool,
+    pub max_iterations: Option<usize>,
+    pub start: Option<IslandStart<'a>>,
+}
+
+/// What an island is mapped from, at whatever scale.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum IslandStart<'a> {
+    /// A map without folds that met the tolerance, with its weight of angles.
+    Map(&'a [[f64; 2]], f64),
+    /// The wanted image of each face, at whatever place.
+    Shapes(&'a [[[f64; 2]; 3]]),
+}
+
+/// The map of an island.
+pub(crate) struct MappedIsland {
+    /// The image of each vertex, at whatever scale.
+    pub uv: PlanarMap,
+    /// [`Status::Converged`] where the tolerance is met; [`Status::Stalled`] with the given start where its outlines
+    /// cross too far.
+    pub status: Status,
+    /// The weight of angles, λ.
+    pub weight: f64,
+}
+
+/// A map of an island to the plane whose areas are even within a tolerance, with little shear. Some twenty
+/// factorizations, a few from a given start; outlines of a map are pushed apart where they cross.
 ///
 /// # Errors
 /// As [`disk_map`].
 pub(crate) fn map_island(
     mesh: &TriangleMesh,
-    tolerance: f64,
-    overlap: bool,
-    max_iterations: Option<usize>,
+    goal: &IslandGoal<'_>,
     observer: &mut dyn Observer,
-) -> Result<(PlanarMap, Status), Error> {
+) -> Result<MappedIsland, Error> {
+    let IslandGoal { tolerance, overlap, max_iterations, start } = *goal;
     let boundary = Boundary::Free;
-    let options = DiskMapOptions { boundary, overlap, max_iterations, ..Default::default() };
-    let schedule = free::Schedule::Quick { tolerance };
+    let (initial, start) = match start {
+        None => (None, None),
+        Some(IslandStart::Map(map, weight)) => (Some(aview2(map)), Some(QuickStart::Initial { weight })),
+        Some(IslandStart::Shapes(shapes)) => (None, Some(QuickStart::Shapes(shapes))),
+    };
+    let options = DiskMapOptions { boundary, overlap, max_iterations, initial, ..Default::default() };
+    let schedule = free::Schedule::Quick { tolerance, start };
     let free = free::Free { mesh, targets: mesh.face_areas(), options: &options, schedule };
-    free.map(&mut History::start(), observer)
+    let (uv, status, weight) = free.map(&mut History::start(), observer)?;
+    Ok(MappedIsland { uv, status, weight })
 }
 
 /// The map turned so that the first vertex of the boundary loop lies at (1, 0); unchanged where the rounding of the

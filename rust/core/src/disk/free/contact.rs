@@ -8,6 +8,7 @@
 //! not come near to itself is not changed. A sweep over boxes finds the pairs. Cost: O(n log n) and one comparison for
 //! every two boxes that overlap in x.
 
+use crate::codomain::planar::PlanarMap;
 use crate::mesh::Vertex;
 
 /// A vertex near an edge.
@@ -41,7 +42,30 @@ pub(super) struct Stiffness {
     pub factor: f64,
 }
 
+impl Curvature {
+    /// The distance of the point and the edge.
+    pub(super) fn distance(&self) -> f64 {
+        match self {
+            Self::End { distance, .. } | Self::Inner { distance, .. } => *distance,
+        }
+    }
+}
+
+/// Adds the forces of contacts, the first of each pair of springs, to a gradient.
+pub(super) fn add_forces(gradient: &mut PlanarMap, contacts: &[Contact], springs: &[[f64; 2]]) {
+    for (contact, [force, _]) in contacts.iter().zip(springs) {
+        for (k, &v) in contact.vertices.iter().enumerate() {
+            (0..2).for_each(|axis| gradient[v][axis] += force * contact.slopes[2 * k + axis]);
+        }
+    }
+}
+
 impl Contact {
+    /// d, negative beyond the edge.
+    pub(super) fn distance(&self) -> f64 {
+        self.gap * self.reach
+    }
+
     /// The energy of the contact; infinite where vertex and edge meet.
     pub(super) fn value(&self, stiffness: Stiffness) -> f64 {
         stiffness.factor * self.reach * -(self.gap - 1.0).powi(2) * self.gap.ln()

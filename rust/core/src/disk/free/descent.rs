@@ -5,18 +5,19 @@
 //! 2. A step ends before a face folds or an outline meets itself, and where the energy falls.
 //! 3. The descent has converged when the decrement −gᵀd of a full step almost vanishes: the map is stationary.
 //!
-//! Far from the minimum the Hessian leaves out the curvature of the area, which may be negative. Nearer to it the
-//! Hessian takes as much of the curvature as leaves it positive definite, in the end all, and the descent converges
-//! quadratically. Cost of one iteration: one factorization of two unknowns per vertex, and some ten solves where
-//! contacts act.
+//! Far from the minimum each face's Hessian goes without its negative eigenvalues, and where a step must be short, the
+//! faces of highest energy descend by themselves ([`super::local`]). Nearer to the minimum the Hessian takes as much of
+//! the curvature of areas as leaves it positive definite, in the end all, and the descent converges quadratically. Cost of
+//! one iteration: one factorization of two unknowns per vertex, and some ten solves where contacts act.
 
-use super::contact::{Contact, Stiffness};
+use super::contact::{Contact, Stiffness, add_forces};
 use super::energy::{Energy, Hessian};
+use super::local::lowered_locally;
 use super::meeting::first_fold;
 use super::outline::Outline;
 use super::system::{Direction, Linearized, System};
 use crate::codomain::planar::PlanarMap;
-use crate::control::{History, Observer, Status, Watch};
+use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::parallel;
 use crate::sparse::{Analysis, Failure};
 
@@ -71,12 +72,15 @@ const SHRINK: f64 = 0.6;
 const GROW: f64 = 1.6;
 
 /// The energy to lower, with its linear system and its contacts.
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub energy: &'a Energy<'a>,
     /// The system of the faces, two unknowns at every vertex.
     pub analysis: &'a Analysis,
     /// The outline that must not cross itself; `None` where it may.
     pub outline: Option<&'a Outline>,
+    /// Whether each vertex stays where it is; `None` where all may move.
+    pub is_held: Option<&'a [bool]>,
 }
 
 /// When a descent ends.
@@ -112,7 +116,7 @@ pub(super) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     pub(super) fn new(problem: Problem<'a>) -> Self {
-        let system = System::new(problem.energy, problem.analysis);
+        let system = System::new(problem.energy, problem.analysis, problem.is_held);
         Self { problem, system, curvature: 1.0, ratio: f64::INFINITY, done: 0 }
     }
 
@@ -158,7 +162,8 @@ impl<'a> Descent<'a> {
                 return (iterate.map, if is_flat { Status::Converged } else { Status::Stalled });
             };
             self.done += 1;
-            iterate = next;
+            let mut phase = Phase { whole: &mut *observer, from: fraction, to: fraction };
+            iterate = if step < 1.0 { self.locally_lowered(next, goal, &mut phase) } else { next };
             values.push(iterate.value);
             history.push(
                 self.problem.energy.unevenness(&iterate.map),
@@ -172,6 +177,18 @@ impl<'a> Descent<'a> {
                 return (iterate.map, Status::Stalled);
             }
         }
+    }
+
+    /// The map after a descent of the faces of highest energy by themselves.
+    fn locally_lowered(&self, iterate: Iterate, goal: &Goal, observer: &mut dyn Observer) -> Iterate {
+        let Problem { energy, outline, is_held, .. } = self.problem;
+        if is_held.is_some() {
+            return iterate;
+        }
+        let Some(map) = lowered_locally(energy, &iterate.map, goal, observer) else { return iterate };
+        let next = self.iterate(map, goal);
+        let is_allowed = outline.is_none_or(|outline| outline.is_simple(&next.map));
+        if next.value < iterate.value && is_allowed { next } else { iterate }
     }
 
     /// √(E_A/A) of a map.
@@ -212,10 +229,11 @@ impl<'a> Descent<'a> {
         // 1. The gradient of faces and contacts
         let mut gradient = energy.gradient(&iterate.map, weight);
         let springs = self.springs(iterate, weight);
-        for (contact, [force, _]) in iterate.contacts.iter().zip(&springs) {
-            for (k, &v) in contact.vertices.iter().enumerate() {
-                (0..2).for_each(|axis| gradient[v][axis] += force * contact.slopes[2 * k + axis]);
-            }
+        add_forces(&mut gradient, &iterate.contacts, &springs);
+        for (force, _) in
+            gradient.iter_mut().zip(self.problem.is_held.unwrap_or_default()).filter(|(_, held)| **held)
+        {
+            *force = [0.0; 2];
         }
         let state = Linearized {
             map: &iterate.map,
@@ -231,7 +249,7 @@ impl<'a> Descent<'a> {
             let mut tried = self.curvature;
             for _ in 0..MOST_ATTEMPTS {
                 let damping = DAMPING * (1.0 - tried);
-                let part = Hessian { weight, damping, least, curvature: tried };
+                let part = Hessian { weight, damping, least, curvature: Some(tried) };
                 match self.system.solve(&state, &part, SHIFTS[1], watch) {
                     Ok(direction) if direction.decrement > 0.0 => {
                         self.curvature =
@@ -244,9 +262,9 @@ impl<'a> Descent<'a> {
             }
             self.curvature = tried;
         }
-        let composite = Hessian { weight, damping: DAMPING, least, curvature: 0.0 };
+        let positive = Hessian { weight, damping: DAMPING, least, curvature: None };
         for shift in SHIFTS {
-            match self.system.solve(&state, &composite, shift, watch) {
+            match self.system.solve(&state, &positive, shift, watch) {
                 Err(Failure::NotPositiveDefinite) => {}
                 verdict => return verdict,
             }

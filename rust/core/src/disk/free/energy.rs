@@ -6,10 +6,14 @@
 //! is ½ (σ₁/σ₂ + σ₂/σ₁) − 1. Rest triangles have the area of their target, and targets add up to one, so there is no
 //! scale to be found. ψ is infinite where a face folds.
 //!
-//! The Hessian takes m − 1 as quadratic over linear in ((a − d, b + c), ρ), so that turning a face costs nothing. Every
-//! term is positive semidefinite except the curvature of ρ, which is left out or added on demand.
+//! Near a minimum the Hessian is exact, or as much of the curvature of ρ is left out as makes it positive definite: then
+//! m − 1 is taken as quadratic over linear in ((a − d, b + c), ρ). Elsewhere each face's Hessian goes without its
+//! negative eigenvalues.
 
-use super::face::{Element, Jacobian, STIFFENING, add_area_curvature, add_dirichlet, add_square, stiffened};
+use super::face::{
+    Derivatives, Element, Jacobian, STIFFENING, add_area_curvature, add_dirichlet, add_positive_part,
+    add_square, stiffened,
+};
 use crate::codomain::planar::PlanarMap;
 use crate::mesh::geometry::triangle;
 use crate::mesh::{Corner, TriangleMesh, Vertex};
@@ -50,8 +54,9 @@ pub(super) struct Hessian {
     pub damping: f64,
     /// Lower bound of the damping of a face, in units of the deviation of its area ratio.
     pub least: f64,
-    /// The part of the curvature of the area that is added, from 0 to 1; 1 gives the exact Hessian.
-    pub curvature: f64,
+    /// The part of the curvature of the area that is added, from 0 to 1; 1 gives the exact Hessian. `None`: faces go
+    /// without negative eigenvalues.
+    pub curvature: Option<f64>,
 }
 
 impl<'a> Energy<'a> {
@@ -78,7 +83,11 @@ impl<'a> Energy<'a> {
 
     /// The entries (a, b, c, d) of a face's Jacobian in `map`.
     pub(super) fn entries(&self, map: &[[f64; 2]], face: usize) -> [f64; 4] {
-        let [o, p, q] = self.mesh.faces()[face].map(|v| map[v]);
+        self.entries_of(self.mesh.faces()[face].map(|v| map[v]), face)
+    }
+
+    /// The entries of the Jacobian that takes a face's rest triangle to another triangle.
+    pub(super) fn entries_of(&self, [o, p, q]: [[f64; 2]; 3], face: usize) -> [f64; 4] {
         let [_, g, h] = self.hats[face];
         let (e, f) = ([p[0] - o[0], p[1] - o[1]], [q[0] - o[0], q[1] - o[1]]);
         [
@@ -106,15 +115,7 @@ impl<'a> Energy<'a> {
 
     /// E at a map; infinite where a face folds.
     pub(super) fn value(&self, map: &[[f64; 2]], weight: f64) -> f64 {
-        parallel::sum(self.mesh.n_faces(), |face| {
-            let jacobian = self.jacobian(map, face);
-            let rho = jacobian.ratio;
-            if rho.is_nan() || rho <= 0.0 {
-                return f64::INFINITY;
-            }
-            let areas = 0.5 * (rho - 1.0).powi(2) * (1.0 + 1.0 / rho);
-            self.targets[face] * (areas + weight * stiffened(jacobian.shear()))
-        })
+        parallel::sum(self.mesh.n_faces(), |face| self.of_face(map, face, weight))
     }
 
     /// The terms of areas and of angles.
@@ -161,30 +162,64 @@ impl<'a> Energy<'a> {
         std::array::from_fn(|k| self.targets[face] * (of_area * by_entries[k] + of_shear * by_shear[k]))
     }
 
+    /// The energy of each face, (m,); infinite where it folds.
+    pub(super) fn of_faces(&self, map: &[[f64; 2]], weight: f64) -> Vec<f64> {
+        parallel::map(self.mesh.n_faces(), |face| self.of_face(map, face, weight))
+    }
+
+    fn of_face(&self, map: &[[f64; 2]], face: usize, weight: f64) -> f64 {
+        let jacobian = self.jacobian(map, face);
+        let rho = jacobian.ratio;
+        if rho.is_nan() || rho <= 0.0 {
+            return f64::INFINITY;
+        }
+        let areas = 0.5 * (rho - 1.0).powi(2) * (1.0 + 1.0 / rho);
+        self.targets[face] * (areas + weight * stiffened(jacobian.shear()))
+    }
+
     /// The Hessian of a face.
     pub(super) fn element(&self, map: &[[f64; 2]], face: usize, how: &Hessian) -> Element {
         let jacobian = self.jacobian(map, face);
         let (rho, target, hats) = (jacobian.ratio, self.targets[face], &self.hats[face]);
-        let shear = jacobian.shear();
-        let stiffness = 1.0 + STIFFENING * shear;
+        let stiffness = 1.0 + STIFFENING * jacobian.shear();
+        let derivatives = Derivatives {
+            by_area: [0.5 * (2.0 * rho - 1.0 - 1.0 / (rho * rho)), 1.0 + rho.powi(-3)],
+            by_shear: [how.weight * stiffness, how.weight * STIFFENING],
+        };
         let mut element = [[0.0; 6]; 6];
-        // 1. ψ'' and f'' along the slopes of the area and of the shear
-        let cofactors = jacobian.cofactors();
-        add_square(&mut element, target * (1.0 + rho.powi(-3)), hats, &cofactors);
-        add_square(&mut element, target * how.weight * STIFFENING, hats, &jacobian.shear_slopes());
-        // 2. Quadratic over linear
-        for row in jacobian.quadratic_over_linear(&cofactors) {
-            add_square(&mut element, target * how.weight * stiffness, hats, &row);
+        // 1. The energy
+        match how.curvature {
+            None => add_positive_part(&mut element, target, hats, &jacobian, &derivatives),
+            Some(part) => add_partly(&mut element, target, hats, &jacobian, &derivatives, part),
         }
-        // 3. The given part of the curvature of the area
-        let of_area = 0.5 * (2.0 * rho - 1.0 - 1.0 / (rho * rho));
-        let stress = of_area - how.weight * stiffness * shear / rho;
-        add_area_curvature(&mut element, target * how.curvature * stress, hats);
-        // 4. Damping in proportion to how far the face is from its target
+        // 2. Damping in proportion to how far the face is from its target
         let damping = target * how.damping * ((rho - 1.0).abs().min(1e3) + how.least);
         add_dirichlet(&mut element, damping, hats);
         element
     }
+}
+
+/// Adds `factor` times the Hessian of a face with a part of the curvature of the area.
+fn add_partly(
+    element: &mut Element,
+    factor: f64,
+    hats: &[[f64; 2]; 3],
+    jacobian: &Jacobian,
+    derivatives: &Derivatives,
+    part: f64,
+) {
+    let ([stress, by_area], [by_shear, stiffening]) = (derivatives.by_area, derivatives.by_shear);
+    // 1. ψ'' and f'' along the slopes of the area and of the shear
+    let cofactors = jacobian.cofactors();
+    add_square(element, factor * by_area, hats, &cofactors);
+    add_square(element, factor * stiffening, hats, &jacobian.shear_slopes());
+    // 2. Quadratic over linear
+    for row in jacobian.quadratic_over_linear(&cofactors) {
+        add_square(element, factor * by_shear, hats, &row);
+    }
+    // 3. The given part of the curvature of the area
+    let stress = stress - by_shear * jacobian.shear() / jacobian.ratio;
+    add_area_curvature(element, factor * part * stress, hats);
 }
 
 /// The gradients of the hat functions on a triangle in the plane, similar to the one in space and of area `target`.
@@ -234,7 +269,7 @@ mod tests {
         let gradient = energy.gradient(&map, weight);
         let slope: f64 = (0..4).map(|v| gradient[v][0] * along[v][0] + gradient[v][1] * along[v][1]).sum();
         assert!((slope - (value(h) - value(-h)) / (2.0 * h)).abs() < 1e-5 * (1.0 + slope.abs()));
-        let how = Hessian { weight, damping: 0.0, least: 0.0, curvature: 1.0 };
+        let how = Hessian { weight, damping: 0.0, least: 0.0, curvature: Some(1.0) };
         let mut curvature = 0.0;
         for (face, corners) in mesh.faces().iter().enumerate() {
             let element = energy.element(&map, face, &how);
@@ -248,18 +283,48 @@ mod tests {
     }
 
     #[test]
-    fn without_the_curvature_of_areas_elements_have_no_negative_direction() {
+    fn the_hessian_without_negative_eigenvalues_is_the_positive_part_of_the_hessian() {
         let (mesh, map) = pyramid();
         let energy = Energy::new(&mesh, &[0.3, 0.5, 0.4]);
-        let how = Hessian { weight: 0.4, damping: 0.0, least: 0.0, curvature: 0.0 };
-        for face in 0..3 {
-            let element = energy.element(&map, face, &how);
+        for (weight, face) in (0..9).map(|k| ([0.01, 0.4, 30.0][k / 3], k % 3)) {
+            let by_entries = |curvature| {
+                let how = Hessian { weight, damping: 0.0, least: 0.0, curvature };
+                by_entries(&energy.element(&map, face, &how), energy.hats(face))
+            };
+            let (whole, positive) = (by_entries(Some(1.0)), by_entries(None));
+            let square: f64 = whole.iter().flatten().map(|x| x * x).sum();
+            // P is the positive part of H if P (H − P) = 0 where neither P nor P − H has a negative direction
+            for (i, j) in (0..16).map(|k| (k / 4, k % 4)) {
+                let entry: f64 = (0..4).map(|k| positive[i][k] * (whole[k][j] - positive[k][j])).sum();
+                assert!(entry.abs() < 1e-10 * square, "weight {weight}, face {face}: {entry}");
+            }
             for seed in 0..50 {
-                let x: [f64; 6] = std::array::from_fn(|k| (1.7 * seed as f64 + 2.3 * k as f64).sin());
-                let square: f64 = (0..36).map(|k| x[k / 6] * element[k / 6][k % 6] * x[k % 6]).sum();
-                assert!(square > -1e-12, "face {face}: {square}");
+                let x: [f64; 4] = std::array::from_fn(|k| (1.7 * seed as f64 + 2.3 * k as f64).sin());
+                let form = |matrix: &[[f64; 4]; 4]| -> f64 {
+                    (0..16).map(|k| x[k / 4] * matrix[k / 4][k % 4] * x[k % 4]).sum()
+                };
+                assert!(form(&positive) > -1e-12 * square.sqrt());
+                assert!(form(&positive) - form(&whole) > -1e-12 * square.sqrt());
             }
         }
+    }
+
+    /// A Hessian by the entries of the Jacobian.
+    fn by_entries(element: &Element, [_, g, h]: &[[f64; 2]; 3]) -> [[f64; 4]; 4] {
+        let determinant = g[0] * h[1] - g[1] * h[0];
+        // how the second and the third corner move where one entry grows
+        let moves = |entry: usize| {
+            let by = [[h[1], -g[1]], [-h[0], g[0]]][entry % 2];
+            let mut moves = [0.0; 4];
+            (0..2).for_each(|corner| moves[2 * corner + entry / 2] = by[corner] / determinant);
+            moves
+        };
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let (x, y) = (moves(i), moves(j));
+                (0..16).map(|k| x[k / 4] * element[2 + k / 4][2 + k % 4] * y[k % 4]).sum()
+            })
+        })
     }
 
     #[test]

@@ -11,16 +11,19 @@
 //! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start,
 //! and ten to fifty for the descent.
 
+mod apart;
 mod arap;
 mod contact;
 mod descent;
 mod energy;
 mod face;
 mod least_shear;
+mod local;
 mod lscm;
 mod meeting;
 mod mend;
 mod outline;
+mod poisson;
 mod quick;
 mod start;
 mod starts;
@@ -42,8 +45,9 @@ use energy::Energy;
 use least_shear::least_shear;
 use outline::Outline;
 use quick::quickly;
+use start::Start;
 use surface::Prepared;
-pub(super) use surface::{Free, Schedule};
+pub(super) use surface::{Free, QuickStart, Schedule};
 use within_disk::{signed_area, turned};
 
 /// Ranges of the contacts, from the first descent to the last, in units of the heights beside them.
@@ -68,7 +72,7 @@ const HEAVY: f64 = 1e-3;
 const MOST: f64 = 1e4;
 
 impl Free<'_> {
-    /// The map within the unit disk.
+    /// The map within the unit disk, with the last weight of angles.
     ///
     /// # Errors
     /// [`NumericsError::NoEmbedding`](crate::NumericsError::NoEmbedding) where every start folds,
@@ -77,17 +81,23 @@ impl Free<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(PlanarMap, Status), Error> {
+    ) -> Result<(PlanarMap, Status, f64), Error> {
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let targets = by_order.of_faces(self.targets);
         let initial = self.options.initial_rows().map(|map| by_order.of_vertices(map));
         let options =
             DiskMapOptions { initial: initial.as_deref().map(aview2), density: None, ..*self.options };
-        let free =
-            Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule: self.schedule };
-        let (map, status) = free.in_order(history, observer)?;
-        Ok((by_order.given(&map), status))
+        let shapes = self.shapes().map(|shapes| by_order.of_faces(shapes));
+        let schedule = match (self.schedule, &shapes) {
+            (Schedule::Quick { tolerance, .. }, Some(shapes)) => {
+                Schedule::Quick { tolerance, start: Some(QuickStart::Shapes(shapes)) }
+            }
+            (schedule, _) => schedule,
+        };
+        let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule };
+        let (map, status, weight) = free.in_order(history, observer)?;
+        Ok((by_order.given(&map), status, weight))
     }
 
     /// The map of a mesh in elimination order.
@@ -95,7 +105,7 @@ impl Free<'_> {
         &self,
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> Result<(PlanarMap, Status), Error> {
+    ) -> Result<(PlanarMap, Status, f64), Error> {
         let energy = Energy::new(self.mesh, self.targets);
         let n = self.mesh.n_vertices();
         let analysis = Analysis::new(n, self.mesh.faces(), &vec![2; n], Order::AsGiven)?;
@@ -103,32 +113,43 @@ impl Free<'_> {
         let prepared = Prepared { energy: &energy, analysis: &analysis, outline: &outline };
         // 1. A start
         let mut phase = Phase { whole: observer, from: 0.0, to: 0.2 };
-        let (start, is_cancelled) = self.start(&prepared, &mut phase)?;
-        let start = if self.options.initial.is_none() { turned(self.mesh, start) } else { start };
+        let start = self.start(&prepared, &mut phase)?;
+        let turned = |map| if self.options.initial.is_none() { turned(self.mesh, map) } else { map };
         // 2. The descent
         let mut phase = Phase { whole: observer, from: 0.2, to: 1.0 };
-        let (map, status) = if is_cancelled {
-            history.push_start(energy.unevenness(&start), 0.0);
-            (start, Status::Cancelled)
-        } else {
-            self.descend(&prepared, start, history, &mut phase)
+        let (map, status, weight) = match start {
+            Start::Ended(map, status) => {
+                history.push_start(energy.unevenness(&map), 0.0);
+                (turned(map), status, self.options.angle_weight)
+            }
+            Start::Given(map) => self.descend(&prepared, (turned(map), true), history, &mut phase),
+            Start::Computed(map) => self.descend(&prepared, (turned(map), false), history, &mut phase),
         };
         // 3. Into the disk
         let map = self.within_the_disk(&outline, &map);
         history.rescale(signed_area(self.mesh, &map));
-        Ok((map, status))
+        Ok((map, status, weight))
     }
 
-    /// Descents with contacts of shorter and shorter range.
+    /// The wanted images of the faces, if a quick map starts from these.
+    fn shapes(&self) -> Option<&[[[f64; 2]; 3]]> {
+        match self.schedule {
+            Schedule::Quick { start: Some(QuickStart::Shapes(shapes)), .. } => Some(shapes),
+            _ => None,
+        }
+    }
+
+    /// Descents with contacts of shorter and shorter range, from a start and whether it was given.
     fn descend(
         &self,
         prepared: &Prepared<'_>,
-        start: PlanarMap,
+        (start, is_given): (PlanarMap, bool),
         history: &mut History,
         observer: &mut dyn Observer,
-    ) -> (PlanarMap, Status) {
+    ) -> (PlanarMap, Status, f64) {
         let outline = (!self.options.overlap).then_some(prepared.outline);
-        let problem = Problem { energy: prepared.energy, analysis: prepared.analysis, outline };
+        let problem =
+            Problem { energy: prepared.energy, analysis: prepared.analysis, outline, is_held: None };
         let mut descent = Descent::new(problem);
         let mut goal = Goal {
             weight: self.options.angle_weight,
@@ -136,8 +157,14 @@ impl Free<'_> {
             most_iterations: self.options.max_iterations.unwrap_or(usize::MAX),
             precision: STATIONARY,
         };
-        if let Schedule::Quick { tolerance } = self.schedule {
-            return quickly(&mut descent, start, &mut goal, tolerance, history, observer);
+        if let Schedule::Quick { tolerance, start: from } = self.schedule {
+            let weight = match from {
+                Some(QuickStart::Initial { weight }) if is_given => Some(weight),
+                _ => None,
+            };
+            let (map, status) =
+                quickly(&mut descent, start, &mut goal, (tolerance, weight), history, observer);
+            return (map, status, goal.weight);
         }
         let mut map = start;
         let mut status = Status::MaxIterations;
@@ -147,7 +174,7 @@ impl Free<'_> {
             let most = if is_given { MOST } else { HEAVY };
             (map, status) = least_shear(&mut descent, map, &mut goal, (tolerance, most), history, observer);
             if status != Status::Converged || !is_given {
-                return (map, status);
+                return (map, status, goal.weight);
             }
         }
         for range in RANGES {
@@ -157,7 +184,7 @@ impl Free<'_> {
                 break;
             }
         }
-        (map, status)
+        (map, status, goal.weight)
     }
 
     /// The deviation of areas down to which λ falls; `None` where λ is given.

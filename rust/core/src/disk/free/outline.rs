@@ -97,6 +97,22 @@ impl Outline {
         contacts.into_iter().map(|(_, contact)| contact).collect()
     }
 
+    /// The vertices of all outlines; each edge leaves the vertex at its own place.
+    pub(super) fn vertices(&self) -> &[Vertex] {
+        &self.vertices
+    }
+
+    /// The way of a vertex, by its place, out of the image beyond an edge: a contact of negative gap.
+    pub(super) fn beyond(&self, map: &[[f64; 2]], edge: usize, place: usize) -> Option<Contact> {
+        if !self.may_touch(edge, place) {
+            return None;
+        }
+        let contact = self.contact(map, edge, place, f64::INFINITY)?;
+        let reach = self.edges[edge].height.min(self.heights[place]);
+        let slopes = contact.slopes.map(|slope| -slope);
+        Some(Contact { gap: -contact.curvature.distance() / reach, reach, slopes, ..contact })
+    }
+
     fn may_touch(&self, edge: usize, vertex: usize) -> bool {
         let (edge, vertex) = (&self.edges[edge], self.vertices[vertex]);
         !edge.ends.contains(&vertex) && edge.opposite != vertex

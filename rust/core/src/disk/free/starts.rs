@@ -6,9 +6,11 @@ use super::energy::Energy;
 use super::lscm::{of_area_one, spectral_conformal};
 use super::mend::{mended, turns_once_around_every_vertex};
 use super::outline::Outline;
+use super::poisson::Poisson;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
 use crate::mesh::geometry::{area_vector, triangle};
+use crate::parallel;
 use crate::sparse::{Analysis, Failure};
 use crate::vector::Vector3;
 
@@ -17,6 +19,12 @@ const MARGIN: f64 = 0.9;
 
 /// Least sum of the area vectors, relative to the area, for a plan view.
 const STEEPEST: f64 = 0.05;
+
+/// Local and global steps toward a map that is as rigid as possible.
+const RIGID_STEPS: usize = 15;
+
+/// Those that follow on a map assembled from wanted images, one after another until it is one-to-one.
+const ASSEMBLED_STEPS: [usize; 4] = [0, 1, 2, 5];
 
 /// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.
 const PULL: f64 = 1e-3;
@@ -50,7 +58,10 @@ pub(super) fn best_start(
         conformal => conformal.ok(),
     };
     if let Some(conformal) = conformal {
-        match as_rigid_as_possible(energy, conformal.clone(), watch) {
+        let rigid = Poisson::new(energy, watch).and_then(|poisson| {
+            as_rigid_as_possible(energy, &poisson, conformal.clone(), RIGID_STEPS, watch)
+        });
+        match rigid {
             Err(Failure::Cancelled) => return Err(Failure::Cancelled),
             rigid => {
                 rigid.into_iter().for_each(|map| consider(of_area_one(energy, mended(energy, map))));
@@ -59,6 +70,26 @@ pub(super) fn best_start(
         consider(conformal);
     }
     Ok(best)
+}
+
+/// The map whose faces are nearest to wanted images, made more rigid and mended until it is one-to-one.
+pub(super) fn assembled(
+    energy: &Energy<'_>,
+    outline: Option<&Outline>,
+    shapes: &[[[f64; 2]; 3]],
+    watch: &Watch<'_>,
+) -> Option<PlanarMap> {
+    let poisson = Poisson::new(energy, watch).ok()?;
+    let jacobians = parallel::map(shapes.len(), |face| energy.entries_of(shapes[face], face));
+    let mut map = of_area_one(energy, poisson.map(energy, &jacobians));
+    for steps in ASSEMBLED_STEPS {
+        map = as_rigid_as_possible(energy, &poisson, map, steps, watch).ok()?;
+        let mended = of_area_one(energy, mended(energy, map.clone()));
+        if let Some(start) = allowed(energy, outline, mended) {
+            return Some(start);
+        }
+    }
+    None
 }
 
 /// The map, pulled in where its outline only touches itself; `None` where it is not one-to-one.

@@ -16,11 +16,20 @@ pub(super) struct Prepared<'a> {
 
 /// How the weight of angles is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::disk) enum Schedule {
+pub(in crate::disk) enum Schedule<'a> {
     /// As the options say.
     Given,
     /// So that the deviation of areas √(E_A/A) is about a tolerance, in few iterations.
-    Quick { tolerance: f64 },
+    Quick { tolerance: f64, start: Option<QuickStart<'a>> },
+}
+
+/// What a quick map starts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::disk) enum QuickStart<'a> {
+    /// The initial map of the options, whose outlines are pushed apart where they cross, with its weight of angles.
+    Initial { weight: f64 },
+    /// The wanted image of each face, at whatever place.
+    Shapes(&'a [[[f64; 2]; 3]]),
 }
 
 /// A surface to be mapped with a free outline.
@@ -28,5 +37,5 @@ pub(in crate::disk) struct Free<'a> {
     pub mesh: &'a TriangleMesh,
     pub targets: &'a [f64],
     pub options: &'a DiskMapOptions<'a>,
-    pub schedule: Schedule,
+    pub schedule: Schedule<'a>,
 }

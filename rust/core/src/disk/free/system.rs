@@ -10,12 +10,15 @@ use super::energy::{Energy, Hessian};
 use super::face::Element;
 use crate::codomain::planar::PlanarMap;
 use crate::control::Watch;
-use crate::mesh::{Corner, Face};
+use crate::mesh::{Corner, Face, Vertex};
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure};
 
 /// Bounds of the relative residual that ends the conjugate gradients; it falls toward the minimum.
 const RESIDUALS: [f64; 2] = [1e-4, 0.1];
+
+/// The stiffness that holds a vertex, in units of its own.
+const HOLD: f64 = 1e12;
 
 /// Limit of the conjugate gradient steps.
 const MOST_INNER: usize = 60;
@@ -43,14 +46,16 @@ pub(super) struct System<'a> {
     energy: &'a Energy<'a>,
     /// The system of the faces, two unknowns at every vertex.
     analysis: &'a Analysis,
+    /// Whether each vertex stays where it is; `None` where all may move.
+    is_held: Option<&'a [bool]>,
     factor: Factor<f64>,
     elements: Vec<Element>,
 }
 
 impl<'a> System<'a> {
-    pub(super) fn new(energy: &'a Energy<'a>, analysis: &'a Analysis) -> Self {
+    pub(super) fn new(energy: &'a Energy<'a>, analysis: &'a Analysis, is_held: Option<&'a [bool]>) -> Self {
         let elements = vec![[[0.0; 6]; 6]; energy.mesh.n_faces()];
-        Self { energy, analysis, factor: Factor::new(analysis), elements }
+        Self { energy, analysis, is_held, factor: Factor::new(analysis), elements }
     }
 
     /// Solves for the direction with one kind of Hessian.
@@ -62,12 +67,17 @@ impl<'a> System<'a> {
         watch: &Watch<'_>,
     ) -> Result<Direction, Failure> {
         let (energy, analysis) = (self.energy, self.analysis);
+        let is_held = |vertex: Vertex| self.is_held.is_some_and(|is_held| is_held[vertex]);
         // 1. The elements, shifted by one value for both unknowns of a corner, so that the step turns with the map
         parallel::fill(&mut self.elements, |face| {
             let mut element = energy.element(state.map, face, how);
             for c in 0..3 {
                 let diagonal = 0.5 * (element[2 * c][2 * c] + element[2 * c + 1][2 * c + 1]);
-                let shift = shift * diagonal.abs() + 1e-14 * how.weight * energy.targets[face];
+                let shift = if is_held(energy.mesh.faces()[face][c]) {
+                    HOLD * diagonal.abs()
+                } else {
+                    shift * diagonal.abs() + 1e-14 * how.weight * energy.targets[face]
+                };
                 (2 * c..2 * c + 2).for_each(|k| element[k][k] += shift);
             }
             element
@@ -94,7 +104,7 @@ impl<'a> System<'a> {
         let along = if state.contacts.is_empty() {
             self.preconditioned(&rhs)
         } else {
-            self.conjugate_gradients(state, how.curvature, &rhs, watch)?
+            self.conjugate_gradients(state, how.curvature.unwrap_or(0.0), &rhs, watch)?
         };
         let decrement = dot(&rhs, &along);
         if !decrement.is_finite() {

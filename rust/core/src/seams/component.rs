@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The seams of one component.
 
+use super::coarse::seek_coarsely;
 use super::correction::Correction;
 use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
@@ -16,10 +17,13 @@ use crate::error::Error;
 const STIFFNESS: f64 = 0.13;
 const STIFF: f64 = 10_000.0;
 
+/// A component of more vertices is large.
+const LARGE: usize = 12_000;
+
 /// The largest excess of the first prediction, in units of that of the target.
 const MOST_EXCESS: f64 = 1.3;
 
-/// Seeks the seams of a component.
+/// Seeks the seams of a component; those of a large one on a coarser mesh first.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`], or failed numerics.
@@ -28,12 +32,27 @@ pub(super) fn seek(
     wishes: &Wishes<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Seamed, Error> {
+    if fine.n_vertices() > LARGE && wishes.method == SeamMethod::Search {
+        return seek_coarsely(fine, wishes, observer);
+    }
     // 1. The proxy
     let mut phase = Phase { whole: observer, from: 0.0, to: 0.1 };
     let mut prepared = Prepared::new(fine, wishes, &mut phase)?;
+    // 2. and 3. Seams and maps
+    let mut phase = Phase { whole: observer, from: 0.1, to: 1.0 };
+    seek_prepared(&mut prepared, wishes, &mut phase)
+}
+
+/// Seeks the seams of a component that is ready for the search.
+pub(super) fn seek_prepared(
+    prepared: &mut Prepared<'_>,
+    wishes: &Wishes<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Seamed, Error> {
     let wishes = &prepared.within_reach(wishes);
-    // 2. The search
-    let mut phase = Phase { whole: observer, from: 0.1, to: 0.5 };
+    let fine = prepared.component.mesh;
+    // 1. The search
+    let mut phase = Phase { whole: observer, from: 0.0, to: 0.45 };
     let aim = first_aim(wishes.target, fine.n_vertices());
     let solution = prepared.search(wishes, aim, &mut phase)?;
     let cut = prepared.lifted(&solution.state.cut, &mut phase)?;
@@ -42,13 +61,13 @@ pub(super) fn seek(
         let predicted = prepared.predicted(&solution);
         return Ok(Seamed { islands: maps::islands(fine, &cut)?, cut, predicted, measured: None });
     }
-    // 3. Maps of the islands, and corrections by these
-    let mut phase = Phase { whole: observer, from: 0.5, to: 1.0 };
-    Correction::new(&prepared, wishes, aim).run(solution, &mut phase)
+    // 2. Maps of the islands, and corrections by these
+    let mut phase = Phase { whole: observer, from: 0.45, to: 1.0 };
+    Correction::new(prepared, wishes, aim).run(solution, &mut phase)
 }
 
 /// Refuses weights that forbid every cut into disks.
-fn check_allowed(fine: &EdgeMesh, cut: &Cut, wishes: &Wishes<'_>) -> Result<(), Error> {
+pub(super) fn check_allowed(fine: &EdgeMesh, cut: &Cut, wishes: &Wishes<'_>) -> Result<(), Error> {
     let is_forbidden = |edge| wishes.weights.is_some_and(|weights: &[f64]| weights[edge] == f64::INFINITY);
     if cut.islands(fine).are_disks() && !cut.seams().any(is_forbidden) {
         return Ok(());
@@ -59,6 +78,10 @@ fn check_allowed(fine: &EdgeMesh, cut: &Cut, wishes: &Wishes<'_>) -> Result<(), 
 
 /// The predicted shear for which the maps of a mesh of so many vertices are likely to have the wanted one.
 fn first_aim(target: f64, n_vertices: usize) -> f64 {
-    let excess = (n_vertices as f64 / STIFF).powf(STIFFNESS).clamp(1.0, MOST_EXCESS);
-    1.0 + excess * (target - 1.0)
+    1.0 + stiffness([STIFF, n_vertices as f64]) * (target - 1.0)
+}
+
+/// The excess of the shear of a mesh over 1 in units of that of a finer one, given their numbers of vertices.
+pub(super) fn stiffness([coarse, fine]: [f64; 2]) -> f64 {
+    (fine / coarse).powf(STIFFNESS).clamp(1.0, MOST_EXCESS)
 }

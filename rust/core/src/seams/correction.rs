@@ -18,17 +18,11 @@ use crate::mesh::Edge;
 /// The shear of the maps may exceed the target by this factor.
 const NEARLY: f64 = 1.011;
 
-/// Maps may fall short of the target by this part before the seams are called too long.
-const GENEROUS: f64 = 0.93;
+/// The first maps may fall short of the target by this part before the seams are called too long, and later ones by that.
+const GENEROUS: [f64; 2] = [0.97, 0.9];
 
 /// The most corrections.
 const MOST: usize = 3;
-
-/// The most corrections of a large component, whose maps take long.
-const MOST_LARGE: usize = 1;
-
-/// A component of more vertices is large.
-const LARGE: usize = 20_000;
 
 /// Where a lower prediction leaves a cut as it is, its excess is lowered further, by this factor and so many times.
 const LOWER: f64 = 0.8;
@@ -49,6 +43,7 @@ pub(super) struct Correction<'a> {
     target: f64,
     /// The most islands; `None` where islands may overlap themselves.
     max_islands: Option<usize>,
+    tries_other_starts: bool,
     /// Seams of the proxy that stay.
     given: Cut,
     /// The wanted prediction.
@@ -65,7 +60,17 @@ impl<'a> Correction<'a> {
         let target = wishes.target;
         let given = Cut::none(&prepared.proxy);
         let max_islands = (!wishes.overlap).then_some(wishes.max_islands);
-        Self { prepared, target, max_islands, given, aim, history: Vec::new(), insufficient: None }
+        let tries_other_starts = wishes.tries_other_starts;
+        Self {
+            prepared,
+            target,
+            max_islands,
+            tries_other_starts,
+            given,
+            aim,
+            history: Vec::new(),
+            insufficient: None,
+        }
     }
 
     /// The seams that are enough by the maps.
@@ -78,7 +83,8 @@ impl<'a> Correction<'a> {
         let mut seamed = self.corrected(solution, &mut phase)?;
         // 3. One-to-one maps
         if let Some(max_islands) = self.max_islands {
-            let limits = Limits { shear: MET * self.target, max_islands };
+            let tries_other_starts = self.tries_other_starts;
+            let limits = Limits { shear: MET * self.target, max_islands, tries_other_starts };
             let mut phase = Phase { whole: observer, from: 0.8, to: 1.0 };
             one_to_one(&mut seamed, &self.prepared.component, limits, &mut phase)?;
         }
@@ -113,10 +119,8 @@ impl<'a> Correction<'a> {
 
     /// The cheapest cut found whose maps meet the target; the one of least shear where none does.
     fn corrected(&mut self, mut solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
-        let is_large = self.prepared.component.mesh.n_vertices() > LARGE;
-        let most = if is_large { MOST_LARGE } else { MOST };
         let mut best: Option<(bool, f64, Seamed)> = None;
-        for correction in 0..=most {
+        for correction in 0..=MOST {
             let observer = &mut Phase::of_sequence(&mut *observer, correction);
             let seamed = self.mapped(&solution, observer)?;
             let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
@@ -125,7 +129,7 @@ impl<'a> Correction<'a> {
             if is_first(&best, is_enough, rank) {
                 best = Some((is_enough, rank, seamed));
             }
-            if self.is_done(shear) || correction == most {
+            if self.is_done(shear) || correction == MOST {
                 break;
             }
             let next = self.next(&solution, shear, observer)?;
@@ -147,7 +151,8 @@ impl<'a> Correction<'a> {
 
     /// Whether maps of a shear are sheared enough and not too much.
     fn is_done(&self, shear: f64) -> bool {
-        let is_generous = shear < 1.0 + GENEROUS * (self.target - 1.0);
+        let generous = GENEROUS[usize::from(!self.history.is_empty())];
+        let is_generous = shear < 1.0 + generous * (self.target - 1.0);
         shear <= NEARLY * self.target && !is_generous
     }
 

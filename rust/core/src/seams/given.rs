@@ -34,6 +34,7 @@ impl Part {
             symmetry: options.symmetry,
             max_islands,
             overlap: options.overlap,
+            tries_other_starts: true,
             method: options.method,
         }
     }

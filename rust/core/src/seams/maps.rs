@@ -5,7 +5,7 @@ use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::progress::report;
 use crate::control::{Observer, Phase, Status};
-use crate::disk::map_island;
+use crate::disk::{IslandGoal, IslandStart, MappedIsland, map_island};
 use crate::error::Error;
 use crate::mesh::geometry::triangle;
 use crate::mesh::{Corner, Face, TriangleMesh, Vertex};
@@ -24,8 +24,10 @@ pub(crate) struct IslandMap {
     pub face_of: Vec<Face>,
     /// The length of the unit of the mesh's points.
     pub unit: f64,
-    /// The image of each vertex, (n,), whose area is that of the island.
+    /// The image of each vertex, (n,), whose area is that of the island; empty before it is mapped.
     pub uv: Vec<[f64; 2]>,
+    /// The weight of angles of the map; `None` before it is mapped.
+    weight: Option<f64>,
 }
 
 /// The figures of a map, weighted by area.
@@ -62,7 +64,7 @@ impl IslandMap {
     pub(crate) fn new(mesh: TriangleMesh) -> Self {
         let vertex_of = Vertex::all(mesh.n_vertices()).collect();
         let face_of = Face::all(mesh.n_faces()).collect();
-        Self { unit: mesh.scale(), vertex_of, face_of, uv: Vec::new(), mesh }
+        Self { unit: mesh.scale(), vertex_of, face_of, uv: Vec::new(), weight: None, mesh }
     }
 
     /// The area of the island.
@@ -70,7 +72,7 @@ impl IslandMap {
         self.mesh.face_areas().iter().sum::<f64>() * self.unit.powi(2)
     }
 
-    /// Maps the island.
+    /// Maps the island, from its map if it has one.
     pub(crate) fn map(
         &mut self,
         outlines: Outlines,
@@ -78,12 +80,50 @@ impl IslandMap {
         observer: &mut dyn Observer,
     ) -> Result<Status, Error> {
         let overlap = outlines == Outlines::MayCross;
-        let (uv, status) = map_island(&self.mesh, AREA_TOLERANCE, overlap, max_iterations, observer)?;
-        self.uv = uv;
+        let start = self.weight.map(|weight| IslandStart::Map(&self.uv, weight));
+        let goal = IslandGoal { tolerance: AREA_TOLERANCE, overlap, max_iterations, start };
+        let mapped = map_island(&self.mesh, &goal, observer)?;
+        Ok(self.take(mapped))
+    }
+
+    /// Maps the island from wanted images of its faces; its outline may cross itself.
+    pub(super) fn map_from(
+        &mut self,
+        shapes: &[[[f64; 2]; 3]],
+        observer: &mut dyn Observer,
+    ) -> Result<Status, Error> {
+        let start = Some(IslandStart::Shapes(shapes));
+        let goal = IslandGoal { tolerance: AREA_TOLERANCE, overlap: true, max_iterations: None, start };
+        let mapped = map_island(&self.mesh, &goal, observer)?;
+        Ok(self.take(mapped))
+    }
+
+    /// Takes a map, scaled to the area of the island.
+    fn take(&mut self, mapped: MappedIsland) -> Status {
+        (self.uv, self.weight) = (mapped.uv, Some(mapped.weight));
         let area: f64 = self.mesh.faces().iter().map(|&face| signed_area(face.map(|v| self.uv[v]))).sum();
         let scale = (self.area() / area).sqrt();
         self.uv.iter_mut().flatten().for_each(|x| *x *= scale);
-        Ok(status)
+        mapped.status
+    }
+
+    /// The island without its map.
+    pub(crate) fn unmapped(mut self) -> Self {
+        self.uv.clear();
+        self.weight = None;
+        self
+    }
+
+    /// Takes over the map of an island of which this one is a part.
+    pub(super) fn take_over(&mut self, whole: &Self) {
+        self.uv = vec![[0.0; 2]; self.vertex_of.len()];
+        for (corners, face) in self.mesh.faces().iter().zip(&self.face_of) {
+            let in_whole = whole.face_of.partition_point(|before| before < face);
+            for (&vertex, &image) in corners.iter().zip(&whole.mesh.faces()[in_whole]) {
+                self.uv[vertex] = whole.uv[image];
+            }
+        }
+        self.weight = whole.weight;
     }
 
     /// The island and its map in a unit of which this is the length.
@@ -197,7 +237,7 @@ impl Copies {
         let faces: Vec<_> = face_of.iter().map(|face| face.corners().map(number)).collect();
         let points = coordinates(vertex_of.iter().map(|&vertex| mesh.mesh.points()[vertex]));
         let mesh = TriangleMesh::new(&points, &faces)?;
-        Ok(IslandMap { unit: mesh.scale(), mesh, vertex_of, face_of, uv: Vec::new() })
+        Ok(IslandMap { unit: mesh.scale(), mesh, vertex_of, face_of, uv: Vec::new(), weight: None })
     }
 }
 

@@ -15,7 +15,9 @@
 //!
 //! Input: a [`Surface`]. Cost: the search does not grow with the mesh; all else is that of one to four maps.
 
+mod carry;
 mod chord;
+mod coarse;
 mod component;
 mod cones;
 mod correction;

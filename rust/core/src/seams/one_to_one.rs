@@ -20,14 +20,16 @@ use crate::mesh::Edge;
 /// would be sheared too much.
 const HOPELESS: f64 = 0.01;
 
-/// Larger islands are parted by a chord at once too, since such maps of them take long.
-const LARGE: usize = 20_000;
+/// Other starts are tried for islands whose outline cannot be pushed apart, since they take long, only where so little is
+/// covered twice, and the mean may rise by so much.
+const SHALLOW: f64 = 0.006;
+const LEAST_ROOM: f64 = 0.004;
 
 /// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
 const ACCEPTED: f64 = 0.03;
 
 /// The most iterations for such an outline, where a chord is the alternative.
-const MOST_ITERATIONS: usize = 60;
+const MOST_ITERATIONS: usize = 32;
 
 /// The most chords in one component.
 const MOST_CHORDS: usize = 8;
@@ -50,6 +52,8 @@ pub(super) struct Limits {
     pub shear: f64,
     /// The most islands.
     pub max_islands: usize,
+    /// Whether to try other starts than the map itself, which take long.
+    pub tries_other_starts: bool,
 }
 
 /// The chords of a cut of the proxy: one for each island that covers much of its place twice.
@@ -81,6 +85,8 @@ pub(super) fn one_to_one(
     let mean = maps::figures(&seamed.islands).mean;
     let mut left = ACCEPTED.min((limits.shear - mean).max(0.0)) * total;
     let mut n_chords = 0;
+    // until one was in vain
+    let mut tries_others = limits.tries_other_starts;
     let mut k = 0;
     while k < seamed.islands.len() {
         let overlap = overlap(&seamed.islands[k]);
@@ -93,9 +99,10 @@ pub(super) fn one_to_one(
         let observer = &mut Phase { whole: &mut *observer, from, to };
         // 1. An outline that does not cross itself, where that costs little
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < limits.max_islands;
-        let is_promising = overlap.share <= HOPELESS && seamed.islands[k].face_of.len() <= LARGE;
-        if may_part && is_promising {
-            let spent = uncross(&mut seamed.islands[k], left, observer)?;
+        if may_part && overlap.share <= HOPELESS {
+            let tries_here = tries_others && overlap.share <= SHALLOW && left >= LEAST_ROOM * total;
+            let spent = uncross(&mut seamed.islands[k], left, tries_here, observer)?;
+            tries_others &= spent.is_some() || !tries_here;
             left -= spent.unwrap_or(0.0).max(0.0);
             if spent.is_some() {
                 continue;
@@ -113,6 +120,8 @@ pub(super) fn one_to_one(
             continue;
         }
         // 3. Where there is none, such an outline whatever it costs
+        let island = seamed.islands[k].clone();
+        seamed.islands[k] = island.unmapped();
         if seamed.islands[k].map(Outlines::MayNotCross, None, observer)? == Status::Cancelled {
             return Err(Error::CancelledEarly);
         }
@@ -124,12 +133,23 @@ pub(super) fn one_to_one(
 
 /// Maps an island again so that its outline does not cross itself, if that raises the sum of σ₁/σ₂ over the area by no
 /// more than `accepted`; returns by how much.
-fn uncross(island: &mut IslandMap, accepted: f64, observer: &mut dyn Observer) -> Result<Option<f64>, Error> {
+fn uncross(
+    island: &mut IslandMap,
+    accepted: f64,
+    tries_others: bool,
+    observer: &mut dyn Observer,
+) -> Result<Option<f64>, Error> {
+    // 1. From the map with outlines pushed apart, else from another start
     let mut mapped = island.clone();
-    let status = mapped.map(Outlines::MayNotCross, Some(MOST_ITERATIONS), observer)?;
+    let mut status = mapped.map(Outlines::MayNotCross, Some(MOST_ITERATIONS), observer)?;
+    if status == Status::Stalled && tries_others {
+        mapped = mapped.unmapped();
+        status = mapped.map(Outlines::MayNotCross, Some(MOST_ITERATIONS), observer)?;
+    }
     if status == Status::Cancelled {
         return Err(Error::CancelledEarly);
     }
+    // 2. The price
     let rise = (maps::figures([&mapped]).mean - maps::figures([&*island]).mean) * island.area();
     if status != Status::Converged || rise > accepted {
         return Ok(None);
@@ -147,7 +167,7 @@ fn part(
     observer: &mut dyn Observer,
 ) -> Result<usize, Error> {
     let mut parts = maps::islands(mesh, &seamed.cut)?;
-    let mut kept = Vec::new();
+    let (mut kept, mut parted) = (Vec::new(), Vec::new());
     let mut n_kept = 0;
     for (k, island) in seamed.islands.drain(..).enumerate() {
         let is_whole = |part: &IslandMap| {
@@ -157,7 +177,13 @@ fn part(
             parts.remove(whole);
             kept.push(island);
             n_kept += usize::from(k < n_done);
+        } else {
+            parted.push(island);
         }
+    }
+    for part in &mut parts {
+        let whole = parted.iter().find(|island| island.face_of.binary_search(&part.face_of[0]).is_ok());
+        whole.into_iter().for_each(|whole| part.take_over(whole));
     }
     maps::map_all(&mut parts, Outlines::MayCross, observer)?;
     kept.splice(n_kept..n_kept, parts);

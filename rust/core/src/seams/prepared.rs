@@ -2,7 +2,7 @@
 //! A component made ready for the search: its proxy with the costs and the plate, and the way of its seams back to the
 //! component.
 
-use std::mem::swap;
+use std::mem::{swap, take};
 
 use super::cost::{Preferences, costs};
 use super::cut::Cut;
@@ -60,6 +60,8 @@ pub(super) struct Wishes<'a> {
     pub symmetry: Symmetry,
     pub max_islands: usize,
     pub overlap: bool,
+    /// Whether maps whose outlines may not cross are worth other starts, which take long.
+    pub tries_other_starts: bool,
     pub method: SeamMethod,
 }
 
@@ -86,6 +88,9 @@ pub(super) struct Prepared<'a> {
     parts: Option<Vec<Vec<Edge>>>,
     plate: Plate,
     pub component: Fine<'a>,
+    /// The openness at each vertex of the proxy, and the mirror plane.
+    openness: Vec<f64>,
+    plane: Option<MirrorPlane>,
     /// The least figures that allowed seams leave; no bounds where none are forbidden.
     least: Figures,
     least_rate: f64,
@@ -114,10 +119,9 @@ impl<'a> Prepared<'a> {
             Symmetry::Auto => mirror_plane(&fine.mesh),
             Symmetry::Off => None,
         };
-        let plane = plane.as_ref();
         report(observer, 0.3)?;
         let mut phase = Phase { whole: &mut *observer, from: 0.3, to: 0.6 };
-        let coarse = proxy(&fine.mesh, plane, &mut phase)?;
+        let coarse = proxy(&fine.mesh, plane.as_ref(), &mut phase)?;
         let proxy = EdgeMesh::new(coarse.mesh.clone());
         let parents = coarse.halves.as_ref().map(|_| parents(fine, &proxy, &coarse));
         let mirror = coarse.mirror.clone().map(|vertices| (mirrored_edges(&proxy, &vertices), vertices));
@@ -126,7 +130,8 @@ impl<'a> Prepared<'a> {
         // 2. The costs
         report(observer, 0.6)?;
         let sight = openness(&proxy.mesh, coarse.mirror.as_deref());
-        let view = View { proxy: &proxy, openness: &sight, plane, is_symmetric: mirror.is_some() };
+        let view =
+            View { proxy: &proxy, openness: &sight, plane: plane.as_ref(), is_symmetric: mirror.is_some() };
         let cost = view.proxy_costs(fine, wishes, parents.as_deref());
         report(observer, 0.8)?;
         let mut component = view.fine(fine, coarse.nearest, wishes);
@@ -137,11 +142,7 @@ impl<'a> Prepared<'a> {
             component_mirror: None,
         };
         let cost = symmetric_costs(cost, mirror.as_ref().map(|(_, edges)| &edges[..]));
-        if let Some(mirror) = &component.mirror {
-            mirror_nearest(&mut component.nearest, mirror, coarse.mirror.as_deref());
-            let images = mirrored_edges(fine, mirror);
-            component.cost = symmetric_costs(component.cost, Some(&images));
-        }
+        component.make_symmetric(coarse.mirror.as_deref());
         // 3. The plate
         report(observer, 0.9)?;
         let plate = Plate::new(&proxy)?;
@@ -155,6 +156,8 @@ impl<'a> Prepared<'a> {
             parts,
             plate,
             component,
+            openness: sight,
+            plane,
             least,
             least_rate: LEAST_RATE,
             plain,
@@ -271,7 +274,8 @@ impl<'a> Prepared<'a> {
             given,
             max_islands: self.max_islands,
             target: aim,
-            bound: (1.0 + PERCENTILE * (target - 1.0)).max(PERCENTILE_SLACK * self.least.percentile),
+            // where the mean is predicted too high, so is the percentile
+            bound: (1.0 + PERCENTILE * (aim.max(target) - 1.0)).max(PERCENTILE_SLACK * self.least.percentile),
         }
     }
 
@@ -292,28 +296,69 @@ impl<'a> Prepared<'a> {
             let seams = Cut::none(fine.mesh).with(&inner.collect::<Vec<_>>());
             return Ok(fine.completed(seams, self.max_islands));
         }
-        let wanted = cut.islands(&self.proxy).len();
-        let is_sound = |lifted: &Cut| {
-            let islands = lifted.islands(fine.mesh);
-            islands.are_disks() && islands.len() == wanted
-        };
-        let mirrors = fine.mirror.as_ref().zip(self.mirror.as_ref());
-        let mirrors = mirrors.map(|(fine, (proxy, _))| Mirrors { fine, proxy });
-        let watch = Watch::new(observer, 0.0, MESSAGE);
-        let mut lifted = self.lift(mirrors).of(cut, &watch)?;
-        if mirrors.is_some() && !is_sound(&lifted) {
-            lifted = self.lift(None).of(cut, &watch)?;
-        }
-        Ok(fine.completed(lifted, self.max_islands))
+        let mirror = self.mirror.as_ref().map(|(vertices, _)| &vertices[..]);
+        fine.lifted(&self.proxy, cut, mirror, self.max_islands, observer)
     }
 
-    fn lift<'b>(&'b self, mirrors: Option<Mirrors<'b>>) -> Lift<'b> {
-        let Fine { mesh, cost, nearest, .. } = &self.component;
-        Lift { fine: mesh, proxy: &self.proxy, cost, nearest, mirrors }
+    /// A finer mesh onto which seams of the component are lifted; `nearest` is the vertex for which each vertex of the
+    /// component stands, and `mirror` its mirror image.
+    pub(super) fn finer<'b>(
+        &self,
+        mesh: &'b EdgeMesh,
+        nearest: Vec<Vertex>,
+        mirror: Option<&[Vertex]>,
+        wishes: &Wishes<'_>,
+    ) -> Fine<'b> {
+        let view = View {
+            proxy: &self.proxy,
+            openness: &self.openness,
+            plane: self.plane.as_ref(),
+            is_symmetric: self.mirror.is_some() && mirror.is_some(),
+        };
+        let mut finer = view.fine(mesh, nearest, wishes);
+        finer.make_symmetric(mirror);
+        finer
     }
 }
 
 impl Fine<'_> {
+    /// The seams of a cut of a mesh whose vertices stand for those of this one, with the mirror images of these where
+    /// both are symmetric.
+    ///
+    /// # Errors
+    /// [`Error::CancelledEarly`].
+    pub(super) fn lifted(
+        &self,
+        proxy: &EdgeMesh,
+        cut: &Cut,
+        mirror: Option<&[Vertex]>,
+        max_islands: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Cut, Error> {
+        let Self { mesh, cost, nearest, .. } = self;
+        let wanted = cut.islands(proxy).len();
+        let is_sound = |lifted: &Cut| {
+            let islands = lifted.islands(mesh);
+            islands.are_disks() && islands.len() == wanted
+        };
+        let mirrors = self.mirror.as_ref().zip(mirror).map(|(fine, proxy)| Mirrors { fine, proxy });
+        let watch = Watch::new(observer, 0.0, MESSAGE);
+        let mut lifted = Lift { fine: mesh, proxy, cost, nearest, mirrors }.of(cut, &watch)?;
+        if mirrors.is_some() && !is_sound(&lifted) {
+            lifted = Lift { fine: mesh, proxy, cost, nearest, mirrors: None }.of(cut, &watch)?;
+        }
+        Ok(self.completed(lifted, max_islands))
+    }
+
+    /// Makes costs and the vertices for which others stand symmetric, where the triangulation is; `of_proxy` are the
+    /// mirror images of those others.
+    fn make_symmetric(&mut self, of_proxy: Option<&[Vertex]>) {
+        let Some(mirror) = &self.mirror else { return };
+        mirror_nearest(&mut self.nearest, mirror, of_proxy);
+        let images = mirrored_edges(self.mesh, mirror);
+        self.cost = symmetric_costs(take(&mut self.cost), Some(&images));
+    }
+
     /// Edges through an island with their mirror images through another one, where the cut is symmetric, and both leave
     /// disks and not too many.
     pub(super) fn with_image(&self, cut: &Cut, edges: Vec<Edge>, max_islands: usize) -> Vec<Edge> {
@@ -458,7 +503,7 @@ fn parts(parents: &[Option<Edge>], n_edges: usize) -> Vec<Vec<Edge>> {
 
 /// Factors of the edges of a mesh carried to a coarser one: each vertex of that has the mean of the edges near to it,
 /// infinite where most of them are; edges have the mean of their ends, and are nearly forbidden where one end is.
-fn carried(fine: &EdgeMesh, weights: &[f64], coarse: &EdgeMesh) -> Vec<f64> {
+pub(super) fn carried(fine: &EdgeMesh, weights: &[f64], coarse: &EdgeMesh) -> Vec<f64> {
     let nearest = nearest_vertices(&fine.mesh, &coarse.mesh);
     // the sum and the number of finite factors, and the number of infinite ones
     let mut sums = vec![[0.0; 3]; coarse.n_vertices()];

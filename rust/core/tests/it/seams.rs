@@ -511,3 +511,24 @@ fn what_is_no_surface_is_refused() {
     assert!(kind(array![[0, 1, 2]]).is_ok());
     assert_eq!(kind(array![[0, 1, 2], [0, 1, 2]]), Err(ErrorKind::DuplicateFace));
 }
+
+#[test]
+fn a_large_surface_is_cut_by_the_seams_of_a_coarser_one() {
+    // 40,962 vertices
+    let body = bumpy(6);
+    let unwrap = unwrapped(&body, for_target(1.25));
+    assert_eq!(unwrap.status, Status::Converged);
+    assert!(
+        unwrap.shear <= 1.265 && unwrap.area_ratio_std <= 0.005,
+        "{} {}",
+        unwrap.shear,
+        unwrap.area_ratio_std
+    );
+    let seams = found(&body, &for_target(1.25));
+    assert_eq!(edges_of(&seams.edges), edges_of(&unwrap.edges));
+    let patches = surface(&body).cut(&seams.edges).expect("seams are edges");
+    assert!(patches.iter().all(|patch| patch.is_disk()));
+    // not many more seams than the same body needs with a tenth of the vertices
+    let small = found(&bumpy(5), &for_target(1.25));
+    assert!(seams.length < 1.2 * small.length, "{} {}", seams.length, small.length);
+}

@@ -25,13 +25,13 @@ use refine::refine;
 use symmetric::{SymmetricMesh, symmetric_mesh};
 
 /// The vertices of a decimated proxy.
-const TARGET: usize = 1000;
+const TARGET: usize = 850;
 
 /// Meshes of up to this many vertices are not decimated.
-const LARGEST: usize = 1350;
+const LARGEST: usize = 1150;
 
 /// Meshes of fewer vertices are refined.
-const SMALL: usize = 900;
+const SMALL: usize = 600;
 
 /// Meshes of fewer vertices are refined twice.
 const TINY: usize = 250;
@@ -72,20 +72,31 @@ pub(super) fn proxy(
     if mesh.n_vertices() < SMALL {
         return refined(mesh, plane);
     }
-    let is_large = mesh.n_vertices() > LARGEST;
-    if let Some(plane) = plane.filter(|_| is_large) {
-        let watch = Watch::new(observer, 0.0, "Simplifying the surface");
-        let symmetric = symmetric_mesh(mesh, plane, TARGET, &watch).ok_or(Error::CancelledEarly)?;
+    if mesh.n_vertices() > LARGEST {
+        return coarser(mesh, plane, TARGET, observer);
+    }
+    let nearest = Vertex::all(mesh.n_vertices()).collect();
+    Ok(with_mirror(mesh.clone(), plane, nearest))
+}
+
+/// A mesh of about `n_vertices` that stands for one of more, symmetric under `plane` where that can be.
+///
+/// # Errors
+/// Cancelled.
+pub(super) fn coarser(
+    mesh: &TriangleMesh,
+    plane: Option<&MirrorPlane>,
+    n_vertices: usize,
+    observer: &mut dyn Observer,
+) -> Result<Proxy, Error> {
+    let watch = Watch::new(observer, 0.0, "Simplifying the surface");
+    if let Some(plane) = plane {
+        let symmetric = symmetric_mesh(mesh, plane, n_vertices, &watch).ok_or(Error::CancelledEarly)?;
         if let Some(symmetric) = symmetric {
             return Ok(sliced(mesh, symmetric));
         }
     }
-    if is_large {
-        let watch = Watch::new(observer, 0.0, "Simplifying the surface");
-        return decimated(mesh, &watch);
-    }
-    let nearest = Vertex::all(mesh.n_vertices()).collect();
-    Ok(with_mirror(mesh.clone(), plane, nearest))
+    decimated(mesh, n_vertices, &watch)
 }
 
 /// The proxy by uniform refinement.
@@ -112,8 +123,8 @@ fn parts(half: &Half, parents: &[[Vertex; 2]], n: usize) -> [Half; 2] {
 }
 
 /// The proxy by decimation.
-fn decimated(mesh: &TriangleMesh, watch: &Watch<'_>) -> Result<Proxy, Error> {
-    let decimated = decimate(mesh, None, TARGET, watch).ok_or(Error::CancelledEarly)?;
+fn decimated(mesh: &TriangleMesh, n_vertices: usize, watch: &Watch<'_>) -> Result<Proxy, Error> {
+    let decimated = decimate(mesh, None, n_vertices, watch).ok_or(Error::CancelledEarly)?;
     let points = decimated.vertices.iter().map(|&vertex| mesh.points()[vertex]).collect();
     Ok(Proxy {
         mesh: TriangleMesh::at_given_points(points, decimated.faces)?,

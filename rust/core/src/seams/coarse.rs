@@ -4,7 +4,9 @@
 //! 1. A coarser mesh, symmetric where the component is.
 //! 2. Its seams, which its maps have corrected.
 //! 3. They are lifted to the component.
-//! 4. Its islands are mapped, once, and made one-to-one.
+//! 4. Its islands are mapped and made one-to-one.
+//!
+//! Where these maps are sheared more than was wanted, the last three steps follow once more.
 //!
 //! Cost: that of the maps of the component.
 
@@ -20,9 +22,14 @@ use super::proxy::{Proxy, coarser};
 use super::symmetry::mirror_plane;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
+use crate::mesh::Vertex;
 
 /// The vertices of the coarser mesh.
 const COARSE: usize = 6000;
+
+/// Once more, where maps of the component are sheared more than was wanted: with this part of the excess that would be
+/// right by the rule of three.
+const LOWER: f64 = 0.97;
 
 /// Seeks the seams of a large component.
 ///
@@ -41,34 +48,69 @@ pub(super) fn seek_coarsely(
     };
     let mut phase = Phase { whole: &mut *observer, from: 0.02, to: 0.1 };
     let Proxy { mesh, nearest, mirror, .. } = coarser(&fine.mesh, plane.as_ref(), COARSE, &mut phase)?;
-    let coarse = EdgeMesh::new(mesh);
-    let weights = wishes.weights.map(|weights| carried(fine, weights, &coarse));
-    let stiffness = stiffness([&coarse, fine].map(|mesh| mesh.n_vertices() as f64));
-    let target = 1.0 + stiffness * (wishes.target - 1.0);
-    let coarse_wishes = Wishes { target, weights: weights.as_deref(), tries_other_starts: false, ..*wishes };
-    // 2. Its seams
+    let coarse = Coarse { fine, mesh: EdgeMesh::new(mesh), nearest, mirror };
+    let weights = wishes.weights.map(|weights| carried(fine, weights, &coarse.mesh));
+    let coarse_wishes = Wishes { weights: weights.as_deref(), tries_other_starts: false, ..*wishes };
     let mut phase = Phase { whole: &mut *observer, from: 0.1, to: 0.15 };
-    let mut prepared = Prepared::new(&coarse, &coarse_wishes, &mut phase)?;
-    let mut phase = Phase { whole: &mut *observer, from: 0.15, to: 0.5 };
-    let seamed = seek_prepared(&mut prepared, &coarse_wishes, &mut phase)?;
-    // 3. Those of the component
-    let component = prepared.finer(fine, nearest, mirror.as_deref(), wishes);
-    let mut phase = Phase { whole: &mut *observer, from: 0.5, to: 0.55 };
-    let cut = component.lifted(&coarse, &seamed.cut, mirror.as_deref(), wishes.max_islands, &mut phase)?;
-    check_allowed(fine, &cut, wishes)?;
-    // 4. Its maps
-    let mut islands = maps::islands(fine, &cut)?;
-    let mut phase = Phase { whole: &mut *observer, from: 0.55, to: 0.85 };
-    map_from_coarse(&mut islands, fine, &Carrier::new(&coarse, &seamed.islands), &mut phase)?;
-    let measured = Some(maps::figures(&islands));
-    let mut seamed = Seamed { cut, islands, predicted: seamed.predicted, measured };
-    if !wishes.overlap {
-        let shear = MET * wishes.target;
-        let limits = Limits { shear, max_islands: wishes.max_islands, tries_other_starts: false };
-        let mut phase = Phase { whole: observer, from: 0.85, to: 1.0 };
-        one_to_one(&mut seamed, &component, limits, &mut phase)?;
+    let mut prepared = Prepared::new(&coarse.mesh, &coarse_wishes, &mut phase)?;
+    // 2. to 4. The component's seams by those of the mesh
+    let mut excess = stiffness([&coarse.mesh, fine].map(|mesh| mesh.n_vertices() as f64));
+    let mut phase = Phase { whole: &mut *observer, from: 0.15, to: 0.6 };
+    let seamed = coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)?;
+    let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
+    if shear <= MET * prepared.within_reach(wishes).target {
+        return Ok(seamed);
     }
-    Ok(seamed)
+    excess *= LOWER * (wishes.target - 1.0) / (shear - 1.0);
+    let mut phase = Phase { whole: observer, from: 0.6, to: 1.0 };
+    coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)
+}
+
+/// A coarser mesh of a component.
+struct Coarse<'a> {
+    fine: &'a EdgeMesh,
+    mesh: EdgeMesh,
+    /// The vertex of the component for which each vertex stands.
+    nearest: Vec<Vertex>,
+    /// The mirror image of each vertex, if the mesh is symmetric.
+    mirror: Option<Vec<Vertex>>,
+}
+
+impl Coarse<'_> {
+    /// The seams of the component, by those whose maps of the coarser mesh have the excess of the target's shear over 1
+    /// times `excess`.
+    fn seek(
+        &self,
+        prepared: &mut Prepared<'_>,
+        [coarse_wishes, wishes]: [&Wishes<'_>; 2],
+        excess: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Seamed, Error> {
+        let (fine, max_islands) = (self.fine, wishes.max_islands);
+        // 2. The seams of the coarser mesh
+        let target = 1.0 + excess * (wishes.target - 1.0);
+        let mut phase = Phase { whole: &mut *observer, from: 0.0, to: 0.45 };
+        let coarse = seek_prepared(prepared, &Wishes { target, ..*coarse_wishes }, &mut phase)?;
+        // 3. Those of the component
+        let mirror = self.mirror.as_deref();
+        let component = prepared.finer(fine, self.nearest.clone(), mirror, wishes);
+        let mut phase = Phase { whole: &mut *observer, from: 0.45, to: 0.5 };
+        let cut = component.lifted(&self.mesh, &coarse.cut, mirror, max_islands, &mut phase)?;
+        check_allowed(fine, &cut, wishes)?;
+        // 4. Its maps
+        let mut islands = maps::islands(fine, &cut)?;
+        let mut phase = Phase { whole: &mut *observer, from: 0.5, to: 0.85 };
+        map_from_coarse(&mut islands, fine, &Carrier::new(&self.mesh, &coarse.islands), &mut phase)?;
+        let measured = Some(maps::figures(&islands));
+        let mut seamed = Seamed { cut, islands, predicted: coarse.predicted, measured };
+        if !wishes.overlap {
+            let shear = MET * prepared.within_reach(wishes).target;
+            let limits = Limits { shear, max_islands, tries_other_starts: false };
+            let mut phase = Phase { whole: observer, from: 0.85, to: 1.0 };
+            one_to_one(&mut seamed, &component, limits, &mut phase)?;
+        }
+        Ok(seamed)
+    }
 }
 
 /// Maps islands from the maps of the coarse ones.

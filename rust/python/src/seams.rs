@@ -242,7 +242,7 @@ fn direction(object: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 /// target : float
 ///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
 ///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
-///     them up to three times as long and shows hardly any shear.
+///     them about a quarter longer, up to three times on much relief, and shows hardly any shear.
 /// fixed : (k, 2) integer array, optional
 ///     Seams that are given, each the two ends of an edge. They stay, and others are added.
 /// weights : (n,) or (e,) real array, optional
@@ -256,8 +256,7 @@ fn direction(object: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
 ///     "auto", the default, mirrors the seams where the surface has a mirror plane, unless symmetric seams are much
 ///     worse than others. True means "auto"; False and None mean "off".
 /// max_islands : int, optional
-///     The most islands, ≥ 1. Parts between `fixed` seams, and components, are not counted together: each has at least
-///     one island.
+///     The most islands of the surface, ≥ 1; components, and parts between `fixed` seams, have at least one each.
 /// overlap : bool
 ///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
 /// diagonals : (d, 2) integer array, optional
@@ -351,7 +350,7 @@ pub fn seams(
 /// target : float
 ///     The mean of σ₁/σ₂ over the surface that is wanted, > 1: the ratio of the singular values of each face's map,
 ///     weighted by area; 1 is no shear. Default 1.4, which needs the shortest seams that still look even; 1.25 needs
-///     them up to three times as long and shows hardly any shear.
+///     them about a quarter longer, up to three times on much relief, and shows hardly any shear.
 /// fixed : (k, 2) integer array, optional
 ///     Seams that are given, each the two ends of an edge. They stay, and others are added.
 /// weights : (n,) or (e,) real array, optional
@@ -365,8 +364,7 @@ pub fn seams(
 ///     "auto", the default, mirrors the seams where the surface has a mirror plane, unless symmetric seams are much
 ///     worse than others. True means "auto"; False and None mean "off".
 /// max_islands : int, optional
-///     The most islands, ≥ 1. Parts between `fixed` seams, and components, are not counted together: each has at least
-///     one island.
+///     The most islands of the surface, ≥ 1; components, and parts between `fixed` seams, have at least one each.
 /// overlap : bool
 ///     Let islands overlap themselves in the plane, which makes seams shorter. Default False.
 /// diagonals : (d, 2) integer array, optional

@@ -8,6 +8,7 @@
 //!
 //! The images do not fit together exactly: they are the start of a map. Cost: O(n log n).
 
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 
 use super::edge_mesh::EdgeMesh;
@@ -20,6 +21,9 @@ use crate::vector::Vector3;
 
 /// Faces within this many edges of the coarse mesh from an island's boundary have no models of their own.
 const BANK: f64 = 1.0;
+
+/// Faces whose squared sine of an angle is less are no models.
+const FLAT: f64 = 1e-12;
 
 /// The wanted images of an island's faces.
 pub(super) type Shapes = Vec<[[f64; 2]; 3]>;
@@ -43,15 +47,15 @@ impl<'a> Carrier<'a> {
         Self { coarse, islands, centers, island_of }
     }
 
-    /// The wanted images of the faces of an island of a finer mesh; `None` where the coarse mesh has no island.
-    pub(super) fn shapes(&self, fine: &EdgeMesh, island: &IslandMap) -> Option<Shapes> {
+    /// The wanted images of the faces of an island of a finer mesh.
+    pub(super) fn shapes(&self, fine: &EdgeMesh, island: &IslandMap) -> Shapes {
         // 1. The coarse island
         let own_centers = centers(&fine.mesh, island.face_of.iter().copied());
         let nearest = NearestPoint::new(&self.centers).of_all(&own_centers);
         let mut counts = vec![0; self.islands.len()];
         nearest.iter().for_each(|face| counts[self.island_of[face.index()]] += 1);
-        let most = (0..counts.len()).max_by_key(|&k| (counts[k], std::cmp::Reverse(k)))?;
-        let model = &self.islands[most];
+        let most = (0..counts.len()).max_by_key(|&k| (counts[k], Reverse(k)));
+        let model = &self.islands[most.unwrap_or_default()];
         // 2. The models
         let model_centers: Vec<_> = model.face_of.iter().map(|&face| self.centers[face]).collect();
         let search = NearestPoint::new(&model_centers);
@@ -59,11 +63,10 @@ impl<'a> Carrier<'a> {
         let inner = faces_within(&island.mesh, n_rings.ceil() as usize);
         let models = models(&island.mesh, &inner, |face| search.of(own_centers[face]).index());
         // 3. The images
-        let shapes = parallel::map(island.face_of.len(), |face| {
+        parallel::map(island.face_of.len(), |face| {
             let corners = triangle(fine.mesh.points(), fine.mesh.faces()[island.face_of[face]]);
             self.image(corners, model, models[face])
-        });
-        Some(shapes)
+        })
     }
 
     /// The image of a triangle under the map of a face of a coarse island.
@@ -74,10 +77,13 @@ impl<'a> Carrier<'a> {
         let [p, q] = [corners[1] - corners[0], corners[2] - corners[0]];
         let [pp, pq, qq] = [p.dot(p), p.dot(q), q.dot(q)];
         let determinant = pp * qq - pq * pq;
+        let is_sound = determinant > FLAT * pp * qq;
         let mapped = |edge: Vector3| {
             let edge = turned(edge, normal, model_normal);
             let [ep, eq] = [edge.dot(p), edge.dot(q)];
-            let [s, t] = [qq * ep - pq * eq, pp * eq - pq * ep].map(|x| x / determinant);
+            // a face of almost no area is no model
+            let [s, t] =
+                [qq * ep - pq * eq, pp * eq - pq * ep].map(|x| if is_sound { x / determinant } else { 0.0 });
             [0, 1].map(|k| s * (image[1][k] - image[0][k]) + t * (image[2][k] - image[0][k]))
         };
         [[0.0; 2], mapped(b - a), mapped(c - a)]
@@ -153,7 +159,7 @@ mod tests {
         let island = &islands[0];
         let all = vec![true; island.face_of.len()];
         assert_eq!(models(&island.mesh, &all, |face| face), (0..all.len()).collect::<Vec<_>>());
-        let shapes = Carrier::new(&mesh, &islands).shapes(&mesh, island).unwrap();
+        let shapes = Carrier::new(&mesh, &islands).shapes(&mesh, island);
         let inner = faces_within(&island.mesh, 2);
         assert!(inner.contains(&true) && inner.contains(&false));
         for (face, shape) in shapes.iter().enumerate().filter(|&(face, _)| inner[face]) {

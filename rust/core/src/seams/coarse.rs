@@ -11,15 +11,15 @@
 //! Cost: that of the maps of the component.
 
 use super::carry::Carrier;
-use super::component::{check_allowed, seek_prepared, stiffness};
+use super::direct::{check_allowed, seek_prepared, stiffness};
 use super::edge_mesh::EdgeMesh;
-use super::maps::{self, IslandMap, Outlines};
+use super::maps::{self, IslandMap};
 use super::one_to_one::{Limits, Seamed, one_to_one};
-use super::options::{MET, Symmetry};
+use super::options::MET;
 use super::prepared::{Prepared, Wishes, carried};
 use super::progress::report;
 use super::proxy::{Proxy, coarser};
-use super::symmetry::mirror_plane;
+use super::symmetry::MirrorPlane;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::Vertex;
@@ -27,43 +27,43 @@ use crate::mesh::Vertex;
 /// The vertices of the coarser mesh.
 const COARSE: usize = 6000;
 
-/// Once more, where maps of the component are sheared more than was wanted: with this part of the excess that would be
-/// right by the rule of three.
+/// Factor of the corrected excess of the second try, so that it does not fall short again.
 const LOWER: f64 = 0.97;
 
-/// Seeks the seams of a large component.
+/// Least excess of the second try.
+const LEAST_EXCESS: f64 = 0.4;
+
+/// Seeks the seams of a large component, with its mirror plane.
 ///
 /// # Errors
 /// [`Error::CancelledEarly`], or failed numerics.
 pub(super) fn seek_coarsely(
     fine: &EdgeMesh,
+    plane: Option<MirrorPlane>,
     wishes: &Wishes<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Seamed, Error> {
     // 1. The coarser mesh
-    report(observer, 0.0)?;
-    let plane = match wishes.symmetry {
-        Symmetry::Auto => mirror_plane(&fine.mesh),
-        Symmetry::Off => None,
-    };
     let mut phase = Phase { whole: &mut *observer, from: 0.02, to: 0.1 };
     let Proxy { mesh, nearest, mirror, .. } = coarser(&fine.mesh, plane.as_ref(), COARSE, &mut phase)?;
     let coarse = Coarse { fine, mesh: EdgeMesh::new(mesh), nearest, mirror };
     let weights = wishes.weights.map(|weights| carried(fine, weights, &coarse.mesh));
-    let coarse_wishes = Wishes { weights: weights.as_deref(), tries_other_starts: false, ..*wishes };
+    let coarse_wishes =
+        Wishes { weights: weights.as_deref(), alone: &[], tries_other_starts: false, ..*wishes };
     let mut phase = Phase { whole: &mut *observer, from: 0.1, to: 0.15 };
-    let mut prepared = Prepared::new(&coarse.mesh, &coarse_wishes, &mut phase)?;
+    let mut prepared = Prepared::new(&coarse.mesh, plane, &coarse_wishes, &mut phase)?;
     // 2. to 4. The component's seams by those of the mesh
-    let mut excess = stiffness([&coarse.mesh, fine].map(|mesh| mesh.n_vertices() as f64));
+    let excess = stiffness([&coarse.mesh, fine].map(|mesh| mesh.n_vertices() as f64));
     let mut phase = Phase { whole: &mut *observer, from: 0.15, to: 0.6 };
-    let seamed = coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)?;
-    let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
-    if shear <= MET * prepared.within_reach(wishes).target {
-        return Ok(seamed);
+    let first = coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)?;
+    let (target, shear) = (prepared.within_reach(wishes).target, first.shear());
+    if shear <= MET * target {
+        return Ok(first);
     }
-    excess *= LOWER * (wishes.target - 1.0) / (shear - 1.0);
+    let excess = (LOWER * excess * (target - 1.0) / (shear - 1.0)).max(LEAST_EXCESS);
     let mut phase = Phase { whole: observer, from: 0.6, to: 1.0 };
-    coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)
+    let second = coarse.seek(&mut prepared, [&coarse_wishes, wishes], excess, &mut phase)?;
+    Ok(if second.shear() < shear { second } else { first })
 }
 
 /// A coarser mesh of a component.
@@ -97,6 +97,7 @@ impl Coarse<'_> {
         let mut phase = Phase { whole: &mut *observer, from: 0.45, to: 0.5 };
         let cut = component.lifted(&self.mesh, &coarse.cut, mirror, max_islands, &mut phase)?;
         check_allowed(fine, &cut, wishes)?;
+        report(&mut phase, 1.0)?;
         // 4. Its maps
         let mut islands = maps::islands(fine, &cut)?;
         let mut phase = Phase { whole: &mut *observer, from: 0.5, to: 0.85 };
@@ -127,11 +128,8 @@ fn map_from_coarse(
         done += island.face_of.len() as f64;
         report(observer, from)?;
         let mut phase = Phase { whole: &mut *observer, from, to };
-        let status = match carrier.shapes(fine, island) {
-            Some(shapes) => island.map_from(&shapes, &mut phase)?,
-            None => island.map(Outlines::MayCross, None, &mut phase)?,
-        };
-        if status == Status::Cancelled {
+        let shapes = carrier.shapes(fine, island);
+        if island.map_from(&shapes, &mut phase)? == Status::Cancelled {
             return Err(Error::CancelledEarly);
         }
     }

@@ -18,11 +18,15 @@ use crate::mesh::Edge;
 /// The shear of the maps may exceed the target by this factor.
 const NEARLY: f64 = 1.011;
 
-/// The first maps may fall short of the target by this part before the seams are called too long, and later ones by that.
+/// Seams are too long where the excess of the maps' shear over 1 is below this part of the target's: for the first maps,
+/// and for later ones.
 const GENEROUS: [f64; 2] = [0.97, 0.9];
 
-/// The most corrections.
+/// The most corrections, where maps have met the target.
 const MOST: usize = 3;
+
+/// The most corrections where none have.
+const MOST_MISSED: usize = 5;
 
 /// Where a lower prediction leaves a cut as it is, its excess is lowered further, by this factor and so many times.
 const LOWER: f64 = 0.8;
@@ -35,7 +39,7 @@ const MOST_CHORDS: usize = 8;
 const SLOPES: [f64; 2] = [0.4, 3.0];
 
 /// Bounds of the excess of a predicted shear over 1 in units of that of the target.
-const EXCESSES: [f64; 2] = [0.4, 1.5];
+const EXCESSES: [f64; 2] = [0.25, 1.5];
 
 /// What corrections have found so far.
 pub(super) struct Correction<'a> {
@@ -120,16 +124,18 @@ impl<'a> Correction<'a> {
     /// The cheapest cut found whose maps meet the target; the one of least shear where none does.
     fn corrected(&mut self, mut solution: Solution, observer: &mut dyn Observer) -> Result<Seamed, Error> {
         let mut best: Option<(bool, f64, Seamed)> = None;
-        for correction in 0..=MOST {
+        for correction in 0..=MOST_MISSED {
             let observer = &mut Phase::of_sequence(&mut *observer, correction);
             let seamed = self.mapped(&solution, observer)?;
-            let shear = seamed.measured.map_or(1.0, |figures| figures.mean);
+            let shear = seamed.shear();
             let is_enough = shear <= NEARLY * self.target;
             let rank = if is_enough { seamed.cut.sum(&self.prepared.component.cost) } else { shear };
             if is_first(&best, is_enough, rank) {
                 best = Some((is_enough, rank, seamed));
             }
-            if self.is_done(shear) || correction == MOST {
+            let most =
+                if best.as_ref().is_some_and(|(is_enough, ..)| *is_enough) { MOST } else { MOST_MISSED };
+            if self.is_done(shear) || correction >= most {
                 break;
             }
             let next = self.next(&solution, shear, observer)?;

@@ -22,6 +22,8 @@ pub(super) struct Part {
     pub face_of: Vec<Face>,
     /// Factors of the cost of a seam, (e,).
     weights: Option<Vec<f64>>,
+    /// Given seams that lie alone and do not cut the part, until others meet them.
+    alone: Vec<Edge>,
 }
 
 impl Part {
@@ -30,6 +32,7 @@ impl Part {
         Wishes {
             target: options.target,
             weights: self.weights.as_deref(),
+            alone: &self.alone,
             front: options.front.map(|front| Vector3(front).normalized()),
             symmetry: options.symmetry,
             max_islands,
@@ -49,11 +52,12 @@ pub(super) fn parts(surface: &Surface, options: &SeamOptions<'_>) -> Result<Vec<
     check(options)?;
     let factors = options.weights.map(|weights| EdgeFactors::new(surface, &table, weights)).transpose()?;
     let diagonals = sorted_edges("diagonals", options.diagonals)?;
+    let given = sorted_edges("fixed", options.fixed)?;
     let patches = match options.fixed {
         Some(fixed) => surface.cut(fixed)?,
         None => surface.cut(Array2::zeros((0, 2)))?,
     };
-    patches.into_iter().map(|patch| part(patch, &diagonals, factors.as_ref())).collect()
+    patches.into_iter().map(|patch| part(patch, [&diagonals, &given], factors.as_ref())).collect()
 }
 
 fn check(options: &SeamOptions<'_>) -> Result<(), Error> {
@@ -79,7 +83,11 @@ fn check(options: &SeamOptions<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn part(patch: Patch, diagonals: &[[Vertex; 2]], factors: Option<&EdgeFactors>) -> Result<Part, Error> {
+fn part(
+    patch: Patch,
+    [diagonals, given]: [&[[Vertex; 2]]; 2],
+    factors: Option<&EdgeFactors>,
+) -> Result<Part, Error> {
     let face_of: Vec<_> = patch.corner_of.rows().into_iter().map(|row| Face(row[0] / 3)).collect();
     let vertex_of = patch.vertex_of;
     let mut mesh = EdgeMesh::new(patch.surface.mesh()?.clone());
@@ -87,8 +95,10 @@ fn part(patch: Patch, diagonals: &[[Vertex; 2]], factors: Option<&EdgeFactors>) 
     let contains = |edges: &[[Vertex; 2]], edge: Edge| edges.binary_search(&ends(edge)).is_ok();
     let weights = factors.map(|factors| mesh.edges.all().map(|edge| factors.at(ends(edge))).collect());
     let is_diagonal = mesh.edges.all().map(|edge| contains(diagonals, edge)).collect();
+    let is_alone = |&edge: &Edge| !mesh.edges.is_boundary(edge) && contains(given, edge);
+    let alone = mesh.edges.all().filter(is_alone).collect();
     mesh.is_diagonal = is_diagonal;
-    Ok(Part { mesh, vertex_of, face_of, weights })
+    Ok(Part { mesh, vertex_of, face_of, weights, alone })
 }
 
 /// The caller's factors at the edges.

@@ -13,7 +13,10 @@
 //!    sheared more than was predicted (`correction`).
 //! 5. Islands must not overlap themselves in the plane (`one_to_one`).
 //!
-//! Input: a [`Surface`]. Cost: the search does not grow with the mesh; all else is that of one to four maps.
+//! A large part has these steps on a coarser mesh first, whose seams and maps are carried to it (`coarse`).
+//!
+//! Input: a [`Surface`]. Cost: the search does not grow with the mesh; all else is that of one to four maps of it, of one
+//! or two where it is large.
 
 mod carry;
 mod chord;
@@ -24,6 +27,7 @@ mod correction;
 mod cost;
 mod cut;
 mod cut_graph;
+mod direct;
 mod edge_mesh;
 mod given;
 mod lift;

@@ -20,9 +20,11 @@ use crate::mesh::Edge;
 /// would be sheared too much.
 const HOPELESS: f64 = 0.01;
 
-/// Other starts are tried for islands whose outline cannot be pushed apart, since they take long, only where so little is
-/// covered twice, and the mean may rise by so much.
+/// Where outlines cannot be pushed apart, other starts are tried if no more of an island's place is covered twice: they
+/// take long.
 const SHALLOW: f64 = 0.006;
+
+/// Other starts are tried if the mean of σ₁/σ₂ may still rise by this.
 const LEAST_ROOM: f64 = 0.004;
 
 /// The mean of σ₁/σ₂ may rise by this for outlines that do not cross themselves.
@@ -43,6 +45,13 @@ pub(super) struct Seamed {
     pub predicted: Figures,
     /// The figures of the maps; `None` for a preview.
     pub measured: Option<MapFigures>,
+}
+
+impl Seamed {
+    /// The mean of σ₁/σ₂ of the maps, or as predicted where there are none.
+    pub(super) fn shear(&self) -> f64 {
+        self.measured.map_or(self.predicted.mean, |figures| figures.mean)
+    }
 }
 
 /// What one-to-one maps must keep.
@@ -99,7 +108,7 @@ pub(super) fn one_to_one(
         let observer = &mut Phase { whole: &mut *observer, from, to };
         // 1. An outline that does not cross itself, where that costs little
         let may_part = n_chords < MOST_CHORDS && seamed.islands.len() < limits.max_islands;
-        if may_part && overlap.share <= HOPELESS {
+        if overlap.share <= HOPELESS {
             let tries_here = tries_others && overlap.share <= SHALLOW && left >= LEAST_ROOM * total;
             let spent = uncross(&mut seamed.islands[k], left, tries_here, observer)?;
             tries_others &= spent.is_some() || !tries_here;
@@ -116,15 +125,12 @@ pub(super) fn one_to_one(
             n_chords += 1;
             report(observer, 0.0)?;
             seamed.cut.add(&fine.with_image(&seamed.cut, chord, limits.max_islands));
+            seamed.cut = fine.with_alone(seamed.cut.clone());
             k = part(seamed, fine.mesh, k, observer)?;
             continue;
         }
         // 3. Where there is none, such an outline whatever it costs
-        let island = seamed.islands[k].clone();
-        seamed.islands[k] = island.unmapped();
-        if seamed.islands[k].map(Outlines::MayNotCross, None, observer)? == Status::Cancelled {
-            return Err(Error::CancelledEarly);
-        }
+        uncross_at_any_price(&mut seamed.islands[k], observer)?;
         k += 1;
     }
     seamed.measured = Some(maps::figures(&seamed.islands));
@@ -156,6 +162,19 @@ fn uncross(
     }
     *island = mapped;
     Ok(Some(rise))
+}
+
+/// Maps an island again so that its outline does not cross itself.
+fn uncross_at_any_price(island: &mut IslandMap, observer: &mut dyn Observer) -> Result<(), Error> {
+    if uncross(island, f64::INFINITY, false, observer)?.is_some() {
+        return Ok(());
+    }
+    let mut mapped = island.clone().unmapped();
+    if mapped.map(Outlines::MayNotCross, None, observer)? == Status::Cancelled {
+        return Err(Error::CancelledEarly);
+    }
+    *island = mapped;
+    Ok(())
 }
 
 /// Maps the parts into which the cut now divides islands, which they replace from the first one not done on; returns its

@@ -15,13 +15,19 @@ use super::options::{SeamMethod, Symmetry};
 use super::paths::{Paths, far_points_within_reach, on_grid};
 use super::plate::Plate;
 use super::progress::{MESSAGE, report};
-use super::proxy::{Proxy, nearest_vertices, proxy};
+use super::proxy::{Proxy, coarser, nearest_vertices, proxy};
 use super::search::{Figures, Problem, Search, Solution, with_partners};
-use super::symmetry::{MirrorPlane, mirror_plane, mirror_vertices};
+use super::symmetry::{MirrorPlane, mirror_vertices};
 use crate::control::{Observer, Phase, Watch};
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
 use crate::vector::Vector3;
+
+/// The vertices of the proxy of a preview.
+const SKETCH: usize = 500;
+
+/// Meshes of more vertices have such a proxy.
+const LARGEST_SKETCH: usize = 800;
 
 /// The largest 99th percentile of σ₁/σ₂ is 1 + this · (target − 1).
 const PERCENTILE: f64 = 6.0;
@@ -35,8 +41,14 @@ const SLIVER: f64 = 0.004;
 /// A symmetric cut into several islands is given up where a cut without symmetry is cheaper by this factor.
 const CHEAPER: f64 = 1.2;
 
-/// Where seams are forbidden somewhere, the excess over 1 of the least possible shear comes on top of that asked for, up to
-/// so many times the latter: the plate overrates a large shear.
+/// Where seams are forbidden somewhere, the wanted excess of the shear over 1 is at least that of the least possible shear
+/// by this factor, and this part of that asked for: nearer to the least, seams get long for little.
+const OVER_LEAST: f64 = 1.3;
+
+/// See [`OVER_LEAST`].
+const PART_OF_WANTED: f64 = 0.3;
+
+/// It is at most so many times that asked for: the plate overrates a large shear.
 const MOST_EXCESS: f64 = 2.5;
 
 /// The 99th percentile may exceed the least possible one by this factor.
@@ -56,6 +68,8 @@ pub(super) struct Wishes<'a> {
     pub target: f64,
     /// Factors of the cost of a seam, (e,).
     pub weights: Option<&'a [f64]>,
+    /// Given seams that lie alone: they cut the component where others meet them.
+    pub alone: &'a [Edge],
     pub front: Option<Vector3>,
     pub symmetry: Symmetry,
     pub max_islands: usize,
@@ -74,6 +88,8 @@ pub(super) struct Fine<'a> {
     nearest: Vec<Vertex>,
     /// The mirror image of each vertex, where the triangulation is symmetric.
     mirror: Option<Vec<Vertex>>,
+    /// Given seams that lie alone.
+    alone: Vec<Edge>,
 }
 
 /// A component with all that the search needs.
@@ -108,20 +124,21 @@ struct Costs {
 }
 
 impl<'a> Prepared<'a> {
+    /// A component with its mirror plane.
     pub(super) fn new(
         fine: &'a EdgeMesh,
+        plane: Option<MirrorPlane>,
         wishes: &Wishes<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Self, Error> {
         // 1. The proxy
-        report(observer, 0.0)?;
-        let plane = match wishes.symmetry {
-            Symmetry::Auto => mirror_plane(&fine.mesh),
-            Symmetry::Off => None,
-        };
         report(observer, 0.3)?;
         let mut phase = Phase { whole: &mut *observer, from: 0.3, to: 0.6 };
-        let coarse = proxy(&fine.mesh, plane.as_ref(), &mut phase)?;
+        let coarse = if wishes.method == SeamMethod::Cones && fine.n_vertices() > LARGEST_SKETCH {
+            coarser(&fine.mesh, plane.as_ref(), SKETCH, &mut phase)?
+        } else {
+            proxy(&fine.mesh, plane.as_ref(), &mut phase)?
+        };
         let proxy = EdgeMesh::new(coarse.mesh.clone());
         let parents = coarse.halves.as_ref().map(|_| parents(fine, &proxy, &coarse));
         let mirror = coarse.mirror.clone().map(|vertices| (mirrored_edges(&proxy, &vertices), vertices));
@@ -183,7 +200,8 @@ impl<'a> Prepared<'a> {
     /// The wishes with the target within reach of the allowed seams.
     pub(super) fn within_reach<'w>(&self, wishes: &Wishes<'w>) -> Wishes<'w> {
         let excess = wishes.target - 1.0;
-        let with_least = (self.least.mean - 1.0 + excess).min(MOST_EXCESS * excess);
+        let near_least = OVER_LEAST * (self.least.mean - 1.0) + PART_OF_WANTED * excess;
+        let with_least = near_least.clamp(excess, MOST_EXCESS * excess);
         Wishes { target: 1.0 + with_least, ..*wishes }
     }
 
@@ -384,7 +402,22 @@ impl Fine<'_> {
         let is_allowed = completed.seams().all(|edge| self.cost[edge].is_finite());
         // what has been found may lie where no allowed path leads
         let completed = if is_allowed { completed } else { self.cut_into_disks(&Cut::none(self.mesh)) };
-        merged(self.mesh, &self.cost, completed, max_islands)
+        self.with_alone(merged(self.mesh, &self.cost, completed, max_islands))
+    }
+
+    /// The cut with the given seams that lie alone where it meets them.
+    pub(super) fn with_alone(&self, mut cut: Cut) -> Cut {
+        loop {
+            let is_met = cut.border_vertices(self.mesh);
+            let meets = |&edge: &Edge| {
+                !cut.is_seam(edge) && self.mesh.edges.ends(edge).iter().any(|&vertex| is_met[vertex])
+            };
+            let met: Vec<_> = self.alone.iter().copied().filter(meets).collect();
+            if met.is_empty() {
+                return cut;
+            }
+            cut.add(&met);
+        }
     }
 
     /// The cut graph with some seams; a sphere is slit.
@@ -441,7 +474,7 @@ impl View<'_> {
             weights: wishes.weights,
             lacks_image: lacks_image.as_deref(),
         };
-        Fine { mesh, cost: costs(mesh, &preferences), nearest, mirror }
+        Fine { mesh, cost: costs(mesh, &preferences), nearest, mirror, alone: wishes.alone.to_vec() }
     }
 
     fn proxy_costs(

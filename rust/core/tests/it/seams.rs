@@ -518,17 +518,64 @@ fn a_large_surface_is_cut_by_the_seams_of_a_coarser_one() {
     let body = bumpy(6);
     let unwrap = unwrapped(&body, for_target(1.25));
     assert_eq!(unwrap.status, Status::Converged);
-    assert!(
-        unwrap.shear <= 1.265 && unwrap.area_ratio_std <= 0.005,
-        "{} {}",
-        unwrap.shear,
-        unwrap.area_ratio_std
-    );
-    let seams = found(&body, &for_target(1.25));
-    assert_eq!(edges_of(&seams.edges), edges_of(&unwrap.edges));
-    let patches = surface(&body).cut(&seams.edges).expect("seams are edges");
+    assert!(unwrap.shear <= 1.265, "{}", unwrap.shear);
+    assert!(unwrap.area_ratio_std <= 0.005, "{}", unwrap.area_ratio_std);
+    let patches = surface(&body).cut(&unwrap.edges).expect("seams are edges");
     assert!(patches.iter().all(|patch| patch.is_disk()));
-    // not many more seams than the same body needs with a tenth of the vertices
+    // not many more seams than the same body needs with a quarter of the vertices
     let small = found(&bumpy(5), &for_target(1.25));
-    assert!(seams.length < 1.2 * small.length, "{} {}", seams.length, small.length);
+    assert!(unwrap.length < 1.2 * small.length, "{} {}", unwrap.length, small.length);
+}
+
+#[test]
+fn wishes_are_kept_on_large_surfaces() {
+    let ring = torus(120, 105);
+    let is_kept_off = |vertex: u32| {
+        let [x, y, z] = ring.vertices[vertex as usize];
+        x > 0.3 && y > 0.0 && z > -0.1
+    };
+    let forbid = |vertex: u32| if is_kept_off(vertex) { f64::INFINITY } else { 1.0 };
+    let weights: Array1<f64> = (0..ring.vertices.len() as u32).map(forbid).collect();
+    let given = array![[0, 1], [1, 2], [2, 3]];
+    let options = SeamOptions {
+        weights: Some(weights.view()),
+        fixed: Some(given.view()),
+        max_islands: Some(1),
+        ..Default::default()
+    };
+    let mut fractions = Vec::new();
+    let mut observer = |fraction: f64, _: &str| {
+        fractions.push(fraction);
+        true
+    };
+    let seams = authalic::seams(&surface(&ring), &options, &mut observer).expect("seams");
+    assert_sound_seams(&ring, &seams);
+    let edges = edges_of(&seams.edges);
+    assert!(rows::<2, u32>(given.view()).iter().all(|edge| edges.contains(edge)));
+    assert_eq!(seams.islands, 1);
+    let is_given = |edge: &[u32; 2]| edge[1] < 4;
+    assert!(edges.iter().all(|edge| is_given(edge) || !edge.iter().any(|&vertex| is_kept_off(vertex))));
+    assert!(fractions.is_sorted() && fractions.len() > 20);
+}
+
+#[test]
+fn a_given_edge_alone_opens_where_a_seam_meets_it() {
+    let body = bumpy(3);
+    let free = edges_of(&found(&body, &for_target(1.4)).edges);
+    let ends: BTreeSet<u32> = free.iter().flatten().copied().collect();
+    let beside: Vec<_> =
+        all_edges(&body).into_iter().filter(|[a, b]| ends.contains(a) != ends.contains(b)).collect();
+    let mut n_met = 0;
+    for edge in beside.into_iter().step_by(17).take(6) {
+        let given = array![edge];
+        let options = SeamOptions { fixed: Some(given.view()), ..for_target(1.4) };
+        let unwrap = unwrapped(&body, options);
+        let edges = edges_of(&unwrap.edges);
+        let is_met = edges.iter().any(|other| *other != edge && other.iter().any(|end| edge.contains(end)));
+        n_met += usize::from(is_met);
+        let patches = surface(&body).cut(&unwrap.edges).expect("seams are edges");
+        let n_points: usize = patches.iter().map(|patch| patch.vertex_of.len()).sum();
+        assert_eq!((unwrap.islands, unwrap.uv.nrows()), (patches.len(), n_points), "{edge:?}");
+    }
+    assert!(n_met > 0);
 }

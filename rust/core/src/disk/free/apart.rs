@@ -23,9 +23,13 @@ use crate::control::Watch;
 use crate::mesh::{Corner, Face};
 use crate::parallel;
 
-/// The stiffness of the first springs, whose unit is that of the energy at a vertex, and its growth.
+/// The stiffness of the first springs, whose unit is that of the energy at a vertex.
 const FIRST_STIFFNESS: f64 = 1.0;
+
+/// Its growth from one step to the next.
 const GROWTH: f64 = 3.0;
+
+/// Its upper bound.
 const LARGEST_STIFFNESS: f64 = 300.0;
 
 /// The most steps.
@@ -40,8 +44,10 @@ const MOST_RINGS: usize = 12;
 /// The rings that are looked at beyond the first that meets the outline.
 const MORE_RINGS: usize = 2;
 
-/// The damping and the shift of the Hessian.
+/// The damping of a face that is wholly off its target.
 const DAMPING: f64 = 0.005;
+
+/// The shift of the Hessian in units of its diagonal.
 const SHIFT: f64 = 1e-10;
 
 /// How near to the minimum the map is taken to be, which sets the precision of the step.

@@ -8,11 +8,11 @@
 //! Far from the minimum each face's Hessian goes without its negative eigenvalues, and where a step must be short, the
 //! faces of highest energy descend by themselves ([`super::local`]). Nearer to the minimum the Hessian takes as much of
 //! the curvature of areas as leaves it positive definite, in the end all, and the descent converges quadratically. Cost of
-//! one iteration: one factorization of two unknowns per vertex, and some ten solves where contacts act.
+//! one iteration: one factorization of two unknowns per vertex, some ten solves where contacts act, and the descent of a
+//! few faces after a short step.
 
 use super::contact::{Contact, Stiffness, add_forces};
 use super::energy::{Energy, Hessian};
-use super::local::lowered_locally;
 use super::meeting::first_fold;
 use super::outline::Outline;
 use super::system::{Direction, Linearized, System};
@@ -81,7 +81,12 @@ pub(super) struct Problem<'a> {
     pub outline: Option<&'a Outline>,
     /// Whether each vertex stays where it is; `None` where all may move.
     pub is_held: Option<&'a [bool]>,
+    /// What lowers the energy of a few faces after a short step, if anything does.
+    pub lower_locally: Option<LowerLocally>,
 }
+
+/// The map after a descent of the faces of high energy, if there are any.
+pub(super) type LowerLocally = fn(&Energy<'_>, &[[f64; 2]], &Goal, &mut dyn Observer) -> Option<PlanarMap>;
 
 /// When a descent ends.
 #[derive(Debug, Clone, Copy)]
@@ -181,11 +186,9 @@ impl<'a> Descent<'a> {
 
     /// The map after a descent of the faces of highest energy by themselves.
     fn locally_lowered(&self, iterate: Iterate, goal: &Goal, observer: &mut dyn Observer) -> Iterate {
-        let Problem { energy, outline, is_held, .. } = self.problem;
-        if is_held.is_some() {
-            return iterate;
-        }
-        let Some(map) = lowered_locally(energy, &iterate.map, goal, observer) else { return iterate };
+        let Problem { energy, outline, lower_locally, .. } = self.problem;
+        let lowered = lower_locally.and_then(|lower| lower(energy, &iterate.map, goal, observer));
+        let Some(map) = lowered else { return iterate };
         let next = self.iterate(map, goal);
         let is_allowed = outline.is_none_or(|outline| outline.is_simple(&next.map));
         if next.value < iterate.value && is_allowed { next } else { iterate }

@@ -18,18 +18,23 @@ use crate::sparse::{Analysis, Order};
 /// Faces have a high energy where it is this many times the mean per area.
 const HIGH: f64 = 8.0;
 
-/// They must hold this part of the energy, and be no more than that part of all faces.
+/// They must hold this part of the energy.
 const LEAST_SHARE: f64 = 0.2;
+
+/// They must be no more than this part of all faces.
 const MOST_FACES: f64 = 0.1;
 
 /// The numbers of rings around them whose faces may change: the first that make a manifold.
 const RINGS: [usize; 4] = [4, 5, 6, 7];
 
-/// The most iterations, and the decrement in units of the energy that ends them.
+/// The most iterations.
 const ITERATIONS: usize = 15;
+
+/// The decrement in units of the energy that ends them.
 const PRECISION: f64 = 1e-2;
 
-/// The map after a descent of the faces of high energy; `None` where there are none, or too many.
+/// The map after a descent of the faces of high energy; `None` where there are none, too many, or no rings around them
+/// that make a manifold.
 pub(super) fn lowered_locally(
     energy: &Energy<'_>,
     map: &[[f64; 2]],
@@ -83,8 +88,13 @@ impl Part {
         let energy = Energy::new(&self.mesh, &self.targets);
         let analysis = Analysis::new(n, self.mesh.faces(), &vec![2; n], Order::Sparse).ok()?;
         let is_held = Some(&self.is_held[..]);
-        let mut descent =
-            Descent::new(Problem { energy: &energy, analysis: &analysis, outline: None, is_held });
+        let mut descent = Descent::new(Problem {
+            energy: &energy,
+            analysis: &analysis,
+            outline: None,
+            is_held,
+            lower_locally: None,
+        });
         // the energy of the part takes its targets to add up to one
         let scale = self.targets.iter().sum::<f64>().sqrt().recip();
         let start = self.vertex_of.iter().map(|&vertex| map[vertex].map(|x| scale * x)).collect();

@@ -3,7 +3,8 @@
 //!
 //! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that
 //!    are one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one
-//!    always.
+//!    always. Islands may start from another map, whose outlines are pushed apart (`apart`), or from wanted images of
+//!    their faces.
 //! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
 //!    (`contact`), until the map is stationary.
 //! 3. Where contacts remain, further descents with contacts of shorter range.
@@ -40,9 +41,10 @@ use crate::control::{History, Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::renumbering::Renumbered;
 use crate::sparse::{Analysis, Order, elimination_order};
-use descent::{Descent, Goal, Problem};
+use descent::{Descent, Goal, LowerLocally, Problem};
 use energy::Energy;
 use least_shear::least_shear;
+use local::lowered_locally;
 use outline::Outline;
 use quick::quickly;
 use start::Start;
@@ -148,8 +150,9 @@ impl Free<'_> {
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status, f64) {
         let outline = (!self.options.overlap).then_some(prepared.outline);
-        let problem =
-            Problem { energy: prepared.energy, analysis: prepared.analysis, outline, is_held: None };
+        let (energy, analysis) = (prepared.energy, prepared.analysis);
+        let lower_locally: Option<LowerLocally> = Some(lowered_locally);
+        let problem = Problem { energy, analysis, outline, is_held: None, lower_locally };
         let mut descent = Descent::new(problem);
         let mut goal = Goal {
             weight: self.options.angle_weight,

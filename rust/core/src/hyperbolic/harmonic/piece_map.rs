@@ -44,6 +44,7 @@ pub(crate) fn map_piece(
     let [source, target] = [&sliced.source, &sliced.target];
     let n_features = source.sides.len().div_ceil(4);
     let chi = 2 - n_features as i64;
+    ask(observer)?;
     if chi >= 0 {
         let flat = flat_map(source, target, &Watch::new(observer, 0.0, "Flat map"))?;
         let inverse = flat.inverse.into_iter().map(Some).collect();
@@ -52,6 +53,7 @@ pub(crate) fn map_piece(
     }
     // 1. Hyperbolic metrics with geodesic boundaries: the target's as the codomain, the source's for the weights
     let metric = |surface: usize, observer: &mut dyn Observer| {
+        ask(observer)?;
         let sliced = [source, target][surface];
         let points = sliced.surface_points();
         let watch = Watch::new(observer, 0.0, "Hyperbolic metric");
@@ -64,6 +66,7 @@ pub(crate) fn map_piece(
     // 2. A first homeomorphism
     let atlas = Atlas::new(&target.surface, &theirs);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
+    ask(&mut phase)?;
     let (places, input) = initial_map(source, target, &atlas, &Watch::new(&mut phase, 0.0, "Initial map"))?;
     // 3. The harmonic map
     let none_kept = vec![false; source.faces.len()];
@@ -83,6 +86,11 @@ pub(crate) fn map_piece(
     let certificates = certify(&map, chi);
     let (locations, inverse) = (locations(&map), inverse(&map, source, target));
     Ok(PieceMap { locations, inverse, certificates, hyperbolic: Some(([ours, theirs], descent)) })
+}
+
+/// Tells the observer that a step begins.
+fn ask(observer: &mut dyn Observer) -> Result<(), Error> {
+    if observer.progress(0.0, "Hyperbolic metric") { Ok(()) } else { Err(Error::CancelledEarly) }
 }
 
 /// Rounds of unfolding, each of which keeps faces within one more ring; the last keeps all.

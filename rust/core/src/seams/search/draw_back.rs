@@ -166,7 +166,6 @@ impl Search<'_> {
             let step = &steps[which[place]];
             this.trial(state, state.cut.without(&step.edges), step.n_islands, workspace, watch)
         })?;
-        self.n_solves += which.len();
         for (&k, trial) in which.iter().zip(trials) {
             known.increases.insert(moves[k].edges.clone(), trial.increase);
             moves[k].trial = Some(trial);

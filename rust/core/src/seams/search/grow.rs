@@ -174,7 +174,6 @@ impl Search<'_> {
             let (_, cut, n_islands) = &allowed[place];
             this.trial(state, cut.clone(), *n_islands, workspace, watch)
         })?;
-        self.n_solves += allowed.len();
         for ((k, _, n_islands), trial) in allowed.into_iter().zip(trials) {
             let new_islands = n_islands.saturating_sub(state.n_islands);
             let gain = Gain { decrease: -trial.increase, new_islands };

@@ -81,7 +81,6 @@ pub(super) struct Search<'a> {
     /// The fraction of the run that is done, and the fractions at which its present stage begins and ends.
     done: f64,
     stage: [f64; 2],
-    pub n_solves: usize,
 }
 
 /// A cut with its price.
@@ -94,7 +93,7 @@ pub(super) struct Solution {
 
 impl<'a> Search<'a> {
     pub(super) fn new(problem: Problem<'a>) -> Self {
-        Self { problem, workspaces: Mutex::new(Vec::new()), done: 0.0, stage: [0.0, 1.0], n_solves: 0 }
+        Self { problem, workspaces: Mutex::new(Vec::new()), done: 0.0, stage: [0.0, 1.0] }
     }
 
     /// The cheapest cut found from a first cut on.

@@ -4,7 +4,7 @@
 //! With a boundary or handles it is the cut graph. A closed surface of genus 0 is slit between two of its far points,
 //! the pair that lowers the distortion most for the cost; on a symmetric mesh two points of the mirror curve, along it.
 
-use super::{Problem, Search, coarse};
+use super::{LEAST_ISLAND, Problem, Search, coarse};
 use crate::control::Observer;
 use crate::error::Error;
 use crate::mesh::{Edge, Vertex};
@@ -13,8 +13,6 @@ use crate::seams::cut_graph::cut_graph;
 use crate::seams::edge_mesh::EdgeMesh;
 use crate::seams::merge::{by_area, joined};
 use crate::seams::paths::{Paths, far_points, far_points_within_reach};
-
-use super::LEAST_ISLAND;
 
 /// The number of far points, and of those along the mirror curve.
 const FAR_POINTS: usize = 6;
@@ -90,7 +88,6 @@ impl Search<'_> {
             let deflection = plate.solve(mesh, &cuts[k], None, workspace, watch)?;
             Ok(coarse(this.distortion(&deflection.shear) + COST_SHARE * cuts[k].sum(cost)))
         })?;
-        self.n_solves += cuts.len();
         let best = prices.iter().zip(&cuts).min_by(|a, b| a.0.total_cmp(b.0));
         Ok(best.map_or_else(|| Cut::none(mesh), |(_, cut)| cut.clone()))
     }

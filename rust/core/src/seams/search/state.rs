@@ -43,7 +43,6 @@ impl Search<'_> {
     pub(in crate::seams) fn state(&mut self, cut: Cut, observer: &mut dyn Observer) -> Result<State, Error> {
         let problem = self.problem;
         let n_islands = cut.islands(problem.mesh).len();
-        self.n_solves += 1;
         let mut deflections = self.for_each(1, observer, |_, workspace, watch| {
             problem.plate.solve(problem.mesh, &cut, None, workspace, watch)
         })?;

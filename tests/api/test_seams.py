@@ -296,6 +296,8 @@ import os, signal, threading, time, authalic
 from api import meshes
 mesh = meshes.bumpy_ball(6)
 began = []
+# a shell's background job ignores it
+signal.signal(signal.SIGINT, signal.default_int_handler)
 def interrupt():
     began.append(time.perf_counter())
     os.kill(os.getpid(), signal.SIGINT)

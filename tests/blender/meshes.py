@@ -199,6 +199,19 @@ def area_ratios(obj: MeshObject, layer: str | None = None) -> Array:
     return image / area * (area.sum() / np.abs(image).sum())
 
 
+def coverage(triangles: Array, resolution: int) -> Array:
+    """In how many triangles each pixel center of the unit square strictly lies, (resolution, resolution)."""
+    count = np.zeros((resolution, resolution), int)
+    for triangle in triangles * resolution - 0.5:
+        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
+        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+        inside = np.ones(x.shape, bool)
+        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
+        count[y[inside], x[inside]] += 1
+    return count
+
+
 def islands(obj: MeshObject, layer: str | None = None) -> Array:
     """The UV island number of each triangle; triangles that share a UV at a vertex have one number."""
     corners, _, _ = triangles(obj)

@@ -8,7 +8,7 @@ import bpy
 import meshes
 import numpy as np
 import pytest
-from meshes import Array, MeshObject
+from meshes import MeshObject
 
 
 def unwrap(**options: Any) -> set[str]:
@@ -30,20 +30,8 @@ def assert_no_overlap(*objects: MeshObject, resolution: int = 512) -> None:
         corners, _, _ = meshes.triangles(obj)
         image, label = meshes.uv(obj)[corners].astype(float), meshes.islands(obj)
         for island in range(label.max() + 1):
-            covered += _coverage(image[label == island], resolution)
+            covered += meshes.coverage(image[label == island], resolution) > 0
     assert covered.max() == 1
-
-
-def _coverage(triangles: Array, resolution: int) -> Array:
-    covered = np.zeros((resolution, resolution), bool)
-    for triangle in triangles * resolution - 0.5:
-        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
-        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
-        inside = np.ones(x.shape, bool)
-        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
-            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
-        covered[y[inside], x[inside]] = True
-    return covered
 
 
 def test_suzanne_reaches_the_bar() -> None:

@@ -49,15 +49,8 @@ def deviation(obj: MeshObject) -> float:
 
 def twice_covered(obj: MeshObject, resolution: int = 700) -> float:
     """The share of the pixels under the UV map that lie in two triangles."""
-    count = np.zeros((resolution, resolution), int)
     corners, _, _ = meshes.triangles(obj)
-    for triangle in meshes.uv(obj)[corners].astype(float) * resolution - 0.5:
-        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
-        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
-        inside = np.ones(x.shape, bool)
-        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
-            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
-        count[y[inside], x[inside]] += 1
+    count = meshes.coverage(meshes.uv(obj)[corners].astype(float), resolution)
     return float((count > 1).sum() / (count > 0).sum())
 
 

@@ -47,14 +47,7 @@ def assert_sound(obj: MeshObject, deviation: float) -> Any:
 def assert_no_overlap(obj: MeshObject, resolution: int = 700) -> None:
     """No pixel's middle lies in two triangles of the UVs."""
     corners, _, _ = meshes.triangles(obj)
-    covered = np.zeros((resolution, resolution), int)
-    for triangle in meshes.uv(obj)[corners].astype(float) * resolution - 0.5:
-        low, high = np.ceil(triangle.min(axis=0)).astype(int), np.floor(triangle.max(axis=0)).astype(int)
-        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
-        inside = np.ones(x.shape, bool)
-        for (ax, ay), (bx, by) in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
-            inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0
-        covered[y[inside], x[inside]] += 1
+    covered = meshes.coverage(meshes.uv(obj)[corners].astype(float), resolution)
     assert covered.max() == 1
 
 

@@ -206,6 +206,17 @@ impl TriangleMesh {
         &self.topology.boundary_loops
     }
 
+    /// The faces across the edges of a face.
+    pub(crate) fn neighbors(&self, face: Face) -> impl Iterator<Item = Face> + '_ {
+        face.corners().into_iter().filter_map(|corner| self.opposite(corner)).map(Corner::face)
+    }
+
+    /// The mean of the corners of a face.
+    pub(crate) fn center(&self, face: Face) -> Vector3 {
+        let [a, b, c] = geometry::triangle(&self.points, self.faces[face]);
+        (a + b + c) * (1.0 / 3.0)
+    }
+
     /// Whether a vertex lies on the boundary.
     pub fn is_boundary(&self, vertex: Vertex) -> bool {
         self.on_boundary[vertex]

@@ -43,14 +43,14 @@ impl<'a> Carrier<'a> {
         for (number, island) in islands.iter().enumerate() {
             island.face_of.iter().for_each(|&face| island_of[face] = number);
         }
-        let centers = centers(&coarse.mesh, Face::all(coarse.n_faces()));
+        let centers = Face::all(coarse.n_faces()).map(|face| coarse.mesh.center(face)).collect();
         Self { coarse, islands, centers, island_of }
     }
 
     /// The wanted images of the faces of an island of a finer mesh.
     pub(super) fn shapes(&self, fine: &EdgeMesh, island: &IslandMap) -> Shapes {
         // 1. The coarse island
-        let own_centers = centers(&fine.mesh, island.face_of.iter().copied());
+        let own_centers: Vec<_> = island.face_of.iter().map(|&face| fine.mesh.center(face)).collect();
         let nearest = NearestPoint::new(&self.centers).of_all(&own_centers);
         let mut counts = vec![0; self.islands.len()];
         nearest.iter().for_each(|face| counts[self.island_of[face.index()]] += 1);
@@ -90,12 +90,6 @@ impl<'a> Carrier<'a> {
     }
 }
 
-fn centers(mesh: &TriangleMesh, faces: impl Iterator<Item = Face>) -> Vec<Vector3> {
-    faces
-        .map(|face| triangle(mesh.points(), mesh.faces()[face]).into_iter().sum::<Vector3>() * (1.0 / 3.0))
-        .collect()
-}
-
 /// A vector turned by the least rotation that takes one unit vector to another.
 fn turned(vector: Vector3, from: Vector3, to: Vector3) -> Vector3 {
     let (axis, cosine) = (from.cross(to), from.dot(to));
@@ -112,7 +106,7 @@ fn faces_within(mesh: &TriangleMesh, n_rings: usize) -> Vec<bool> {
         Face::all(mesh.n_faces()).map(|face| touches(face).then_some(0)).collect();
     let mut queue: VecDeque<Face> = Face::all(mesh.n_faces()).filter(|&face| depth[face].is_some()).collect();
     while let Some(face) = queue.pop_front() {
-        for next in neighbors(mesh, face) {
+        for next in mesh.neighbors(face) {
             if depth[next].is_none() {
                 depth[next] = depth[face].map(|depth| depth + 1);
                 queue.push_back(next);
@@ -129,7 +123,7 @@ fn models(mesh: &TriangleMesh, is_inner: &[bool], own: impl Fn(usize) -> usize +
         parallel::map(mesh.n_faces(), |face| if is_inner[face] { Some(own(face)) } else { None });
     let mut queue: VecDeque<Face> = Face::all(mesh.n_faces()).filter(|&face| is_inner[face]).collect();
     while let Some(face) = queue.pop_front() {
-        for next in neighbors(mesh, face) {
+        for next in mesh.neighbors(face) {
             if models[next].is_none() {
                 models[next] = models[face];
                 queue.push_back(next);
@@ -137,10 +131,6 @@ fn models(mesh: &TriangleMesh, is_inner: &[bool], own: impl Fn(usize) -> usize +
         }
     }
     models.into_iter().map(Option::unwrap_or_default).collect()
-}
-
-fn neighbors(mesh: &TriangleMesh, face: Face) -> impl Iterator<Item = Face> + '_ {
-    face.corners().into_iter().filter_map(|corner| mesh.opposite(corner)).map(|corner| corner.face())
 }
 
 #[cfg(test)]

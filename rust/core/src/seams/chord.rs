@@ -18,7 +18,6 @@ use super::cut::Cut;
 use super::edge_mesh::EdgeMesh;
 use super::maps::IslandMap;
 use super::overlap::Overlap;
-use crate::mesh::geometry::triangle;
 use crate::mesh::{Corner, Edge, Edges, Face, Vertex};
 use crate::vector::Vector3;
 
@@ -78,20 +77,12 @@ struct Disk<'a> {
 
 impl<'a> Disk<'a> {
     fn new(mesh: &'a EdgeMesh, island: &'a IslandMap) -> Self {
-        let center = |&face: &[Vertex; 3]| {
-            let [a, b, c] = triangle(island.mesh.points(), face);
-            (a + b + c) * (1.0 / 3.0)
-        };
-        let centers = island.mesh.faces().iter().map(center).collect();
+        let centers = Face::all(island.mesh.n_faces()).map(|face| island.mesh.center(face)).collect();
         Self { mesh, island, edges: Edges::new(&island.mesh), centers }
     }
 
     fn n_faces(&self) -> usize {
         self.centers.len()
-    }
-
-    fn neighbors(&self, face: Face) -> impl Iterator<Item = Face> + '_ {
-        face.corners().into_iter().filter_map(|corner| self.island.mesh.opposite(corner)).map(Corner::face)
     }
 
     /// The length of the shortest path over centers of faces from any of `sources` to each face (E. W. Dijkstra, 1959).
@@ -108,7 +99,7 @@ impl<'a> Disk<'a> {
             if reached > distances[face] {
                 continue;
             }
-            for neighbor in self.neighbors(face) {
+            for neighbor in self.island.mesh.neighbors(face) {
                 let through = reached + self.centers[face].distance(self.centers[neighbor]);
                 if through < distances[neighbor] {
                     distances[neighbor] = through;
@@ -269,7 +260,7 @@ impl Sheets {
             of_face[seed] = n_sheets;
             let mut pending = vec![seed];
             while let Some(face) = pending.pop() {
-                for neighbor in disk.neighbors(face) {
+                for neighbor in disk.island.mesh.neighbors(face) {
                     if overlaps[neighbor] && of_face[neighbor] == Self::NONE {
                         of_face[neighbor] = n_sheets;
                         pending.push(neighbor);

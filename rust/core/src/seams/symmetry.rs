@@ -12,8 +12,7 @@
 //! tree of few vertices, and where these find a symmetry, O(n log² n) for a tree of all and 30,000 queries.
 
 use crate::location::NearestPoint;
-use crate::mesh::geometry::triangle;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::mesh::{Face, TriangleMesh, Vertex};
 use crate::parallel;
 use crate::sparse::top_eigenvector;
 use crate::vector::Vector3;
@@ -158,8 +157,7 @@ fn evenly_sampled(mesh: &TriangleMesh, n: usize) -> impl Iterator<Item = Vertex>
 
 /// The candidates before their refinement.
 fn first_planes(mesh: &TriangleMesh) -> Vec<MirrorPlane> {
-    let centroids: Vec<Vector3> =
-        mesh.faces().iter().map(|&face| centroid(triangle(mesh.points(), face))).collect();
+    let centroids: Vec<Vector3> = Face::all(mesh.n_faces()).map(|face| mesh.center(face)).collect();
     let total: f64 = mesh.face_areas().iter().sum();
     let weighted = centroids.iter().zip(mesh.face_areas());
     let center: Vector3 = weighted.clone().map(|(&x, &area)| x * (area / total)).sum();
@@ -175,10 +173,6 @@ fn first_planes(mesh: &TriangleMesh) -> Vec<MirrorPlane> {
         [normal.dot(center), 0.5 * (low + high)].map(|offset| MirrorPlane { normal, offset })
     });
     planes.collect()
-}
-
-fn centroid([a, b, c]: [Vector3; 3]) -> Vector3 {
-    (a + b + c) * (1.0 / 3.0)
 }
 
 /// Adds `weight` x xᵀ to a matrix.

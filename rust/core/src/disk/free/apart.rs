@@ -12,6 +12,7 @@
 use std::collections::BTreeSet;
 
 use super::contact::{Contact, add_forces};
+use super::descent::{DAMPING, MARGIN};
 use super::energy::{Energy, Hessian};
 use super::meeting::first_fold;
 use super::outline::Outline;
@@ -44,17 +45,11 @@ const MOST_RINGS: usize = 12;
 /// The rings that are looked at beyond the first that meets the outline.
 const MORE_RINGS: usize = 2;
 
-/// The damping of a face that is wholly off its target.
-const DAMPING: f64 = 0.005;
-
 /// The shift of the Hessian in units of its diagonal.
 const SHIFT: f64 = 1e-10;
 
 /// How near to the minimum the map is taken to be, which sets the precision of the step.
 const RATIO: f64 = 1e-4;
-
-/// A step covers at most this part of the way to the first fold.
-const MARGIN: f64 = 0.9;
 
 /// A map whose outlines do not cross, near to a map without folds; `None` where outlines cross too far.
 pub(super) fn pushed_apart(
@@ -164,9 +159,8 @@ impl<'a> Crossings<'a> {
                     nearest = Some(contact);
                 }
             }
-            let around =
-                ring.iter().flat_map(|face| face.corners()).filter_map(|corner| mesh.opposite(corner));
-            ring = around.map(Corner::face).filter(|&face| seen.insert(face)).collect();
+            let around = ring.iter().flat_map(|&face| mesh.neighbors(face));
+            ring = around.filter(|&face| seen.insert(face)).collect();
             n_rings = if nearest.is_some() { (n_rings - 1).min(MORE_RINGS) } else { n_rings - 1 };
         }
         nearest

@@ -24,7 +24,7 @@ use crate::sparse::{Analysis, Failure};
 const MESSAGE: &str = "Evening out areas";
 
 /// μ, the damping of a face that is wholly off its target.
-const DAMPING: f64 = 0.005;
+pub(super) const DAMPING: f64 = 0.005;
 
 /// Bounds of the deviation that the damping adds to every face.
 const LEAST_DEVIATIONS: [f64; 2] = [1e-6, 1e-3];
@@ -33,7 +33,7 @@ const LEAST_DEVIATIONS: [f64; 2] = [1e-6, 1e-3];
 const SHIFTS: [f64; 5] = [1e-12, 1e-10, 1e-8, 1e-6, 1e-4];
 
 /// A step covers at most this part of the way to the first fold or meeting of outlines.
-const MARGIN: f64 = 0.9;
+pub(super) const MARGIN: f64 = 0.9;
 
 /// Steps tried along one direction.
 const MOST_TRIALS: usize = 40;

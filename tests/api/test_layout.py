@@ -593,7 +593,8 @@ def progress(fraction, message):
     return not sent
 threading.Timer({delay}, stop).start()
 try:
-    outcome = sphere_map.layout("octahedral", progress={progress}).status
+    while True:  # a fast machine may be done before it is stopped
+        sphere_map.layout("octahedral", progress={progress})
 except KeyboardInterrupt:
     outcome = "interrupted"
 except authalic.SolverError as problem:

@@ -165,8 +165,8 @@ def interrupt():
 marks = [len(mesh.vertices) // 2 + 200, len(mesh.vertices) // 3 + 7]
 threading.Timer({delay}, interrupt).start()
 try:
-    authalic.{call}(mesh, mesh, source_landmarks=marks, target_landmarks=marks[::-1])
-    outcome = "finished"
+    while True:  # a fast machine may be done before it is stopped
+        authalic.{call}(mesh, mesh, source_landmarks=marks, target_landmarks=marks[::-1])
 except KeyboardInterrupt:
     outcome = "interrupted"
 print(json.dumps([outcome, time.perf_counter() - sent[0]]))

@@ -295,8 +295,8 @@ def interrupt():
 threading.Timer({delay}, interrupt).start()
 began = time.perf_counter()
 try:
-    authalic.{call}(*mesh{options})
-    outcome = "finished"
+    while True:  # a fast machine may be done before it is stopped
+        authalic.{call}(*mesh{options})
 except KeyboardInterrupt:
     outcome = "interrupted"
 print(json.dumps([outcome, time.perf_counter() - sent[0], time.perf_counter() - began]))

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import messages
-from ..blender import meshes, shape_keys
+from ..blender import editability, meshes, shape_keys
 from ..blender.types import Landmark, LandmarkCurve, MeshObject, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import points as landmark_points
@@ -59,8 +59,8 @@ def chosen(context: bpy.types.Context) -> Couple:
         raise CannotRegister(f"{source.name}: {problem}")
     for obj in (source, target):
         _check(obj)
-    if source.data.library is not None:
-        raise CannotRegister(f"{source.name}: its mesh is linked from another file; make it local")
+    if reason := editability.why_not_mesh(source):
+        raise CannotRegister(f"{source.name}: {reason}")
     surfaces = shape_keys.read(source), shape_keys.read(target)
     matrices = np.array(source.matrix_world), np.array(target.matrix_world)
     points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import animation, shape_keys, uv_maps
+from ..blender import animation, editability, shape_keys, uv_maps
 from ..blender.appearance import deformers
 from ..blender.types import Landmark, LandmarkCurve, MeshObject
 from ..bridge.progress import Progress
@@ -109,8 +109,8 @@ def _write_uv_maps(couple: Couple, registered: Registered, on_target: bool) -> l
 def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
     """Writes a UV map in which the unit disk fills the square; returns why not, or None."""
     mesh = obj.data
-    if mesh.library is not None:
-        return f"{obj.name} has no UV map, because its mesh is linked from another file"
+    if reason := editability.why_not_mesh(obj):
+        return f"{obj.name} has no UV map, because {reason}"
     if uv_maps.is_taken(obj, UV_MAP) or not uv_maps.has_room_for(mesh, UV_MAP):
         return f"{obj.name} has no room for the UV map {UV_MAP}; remove one or rename what has its name"
     real = side.corners >= 0

@@ -3,12 +3,18 @@
 
 import bpy
 
+from .. import messages
+from ..blender import editability
 from ..blender.types import MeshObject, is_mesh
 from ..bridge import Refusal
 
 
 class NothingToDo(Exception):
     """There is nothing selected to work on."""
+
+
+class CannotWrite(NothingToDo):
+    """No mesh of what is selected can be written."""
 
 
 def meshes(context: bpy.types.Context) -> list[MeshObject]:
@@ -27,11 +33,17 @@ def meshes(context: bpy.types.Context) -> list[MeshObject]:
 
 
 def editable(context: bpy.types.Context) -> tuple[list[MeshObject], list[Refusal]]:
-    """The mesh objects of the context that can be written, and a refusal for each of the others."""
+    """The mesh objects of the context that can be written, and a refusal for each of the others.
+
+    Raises `CannotWrite` where there are meshes, but none can be written.
+    """
     objects, refusals = [], []
     for obj in meshes(context):
-        if obj.data.library is None:
+        reason = editability.why_not_mesh(obj)
+        if reason is None:
             objects.append(obj)
         else:
-            refusals.append(Refusal(obj.name, None, "its mesh is linked from another file; make it local"))
+            refusals.append(Refusal(obj.name, None, reason))
+    if refusals and not objects:
+        raise CannotWrite(messages.listed(refusals))
     return objects, refusals

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..blender import editability
 from ..blender.types import LandmarkCurve, MeshObject, mesh_objects
 from . import curve_marks
 from .objects import SIDES, side_object
@@ -70,7 +71,7 @@ def tidy(key: str, but: MeshObject | None = None) -> None:
 
 
 def _is_free(mesh: bpy.types.Mesh) -> bool:
-    return mesh.is_editable and not mesh.is_editmode
+    return editability.is_writable(mesh) and not mesh.is_editmode
 
 
 def _new_key() -> str:

@@ -14,11 +14,21 @@ import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import messages
+from ..blender import editability
 from ..blender.edges import NoEdge
 from ..blender.types import LandmarkCurve, MeshObject, owner_of
 from ..surfaces.arrays import Path
 from . import curve_copies, curve_marks, paths, undo
-from .objects import NONE, SIDES, CannotPair, check_target, check_vertex, side_object, target_problem
+from .objects import (
+    NONE,
+    SIDES,
+    CannotPair,
+    check_lists,
+    check_target,
+    check_vertex,
+    side_object,
+    target_problem,
+)
 
 _FEWEST = 2, 3  # edges of an open and of a closed curve
 
@@ -113,10 +123,11 @@ def add(
 def reverse(source: MeshObject, index: int, side: str) -> None:
     """Makes the end of a pair's path on one side its start. Raises `CannotPair` and then changes nothing."""
     curve, obj = source.authalic_landmark_curves[index], side_object(source, side)
+    check_lists(source)
     if side == "target" and (problem := target_problem(source)):
         raise CannotPair(f"{source.name}: {problem}")
-    if not obj.data.is_editable:
-        raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
+    if reason := editability.why_not_mesh(obj):
+        raise CannotPair(f"{obj.name}: {reason}")
     path = getattr(pairs(source)[index], side)
     if path.problem:
         raise CannotPair(f"{curve.name}: {_worded(path, obj)}")
@@ -131,14 +142,15 @@ def reverse(source: MeshObject, index: int, side: str) -> None:
 
 
 def remove(source: MeshObject, index: int) -> None:
-    """Removes a pair; the next one becomes the active pair."""
+    """Removes a pair; the next one becomes the active pair. Raises `CannotPair` and then changes nothing."""
+    check_lists(source)
     curve_copies.part(source)
     undo.remember(source, index, undo.CURVES)
     curve = source.authalic_landmark_curves[index]
     for side in SIDES:
         obj = side_object(source, side)
         # In another mode the marks would stay away when the step is undone.
-        is_writable = obj is not None and obj.type == "MESH" and obj.data.is_editable
+        is_writable = obj is not None and obj.type == "MESH" and editability.is_writable(obj.data)
         is_own = (
             is_writable and source.authalic_curve_key and curve_copies.sharing(source, curve, side) is None
         )
@@ -151,7 +163,7 @@ def remove(source: MeshObject, index: int) -> None:
 
 
 def clear(source: MeshObject) -> None:
-    """Removes all pairs."""
+    """Removes all pairs. Raises `CannotPair` and then changes nothing."""
     for index in reversed(range(len(source.authalic_landmark_curves))):
         remove(source, index)
 

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..blender import editability
 from ..blender.element_marks import element_counts
 from ..blender.types import MeshObject, is_mesh
 
@@ -41,14 +42,27 @@ def side_object(source: MeshObject, side: str) -> MeshObject | None:
     return source if side == "source" else source.authalic_target
 
 
+def pairing_problem(source: MeshObject) -> str | None:
+    """Why no pairs can be added to a source object, with the name of the object at fault, or None."""
+    target, problem = source.authalic_target, target_problem(source)
+    if problem or target is None:
+        return f"{source.name}: {problem}"
+    if reason := editability.why_not_object(source):
+        return f"{source.name}: {reason}"
+    unwritable = [(obj, editability.why_not_mesh(obj)) for obj in (source, target)]
+    return next((f"{obj.name}: {reason}" for obj, reason in unwritable if reason), None)
+
+
 def check_target(source: MeshObject) -> None:
     """Raises `CannotPair` unless pairs can be added to a source object."""
-    problem = target_problem(source)
-    if problem:
-        raise CannotPair(f"{source.name}: {problem}")
-    for obj in (source, source.authalic_target):
-        if not obj.data.is_editable:
-            raise CannotPair(f"the mesh of {obj.name} is linked from another file; make it local first")
+    if problem := pairing_problem(source):
+        raise CannotPair(problem)
+
+
+def check_lists(source: MeshObject) -> None:
+    """Raises `CannotPair` unless the lists of a source object can be changed."""
+    if reason := editability.why_not_object(source):
+        raise CannotPair(f"{source.name}: {reason}")
 
 
 def check_vertex(obj: MeshObject, vertex: int) -> None:

@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from ..blender import editability
 from ..blender.types import Landmark, MeshObject, mesh_objects, owner_of
 from . import point_marks, undo
-from .objects import NONE, CannotPair, check_target, check_vertex, target_problem
+from .objects import NONE, CannotPair, check_lists, check_target, check_vertex, target_problem
 
 
 class Pair(NamedTuple):
@@ -115,7 +116,8 @@ def replace(source: MeshObject, wanted: Sequence[tuple[str, int, int]]) -> None:
 
 
 def remove(source: MeshObject, index: int) -> None:
-    """Removes a pair; the next one becomes the active pair."""
+    """Removes a pair; the next one becomes the active pair. Raises `CannotPair` and then changes nothing."""
+    check_lists(source)
     undo.remember(source, index)
     gone = source.authalic_landmarks[index]
     source_mark, target_mark = gone.source_mark, gone.target_mark
@@ -131,7 +133,7 @@ def remove(source: MeshObject, index: int) -> None:
 
 
 def clear(source: MeshObject) -> None:
-    """Removes all pairs."""
+    """Removes all pairs. Raises `CannotPair` and then changes nothing."""
     for index in reversed(range(len(source.authalic_landmarks))):
         remove(source, index)
 
@@ -189,7 +191,7 @@ def _release(obj: MeshObject, mark: int) -> bool:
         for landmark in obj_with_pairs.authalic_landmarks:
             if mark in (landmark.source_mark, landmark.target_mark):
                 return False
-    if obj.type == "MESH" and obj.data.is_editable:
+    if obj.type == "MESH" and editability.is_writable(obj.data):
         point_marks.clear(obj.data, mark)
     return True
 
@@ -215,7 +217,8 @@ def _bind(landmark: Landmark, side: str, vertex: int) -> None:
     obj, mark = _object(landmark, side), 0
     if side == "target":
         landmark.waiting = vertex if obj is None else NONE
-    if obj is not None and obj.type == "MESH" and 0 <= vertex < point_marks.vertex_count(obj.data):
+    is_writable = obj is not None and obj.type == "MESH" and editability.is_writable(obj.data)
+    if obj is not None and is_writable and 0 <= vertex < point_marks.vertex_count(obj.data):
         mark = point_marks.put(obj.data, vertex)
     setattr(landmark, f"{side}_mark", mark)
     landmark.error = -1.0

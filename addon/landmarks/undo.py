@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.app.handlers import persistent
 
-from ..blender import element_marks
+from ..blender import editability, element_marks
 from ..blender.types import MeshObject, mesh_objects
 from . import curve_marks, point_marks
 
@@ -99,7 +99,7 @@ def _update(source: MeshObject, listed: Listed, is_redone: bool) -> None:
 
 
 def _sources() -> list[MeshObject]:
-    return mesh_objects()
+    return [obj for obj in mesh_objects() if editability.is_writable(obj)]
 
 
 def _marks(source: MeshObject, listed: Listed) -> set[int]:

@@ -25,10 +25,12 @@ _SIDES = (
 
 class _CurveOperator(LandmarkOperator):
     pairs, active, noun = "authalic_landmark_curves", "authalic_landmark_curve_index", "curve"
+    changes_lists = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_curves(cls, context)
+        is_free = not cls.changes_lists or poll.can_change_lists(cls, context)
+        return is_free and poll.has_curves(cls, context)
 
     def worded(self, problem: str) -> str:
         return problem[:1].upper() + problem[1:]
@@ -73,7 +75,7 @@ class AUTHALIC_OT_landmark_curve_add(_CurveOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_target(cls, context)
+        return poll.can_pair(cls, context)
 
     def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         index = NONE if self.index == NONE else self.chosen(source)
@@ -123,6 +125,7 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
 
     bl_idname = "authalic.landmark_curve_select"
     bl_label = "Select Landmark Curve"
+    changes_lists = False
     index: _index()
     side: _side("The object whose edges to select", "SOURCE")
 

@@ -86,7 +86,7 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # t
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_source(cls, context)
+        return poll.can_change_lists(cls, context)
 
     def run(self, source: MeshObject, path: FilePath) -> Status:
         content = landmark_files.from_text(path.read_text(encoding="utf-8-sig"))

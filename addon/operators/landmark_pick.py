@@ -69,7 +69,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         if AUTHALIC_OT_landmark_pick.running:
             cls.poll_message_set("Landmarks are already being picked")
             return False
-        return poll.has_target(cls, context)
+        return poll.can_pair(cls, context)
 
     def execute(self, context: bpy.types.Context) -> Status:
         """Adds a pair by vertex numbers: for scripts, and for changes in the redo panel."""

@@ -13,11 +13,12 @@ from .landmark_base import GIVEN, LandmarkOperator, index_property
 
 
 class _PointOperator(LandmarkOperator):
-    needs_pairs = True
+    changes_lists = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_landmarks(cls, context) if cls.needs_pairs else poll.has_source(cls, context)
+        is_free = not cls.changes_lists or poll.can_change_lists(cls, context)
+        return is_free and poll.has_landmarks(cls, context)
 
 
 class AUTHALIC_OT_landmark_add(_PointOperator, bpy.types.Operator):
@@ -27,7 +28,6 @@ class AUTHALIC_OT_landmark_add(_PointOperator, bpy.types.Operator):
 
     bl_idname = "authalic.landmark_add"
     bl_label = "Add Landmark"
-    needs_pairs = False
 
     name: StringProperty(name="Name", description="Empty for a number", default="", options=GIVEN)
     source_vertex: IntProperty(
@@ -47,7 +47,7 @@ class AUTHALIC_OT_landmark_add(_PointOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_target(cls, context)
+        return poll.can_pair(cls, context)
 
     def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
         target = source.authalic_target
@@ -94,6 +94,7 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
 
     bl_idname = "authalic.landmark_jump"
     bl_label = "Jump to Landmark"
+    changes_lists = False
     index: index_property()
     side: EnumProperty(
         name="Side",

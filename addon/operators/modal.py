@@ -87,10 +87,10 @@ class Modal(OperatorMixin):
         """Runs a step; if the job is refused, reports the reason. Nothing has changed then."""
         try:
             return step()
+        except (Cancelled, targets.CannotWrite, *self.refused) as problem:  # type: ignore[misc]
+            self.report({"ERROR"}, str(problem))
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
-        except (Cancelled, *self.refused) as problem:  # type: ignore[misc]
-            self.report({"ERROR"}, str(problem))
         return {"CANCELLED"}
 
     def _say(self, report: Any) -> Status:

@@ -3,9 +3,9 @@
 
 import bpy
 
-from ..blender import uv_maps
+from ..blender import editability, uv_maps
 from ..blender.types import is_mesh
-from ..landmarks.objects import active_source, target_problem
+from ..landmarks.objects import active_source, pairing_problem
 
 
 def has_meshes(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
@@ -49,14 +49,25 @@ def has_source(operator: "type[bpy.types.Operator]", context: bpy.types.Context)
     return True
 
 
-def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
-    """Object or edit mode with an active mesh that has a target."""
+def can_pair(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
+    """Object or edit mode with an active mesh that has a target and can keep landmarks."""
     if not has_source(operator, context):
         return False
-    problem = target_problem(active_source(context))
+    problem = pairing_problem(active_source(context))
     if problem:
-        operator.poll_message_set(problem[:1].upper() + problem[1:])
+        operator.poll_message_set(problem)
     return not problem
+
+
+def can_change_lists(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
+    """Object or edit mode with an active mesh whose lists of landmarks can be changed."""
+    if not has_source(operator, context):
+        return False
+    source = active_source(context)
+    reason = editability.why_not_object(source)
+    if reason:
+        operator.poll_message_set(f"{source.name}: {reason}")
+    return not reason
 
 
 def has_landmarks(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:

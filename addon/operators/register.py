@@ -6,7 +6,8 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..blender.types import OperatorMixin
+from ..blender import editability
+from ..blender.types import OperatorMixin, is_mesh
 from ..jobs import register as registration
 from ..jobs.couple import CannotRegister
 from ..jobs.job import Job
@@ -119,10 +120,12 @@ def has_target(operator: "type[bpy.types.Operator]", context: bpy.types.Context)
     obj = active_source(context)
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")
-    elif obj is None or obj.type != "MESH":
+    elif not is_mesh(obj):
         operator.poll_message_set("Make the mesh that is to change the active object")
     elif target_problem(obj):
         operator.poll_message_set(f"{obj.name}: {target_problem(obj)}")
+    elif reason := editability.why_not_mesh(obj):
+        operator.poll_message_set(f"{obj.name}: {reason}")
     else:
         return True
     return False

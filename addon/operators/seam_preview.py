@@ -85,7 +85,7 @@ def _start(context: bpy.types.Context, wanted: Wanted) -> None:
     _state.wanted = wanted
     try:
         _state.running = marking.preview(context, wanted[1]).start()
-    except seam_groups.NoGroup as problem:
+    except (seam_groups.NoGroup, targets.NothingToDo) as problem:
         _show(context, [], str(problem))
 
 

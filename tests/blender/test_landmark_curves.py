@@ -403,7 +403,7 @@ def test_a_linked_target_cannot_be_reversed(heads: tuple[MeshObject, MeshObject]
     with bpy.data.libraries.load(path, link=True) as (there, chosen):
         chosen.meshes = there.meshes
     target.data = chosen.meshes[0]
-    curving.refused("The mesh of Head B is linked from another file", call.landmark_curve_reverse)
+    curving.refused("Head B: its mesh is linked from another file", call.landmark_curve_reverse)
 
 
 def test_a_copy_with_its_own_curves_can_be_edited(heads: tuple[MeshObject, MeshObject]) -> None:

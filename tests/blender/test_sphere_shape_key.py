@@ -262,7 +262,7 @@ def test_linked_mesh(tmp_path: Path) -> None:
         target.meshes = source.meshes
     linked = bpy.data.objects.new("Linked", target.meshes[0])
     bpy.context.collection.objects.link(linked)
-    refusal(r"Linked: its mesh is linked from another file; make it local", linked)
+    refusal(r"Linked: its mesh is linked from another file; make it local first", linked)
 
 
 def test_shared_mesh_gets_one_key(capfd: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 
 from .blender import scene_changes
 from .landmarks import curves as landmark_curves
+from .landmarks import last_registration
 from .landmarks import points as landmark_points
 from .operators import fix_flips as operator_fix_flips
 from .operators import landmark_curves as operators_of_curves
@@ -28,6 +29,7 @@ _MODULES = (
     scene_changes,
     landmark_curves,
     landmark_points,
+    last_registration,
     overlay_points,
     overlay_curves,
     overlay_seams,

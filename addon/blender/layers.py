@@ -39,6 +39,17 @@ def read_uv_maps(obj: MeshObject, active_only: bool) -> list[Layer]:
     return [Layer(UV_MAP, name, uv_maps.read(obj.data, name), True) for name in names]
 
 
+@dataclass
+class KeyDetail:
+    """What a shape key has besides its displacements: its slider's range, whether it is muted, the vertex
+    group that masks it ("" for none), and the key it is relative to ("" for the first)."""
+
+    slider: tuple[float, float]
+    is_muted: bool
+    mask: str
+    relative_to: str
+
+
 def read_vertex_groups(obj: MeshObject) -> list[Layer]:
     """All vertex groups of an object; vertices outside have the weight 0."""
     weights = np.zeros((len(obj.vertex_groups), len(obj.data.vertices), 1), np.float32)
@@ -64,7 +75,7 @@ def read_color_attributes(obj: MeshObject) -> list[Layer]:
 
 
 def read_shape_keys(obj: MeshObject, but: Collection[str]) -> list[Layer]:
-    """An object's shape keys without those named, as displacements; `detail` is the slider's range."""
+    """An object's shape keys without those named, as displacements; `detail` is a `KeyDetail`."""
     blocks = obj.data.shape_keys
     if blocks is None or not blocks.use_relative:
         return []
@@ -74,10 +85,15 @@ def read_shape_keys(obj: MeshObject, but: Collection[str]) -> list[Layer]:
             KEY,
             key.name,
             shape_keys.coordinates(key) - shape_keys.coordinates(key.relative_key),
-            detail=(key.slider_min, key.slider_max),
+            detail=(_detail(key, blocks.reference_key),),
         )
         for key in chosen
     ]
+
+
+def _detail(key: bpy.types.ShapeKey, first: bpy.types.ShapeKey) -> KeyDetail:
+    relative = "" if key.relative_key == first else key.relative_key.name
+    return KeyDetail((key.slider_min, key.slider_max), key.mute, key.vertex_group, relative)
 
 
 def writable(obj: MeshObject, layers: Sequence[Layer]) -> tuple[list[Layer], list[str]]:
@@ -108,6 +124,24 @@ def write(obj: MeshObject, layer: Layer, elements: Integers, values: Floats) -> 
     if _WRITERS[layer.kind](obj, layer, elements, values):
         return None
     return _line(layer, f"Blender adds no layer of this name to {obj.name}; rename it on either object")
+
+
+def masks(layers: Sequence[Layer]) -> set[str]:
+    """The names of the vertex groups that mask shape keys."""
+    return {layer.detail[0].mask for layer in layers if layer.kind == KEY} - {""}
+
+
+def relate(obj: MeshObject, layers: Sequence[Layer]) -> list[str]:
+    """Makes shape keys that were written to an object relative to the same keys as where they come from.
+
+    Returns a line for each that cannot be.
+    """
+    keys = {layer.name: layer.detail[0].relative_to for layer in layers if layer.kind == KEY}
+    known = {name: relative for name, relative in keys.items() if relative in keys}
+    loose = [name for name, relative in keys.items() if relative and name not in known]
+    if known:
+        loose += shape_keys.make_relative(obj, known)
+    return [f"{KEY} {name} is relative to the first key here" for name in loose]
 
 
 def _line(layer: Layer, problem: str) -> str:
@@ -199,13 +233,13 @@ def _added_color(attributes: Any, layer: Layer) -> Any:
 
 
 def _write_key(obj: MeshObject, layer: Layer, vertices: Integers, displacements: Floats) -> bool:
-    shown = obj.active_shape_key_index
+    detail: KeyDetail = layer.detail[0]
     positions = shape_keys.read(obj).positions
     positions[vertices] += displacements
     shape_keys.write(obj, layer.name, positions)
     key = obj.data.shape_keys.key_blocks[layer.name]
-    key.slider_min, key.slider_max = layer.detail
-    obj.active_shape_key_index = shown
+    key.slider_min, key.slider_max = detail.slider
+    key.mute, key.vertex_group = detail.is_muted, detail.mask
     return True
 
 

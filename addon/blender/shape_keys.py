@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shape keys of meshes that are not in edit mode, as numpy arrays."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import bpy
@@ -42,10 +43,12 @@ def why_not(mesh: bpy.types.Mesh, name: str) -> str | None:
 
 
 def write(obj: MeshObject, name: str, positions: Reals) -> None:
-    """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0, and selects it.
+    """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0.
 
-    A mesh without shape keys also gets its first one. All other shape keys stay as they are, bit for bit.
+    A mesh without shape keys also gets its first one. All other shape keys stay as they are, bit for bit, and
+    the active one stays active: edit mode shows and changes that.
     """
+    active = obj.active_shape_key_index
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
     keys = obj.data.shape_keys
@@ -55,5 +58,27 @@ def write(obj: MeshObject, name: str, positions: Reals) -> None:
     key.slider_min, key.slider_max = min(key.slider_min, 0.0), max(key.slider_max, 1.0)
     key.mute, key.vertex_group = False, ""
     key.value = 0.0  # Blender 5 starts with 1
-    obj.active_shape_key_index = keys.key_blocks.find(name)
+    obj.active_shape_key_index = active
     obj.data.update()
+
+
+def find(obj: MeshObject, name: str) -> bpy.types.ShapeKey | None:
+    """The shape key of a name, or None."""
+    keys = obj.data.shape_keys
+    return None if keys is None else keys.key_blocks.get(name)
+
+
+def make_relative(obj: MeshObject, wanted: Mapping[str, str]) -> list[str]:
+    """Makes keys {name: name of another} relative to others, which they are moved with; all are there.
+
+    Returns those that stay relative to the first key, because they are relative to each other in a circle.
+    """
+    keys = obj.data.shape_keys
+    left = dict(wanted)
+    while ready := [name for name, relative in left.items() if relative not in left]:
+        for name in ready:
+            key, relative = keys.key_blocks[name], keys.key_blocks[left.pop(name)]
+            moved = coordinates(key) + coordinates(relative) - coordinates(keys.reference_key)
+            key.points.foreach_set("co", np.ascontiguousarray(moved, np.float32).ravel())
+            key.relative_key = relative
+    return list(left)

@@ -33,6 +33,11 @@ if TYPE_CHECKING:
         mark: int
         error: float
 
+    class Registration(bpy.types.PropertyGroup):
+        """The settings of the last registration as they are saved; `method` is "" if there was none."""
+
+        method: str
+
     class MeshObject(bpy.types.Object):
         """An object of type "MESH"."""
 
@@ -43,7 +48,7 @@ if TYPE_CHECKING:
         authalic_landmark_curves: EntryList[LandmarkCurve]
         authalic_landmark_curve_index: int
         authalic_curve_key: str
-        authalic_registered_by: str
+        authalic_registration: Registration
 
     Status = set[OperatorReturnItems]
     OperatorMixin = bpy.types.Operator

@@ -17,6 +17,7 @@ from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import Side, moved
 from ..surfaces.arrays import Floats
+from . import last_registration
 from .couple import CannotRegister, Couple, check_unchanged, chosen, pair_lists
 from .job import Job
 from .register_report import Report, warnings
@@ -64,7 +65,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
         listed: Sequence[Landmark | LandmarkCurve] = curves if registered.by_curves else points
         for landmark, error in zip(listed, registered.errors.tolist(), strict=True):
             landmark.error = 100 * error
-        couple.source.authalic_registered_by = registered.method
+        last_registration.remember(couple.source, settings.registration)
         if settings.frames is not None:
             animation.rise(couple.source, key, *settings.frames)
         notes = [*warnings(registered), *notes, *_remarks(couple, key)]

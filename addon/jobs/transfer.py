@@ -2,20 +2,21 @@
 """The transfer of layers from the target to the active object, through their registration."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import layers
+from ..blender import drivers, layers
 from ..bridge.progress import Progress
 from ..registration import elements, seams
 from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import is_open
 from ..surfaces.arrays import Floats, Integers
-from . import register, targets
+from . import last_registration, register, targets
 from .couple import CannotRegister, Couple, check_unchanged, chosen
 from .job import Job
 from .register_report import warnings
@@ -28,7 +29,7 @@ Pulled = tuple[Registered, bool, list[tuple[Integers, Floats]]]
 
 @dataclass
 class Settings:
-    """The layers to transfer, and the registration; None is the latest of the session."""
+    """The layers to transfer, and the registration; None is the latest, as the source remembers it."""
 
     uv_maps: bool = True
     active_uv_only: bool = False
@@ -41,12 +42,16 @@ class Settings:
 
 @dataclass
 class Report:
-    """The layers (kind, name) that were written, and refusals; `by` names the registration."""
+    """The layers (kind, name) that were written, and refusals.
+
+    `by` names the registration, `driven` the drivers of shape keys that were copied, or is "".
+    """
 
     source: str
     target: str
     by: str
     written: list[tuple[str, str]]
+    driven: str
     refusals: list[str]
     notes: list[str]
     seconds: float
@@ -54,6 +59,7 @@ class Report:
     def __str__(self) -> str:
         kinds = dict.fromkeys(kind for kind, _ in self.written)
         parts = [_listed(kind, [layer[1] for layer in self.written if layer[0] == kind]) for kind in kinds]
+        parts += [self.driven] if self.driven else []
         line = f"{', '.join(parts)} from {self.target} to {self.source} {self.by}, {self.seconds:.2f} s"
         left = [f"left out: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
@@ -69,11 +75,11 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[Pulled, Report]:
     items, refusals = layers.writable(couple.source, _read(couple, settings))
     if not items:
         raise _nothing(couple, refusals)
-    method = _method(couple)
+    last = _last(couple)
     to_world, from_world = np.array(couple.target.matrix_world)[:3, :3], couple.to_source[:3, :3]
 
     def work(progress: Progress) -> Pulled:
-        registered, is_new = _registration(couple, settings.registration, method, progress)
+        registered, is_new = _registration(couple, settings.registration, last, progress)
         turn = _turn(registered, couple) if settings.align else np.identity(3)
         pulled = [_pulled(registered, item, from_world @ turn @ to_world) for item in items]
         return registered, is_new, pulled
@@ -84,6 +90,12 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[Pulled, Report]:
         problems = [
             layers.write(couple.source, item, *values) for item, values in zip(items, pulled, strict=True)
         ]
+        done = [item for item, problem in zip(items, problems, strict=True) if problem is None]
+        notes = layers.relate(couple.source, done)
+        keys = [item.name for item in done if item.kind == layers.KEY]
+        driven = drivers.copy(couple.target, couple.source, keys)
+        if settings.registration is not None:
+            last_registration.remember(couple.source, settings.registration)
         left = refusals + [problem for problem in problems if problem is not None]
         if all(problems):
             raise _nothing(couple, left)
@@ -91,9 +103,10 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[Pulled, Report]:
             source=couple.source.name,
             target=couple.target.name,
             by=_by(registered, is_new),
-            written=[(item.kind, item.name) for item, bad in zip(items, problems, strict=True) if not bad],
+            written=[(item.kind, item.name) for item in done],
+            driven=driven,
             refusals=left,
-            notes=warnings(registered),
+            notes=[*warnings(registered), *notes],
             seconds=time.perf_counter() - started,
         )
 
@@ -111,8 +124,18 @@ def _read(couple: Couple, settings: Settings) -> list[layers.Layer]:
         items += layers.read_color_attributes(couple.target)
     if settings.shape_keys:
         morphs = {register.key_name(obj) for obj in (couple.source, couple.target)}
-        items += layers.read_shape_keys(couple.target, but=morphs)
+        keys = layers.read_shape_keys(couple.target, but=morphs)
+        items += [*_masks(couple, items, keys), *keys]
     return items
+
+
+def _masks(couple: Couple, items: Sequence[layers.Layer], keys: Sequence[layers.Layer]) -> list[layers.Layer]:
+    """The vertex groups that mask shape keys and that the source will not have otherwise."""
+    there = {item.name for item in items if item.kind == layers.GROUP} | {*couple.source.vertex_groups.keys()}
+    wanted = layers.masks(keys) - there
+    if not wanted:
+        return []
+    return [group for group in layers.read_vertex_groups(couple.target) if group.name in wanted]
 
 
 def _nothing(couple: Couple, refusals: list[str]) -> Exception:
@@ -122,23 +145,28 @@ def _nothing(couple: Couple, refusals: list[str]) -> Exception:
 
 
 def _registration(
-    couple: Couple, settings: RegistrationSettings | None, method: str, progress: Progress
+    couple: Couple, settings: RegistrationSettings | None, last: RegistrationSettings, progress: Progress
 ) -> tuple[Registered, bool]:
-    """The registration with these settings, without any the latest of a method; and whether it is new."""
+    """The registration with these settings, without any the latest of a method; and whether it is new.
+
+    Where the session has none of the method, the last settings give it anew.
+    """
     if settings is not None:
         return register.registration(couple, settings, progress), False
-    registered = bridge.kept(*couple.sides, couple.pairs, couple.curves, method)
+    registered = bridge.kept(*couple.sides, couple.pairs, couple.curves, last.method)
     if registered is not None:
         return registered, False
-    return register.registration(couple, RegistrationSettings(method=method), progress), True
+    return register.registration(couple, last, progress), True
 
 
-def _method(couple: Couple) -> str:
-    """The method of the last registration with the target, or one for which there are landmarks."""
+def _last(couple: Couple) -> RegistrationSettings:
+    """The settings of the last registration with the target, or a method for which there are landmarks."""
     boundaries = any(is_open(side) for side in couple.sides)
     can = {"POINTS": bool(couple.pairs), "CURVES": bool(couple.curves) or boundaries}
-    last = couple.source.authalic_registered_by
-    return next((method for method in (last, "POINTS", "CURVES") if can.get(method)), "POINTS")
+    last = last_registration.settings(couple.source)
+    if last is not None and can[last.method]:
+        return last
+    return RegistrationSettings(method=next((method for method in can if can[method]), "POINTS"))
 
 
 def _by(registered: Registered, is_new: bool) -> str:

@@ -235,7 +235,7 @@ def _target_changed(source: MeshObject, _context: bpy.types.Context) -> None:
             _bind(landmark, "target", landmark.waiting)
     for curve in source.authalic_landmark_curves:
         curve.error = -1.0
-    source.authalic_registered_by = ""
+    source.authalic_registration.method = ""
 
 
 _PROPERTIES: Any = bpy.types.Object
@@ -257,12 +257,9 @@ def register() -> None:
         poll=_may_be_target,
         update=_target_changed,
     )
-    # The method of the last registration with this target, for transfers after it.
-    _PROPERTIES.authalic_registered_by = StringProperty(options={"HIDDEN"})
 
 
 def unregister() -> None:
-    del _PROPERTIES.authalic_registered_by
     del _PROPERTIES.authalic_target
     del _PROPERTIES.authalic_landmark_index
     del _PROPERTIES.authalic_landmarks

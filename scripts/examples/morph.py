@@ -188,7 +188,7 @@ def morph(source, target, options):
         frame_start=1,
         frame_end=options.frames,
     )
-    return source.data.shape_keys.key_blocks[source.active_shape_key_index].name
+    return f"Morph → {target.name}"
 
 
 def set_stage(shape, key, options):

@@ -7,6 +7,7 @@ import types
 from collections.abc import Callable
 from typing import Any
 
+import bmesh
 import bpy
 import meshes
 import numpy as np
@@ -175,6 +176,22 @@ def test_again_replaces_the_key() -> None:
     blocks = source.data.shape_keys.key_blocks
     assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0
     assert pairs.positions(source, KEY)[:, 0].mean() > 4
+
+
+def test_edit_mode_shows_the_key_that_was_active() -> None:
+    """Not the morph, which would then be what is edited."""
+    source, _ = balls()
+    before = pairs.positions(source)
+    register()
+    assert source.active_shape_key.name == "Basis"
+    meshes.edit(source)
+    edited = np.array([vertex.co for vertex in bmesh.from_edit_mesh(source.data).verts])
+    bpy.ops.object.mode_set(mode="OBJECT")
+    np.testing.assert_allclose(edited, before, atol=1e-6)
+    source.shape_key_add(name="Smile", from_mix=False)
+    source.active_shape_key_index = 2
+    register()
+    assert source.active_shape_key.name == "Smile"
 
 
 def test_long_names() -> None:

@@ -141,6 +141,16 @@ def test_again_replaces_the_key() -> None:
     assert (key_positions(obj) == second).all()
 
 
+def test_the_active_key_stays_active() -> None:
+    obj = meshes.icosphere(2)
+    add_key()
+    assert obj.active_shape_key.name == "Basis"
+    obj.shape_key_add(name="Smile", from_mix=False)
+    obj.active_shape_key_index = 2
+    add_key()
+    assert obj.active_shape_key.name == "Smile"
+
+
 def test_other_keys_stay_and_the_first_one_counts() -> None:
     obj = meshes.bumpy(meshes.icosphere(3))
     points = mesh_positions(obj)

@@ -2,6 +2,7 @@
 """authalic.transfer: the layers that it copies from the target, and the data that it leaves alone."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -241,9 +242,134 @@ def test_keys_relative_to_other_keys_and_other_keys_stay() -> None:
     source.active_shape_key_index = 1
     only("shape_keys")
     assert [key.name for key in source.data.shape_keys.key_blocks] == ["Basis", "Own", "Wide", "Wider"]
-    for name, by in (("Own", 2.0), ("Wide", 0.25), ("Wider", 0.5)):
+    for name, by in (("Own", 2.0), ("Wide", 0.25), ("Wider", 0.75)):
         np.testing.assert_allclose(pairs.positions(source, name) - pairs.positions(source), by, atol=1e-5)
+    assert source.data.shape_keys.key_blocks["Wider"].relative_key.name == "Wide"
     assert source.active_shape_key_index == 1
+
+
+def test_keys_stay_relative_masked_muted() -> None:
+    source, target = copies()
+    left = pairs.positions(target)[:, 0] < 0
+    add_group(target, "Left", left.astype(float))
+    add_key(target, "Wider", np.full(3, 0.5))
+    add_key(target, "Wide", np.full(3, 0.25)).mute = True
+    blocks = target.data.shape_keys.key_blocks
+    blocks["Wider"].relative_key = blocks["Wide"]  # which comes later
+    blocks["Wider"].vertex_group = "Left"
+    assert transfer() == {"FINISHED"}
+    copied = source.data.shape_keys.key_blocks
+    assert copied["Wider"].relative_key == copied["Wide"]
+    assert copied["Wide"].relative_key == copied["Basis"]
+    assert copied["Wider"].vertex_group == "Left" and not copied["Wide"].vertex_group
+    assert copied["Wide"].mute and not copied["Wider"].mute
+    # Two sliders at one: what Blender itself makes of the keys, on both objects alike.
+    for obj in (source, target):
+        for key in obj.data.shape_keys.key_blocks[1:]:
+            key.mute, key.value = False, 1.0
+    np.testing.assert_allclose(shown(source), shown(target), atol=1e-4)
+
+
+def shown(obj: MeshObject) -> Array:
+    """The displacements (n, 3) that the shape keys in use make."""
+    bpy.context.view_layer.update()
+    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    return np.array([vertex.co for vertex in mesh.vertices]) - pairs.positions(obj)
+
+
+@pytest.mark.parametrize("has_own", [False, True])
+def test_the_group_of_a_mask_comes_along(has_own: bool) -> None:
+    source, target = copies()
+    half = (pairs.positions(target)[:, 0] < 0).astype(float)
+    add_group(target, "Left", half)
+    add_group(target, "Other", half)
+    add_key(target, "Smile", np.ones(3)).vertex_group = "Left"
+    if has_own:
+        add_group(source, "Left", 1 - half)
+    only("shape_keys")
+    assert source.data.shape_keys.key_blocks["Smile"].vertex_group == "Left"
+    assert source.vertex_groups.keys() == ["Left"]
+    wanted = 1 - half if has_own else half
+    np.testing.assert_allclose(np.nan_to_num(weights(source, "Left")), wanted, atol=1e-4)
+
+
+def test_relations_that_cannot_be_kept_are_named(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = copies()
+    add_key(target, "One", np.full(3, 0.25))
+    add_key(target, "Two", np.full(3, 0.5))
+    add_key(target, "Morph → Sheet", np.zeros(3))
+    add_key(target, "Three", np.full(3, 0.75), "Morph → Sheet")
+    blocks = target.data.shape_keys.key_blocks
+    blocks["One"].relative_key, blocks["Two"].relative_key = blocks["Two"], blocks["One"]
+    only("shape_keys")
+    said = capfd.readouterr().out
+    for name, by in (("One", -0.25), ("Two", 0.25), ("Three", 0.75)):
+        assert f"shape key {name} is relative to the first key here" in said
+        np.testing.assert_allclose(pairs.positions(source, name) - pairs.positions(source), by, atol=1e-5)
+
+
+def test_drivers_are_copied_and_named(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = copies()
+    add_key(target, 'Smile "a"', np.ones(3))
+    add_key(target, "Fix", np.ones(3))
+    bone = bpy.data.objects.new("Bone", None)
+    bpy.context.collection.objects.link(bone)
+    keys = target.data.shape_keys
+    driven(keys.key_blocks['Smile "a"'], bone, "location.x")
+    driven(keys.key_blocks["Fix"], keys, keys.key_blocks['Smile "a"'].path_from_id("value"))
+    add_key(source, "Fix", np.ones(3))
+    driven(source.data.shape_keys.key_blocks["Fix"], target, "location.y")
+    for _ in range(2):  # a second transfer replaces the drivers of the first
+        only("shape_keys")
+    assert len(source.data.shape_keys.animation_data.drivers) == 2
+    said = capfd.readouterr().out
+    assert '2 shape keys (Smile "a"; Fix), drivers of Smile "a", Fix, which follow Bone from Twin' in said
+    bone.location.x = 0.75
+    keys.key_blocks["Fix"].driver_remove("value")
+    keys.key_blocks['Smile "a"'].driver_remove("value")
+    keys.key_blocks['Smile "a"'].value = 0.1
+    bpy.context.view_layer.update()
+    copied = source.data.shape_keys.key_blocks
+    assert copied['Smile "a"'].value == pytest.approx(0.75)
+    assert copied["Fix"].value == pytest.approx(0.75), "it follows the key of its own mesh"
+
+
+def driven(key: Any, by: Any, path: str) -> None:
+    """Makes a property drive the value of a shape key."""
+    driver = key.driver_add("value").driver
+    variable = driver.variables.new()
+    if isinstance(by, bpy.types.Key):
+        variable.targets[0].id_type = "KEY"
+    variable.targets[0].id, variable.targets[0].data_path = by, path
+    driver.expression = variable.name
+
+
+def test_a_reopened_file_transfers_as_before(tmp_path: Path) -> None:
+    """By the settings of the last registration, which the object keeps."""
+    _, target = coarse_and_fine()
+    target.location.z = 0.5
+    random_uv(target, "Map")
+    x = pairs.positions(target)[:, :2]
+    meshes.set_uv(target, x[[loop.vertex_index for loop in target.data.loops]], "Map")
+    bpy.ops.authalic.register(angle_weight=0.7, weight=3.0, domain="DISK")
+    path = str(tmp_path / "saved.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    values = []
+    for _ in range(2):
+        only("uv_maps")
+        values.append(meshes.uv(bpy.data.objects["Sheet"], "Map"))
+        part("bridge.registrations")._registrations._found.clear()
+        bpy.ops.wm.open_mainfile(filepath=path)
+    np.testing.assert_array_equal(values[0], values[1])
+
+
+def test_another_target_forgets_the_settings() -> None:
+    source, target = copies()
+    bpy.ops.authalic.register(angle_weight=0.7)
+    last = part("jobs.last_registration")
+    assert last.settings(source).angle_weight == pytest.approx(0.7)
+    source.authalic_target = pairs.twin(target, name="Other")
+    assert last.settings(source) is None
 
 
 def test_morphs_between_the_two_are_left_out() -> None:
@@ -398,7 +524,7 @@ def test_the_registration_is_used_again(monkeypatch: pytest.MonkeyPatch) -> None
     assert [settings.angle_weight for settings in made] == [pytest.approx(0.4)]
     part("landmarks.points").remove(source, 0)
     only("uv_maps")
-    assert len(made) == 2 and made[1].angle_weight == 0
+    assert len(made) == 2 and made[1].angle_weight == pytest.approx(0.4)
 
 
 def test_problems_are_those_of_registration() -> None:

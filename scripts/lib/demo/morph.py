@@ -76,7 +76,7 @@ def show():
         stage.label("no morph: see report.json", 2, 0)
         print(f"  {name}: {problem}")
         return entry
-    key = shape.data.shape_keys.key_blocks[shape.active_shape_key_index].name
+    key = f"Morph → {target.name}"
     entry |= _figures(source, target, key)
     _wall(shape, key)
     stage.label(_caption(entry), (len(FRAMES) - 1) / 2, STEP + 0.56, 0.15)

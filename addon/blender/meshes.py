@@ -16,9 +16,15 @@ from . import uv_maps
 from .types import MeshObject
 
 
-def read(obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None = None) -> Surface:
-    """The surface of an object; with `selected_only` that of its selected, visible faces."""
-    with _readable(obj.data) as mesh:
+def read(
+    obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None = None, world: bool = False
+) -> Surface:
+    """The surface of an object; with `selected_only` that of its selected, visible faces.
+
+    It has the size of the object in the world, and with `world` its shape there, turned back and never
+    mirrored: all lengths and areas are those in the world, all directions those of the mesh.
+    """
+    with readable(obj.data) as mesh:
         polygons = _polygons(mesh)
         corner_vertex = _attribute(mesh, ".corner_vert", np.int32)
         corners, owner = _loop_triangles(mesh, polygons)
@@ -40,7 +46,11 @@ def read(obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None =
             surface.uv = uv_maps.read(mesh, uv_layer)
             pins = _attribute(mesh, f".pn.{uv_layer}", bool)
             surface.pinned = pins if len(pins) else None
-    surface.positions *= _world_size(obj, surface)
+    if world and not has_uniform_scale(obj):
+        with np.errstate(invalid="ignore"):
+            surface.positions = surface.positions @ _world_shape(obj)
+    else:
+        surface.positions *= _world_size(obj, surface)
     return surface
 
 
@@ -60,32 +70,40 @@ def has_corners(obj: MeshObject, count: int) -> bool:
     return len(mesh.loops) == count
 
 
-def write_face_attribute(mesh: bpy.types.Mesh, name: str, values: Floats) -> None:
-    """Writes a float (p,) for each polygon into the face attribute `name`, replacing one of another kind."""
+def write_face_attribute(mesh: bpy.types.Mesh, name: str, values: Floats, polygons: Integers) -> None:
+    """Writes values (p,) at polygons (k,) into the face attribute `name`, replacing one of another kind."""
     attribute: Any = mesh.attributes.get(name)
     if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
         mesh.attributes.remove(attribute)
         attribute = None
     attribute = attribute or mesh.attributes.new(name, "FLOAT", "FACE")
     if not mesh.is_editmode:
-        attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+        written = np.empty(len(mesh.polygons), np.float32)
+        attribute.data.foreach_get("value", written)
+        written[polygons] = values[polygons]
+        attribute.data.foreach_set("value", written)
         mesh.update()
         return
     edit = bmesh.from_edit_mesh(mesh)
+    edit.faces.ensure_lookup_table()
     layer = edit.faces.layers.float[name]
-    for face, value in zip(edit.faces, values.tolist(), strict=True):
-        face[layer] = value
+    chosen = np.unique(polygons)
+    for polygon, value in zip(chosen.tolist(), values[chosen].tolist(), strict=True):
+        edit.faces[polygon][layer] = value
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
 def has_uniform_scale(obj: MeshObject) -> bool:
-    """Whether the object's scale is the same, up to mirroring, in all directions."""
-    scale = np.abs(np.array(obj.matrix_world.to_scale()))
+    """Whether the object's scale in the world is the same, up to mirroring, in all directions."""
+    matrix = np.array(obj.matrix_world, float)[:3, :3]
+    if not np.isfinite(matrix).all():
+        return True
+    scale = np.linalg.svd(matrix, compute_uv=False)
     return bool(scale.max() - scale.min() <= 1e-4 * scale.max())
 
 
 @contextmanager
-def _readable(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
+def readable(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Mesh]:
     """The mesh; in edit mode, where its arrays are empty, a temporary copy of what is being edited."""
     if not mesh.is_editmode:
         yield mesh
@@ -149,6 +167,12 @@ def _seams(mesh: bpy.types.Mesh, corner_chosen: Booleans) -> Integers:
     ends = np.empty(2 * len(mesh.edges), np.int32)
     mesh.edges.foreach_get("vertices", ends)
     return ends.reshape(-1, 2)[seam & used]
+
+
+def _world_shape(obj: MeshObject) -> Floats:
+    """The symmetric factor (3, 3) of an object's matrix, without the rotation and mirroring of the other."""
+    _, scale, axes = np.linalg.svd(np.array(obj.matrix_world, float)[:3, :3])
+    return (axes.T * scale) @ axes
 
 
 def _world_size(obj: MeshObject, surface: Surface) -> float:

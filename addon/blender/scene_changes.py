@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-_count = 0
+_count, _looks = 0, 0
 
 
 def count() -> int:
@@ -12,16 +12,28 @@ def count() -> int:
     return _count
 
 
+def looks() -> int:
+    """A number that changes also with every change of a selection in edit mode, and of materials."""
+    return _looks
+
+
 def note() -> None:
     """Counts a change that Blender reports later, if at all."""
-    global _count
-    _count += 1
+    global _count, _looks
+    _count, _looks = _count + 1, _looks + 1
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _look(_scene: bpy.types.Scene, graph: bpy.types.Depsgraph) -> None:
     if any(update.is_updated_geometry and not _is_collection(update) for update in graph.updates):
         note()
+    elif any(isinstance(update.id, bpy.types.Mesh) for update in graph.updates):
+        _look_again()
+
+
+def _look_again() -> None:
+    global _looks
+    _looks += 1
 
 
 def _is_collection(update: bpy.types.DepsgraphUpdate) -> bool:

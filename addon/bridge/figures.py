@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import authalic
 
-from ..surfaces import polygons, triangulation
+from ..surfaces import components, polygons, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.surface import Surface
 from .results import Figures, Island, Measurement
@@ -48,7 +48,10 @@ def measure_islands(islands: Sequence[Island]) -> Figures | None:
 
 
 def measure(surfaces: Sequence[Surface]) -> Measurement | None:
-    """Figures of the UVs of `surfaces`, all on one scale; None if no triangle has an area."""
+    """Figures of the UVs of `surfaces`, all on one scale; None if no triangle has an area.
+
+    Areas count by the density of the surfaces.
+    """
     points = np.concatenate([surface.positions[surface.triangles] for surface in surfaces])
     image = np.concatenate([surface.uvs[surface.corners] for surface in surfaces])
     good = triangulation.has_area(points) & np.isfinite(image).all(axis=(1, 2))
@@ -56,17 +59,46 @@ def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     areas, image_areas = _areas(points, image)
     if not image_areas.any():
         return None
-    # Corners are welded, so that the library itself can turn faces with inconsistent normals.
-    first, faces = triangulation.welded(_vertices(surfaces)[good], image)
-    corner_points, corner_image = points.reshape(-1, 3)[first], image.reshape(-1, 2)[first]
-    native = authalic.distortion(corner_points, faces, corner_image)
+    native, mirrored = _unmirrored(points, _vertices(surfaces)[good], image)
     folded = np.zeros(len(areas), bool)
     folded[native.folded] = True
-    ratios = _ratios(areas, np.where(folded, -image_areas, image_areas))
+    targets = areas * np.concatenate([surface.densities for surface in surfaces])[good]
+    ratios = _ratios(targets, np.where(folded, -image_areas, image_areas))
     angles = np.asarray(native.angle_distortion)
     figures = _figures(areas, ratios, folded, angles, int(np.count_nonzero(~good)))
-    spread = [_spread(good, values) for values in (_log2(ratios, folded), areas, folded)]
-    return Measurement(**vars(figures), log2=polygons.log2_area_ratios(surfaces, *spread))
+    spread = [_spread(good, values) for values in (areas, targets, ratios, angles, folded)]
+    of_all = polygons.Triangles(*spread).split(surfaces)
+    of_polygons = [polygons.of_triangles(*pair) for pair in zip(surfaces, of_all, strict=True)]
+    return Measurement(**vars(figures), mirrored=mirrored, polygons=of_polygons)
+
+
+def _unmirrored(points: Floats, vertices: Integers, image: Singles) -> tuple[authalic.Distortion, int]:
+    """The figures by the library of triangles (t, 3, 3), with vertices (t, 3) and images (t, 3, 2).
+
+    Islands that are mirrored are turned back first; also returns their number.
+    """
+    native, faces = _welded(points, vertices, image)
+    if not len(native.folded):
+        return native, 0
+    signed = np.abs(triangulation.signed_areas(image.astype(float)))
+    signed[native.folded] *= -1
+    component = components.joined_by_edges(faces)
+    mirrored = components.mirrored(component, signed)
+    if mirrored.any():
+        turned = image.copy()
+        turned[mirrored[component], :, 0] *= -1
+        native, _ = _welded(points, vertices, turned)
+    return native, int(np.count_nonzero(mirrored))
+
+
+def _welded(points: Floats, vertices: Integers, image: Singles) -> tuple[authalic.Distortion, Integers]:
+    """The figures of triangles as above, and the triangles (t, 3) that they become.
+
+    Corners are joined, so that the library itself can turn faces with inconsistent normals.
+    """
+    first, faces = triangulation.welded(vertices, image)
+    native = authalic.distortion(points.reshape(-1, 3)[first], faces, image.reshape(-1, 2)[first])
+    return native, faces
 
 
 def _areas(points: Floats, image: Singles) -> tuple[Floats, Floats]:

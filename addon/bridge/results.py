@@ -3,11 +3,17 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 import authalic
 
 from ..surfaces.arrays import Floats, Integers, Singles
 from ..surfaces.islands import PlanarIsland
+from ..surfaces.polygons import Polygons
 from .shortfall import Shortfall
+
+# A polygon has its share if its area ratio differs from 1 by this at most.
+_FAIR = 0.1
 
 
 @dataclass
@@ -105,9 +111,41 @@ class Figures:
 
 @dataclass
 class Measurement(Figures):
-    """Figures with the log2 of the area ratio of each polygon, (polygons,) for each surface."""
+    """Figures of UV maps whoever made them, with those of the polygons of each surface.
 
-    log2: list[Floats]
+    `mirrored` islands are mirrored as a whole, which is no flip.
+    """
+
+    mirrored: int
+    polygons: list[Polygons]
+
+    @property
+    def log2(self) -> list[Floats]:
+        """log2 of the area ratio of each polygon, (polygons,) for each surface."""
+        return [figures.log2 for figures in self.polygons]
+
+    @property
+    def flipped(self) -> int:
+        """The number of polygons with a folded triangle."""
+        return sum(int(figures.folded.sum()) for figures in self.polygons)
+
+    @property
+    def fair(self) -> float:
+        """The part of the polygons with an area whose area ratio is 1 up to a tenth."""
+        counted = sum(int(figures.counted.sum()) for figures in self.polygons)
+        return np.count_nonzero(np.abs(self._ratios - 1) <= _FAIR) / counted
+
+    @property
+    def shares(self) -> tuple[float, float]:
+        """The least and the greatest area ratio of a polygon that is not flipped, 0 where all are."""
+        ratios = self._ratios
+        return (float(ratios.min()), float(ratios.max())) if len(ratios) else (0.0, 0.0)
+
+    @property
+    def _ratios(self) -> Floats:
+        """The area ratios (k,) of the polygons that have an area and are not flipped."""
+        chosen = [figures.ratios[figures.counted & ~figures.folded] for figures in self.polygons]
+        return np.concatenate(chosen)
 
 
 @dataclass

@@ -1,14 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.measure: the area distortion of the active UV map."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import StringProperty
 
-from ..blender.types import Status
-from ..jobs import measure, targets
+from ..blender import scene_changes, uv_maps, weights
+from ..blender.types import Status, is_mesh
+from ..jobs import densities, measure, targets
 from . import poll
+
+
+class Figures(NamedTuple):
+    """What the panel shows of a measurement: a sentence, and a phrase for each number."""
+
+    sentence: str
+    numbers: list[str]
+
+
+# The last measurement, and what it was made of.
+_last: tuple[Figures, object] | None = None
+
+
+def current(context: bpy.types.Context) -> Figures | None:
+    """The figures of the last measurement; None once meshes, UVs or the selection have changed."""
+    return _last[0] if _last is not None and _last[1] == _looked_at(context) else None
+
+
+def _looked_at(context: bpy.types.Context) -> object:
+    """What a measurement depends on; equal as long as nothing of it has changed."""
+    objects = [(obj.name_full, uv_maps.active(obj)) for obj in targets.meshes(context)]
+    return context.mode, objects, scene_changes.looks()
+
+
+def _group_names(_operator: bpy.types.Operator, context: bpy.types.Context, _text: str) -> list[str]:
+    obj = context.object
+    return weights.names(obj) if is_mesh(obj) else []
 
 
 class AUTHALIC_OT_measure(bpy.types.Operator):
@@ -20,21 +48,35 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
     bl_label = "Measure Area Distortion"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
 
+    density_source: StringProperty(
+        name="Density",
+        description="A vertex group or color attribute that says where more texture is wanted: faces of the "
+        "weight or brightness 1 should get eight times as much as those of 0. Empty for the same everywhere",
+        default="",
+        search=_group_names,
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll.has_meshes(cls, context)
+        return poll.has_uv_maps(cls, context)
 
     def execute(self, context: bpy.types.Context) -> Status:
+        global _last
         try:
-            figures = measure.job(context).execute()
-        except targets.NothingToDo as problem:
+            report = measure.job(context, self.density_source).execute()
+        except (targets.NothingToDo, densities.NoDensity) as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
-        phrases = measure.phrases(figures)
-        manager: Any = context.window_manager
-        manager.authalic_figures = "\n".join(phrases)
-        self.report({"INFO"}, f"Measured {figures.triangles} triangles: {', '.join(phrases)}")
+        if context.view_layer:
+            context.view_layer.update()  # counts the change that the attribute is
+        _last = Figures(report.sentence, report.numbers), _looked_at(context)
+        self.report({"INFO"}, str(report))
         return {"FINISHED"}
+
+
+def _lines(_manager: bpy.types.WindowManager) -> str:
+    figures = current(bpy.context)
+    return "\n".join(figures.numbers) if figures is not None else ""
 
 
 _PROPERTIES: Any = bpy.types.WindowManager
@@ -43,10 +85,15 @@ _PROPERTIES: Any = bpy.types.WindowManager
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_measure)
     _PROPERTIES.authalic_figures = StringProperty(
-        name="Figures", description="The last measurement, one figure per line", options={"SKIP_SAVE"}
+        name="Figures",
+        description="The last measurement, one figure per line; empty once it no longer applies",
+        get=_lines,
+        options={"SKIP_SAVE"},
     )
 
 
 def unregister() -> None:
+    global _last
+    _last = None
     del _PROPERTIES.authalic_figures
     bpy.utils.unregister_class(AUTHALIC_OT_measure)

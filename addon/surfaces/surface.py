@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .arrays import Booleans, Floats, Integers, Singles
 
 
@@ -10,10 +12,12 @@ from .arrays import Booleans, Floats, Integers, Singles
 class Surface:
     """The triangles of an object's mesh, or of its selected faces, with all numbers those of the mesh.
 
-    `positions` (n, 3) have the shape of the mesh and the size of the object in the world. `triangles` (t, 3)
-    are vertices, `corners` (t, 3) mesh corners, `polygons` (t,) polygons; `seams` (k, 2) vertices.
+    `positions` (n, 3) have the size of the object in the world, and the shape of the mesh or that in the
+    world. `triangles` (t, 3) are vertices, `corners` (t, 3) mesh corners, `polygons` (t,) polygons; `seams`
+    (k, 2) vertices.
     `pinned` (c,) and `uv` (c, 2) of the UV layer, if there is one, have one entry per mesh corner.
     `seam_factors` (n,), if there are some, say how dear a seam is at each vertex; infinite forbids it.
+    `density` (p,), if there is one, says how much more UV area each polygon is to get than its area asks for.
     """
 
     name: str
@@ -28,6 +32,7 @@ class Surface:
     pinned: Booleans | None = None
     uv: Singles | None = None
     seam_factors: Floats | None = None
+    density: Floats | None = None
 
     @property
     def polygon_count(self) -> int:
@@ -38,6 +43,11 @@ class Surface:
         """The UVs (c, 2) of a surface that has a UV map."""
         assert self.uv is not None, f"{self.name} has no UV map"
         return self.uv
+
+    @property
+    def densities(self) -> Floats:
+        """The density (t,) of each triangle, 1 where none is given."""
+        return np.ones(len(self.triangles)) if self.density is None else self.density[self.polygons]
 
     def restricted(self, triangles: Booleans, uv: Singles) -> "Surface":
         """The part of the surface given by a mask (t,) of its triangles, with other UVs."""

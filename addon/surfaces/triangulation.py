@@ -8,9 +8,12 @@ import numpy as np
 from .arrays import Booleans, Floats, Integers, Reals
 from .surface import Surface
 
-# Blender keeps coordinates in single precision: a height below this part of the largest coordinate is
+# Blender keeps coordinates in single precision: a height below this part of the largest coordinate may be
 # nothing but rounding.
-_FLAT = 2 * float(np.finfo(np.float32).eps)
+_ROUNDING = 2 * float(np.finfo(np.float32).eps)
+# The height of a triangle on a straight line, over its longest side. Far from the origin, where coordinates
+# are coarse, triangles of better shapes are as low as rounding, but their areas are not.
+_FLAT = 2.0**-10
 
 
 @dataclass
@@ -49,10 +52,11 @@ def welded(vertices: Integers, uv: Reals) -> tuple[Integers, Integers]:
 
 
 def has_area(triangles: Floats) -> Booleans:
-    """Which triangles (t, 3, 3) have an area beyond the rounding of their coordinates, (t,)."""
+    """Which triangles (t, 3, 3) are no lines that have an area by the rounding of their coordinates, (t,)."""
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
-    rounding = _FLAT * np.abs(triangles).max(axis=(1, 2), initial=0)
-    return 2 * areas(triangles) > sides * rounding
+    rounding = _ROUNDING * np.abs(triangles).max(axis=(1, 2), initial=0)
+    has_height: Booleans = 2 * areas(triangles) > sides * np.minimum(rounding, _FLAT * sides)
+    return has_height
 
 
 def sound(surface: Surface) -> Triangles:

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 
 from ..blender.types import PanelMixin
-from ..operators import mark_seams, sphere_shape_key, unwrap
+from ..operators import mark_seams, measure, sphere_shape_key, unwrap
 from . import text
 
 
@@ -38,10 +38,12 @@ class _MeasurePanel(_Panel):
         column.operator("authalic.measure", text="Measure")
         column.operator("authalic.fix_flips")
         column = layout.column(align=True)
-        manager: Any = context.window_manager
-        # one figure per line: a sidebar is narrow
-        for figure in manager.authalic_figures.splitlines():
-            column.label(text=figure[:1].upper() + figure[1:], translate=False)
+        figures = measure.current(context)
+        if figures is not None:
+            text.draw_problems(layout, [figures.sentence], context, icon="INFO")
+            # one figure per line: a sidebar is narrow
+            for figure in figures.numbers:
+                column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
 
 class AUTHALIC_PT_unwrap_view3d(_UnwrapPanel, bpy.types.Panel):

@@ -36,7 +36,7 @@ def seamed_suzanne(levels: int = 2) -> MeshObject:
 def figures_of(**options: Any) -> Any:
     """The measured area ratio SD and angle distortion of an unwrap that a script calls."""
     assert bpy.ops.authalic.unwrap(**options) == {"FINISHED"}
-    figures = part("jobs.measure").job(bpy.context).execute()
+    figures = part("jobs.measure").job(bpy.context).execute().figures
     assert figures.flips == 0
     return figures.deviation, figures.angle
 
@@ -71,7 +71,7 @@ def test_the_whole_slider_beats_minimum_stretch() -> None:
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.uv.unwrap(method="MINIMUM_STRETCH", fill_holes=True, iterations=10, margin=0.001)
     bpy.ops.object.mode_set(mode="OBJECT")
-    blender = part("jobs.measure").job(bpy.context).execute()
+    blender = part("jobs.measure").job(bpy.context).execute().figures
     assert authalic.flips == 0
     assert authalic.angle < blender.angle and authalic.deviation < blender.deviation
 

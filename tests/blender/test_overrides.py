@@ -17,7 +17,6 @@ OF_MESHES = {
     "unwrap": lambda: AUTHALIC.unwrap(),
     "mark seams": lambda: AUTHALIC.mark_seams(),
     "fix flips": lambda: AUTHALIC.fix_flips(),
-    "measure": lambda: AUTHALIC.measure(),
     "sphere": lambda: AUTHALIC.sphere_shape_key(),
 }
 OF_COUPLES = {
@@ -78,6 +77,16 @@ def refused(obj: MeshObject, call: Callable[[], Any], words: str) -> None:
     with pytest.raises(RuntimeError, match=f"{obj.name}: {words}; make it local first"):
         call()
     assert state(obj) == before
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_measuring_writes_nothing_into_meshes_that_cannot_be_written(kind: str, tmp_path: Path) -> None:
+    obj = prepared(kind, tmp_path)
+    before = state(obj)
+    report = part("jobs.measure").job(bpy.context).execute()
+    assert report.figures.triangles == 72 and state(obj) == before
+    assert f"{obj.name} gets no attribute: its mesh is" in str(report)
+    assert AUTHALIC.measure() == {"FINISHED"} and state(obj) == before
 
 
 @pytest.mark.parametrize("kind", KINDS)

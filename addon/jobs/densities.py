@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The vertex group or color attribute that says where more texture is wanted."""
+
+from collections.abc import Sequence
+
+from ..blender import weights
+from ..blender.types import MeshObject
+from ..surfaces import density
+from ..surfaces.surface import Surface
+
+
+class NoDensity(Exception):
+    """No object has the vertex group or color attribute that was named; nothing was changed."""
+
+
+def check(objects: Sequence[MeshObject], source: str) -> None:
+    """Raises `NoDensity` unless one of the objects at least has the source; an empty one is none."""
+    if source and not any(source in weights.names(obj) for obj in objects):
+        raise NoDensity(f'No selected object has the vertex group or color "{source}"; choose another')
+
+
+def apply(obj: MeshObject, surface: Surface, source: str) -> None:
+    """Sets the density of an object's surface; an object without the source has the same everywhere."""
+    if source:
+        painted = weights.of_corners(obj, source, surface.corner_vertex)
+        surface.density = None if painted is None else density.of_polygons(surface, painted)

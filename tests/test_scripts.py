@@ -103,7 +103,8 @@ def test_rust_is_checked_with_the_features_of_the_wheel():
 
 ALL = {step.name for step in steps.STEPS}
 IN_BLENDER = {"blender-4.2", "blender-5"}
-OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | IN_BLENDER
+INSTALLED = IN_BLENDER | {"window"}
+OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | INSTALLED
 
 
 @pytest.mark.parametrize(
@@ -116,13 +117,14 @@ OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | IN_BLENDER
         ("rust/core/tests/it/disk.rs", {"rustfmt", "clippy", "rust"}),
         ("rust/python/src/lib.rs", {"rustfmt", "clippy", "rustdoc"} | OF_THE_WHEEL),
         ("rust/python/authalic/_native.pyi", {"ruff"} | OF_THE_WHEEL),
-        ("addon/ui/panels.py", {"ruff", "types", "python", "extension"} | IN_BLENDER),
-        ("addon/blender_manifest.toml.in", {"ruff", "types", "python", "extension"} | IN_BLENDER),
+        ("addon/ui/panels.py", {"ruff", "types", "python", "extension"} | INSTALLED),
+        ("addon/blender_manifest.toml.in", {"ruff", "types", "python", "extension"} | INSTALLED),
         ("tests/api/test_cut.py", {"ruff", "python"}),
         ("tests/api/oracle.py", {"ruff", "python"}),
         ("tests/blender/test_modal.py", {"ruff", "types"} | IN_BLENDER),
         ("tests/blender/meshes.py", {"ruff", "types"} | IN_BLENDER),
-        ("tests/gui/driver.py", {"ruff", "types"}),
+        ("tests/gui/driver.py", {"ruff", "types", "window"}),
+        ("tests/gui/buttons.py", {"ruff", "types", "window"}),
         ("tests/test_scripts.py", {"ruff", "python"}),
         ("scripts/bench", {"ruff", "python"}),
         ("scripts/lib/bench/tables/main.py", {"ruff", "python"}),
@@ -143,6 +145,7 @@ def test_a_change_of_tests_runs_these_tests():
     assert changes.touched(["tests/api/test_cut.py"])["python"] == ("tests/api/test_cut.py",)
     assert changes.touched(["tests/blender/test_modal.py"])["blender-5"] == ("tests/blender/test_modal.py",)
     assert changes.touched(["tests/blender/test_modal.py", "addon/ui/panels.py"])["blender-5"] == ()
+    assert changes.touched(["tests/gui/buttons.py"])["window"] == ("tests/gui/buttons.py",)
     together = changes.touched(["tests/api/test_cut.py", "tests/api/test_holes.py"])
     assert together["python"] == ("tests/api/test_cut.py", "tests/api/test_holes.py")
     assert "python" not in changes.touched(["tests/api/test_that_was_deleted.py"])

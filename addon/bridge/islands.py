@@ -14,7 +14,7 @@ from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
 from .patches import SurfacePatch, checked, surface_patches
-from .progress import Progress, keep_going, one_by_one, share_of, to_the_end
+from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import Island, Mapping
 from .seams import disks
 from .settings import SeamSettings, UnwrapSettings
@@ -50,6 +50,7 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
     result = Mapping()
     if settings.seams is None:
         patches = surface_patches(surfaces, result)
+        progress = share_of(progress, READING, 1.0 - READING)
     else:
         share = 1.0 if settings.solver.is_even else _SEAMS
         patches = _unmapped_disks(surfaces, settings, settings.seams, result, share_of(progress, 0.0, share))

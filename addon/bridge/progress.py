@@ -14,6 +14,9 @@ from .results import Refusal
 Progress = Callable[[float, str], bool | None]
 """A callback with the fraction done and a message; False asks the computation to end."""
 
+READING = 0.05
+"""The part of the time after which meshes are cut into patches."""
+
 NOT_REACHED = "was not reached before the end"
 
 

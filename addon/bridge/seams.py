@@ -15,7 +15,7 @@ from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
 from .patches import SurfacePatch, checked, surface_patches
-from .progress import Progress, keep_going, one_by_one, share_of, to_the_end
+from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import FoundSeams
 from .settings import FEW_SEAMS, LOW_SHEAR, SeamSettings
 
@@ -69,7 +69,7 @@ def disks(
     search = _Search(surfaces, settings, with_maps, found)
     patches = surface_patches(surfaces, found, with_seams=settings.keep_given)
     search.expect(patches)
-    one_by_one(patches, search.cut, found, progress)
+    one_by_one(patches, search.cut, found, share_of(progress, READING, 1.0 - READING))
     search.finish()
     return found, search.disks
 

@@ -33,7 +33,7 @@ class Job(Generic[Computed, Result]):
         self._work, self._finish = work, finish
         self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
         self._cancel, self._end = threading.Event(), threading.Event()
-        self._state = (0.0, "")
+        self._state = (0.0, "Reading")
         self._result: Computed
         self._error: BaseException | None = None
 

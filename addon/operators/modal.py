@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that run a `Job`: at once for scripts and the redo panel, else while the window stays alive."""
+"""Operators that run a `Job`: at once for scripts and the redo panel, else while the window stays alive.
+
+One at a time: while an operator runs in a window, all others are refused.
+"""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -11,11 +14,20 @@ from ..jobs import targets
 from ..jobs.job import Cancelled, Job
 
 _INTERVAL = 0.1
+_BAR_WIDTH = 18.0
+"""In units of the interface, each as wide as an icon. A bar without a width is cut off."""
 # Events that only move the view. Any other could change the meshes of the job.
 _PASSED_ON = {
     *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"),
     *("TRACKPADZOOM", "MOUSEROTATE", "NDOF_MOTION", "WINDOW_DEACTIVATE"),
 }
+
+_in_window: list[str] = []
+"""The label of the operator that runs in a window, if any."""
+
+
+class Busy(Exception):
+    """Another operator runs in a window."""
 
 
 class Modal(OperatorMixin):
@@ -31,7 +43,7 @@ class Modal(OperatorMixin):
     _timer: Any = None
 
     def execute(self, context: bpy.types.Context) -> Status:
-        return self._attempt(lambda: self._say(self.job(context).execute()))
+        return self._attempt(lambda: self._execute(context))
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> Status:
         if bpy.app.background or context.window is None:  # without a window nothing would wake the operator
@@ -56,28 +68,28 @@ class Modal(OperatorMixin):
         self._running.cancel()
         self._leave(context)
 
+    def _execute(self, context: bpy.types.Context) -> Status:
+        _refuse_if_busy()
+        return self._say(self.job(context).execute())
+
     def _start(self, context: bpy.types.Context) -> Status:
+        _refuse_if_busy()
         self._running = self.job(context).start()
+        _in_window.append(self.bl_label)
         manager = context.window_manager
         self._timer = manager.event_timer_add(_INTERVAL, window=context.window)
         manager.progress_begin(0, 100)
         manager.modal_handler_add(self)
-        self._show(context, 0.0, "")
+        self._show(context, *self._running.poll()[1:])
         return {"RUNNING_MODAL"}
 
     def _show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
         context.window_manager.progress_update(round(100 * fraction))
-        title = f"{self.bl_label}: {message}" if message else self.bl_label
-
-        def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
-            header.layout.label(text="Cancel", icon="EVENT_ESC")
-            header.layout.label(text="Keep Current Result", icon="EVENT_RETURN")
-            header.layout.progress(factor=fraction, text=title)
-
         if context.workspace is not None:
-            context.workspace.status_text_set(draw)
+            context.workspace.status_text_set(_status_bar(self.bl_label, fraction, message))
 
     def _leave(self, context: bpy.types.Context) -> None:
+        _in_window.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         if context.workspace is not None:
@@ -87,7 +99,9 @@ class Modal(OperatorMixin):
         """Runs a step; if the job is refused, reports the reason. Nothing has changed then."""
         try:
             return step()
-        except (Cancelled, targets.CannotWrite, *self.refused) as problem:  # type: ignore[misc]
+        except Cancelled as outcome:
+            self.report({"INFO"}, f"{self.bl_label}: {outcome}")
+        except (Busy, targets.CannotWrite, *self.refused) as problem:  # type: ignore[misc]
             self.report({"ERROR"}, str(problem))
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
@@ -96,3 +110,24 @@ class Modal(OperatorMixin):
     def _say(self, report: Any) -> Status:
         self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, self.line(report))
         return {"FINISHED"}
+
+
+def _refuse_if_busy() -> None:
+    for label in _in_window:
+        raise Busy(f"{label} is still running; wait for its end, or cancel it with Esc")
+
+
+def _status_bar(title: str, fraction: float, message: str) -> Callable[[bpy.types.Header, Any], None]:
+    """A function that draws the status bar: the keys, the operator's name, and a bar with the message."""
+    text = f"{message} — {100 * fraction:.0f} %"
+
+    def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
+        layout = header.layout
+        layout.label(text="Cancel", icon="EVENT_ESC")
+        layout.label(text="Finish Early", icon="EVENT_RETURN")
+        layout.label(text=title)
+        row = layout.row()
+        row.ui_units_x = _BAR_WIDTH
+        row.progress(factor=fraction, text=text)
+
+    return draw

@@ -13,7 +13,8 @@ Selection = Dict[str, Tuple[str, ...]]
 """{step: the places that pytest runs}; an empty tuple is the whole step."""
 
 BLENDER = ("blender-4.2", "blender-5")
-BUILT = ("wheel", "types", "python", "extension", *BLENDER)
+INSTALLED = (*BLENDER, "window")
+BUILT = ("wheel", "types", "python", "extension", *INSTALLED)
 RUST = ("rustfmt", "clippy", "rust", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
@@ -30,13 +31,16 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("rust/core/*", _whole(*EVERYTHING)),
     ("rust/python/authalic/*", _whole("ruff", *BUILT)),
     ("rust/python/*", _whole("rustfmt", "clippy", "rustdoc", *BUILT)),
-    ("addon/*", {**_whole("ruff", "types", "extension", *BLENDER), "python": STRUCTURE}),
+    ("addon/*", {**_whole("ruff", "types", "extension", *INSTALLED), "python": STRUCTURE}),
     ("tests/api/test_*.py", {"ruff": (), "python": ("{file}",)}),
     ("tests/api/*", {"ruff": (), "python": ("tests/api", "tests/test_scripts.py")}),
     ("tests/blender/test_*.py", {"ruff": (), "types": (), **dict.fromkeys(BLENDER, ("{file}",))}),
     ("tests/blender/*", _whole("ruff", "types", *BLENDER)),
     ("tests/data/*", {"python": ("tests/api",), **_whole(*BLENDER)}),
-    ("tests/gui/*.py", _whole("ruff", "types")),
+    ("tests/gui/driver.py", _whole("ruff", "types", "window")),
+    ("tests/gui/start.py", _whole("ruff", "types", "window")),
+    ("tests/gui/*.py", {"ruff": (), "types": (), "window": ("{file}",)}),
+    ("tests/gui/*.sh", _whole("window")),
     ("tests/test_architecture.py", {"ruff": (), "python": STRUCTURE}),
     ("tests/test_*.py", {"ruff": (), "python": ("{file}",)}),
     ("scripts/lib/bench/*", {"ruff": (), "python": PROJECT}),

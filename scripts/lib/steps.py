@@ -12,6 +12,7 @@ from typing import Callable
 
 import distribution
 import environment
+import windows
 from environment import Environment
 from shell import OUT, CommandFailed, run
 
@@ -145,6 +146,16 @@ def test_blender_newest(log: Path, places: tuple[str, ...] = _BLENDER_TESTS) -> 
     return _test_in_blender(environment.blender_newest(), places, log)
 
 
+def test_in_window(log: Path, places: tuple[str, ...] = ()) -> Count:
+    """Skipped where there can be no window, whatever the reason."""
+    archive = _extension(environment.any_blender(), log)
+    names = [Path(place).stem for place in places] or windows.scripts()
+    count = Count(*windows.run_scripts(archive, names, log))
+    if count.failed:
+        raise TestsFailed(count, f"screenshots are in {windows.PICTURES}", log.read_text(encoding="utf-8"))
+    return count
+
+
 STEPS = (
     Step("environments", "Python environments in .venv/", make_environments, "first"),
     Step("rustfmt", "formatting of the Rust code", check_rust_format, "first"),
@@ -160,6 +171,7 @@ STEPS = (
     Step(
         "blender-5", "tests of the installed extension in the newest Blender", test_blender_newest, "blender"
     ),
+    Step("window", "tests of the installed extension in a real window", test_in_window, "blender"),
 )
 
 

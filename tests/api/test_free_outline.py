@@ -274,3 +274,27 @@ def test_slit_surfaces(name, overlap):
     assert result.status == "converged" and oracle.folded(result.uv, result.faces) == []
     assert deviation < 0.005 and shear <= SLITS[name][overlap]
     assert overlap or crossings(result.uv, result.faces) == []
+
+
+@pytest.mark.parametrize("name", ["grid", "tube_disk"])
+def test_progress_rises_through_start_and_descent(name):
+    heard = []
+    authalic.disk_map(
+        *meshes.DISKS[name], boundary="free", progress=lambda *report: heard.append(report) or True
+    )
+    fractions = [fraction for fraction, _ in heard]
+    assert fractions == sorted(fractions) and fractions[0] >= 0 and fractions[-1] <= 1
+
+
+def test_a_long_start_is_heard_of():
+    heard = []
+
+    def listen(fraction, message):
+        heard.append((fraction, message))
+        return message == "Start map" or fraction < 0.2
+
+    vertices, faces = squares(300, 300)
+    vertices[:, 2] = np.sin(vertices[:, 0] / 30) * np.cos(vertices[:, 1] / 40) * 20
+    authalic.disk_map(vertices, faces, boundary="free", progress=listen)
+    starts = sorted({fraction for fraction, message in heard if message == "Start map"})
+    assert starts == pytest.approx([0.0, 0.08, 0.12])

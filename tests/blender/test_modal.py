@@ -61,8 +61,13 @@ def event(kind: str, value: str = "PRESS") -> Any:
 
 
 def run(running: Any, context: Any, events: Sequence[Any] = ()) -> Any:
-    """Sends events, then timer ticks until the operator has ended; returns how it ended."""
+    """Starts an operator, sends events, then timer ticks until it has ended; returns how it ended."""
     assert running._start(context) == {"RUNNING_MODAL"}
+    return run_on(running, context, events)
+
+
+def run_on(running: Any, context: Any, events: Sequence[Any] = ()) -> Any:
+    """Sends events to a running operator, then timer ticks until it has ended; returns how it ended."""
     for event_ in events:
         assert running.modal(context, event_) <= {"RUNNING_MODAL", "PASS_THROUGH"}
     deadline = time.monotonic() + 60
@@ -98,7 +103,7 @@ def test_esc_discards() -> None:
     before = [layer.name for layer in obj.data.uv_layers]
     running = operator(lambda: suzanne_job(**LONG), context)
     assert run(running, context, [event("ESC")]) == {"CANCELLED"}
-    assert running.said == [("ERROR", "cancelled, nothing was changed")]
+    assert running.said == [("INFO", "Plain: cancelled, nothing was changed")]
     assert [layer.name for layer in obj.data.uv_layers] == before
 
 
@@ -192,9 +197,91 @@ def test_the_header_and_the_timer_are_cleared() -> None:
     assert workspace.calls[-1] == ("status_text_set", None)
     fractions = [call[1] for call in manager.named("progress_update")]
     assert fractions == sorted(fractions) and fractions[0] >= 0 and fractions[-1] <= 100
-    drawn = Recorder()
-    workspace.calls[0][1](types.SimpleNamespace(layout=drawn), None)
-    assert len(drawn.named("label")) == 2 and len(drawn.named("progress")) == 1
+
+
+class Layout:
+    """A layout that notes what is drawn: (text, icon or fraction, width)."""
+
+    def __init__(self) -> None:
+        self.drawn: list[tuple[Any, ...]] = []
+        self.ui_units_x = 0.0
+
+    def row(self) -> Any:
+        row = Layout()
+        row.drawn = self.drawn
+        return row
+
+    def label(self, text: str, icon: str = "NONE") -> None:
+        self.drawn.append((text, icon))
+
+    def progress(self, factor: float, text: str) -> None:
+        self.drawn.append((text, factor, self.ui_units_x))
+
+
+def status_bar(fraction: float, message: str) -> Any:
+    """What the status bar shows."""
+    context = types.SimpleNamespace()
+    running = operator(None, context)
+    running._show(context, fraction, message)
+    ((_, draw),) = context.workspace.named("status_text_set")
+    layout = Layout()
+    draw(types.SimpleNamespace(layout=layout), None)
+    return layout.drawn
+
+
+def test_the_status_bar_names_keys_and_operator_beside_a_wide_bar() -> None:
+    *labels, bar = status_bar(0.453, "Island 1 of 1: Evening out areas")
+    assert labels == [("Cancel", "EVENT_ESC"), ("Finish Early", "EVENT_RETURN"), ("Plain", "NONE")]
+    text, fraction, width = bar
+    assert text == "Island 1 of 1: Evening out areas — 45 %" and fraction == 0.453
+    assert width >= 12  # units of the interface; without a width the text is cut off
+
+
+def test_progress_leaves_zero_as_soon_as_meshes_are_read() -> None:
+    meshes.suzanne(1)
+    job = suzanne_job()
+    assert job.poll()[1:] == (0.0, "Reading")
+    heard: list[tuple[float, str]] = []
+    job._work(lambda fraction, message: heard.append((fraction, message)) or True)
+    assert heard[0][0] >= 0.05 and heard[0][1] == "Island 1 of 3"
+
+
+def test_a_second_job_is_refused_while_one_runs_in_a_window() -> None:
+    obj, context = meshes.suzanne(1), types.SimpleNamespace()
+    first = operator(lambda: suzanne_job(**LONG), context)
+    assert first._start(context) == {"RUNNING_MODAL"}
+    second = operator(suzanne_job, types.SimpleNamespace())
+    assert second._attempt(lambda: second._start(context)) == {"CANCELLED"}
+    assert second.said == [("ERROR", "Plain is still running; wait for its end, or cancel it with Esc")]
+    with pytest.raises(RuntimeError, match="Plain is still running"):
+        bpy.ops.authalic.unwrap(uv_layer="Script")
+    assert "Script" not in obj.data.uv_layers
+    assert run_on(first, context, [event("ESC")]) == {"CANCELLED"}
+    assert bpy.ops.authalic.unwrap(uv_layer="Script") == {"FINISHED"}
+
+
+@pytest.mark.parametrize("end", ["done", "refused", "file"])
+def test_after_a_job_the_next_one_may_start(end: str) -> None:
+    obj, context = meshes.suzanne(1), types.SimpleNamespace()
+    running = operator(suzanne_job, context)
+    running._start(context)
+    if end == "refused":
+        running._running._thread.join()
+        bpy.data.objects.remove(obj)
+    if end == "file":
+        running.cancel(context)
+    else:
+        run_on(running, context)
+    meshes.add_grid()
+    assert bpy.ops.authalic.unwrap() == {"FINISHED"}
+
+
+def test_a_preview_does_not_keep_others_from_running() -> None:
+    meshes.suzanne(1)
+    marking = part("jobs.mark_seams")
+    preview = marking.preview(bpy.context, marking.Settings()).start()
+    assert bpy.ops.authalic.unwrap() == {"FINISHED"}
+    preview.cancel()
 
 
 @pytest.mark.parametrize("change", ["remove", "subdivide"])

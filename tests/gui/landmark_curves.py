@@ -8,18 +8,14 @@ from typing import Any
 import bmesh
 import bpy
 from bl_ext.user_default.authalic.landmarks import curves as landmark_curves
-from driver import call, check, click, picture, run, view
+from driver import area, call, check, only_panels, picture, settled, sidebar, start, until_done
 from mathutils import Vector
 
 A, B = "Ball", "Egg"
-_REGISTRATION = (860, 800 - 694)  # the head of the closed panel
-_CURVES = (860, 800 - 427)  # the head of the list of curves in the open one
 ROWS = (0.45, -0.05, -0.55)  # heights of the curves
 
 
 def scene() -> None:
-    for obj in list(bpy.data.objects):
-        bpy.data.objects.remove(obj)
     for name, x in ((A, -1.4), (B, 1.4)):
         call(bpy.ops.mesh.primitive_ico_sphere_add, subdivisions=4, location=(x, 0, 0))
         bpy.context.object.name = name
@@ -32,15 +28,7 @@ def scene() -> None:
     target.select_set(True)
     bpy.context.view_layer.objects.active = source
     call(bpy.ops.view3d.view_axis, type="FRONT")
-    space = view()["area"].spaces.active
-    space.region_3d.view_distance = 8
-    space.show_region_ui = True
-
-
-def tab() -> None:
-    region = next(region for region in view()["area"].regions if region.type == "UI")
-    region.active_panel_category = "Authalic"
-    view()["area"].tag_redraw()
+    area().spaces.active.region_3d.view_distance = 8
 
 
 def route(edit: bmesh.types.BMesh, start: Sequence[float], end: Sequence[float]) -> list[Any]:
@@ -95,10 +83,6 @@ def curves() -> list[tuple[bool, bool, str | None]]:
     return [(bool(pair.source.vertices), bool(pair.target.vertices), pair.problem) for pair in pairs]
 
 
-def register() -> None:
-    assert call(bpy.ops.authalic.register, "INVOKE_DEFAULT", method="CURVES") == {"RUNNING_MODAL"}
-
-
 def keys() -> list[str]:
     shape_keys = bpy.data.objects[A].data.shape_keys
     return [key.name for key in shape_keys.key_blocks] if shape_keys else []
@@ -112,20 +96,16 @@ MISSING = f"has no edges on {B}"
 PAIR = (True, True, None)
 
 STEPS = [
+    only_panels("Registration"),
     scene,
-    tab,
-    lambda: None,
-    *click(lambda: _REGISTRATION, ctrl=True),
-    lambda: None,
-    *click(lambda: _CURVES),
-    lambda: None,
+    *sidebar(),
     picture("panel"),
     mode("EDIT"),
     select(A, ROWS[0]),
     select(B, None),
     add,
     check("a curve on the source", curves, [(True, False, MISSING)]),
-    lambda: None,
+    settled,
     picture("half_a_pair"),
     select(B, ROWS[0]),
     add,
@@ -144,21 +124,19 @@ STEPS = [
     select(B, ROWS[2]),
     add,
     lambda: call(bpy.ops.authalic.landmark_curve_reverse, index=2),
-    lambda: None,
+    settled,
     picture("edit_mode"),
     lambda: call(bpy.ops.authalic.landmark_curve_reverse, index=2),
     mode("OBJECT"),
-    lambda: None,
+    settled,
     picture("curves"),
-    register,
-    *[lambda: None] * 20,
+    start("register", method="CURVES"),
+    until_done("the registration ends"),
     check("the morph is there", keys, ["Basis", f"Morph → {B}"]),
     half,
-    lambda: None,
+    settled,
     picture("registered"),
     lambda: call(bpy.ops.authalic.landmark_curve_select, index=1, side="TARGET"),
-    lambda: None,
+    settled,
     picture("selected"),
 ]
-
-run(STEPS)

@@ -8,15 +8,26 @@ import bmesh
 import bpy
 from bl_ext.user_default.authalic.landmarks import points as landmark_points
 from bl_ext.user_default.authalic.overlay import points as overlay_points
-from driver import call, check, click, key, move, picture, pixel, run, send, view
+from driver import (
+    area,
+    call,
+    check,
+    click,
+    key,
+    move,
+    only_panels,
+    picture,
+    pixel,
+    running,
+    send,
+    settled,
+    sidebar,
+)
 
 A, B = "Suzanne", "Her Sister"
-_REGISTRATION = (860, 800 - 694)  # the head of the closed panel
 
 
 def scene() -> None:
-    for obj in list(bpy.data.objects):
-        bpy.data.objects.remove(obj)
     for name, x in ((A, -1.5), (B, 1.5)):
         call(bpy.ops.mesh.primitive_monkey_add, location=(x, 0, 0))
         bpy.context.object.name = name
@@ -28,23 +39,10 @@ def scene() -> None:
     source.select_set(True)
     bpy.context.view_layer.objects.active = source
     call(bpy.ops.view3d.view_axis, type="FRONT")
-    space = view()["area"].spaces.active
-    space.region_3d.view_distance = 8
-    space.show_region_ui = True
+    area().spaces.active.region_3d.view_distance = 8
 
 
-def tab() -> None:
-    region = next(region for region in view()["area"].regions if region.type == "UI")
-    region.active_panel_category = "Authalic"
-    view()["area"].tag_redraw()
-
-
-def open_panel() -> list[Callable[[], None]]:
-    """A click with Ctrl closes all other panels."""
-    return click(lambda: _REGISTRATION, ctrl=True)
-
-
-def start() -> None:
+def pick() -> None:
     assert call(bpy.ops.authalic.landmark_pick, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
 
@@ -56,10 +54,8 @@ def pairs() -> list[Any]:
     return [pair[1:] for pair in landmark_points.pairs(bpy.data.objects[A])]
 
 
-def running() -> bool:
-    return "AUTHALIC_OT_landmark_pick" in [
-        operator.bl_idname for operator in view()["window"].modal_operators
-    ]
+def is_picking() -> bool:
+    return "AUTHALIC_OT_landmark_pick" in running()
 
 
 def hints() -> list[Any]:
@@ -73,20 +69,19 @@ def delete_first_vertex() -> None:
     bmesh.ops.delete(edit, geom=[edit.verts[198]], context="VERTS")
     bmesh.update_edit_mesh(mesh)
     bpy.data.objects[A].authalic_landmark_index = 1
-    view()["area"].tag_redraw()
+    area().tag_redraw()
 
 
 STEPS = [
+    only_panels("Registration"),
     scene,
-    tab,
-    lambda: None,
-    *open_panel(),
+    *sidebar(),
     lambda: call(bpy.ops.ed.undo_push, message="Two heads"),
-    start,
+    pick,
     *click(at(A, 409)),
     check("one click is no pair", pairs, []),
     move(at(B, 409)),
-    lambda: None,
+    settled,
     check("the picked vertex and the one under the mouse", hints, [(A, 409), (B, 409)]),
     picture("hover"),
     *click(at(B, 409)),
@@ -101,13 +96,13 @@ STEPS = [
     *click(at(B, 198)),
     check("the last click taken back", pairs, [(409, 409, None)]),
     lambda: send("WHEELUPMOUSE", "PRESS"),
-    lambda: None,
+    settled,
     *click(at(A, 198)),
     check("zoomed and picked", pairs, [(409, 409, None), (198, 198, None)]),
     picture("picked"),
-    check("still picking", running, True),
+    check("still picking", is_picking, True),
     *key("ESC"),
-    check("no longer picking", running, False),
+    check("no longer picking", is_picking, False),
     check("nothing is left over", hints, []),
     lambda: call(bpy.ops.ed.undo),
     check("undo takes one pair back", pairs, [(409, 409, None)]),
@@ -116,19 +111,17 @@ STEPS = [
     lambda: call(bpy.ops.object.mode_set, mode="EDIT"),
     lambda: call(bpy.ops.mesh.select_all, action="DESELECT"),
     delete_first_vertex,
-    lambda: None,
+    settled,
     check("a lost vertex is told", pairs, [(408, 409, None), (-1, 198, f"its vertex on {A} is gone")]),
     picture("lost"),
     lambda: call(bpy.ops.authalic.landmark_jump, index=0, side="TARGET"),
-    lambda: None,
+    settled,
     picture("jump"),
     lambda: call(bpy.ops.object.mode_set, mode="OBJECT"),
-    start,
+    pick,
     lambda: bpy.data.objects.remove(bpy.data.objects[B]),
-    lambda: None,
+    settled,
     move(at(A, 0)),
-    lambda: None,
-    check("picking ends with its objects", running, False),
+    settled,
+    check("picking ends with its objects", is_picking, False),
 ]
-
-run(STEPS)

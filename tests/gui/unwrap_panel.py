@@ -6,14 +6,12 @@ from typing import Any
 
 import bpy
 import numpy as np
-from driver import call, check, picture, run, view
+from driver import area, call, check, only_panels, picture, sidebar, start, until_done
 
 NAME = "Suzanne"
 
 
 def scene() -> None:
-    for obj in list(bpy.data.objects):
-        bpy.data.objects.remove(obj)
     call(bpy.ops.mesh.primitive_monkey_add)
     call(bpy.ops.object.mode_set, mode="EDIT")
     call(bpy.ops.mesh.select_all, action="SELECT")
@@ -22,13 +20,6 @@ def scene() -> None:
     call(bpy.ops.object.mode_set, mode="OBJECT")
     modifier = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
     call(bpy.ops.object.modifier_apply, modifier=modifier.name)
-    view()["area"].spaces.active.show_region_ui = True
-
-
-def tab() -> None:
-    region = next(region for region in view()["area"].regions if region.type == "UI")
-    region.active_panel_category = "Authalic"
-    view()["area"].tag_redraw()
 
 
 def options() -> Any:
@@ -40,7 +31,7 @@ def choose(name: str) -> Callable[[], None]:
 
     def act() -> None:
         options().angle_preset = name
-        view()["area"].tag_redraw()
+        area().tag_redraw()
 
     return act
 
@@ -50,23 +41,9 @@ def seek(seams: str) -> Callable[[], None]:
 
     def act() -> None:
         options().seams = seams
-        view()["area"].tag_redraw()
+        area().tag_redraw()
 
     return act
-
-
-def start(name: str) -> Callable[[], None]:
-    """A step that starts an operator as its button does."""
-
-    def act() -> None:
-        operator = getattr(bpy.ops.authalic, name)
-        assert call(operator, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
-
-    return act
-
-
-def running() -> list[str]:
-    return [operator.bl_idname for operator in view()["window"].modal_operators]
 
 
 def uv() -> Any:
@@ -100,28 +77,13 @@ def uv_editor() -> None:
     """Turns the 3D view into a UV editor of the mesh in edit mode."""
     call(bpy.ops.object.mode_set, mode="EDIT")
     call(bpy.ops.mesh.select_all, action="SELECT")
-    view()["area"].ui_type = "UV"
-
-
-def editor() -> Any:
-    areas = bpy.context.window_manager.windows[0].screen.areas
-    return next(area for area in areas if area.ui_type == "UV")
-
-
-def sidebar_of_the_uv_editor() -> None:
-    editor().spaces.active.show_region_ui = True
-    editor().tag_redraw()
-
-
-def tab_of_the_uv_editor() -> None:
-    region = next(region for region in editor().regions if region.type == "UI")
-    region.active_panel_category = "Authalic"
-    editor().tag_redraw()
+    area().ui_type = "UV"
 
 
 STEPS = [
+    only_panels("Authalic Unwrap", "Area Distortion"),
     scene,
-    tab,
+    *sidebar(),
     picture("panel"),
     check("the preset at first", lambda: (options().angle_preset, options().outline), ("EVEN", "FREE")),
     choose("CIRCLE"),
@@ -132,20 +94,15 @@ STEPS = [
     picture("new_seams"),
     seek("GIVEN"),
     start("unwrap"),
-    *[lambda: None] * 20,
-    check("no operator runs on", running, []),
+    until_done("the unwrap ends"),
     check("the unwrap flips nothing", flips, 0),
     tangle,
     check("now there are flips", lambda: flips() > 0, True),
     start("fix_flips"),
-    *[lambda: None] * 5,
-    check("no operator runs on", running, []),
+    until_done("the fix ends"),
     check("flips are fixed", flips, 0),
     picture("fixed"),
     uv_editor,
-    sidebar_of_the_uv_editor,
-    tab_of_the_uv_editor,
+    *sidebar("UV"),
     picture("uv_editor"),
 ]
-
-run(STEPS)

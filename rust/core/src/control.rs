@@ -2,7 +2,7 @@
 //! The dialog of a long run with its caller: progress, cancel, status and history.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Listens to a run and may end it.
@@ -82,7 +82,8 @@ const HEARTBEAT: Duration = Duration::from_millis(80);
 /// Asks the observer for all threads of one long step whether to go on, once per [`HEARTBEAT`].
 pub(crate) struct Watch<'a> {
     line: Mutex<(&'a mut dyn Observer, Instant)>,
-    fraction: f64,
+    /// The bits of the fraction done, an `f64`.
+    fraction: AtomicU64,
     message: &'a str,
     cancelled: AtomicBool,
 }
@@ -91,7 +92,13 @@ impl<'a> Watch<'a> {
     /// Watches over a step at `fraction` of what `observer` listens to.
     pub(crate) fn new(observer: &'a mut dyn Observer, fraction: f64, message: &'a str) -> Self {
         let line = Mutex::new((observer, Instant::now()));
+        let fraction = AtomicU64::new(fraction.to_bits());
         Self { line, fraction, message, cancelled: AtomicBool::new(false) }
+    }
+
+    /// Tells that the step is at `fraction` by now.
+    pub(crate) fn reach(&self, fraction: f64) {
+        self.fraction.store(fraction.to_bits(), Ordering::Relaxed);
     }
 
     /// False once the run is cancelled; cheap enough for inner loops.
@@ -104,7 +111,7 @@ impl<'a> Watch<'a> {
         if line.1.elapsed() < HEARTBEAT {
             return true;
         }
-        let goes_on = line.0.progress(self.fraction, self.message);
+        let goes_on = line.0.progress(f64::from_bits(self.fraction.load(Ordering::Relaxed)), self.message);
         line.1 = Instant::now();
         self.cancelled.store(!goes_on, Ordering::Relaxed);
         goes_on

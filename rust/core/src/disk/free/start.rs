@@ -7,7 +7,7 @@ use super::outline::Outline;
 use super::starts;
 use super::surface::{Free, Prepared, QuickStart, Schedule};
 use crate::codomain::planar::PlanarMap;
-use crate::control::{History, Observer, Status, Watch};
+use crate::control::{History, Observer, Rising, Status, Watch};
 use crate::disk::holes;
 use crate::disk::options::{Boundary, DiskMapOptions};
 use crate::disk::run::Run;
@@ -41,6 +41,7 @@ impl Free<'_> {
     /// A one-to-one map to start from.
     pub(super) fn start(&self, prepared: &Prepared<'_>, observer: &mut dyn Observer) -> Result<Start, Error> {
         let outline = (!self.options.overlap).then_some(prepared.outline);
+        let observer: &mut dyn Observer = &mut Rising::new(observer);
         let watch = Watch::new(&mut *observer, 0.0, "Start map");
         if let Some(start) = self.given_start(prepared, outline, &watch) {
             return Ok(start);

@@ -29,6 +29,10 @@ const ASSEMBLED_STEPS: [usize; 4] = [0, 1, 2, 5];
 /// Vertices that touch an edge of the outline are moved inwards by this part of the height beside them.
 const PULL: f64 = 1e-3;
 
+/// The parts of the time after which the conformal map is known, and then the factor with which it is made more rigid.
+const CONFORMAL: f64 = 0.4;
+const FACTORED: f64 = 0.6;
+
 /// A start of free outline with its energy.
 pub(super) type Start = (f64, PlanarMap);
 
@@ -57,8 +61,10 @@ pub(super) fn best_start(
         Err(Failure::Cancelled) => return Err(Failure::Cancelled),
         conformal => conformal.ok(),
     };
+    watch.reach(CONFORMAL);
     if let Some(conformal) = conformal {
         let rigid = Poisson::new(energy, watch).and_then(|poisson| {
+            watch.reach(FACTORED);
             as_rigid_as_possible(energy, &poisson, conformal.clone(), RIGID_STEPS, watch)
         });
         match rigid {

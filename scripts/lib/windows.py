@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Tests in a real window: Blender of a small Debian system that is kept, on a virtual screen.
+
+Making the system takes a minute, 1.3 GB, root, and Debian's package tools.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Sequence
+
+from shell import DIST, OUT, ROOT, CommandFailed, Unavailable, run, say, tail
+
+FOLDER = ROOT / "tests" / "gui"
+PICTURES = OUT / "gui"
+SUITE = os.environ.get("AUTHALIC_GUI_SUITE") or "trixie"
+SECONDS = 400
+_CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "authalic"
+_KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
+_PACKAGES = (
+    "blender", "python3-numpy", "xvfb", "xauth", "imagemagick", "libgl1-mesa-dri", "libegl1", "libglx-mesa0",
+    "fonts-dejavu-core",
+)  # fmt: skip
+_APT_OPTIONS = ('Apt::Install-Recommends "false"', 'Acquire::Check-Valid-Until "false"')
+_HELPERS = ("driver", "start")
+
+
+def scripts() -> list[str]:
+    """The names of all scripts."""
+    return sorted(path.stem for path in FOLDER.glob("*.py") if path.stem not in _HELPERS)
+
+
+def run_scripts(archive: Path, names: Sequence[str], log: Path) -> tuple[int, int]:
+    """Runs scripts in a window, with the extension's zip; the numbers of checks that passed and failed.
+
+    The lines of the checks go to `log`, screenshots to out/gui. Raises Unavailable where there is no Debian
+    system.
+    """
+    system = _system(log)
+    work = Path(tempfile.mkdtemp(prefix="authalic-gui-", dir=str(system / "tmp")))
+    try:
+        _prepare(work, archive)
+        _start(system, work, names)
+        lines = _collect(work, log)
+    finally:
+        shutil.rmtree(str(work), ignore_errors=True)
+    failed = sum(line.startswith("FAILED") for line in lines) + ("END" not in lines)
+    return sum(line.startswith("ok ") for line in lines), failed
+
+
+def _by_hand() -> None:
+    """Runs the scripts named on the command line with the zip in dist/."""
+    archive = max(DIST.glob("authalic-*.zip"), key=lambda path: path.stat().st_mtime)
+    log = PICTURES / "window.log"
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    log.write_text("")
+    passed, failed = run_scripts(archive, sys.argv[1:] or scripts(), log)
+    say(f"{log.read_text(encoding='utf-8')}{passed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)
+
+
+def _prepare(work: Path, archive: Path) -> None:
+    shutil.copy(str(archive), str(work / "extension.zip"))
+    for path in FOLDER.iterdir():
+        if path.suffix in (".py", ".sh"):
+            shutil.copy(str(path), str(work))
+
+
+def _start(system: Path, work: Path, names: Sequence[str]) -> None:
+    """Runs inside.sh in the system; what Blender says goes to a file beside it."""
+    inside = f"/{work.relative_to(system)}"
+    command = ["chroot", system, "bash", "-c", f"cd {inside} && exec bash inside.sh {SECONDS}"]
+    env = {**os.environ, "AUTHALIC_GUI_SCRIPTS": " ".join(names)}
+    with open(str(work / "blender.log"), "w") as output:
+        subprocess.run(list(map(str, command)), env=env, stdout=output, stderr=subprocess.STDOUT)
+
+
+def _collect(work: Path, log: Path) -> list[str]:
+    """Keeps the pictures and logs; the lines of the checks."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for path in (*work.glob("*.png"), *work.glob("*.log")):
+        shutil.copy(str(path), str(PICTURES))
+    checks = work / "checks.log"
+    text = checks.read_text(encoding="utf-8") if checks.exists() else ""
+    if not text.endswith("END\n"):
+        output = (work / "blender.log").read_text(encoding="utf-8", errors="replace")
+        text += f"Blender did not reach the end of the scripts:\n{tail(output, 30)}\n"
+    with open(str(log), "a", encoding="utf-8") as sink:
+        sink.write(text)
+    return text.splitlines()
+
+
+def _system(log: Path) -> Path:
+    """The folder of the Debian system, which is made on first use."""
+    folder = _CACHE / f"chroot-{SUITE}"
+    if not hasattr(os, "geteuid") or os.geteuid() != 0:
+        raise Unavailable("a window needs root, for a Debian system of its own")
+    if not shutil.which("apt-get"):
+        raise Unavailable("a window needs Debian's package tools, which this system does not have")
+    _CACHE.mkdir(parents=True, exist_ok=True)
+    import fcntl  # Windows has none, and does not come here
+
+    with open(str(_CACHE / f"{folder.name}.lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (folder / "usr/bin/blender").exists():
+            _make_system(folder, log)
+    return folder
+
+
+def _make_system(folder: Path, log: Path) -> None:
+    say(f"making a Debian system with Blender in {folder} ...")
+    shutil.rmtree(str(folder), ignore_errors=True)
+    new = folder.with_suffix(".new")
+    shutil.rmtree(str(new), ignore_errors=True)
+    try:
+        if not shutil.which("mmdebstrap"):
+            env = {"DEBIAN_FRONTEND": "noninteractive"}
+            run(["apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-y", "-qq", "mmdebstrap"], env, log)
+        options = [f"--aptopt={option}" for option in _APT_OPTIONS]
+        command = ["mmdebstrap", "--variant=minbase", "--skip=check/empty", *options]
+        run([*command, f"--include={','.join(_PACKAGES)}", f"--keyring={_KEYRING}", SUITE, new], None, log)
+    except CommandFailed as failure:
+        shutil.rmtree(str(new), ignore_errors=True)
+        reason = tail(failure.output, 3)
+        raise Unavailable(f"Debian {SUITE} could not be installed into {folder}:\n{reason}") from failure
+    new.rename(folder)
+
+
+if __name__ == "__main__":
+    _by_hand()

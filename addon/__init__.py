@@ -5,6 +5,7 @@ from .blender import scene_changes
 from .landmarks import curves as landmark_curves
 from .landmarks import last_registration
 from .landmarks import points as landmark_points
+from .operators import couples as operators_of_couples
 from .operators import fix_flips as operator_fix_flips
 from .operators import landmark_curves as operators_of_curves
 from .operators import landmark_files as operators_of_files
@@ -20,8 +21,10 @@ from .operators import unwrap as operator_unwrap
 from .overlay import curves as overlay_curves
 from .overlay import points as overlay_points
 from .overlay import seams as overlay_seams
+from .ui import couple as ui_couple
 from .ui import curves as ui_curves
 from .ui import landmarks as ui_landmarks
+from .ui import register as ui_register
 from .ui import unwrap as ui_unwrap
 
 # All modules that register something with Blender, in this order; they unregister in reverse.
@@ -39,6 +42,7 @@ _MODULES = (
     operator_fix_flips,
     operator_sphere_shape_key,
     operator_measure,
+    operators_of_couples,
     operators_of_points,
     operators_of_curves,
     operator_pick,
@@ -46,8 +50,10 @@ _MODULES = (
     operator_register,
     operator_transfer,
     ui_unwrap,
-    ui_curves,
+    ui_couple,
     ui_landmarks,
+    ui_curves,
+    ui_register,
 )
 
 

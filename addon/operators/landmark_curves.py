@@ -12,7 +12,7 @@ from ..blender import selection
 from ..blender.types import MeshObject, Status
 from ..landmarks import curve_marks, curve_pairing, curve_selection
 from ..landmarks import curves as landmark_curves
-from ..landmarks.objects import NONE, SIDES, CannotPair, side_object
+from ..landmarks.objects import NONE, SIDES, CannotPair, active_source, side_object
 from ..surfaces.arrays import Path
 from . import poll, views
 from .landmark_base import GIVEN, LandmarkOperator, index_property
@@ -129,6 +129,18 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
     index: _index()
     side: _side("The object whose edges to select", "SOURCE")
 
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip, with the edges of the pair and its last error."""
+        said, source = [str(cls.__doc__)], active_source(context)
+        if source is not None and 0 <= properties.index < len(source.authalic_landmark_curves):
+            pair = landmark_curves.pairs(source)[properties.index]
+            error = source.authalic_landmark_curves[properties.index].error
+            said.append(pair.problem or _both(pair, source))
+            if pair.problem is None and error >= 0:
+                said.append(f"Missed by {error:.3f} % of the target's size")
+        return ".\n".join(said)
+
     def run(self, context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         pair, side = landmark_curves.pairs(source)[index], self.side.lower()
@@ -186,6 +198,13 @@ def _selected(source: MeshObject, index: int) -> tuple[dict[str, Path], int]:
         index, chosen = curve_pairing.place_for(source, chosen)
     loose = [side for side in chosen if not selected[side][1]]
     return curve_pairing.directed(source, index, chosen, loose), index
+
+
+def _both(pair: landmark_curves.Curve, source: MeshObject) -> str:
+    """The paths of a pair in words."""
+    paths = [_described(getattr(pair, side).vertices, side_object(source, side)) for side in SIDES]
+    said = ", ".join(paths)
+    return said[:1].upper() + said[1:]
 
 
 def _middle(path: curve_marks.MarkedPath) -> int:

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.landmark_add, _remove, _clear and _jump: the pairs of the source object."""
 
+from typing import Any
+
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ..blender import selection
 from ..blender.types import MeshObject, Status
 from ..landmarks import points as landmark_points
-from ..landmarks.objects import NONE, CannotPair
+from ..landmarks.objects import NONE, CannotPair, active_source
 from . import poll, views
 from .landmark_base import GIVEN, LandmarkOperator, index_property
 
@@ -106,6 +108,20 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
         default="SOURCE",
     )
 
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """The tooltip, with the vertices of the pair and its last error."""
+        said, source = [str(cls.__doc__)], active_source(context)
+        if source is not None and 0 <= properties.index < len(source.authalic_landmarks):
+            pair, landmark = (
+                landmark_points.pairs(source)[properties.index],
+                source.authalic_landmarks[properties.index],
+            )
+            said.append(pair.problem or _vertices(pair, source))
+            if pair.problem is None and landmark.error >= 0:
+                said.append(f"Missed by {landmark.error:.3f} % of the target's size")
+        return ".\n".join(said)
+
     def run(self, context: bpy.types.Context, source: MeshObject) -> Status:
         index = self.chosen(source)
         pair = landmark_points.pairs(source)[index]
@@ -119,6 +135,11 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
         views.show(context, obj, vertex)
         self.report({"INFO"}, f"{pair.name}: vertex {vertex} of {obj.name}")
         return {"FINISHED"}
+
+
+def _vertices(pair: landmark_points.Pair, source: MeshObject) -> str:
+    target = source.authalic_target
+    return f"Vertex {pair.source_vertex} of {source.name}, vertex {pair.target_vertex} of {target.name}"
 
 
 def _or_selected(vertex: int, obj: MeshObject) -> int:

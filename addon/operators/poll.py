@@ -21,10 +21,14 @@ def has_meshes(operator: "type[bpy.types.Operator]", context: bpy.types.Context)
 
 def has_meshes_in_object_mode(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
     """Object mode with a mesh to work on."""
+    return is_object_mode(operator, context) and has_meshes(operator, context)
+
+
+def is_object_mode(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:
+    """Object mode."""
     if context.mode != "OBJECT":
         operator.poll_message_set("Only in Object Mode")
-        return False
-    return has_meshes(operator, context)
+    return context.mode == "OBJECT"
 
 
 def has_uv_maps(operator: "type[bpy.types.Operator]", context: bpy.types.Context) -> bool:

@@ -76,7 +76,7 @@ class AUTHALIC_OT_register(Modal, Registering, bpy.types.Operator):
     flip the normals of one mesh"""
 
     bl_idname = "authalic.register"
-    bl_label = "Register and Morph"
+    bl_label = "Wrap onto Target"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
     refused = (CannotRegister,)
 

@@ -196,7 +196,7 @@ def _draw_start(line: Line, end: End, color: Color, scale: float) -> None:
         disk(pixel, (_DOT + 1.5) * scale, (*rim, alpha))
         disk(pixel, _DOT * scale, (*color, alpha))
     text = PROBLEM if line.has_problem else ACTIVE
-    label(str(line.number + 1), pixel, scale * (14 if line.is_active else 12), (*text, alpha))
+    label(f"C{line.number + 1}", pixel, scale * (14 if line.is_active else 12), (*text, alpha))
 
 
 def _draw_arrow(end: End | None, color: Color, scale: float) -> None:

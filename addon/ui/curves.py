@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of the registration panel with the list of landmark curves and its buttons."""
+"""The panel with the list of landmark curves and its buttons, within Wrap and Morph."""
 
 from typing import Any
 
 import bpy
 
 from ..blender.types import LandmarkCurve, MeshObject
-from ..landmarks import curve_marks
 from ..landmarks import curves as landmark_curves
-from ..landmarks.objects import target_problem
+from ..landmarks.objects import active_source, target_problem
 from ..overlay.curves import icon
-from . import text
+from . import couple, text
 
 _shown: list[landmark_curves.Curve] = []  # the pairs of the list that is being drawn
 
 
 class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
-    """Number, color, name, last error and edge counts of each pair, and a warning if a path is missing."""
+    """Number, color, name and a dot in the color of the last error of each pair, or a warning if a path is
+    missing."""
 
     def draw_item(  # type: ignore[override]
         self,
@@ -32,17 +32,15 @@ class AUTHALIC_UL_landmark_curves(bpy.types.UIList):
         pair = _shown[index] if index < len(_shown) else None
         row = layout.row(align=True)
         number = row.row()
-        number.ui_units_x = 1.1
-        number.label(text=str(index + 1), translate=False)
+        number.ui_units_x = 1.4
+        number.label(text=f"C{index + 1}", translate=False)
         row.label(icon=icon(index))
         row.prop(item, "name", text="", emboss=False)
-        if pair is None:
-            return
-        if pair.problem is not None:
-            row.label(icon="ERROR")
-        elif item.error >= 0:
-            text.draw_aside(row, f"{item.error:.2f} %")
-        text.draw_aside(row, f"{_edges(pair.source)} → {_edges(pair.target)}")
+        if pair is not None:
+            # Its tooltip has the numbers of edges.
+            dot_icon = text.icon_of_error(item.error, pair.problem)
+            dot = row.operator("authalic.landmark_curve_select", text="", icon=dot_icon, emboss=False)
+            dot.index, dot.side = index, "SOURCE"
 
 
 class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
@@ -64,13 +62,20 @@ class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
         layout.operator("authalic.landmark_curve_clear", icon="X")
 
 
-def draw_curves(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
-    """A panel within the panel, closed by default."""
-    header, body = layout.panel("AUTHALIC_PT_landmark_curves", default_closed=True)
-    count = len(source.authalic_landmark_curves)
-    header.label(text=f"Landmark Curves ({count})" if count else "Landmark Curves")
-    if body is None:
-        return
+class AUTHALIC_PT_landmark_curves(couple.Part, bpy.types.Panel):
+    bl_label = "Landmark Curves"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        count = len(active_source(context).authalic_landmark_curves)
+        if count:
+            text.draw_aside(self.layout, str(count))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_curves(self.layout, active_source(context), context)
+
+
+def _draw_curves(body: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     _shown[:] = landmark_curves.pairs(source, drawing=True)
     row = body.row()
     row.template_list(
@@ -125,13 +130,7 @@ def _problems(source: MeshObject) -> list[str]:
     return [f"{len(bad)} of the curves cannot be used"] if bad else []
 
 
-def _edges(path: curve_marks.MarkedPath) -> str:
-    if path.problem:
-        return "?"
-    return f"○{len(path.edges)}" if path.is_closed else str(len(path.edges))
-
-
-_CLASSES = (AUTHALIC_UL_landmark_curves, AUTHALIC_MT_landmark_curves)
+_CLASSES = (AUTHALIC_UL_landmark_curves, AUTHALIC_MT_landmark_curves, AUTHALIC_PT_landmark_curves)
 
 
 def register() -> None:

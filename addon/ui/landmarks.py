@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registration panel of the 3D view: the target, and the list of landmarks with its buttons."""
+"""The panel with the list of landmarks and its buttons, within Wrap and Morph."""
 
 from typing import Any
 
@@ -7,15 +7,14 @@ import bpy
 
 from ..blender.types import Landmark, MeshObject
 from ..landmarks import points as landmark_points
-from ..landmarks.objects import NONE, active_source, target_problem
-from . import curves, text
-from .register import draw_register
+from ..landmarks.objects import active_source, target_problem
+from . import couple, text
 
 _shown: list[landmark_points.Pair] = []  # the pairs of the list that is being drawn
 
 
 class AUTHALIC_UL_landmarks(bpy.types.UIList):
-    """Number, name, last error and the two vertices of each pair, and a warning if a vertex was lost."""
+    """Number, name and a dot in the color of the error of each pair, or a warning if a vertex was lost."""
 
     def draw_item(  # type: ignore[override]
         self,
@@ -34,41 +33,21 @@ class AUTHALIC_UL_landmarks(bpy.types.UIList):
         number.ui_units_x = 1.1
         number.label(text=str(index + 1), translate=False)
         row.prop(item, "name", text="", emboss=False)
-        if pair is None:
-            return
-        if pair.problem is not None:
-            row.label(icon="ERROR")
-        elif item.error >= 0:
-            text.draw_aside(row, f"{item.error:.2f} %")
-        text.draw_aside(row, f"{_number(pair.source_vertex)} → {_number(pair.target_vertex)}")
+        if pair is not None:
+            # Its tooltip has the numbers of the vertices.
+            icon = text.icon_of_error(item.error, pair.problem)
+            dot = row.operator("authalic.landmark_jump", text="", icon=icon, emboss=False)
+            dot.index, dot.side = index, "SOURCE"
 
 
-class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
-    bl_label = "Registration"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Authalic"
-    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+class AUTHALIC_PT_landmarks(couple.Part, bpy.types.Panel):
+    bl_label = "Landmarks"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.object is not None and context.object.type == "MESH"
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.scene, "authalic_show_landmarks", text="", icon="HIDE_OFF", emboss=False)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, source = self.layout, active_source(context)
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        split = column.split(factor=0.4)
-        title = split.row()
-        title.alignment = "RIGHT"
-        title.label(text="Source")
-        split.label(text=source.name, icon="OBJECT_DATA", translate=False)
-        column.prop(source, "authalic_target")
-        _draw_landmarks(layout, source, context)
-        curves.draw_curves(layout, source, context)
-        layout.separator()
-        draw_register(layout, source, context)
+        _draw_landmarks(self.layout, active_source(context), context)
 
 
 class AUTHALIC_MT_landmarks(bpy.types.Menu):
@@ -84,9 +63,6 @@ class AUTHALIC_MT_landmarks(bpy.types.Menu):
 
 def _draw_landmarks(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
     _shown[:] = landmark_points.pairs(source, drawing=True)
-    row = layout.row(align=True)
-    row.label(text="Landmarks")
-    row.prop(context.scene, "authalic_show_landmarks", text="", icon="HIDE_OFF", emboss=False)
     row = layout.row()
     row.template_list(
         "AUTHALIC_UL_landmarks",
@@ -124,11 +100,7 @@ def _problems(active: int) -> list[str]:
     return [f"{len(bad)} of the pairs cannot be used"] if bad else []
 
 
-def _number(vertex: int) -> str:
-    return "?" if vertex == NONE else str(vertex)
-
-
-_CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_registration_view3d)
+_CLASSES = (AUTHALIC_UL_landmarks, AUTHALIC_MT_landmarks, AUTHALIC_PT_landmarks)
 
 
 def register() -> None:

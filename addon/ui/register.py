@@ -1,26 +1,65 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of the registration panel below the landmarks: the two buttons and their options."""
-
-from typing import Any
+"""The panels with the two buttons of a registration and their options, within Wrap and Morph."""
 
 import bpy
 
+from ..blender import shape_keys
 from ..blender.types import MeshObject
-from ..operators import register, transfer
-from . import curves
+from ..jobs.register import key_name
+from ..landmarks.objects import active_source
+from ..operators import register as operator_register
+from ..operators import transfer
+from . import couple, curves
 
 
-def draw_register(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
-    """Below each button stand the options that it was last used with, and will use next."""
-    last = context.window_manager.operator_properties_last
-    buttons: Any = ("register", register, "SHAPEKEY_DATA"), ("transfer", transfer, "IMPORT")
-    for operator, module, icon in buttons:
+class AUTHALIC_PT_wrap(couple.Part, bpy.types.Panel):
+    bl_label = "Wrap"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, source = self.layout, active_source(context)
+        # The options that the button was last used with, and will use next.
+        options = context.window_manager.operator_properties_last("authalic.register")
         column = layout.column()
-        row = column.row()
-        row.scale_y = 1.5 if operator == "register" else 1.0
-        row.operator(f"authalic.{operator}", icon=icon)
         column.use_property_split = True
         column.use_property_decorate = False
-        module.draw_options(column, last(f"authalic.{operator}"))
-        if operator == "register" and last("authalic.register").method == "CURVES":
+        operator_register.draw_options(column, options)
+        if options.method == "CURVES":
             curves.draw_hint(layout, source, context)
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("authalic.register", icon="SHAPEKEY_DATA")
+        _draw_slider(layout, source)
+
+
+def _draw_slider(layout: bpy.types.UILayout, source: MeshObject) -> None:
+    """The slider of the shape key that morphs the source into its target, once there is one."""
+    key = shape_keys.find(source, key_name(source.authalic_target)) if source.authalic_target else None
+    if key is not None:
+        row = layout.row()
+        row.active = not key.mute
+        row.prop(key, "value", text="Morph", slider=True)
+
+
+class AUTHALIC_PT_transfer(couple.Part, bpy.types.Panel):
+    bl_label = "Transfer"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator("authalic.transfer", icon="IMPORT")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        transfer.draw_options(layout, context.window_manager.operator_properties_last("authalic.transfer"))
+
+
+_CLASSES = (AUTHALIC_PT_wrap, AUTHALIC_PT_transfer)
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

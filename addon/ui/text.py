@@ -9,6 +9,8 @@ import bpy
 
 _LETTER = 7.5  # pixels that a letter takes on average
 _EXACT = 5e-4  # percent
+# Green, yellow and red dots, and the errors in percent up to which they stand.
+_DOTS = ((0.1, "COLORSET_03_VEC"), (1.0, "COLORSET_09_VEC"), (float("inf"), "COLORSET_01_VEC"))
 
 
 def draw_aside(row: bpy.types.UILayout, text: str) -> None:
@@ -17,6 +19,15 @@ def draw_aside(row: bpy.types.UILayout, text: str) -> None:
     column.alignment = "RIGHT"
     column.active = False
     column.label(text=text, translate=False)
+
+
+def icon_of_error(error: float, problem: str | None) -> Any:
+    """The icon for the last error of a pair, in percent of the target's size, negative if there was none."""
+    if problem is not None:
+        return "ERROR"
+    if error < 0:
+        return "DOT"
+    return next(icon for most, icon in _DOTS if error <= most)
 
 
 def draw_error(layout: bpy.types.UILayout, pairs: Any, index: int) -> None:

@@ -5,7 +5,7 @@
     .venv/bpy-5/bin/python scripts/examples/morph.py a.obj b.ply landmarks.json --output out/heads --frames 48
 
 Without files it makes two heads. Files of meshes may be .obj, .ply, .stl, or .npz with the arrays V and F.
-The file of landmarks is one that the extension exports (panel Registration, authalic.landmark_export):
+The file of landmarks is one that the extension exports (panel Wrap and Morph, authalic.landmark_export):
 
     {"format": "authalic-landmarks", "version": 1, "pairs": [{"name": "Nose", "source": 12, "target": 345}],
      "curves": [{"name": "Mouth", "source": [3, 4, 9], "target": [7, 8, 12]}]}

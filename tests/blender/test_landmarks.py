@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of landmarks: added, refused, listed, removed, and their markers."""
 
-from unittest import mock
-
 import bmesh
 import bpy
+import drawing
 import meshes
 import numpy as np
 import pairing
@@ -252,16 +251,25 @@ def test_the_list_shows_the_errors_that_are_known(heads: tuple[MeshObject, MeshO
     source, _ = heads
     pairing.add(20, 30)
     pairing.add(21, 31)
+    pairing.add(22, 32)
     source.authalic_landmarks[0].error = 0.125
-    panel = part("ui.landmarks")
-    panel._shown[:] = part("landmarks.points").pairs(source)
-    said = []
-    for index, item in enumerate(source.authalic_landmarks):
-        layout = mock.MagicMock()
-        layout.row.return_value = layout
-        panel.AUTHALIC_UL_landmarks.draw_item(None, None, layout, source, item, 0, None, "", index)
-        said.append([call.kwargs["text"] for call in layout.label.call_args_list])
-    assert said == [["1", "0.12 %", "20 → 30"], ["2", "21 → 31"]]
+    source.authalic_landmarks[2].error = 0.0
+    dots = []
+    for row in drawing.rows("ui.landmarks", "AUTHALIC_UL_landmarks", source.authalic_landmarks):
+        number, (dot, chosen) = row.labels[0], row.operators[0]
+        dots.append((number, row.icons[-1], chosen.index, drawing.tooltip(dot, chosen)))
+    words = "Select the vertex of a landmark and bring it into view"
+    assert dots == [
+        (
+            *("1", "COLORSET_09_VEC", 0),
+            f"{words}.\nVertex 20 of Head A, vertex 30 of Head B.\nMissed by 0.125 % of the target's size",
+        ),
+        ("2", "DOT", 1, f"{words}.\nVertex 21 of Head A, vertex 31 of Head B"),
+        (
+            *("3", "COLORSET_03_VEC", 2),
+            f"{words}.\nVertex 22 of Head A, vertex 32 of Head B.\nMissed by 0.000 % of the target's size",
+        ),
+    ]
 
 
 def test_picking_without_a_window_adds_numbers(heads: tuple[MeshObject, MeshObject]) -> None:

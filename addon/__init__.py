@@ -7,6 +7,7 @@ from .landmarks import last_registration
 from .landmarks import points as landmark_points
 from .operators import couples as operators_of_couples
 from .operators import fix_flips as operator_fix_flips
+from .operators import heat_map as operator_heat_map
 from .operators import landmark_curves as operators_of_curves
 from .operators import landmark_files as operators_of_files
 from .operators import landmark_pick as operator_pick
@@ -19,10 +20,12 @@ from .operators import sphere_shape_key as operator_sphere_shape_key
 from .operators import transfer as operator_transfer
 from .operators import unwrap as operator_unwrap
 from .overlay import curves as overlay_curves
+from .overlay import heat_map as overlay_heat_map
 from .overlay import points as overlay_points
 from .overlay import seams as overlay_seams
 from .ui import couple as ui_couple
 from .ui import curves as ui_curves
+from .ui import distortion as ui_distortion
 from .ui import landmarks as ui_landmarks
 from .ui import register as ui_register
 from .ui import unwrap as ui_unwrap
@@ -33,6 +36,7 @@ _MODULES = (
     landmark_curves,
     landmark_points,
     last_registration,
+    overlay_heat_map,  # under the others
     overlay_points,
     overlay_curves,
     overlay_seams,
@@ -42,6 +46,7 @@ _MODULES = (
     operator_fix_flips,
     operator_sphere_shape_key,
     operator_measure,
+    operator_heat_map,
     operators_of_couples,
     operators_of_points,
     operators_of_curves,
@@ -50,6 +55,7 @@ _MODULES = (
     operator_register,
     operator_transfer,
     ui_unwrap,
+    ui_distortion,
     ui_couple,
     ui_landmarks,
     ui_curves,

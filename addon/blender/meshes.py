@@ -10,10 +10,13 @@ import bpy
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..surfaces.arrays import Booleans, Floats, Integers
+from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.surface import Surface
 from . import uv_maps
 from .types import MeshObject
+
+# The attribute that marks seams: of Blender 4.5 and newer, and of older versions.
+_SEAM = ("uv_seam", ".uv_seam")
 
 
 def read(
@@ -25,33 +28,28 @@ def read(
     mirrored: all lengths and areas are those in the world, all directions those of the mesh.
     """
     with readable(obj.data) as mesh:
-        polygons = _polygons(mesh)
-        corner_vertex = _attribute(mesh, ".corner_vert", np.int32)
-        corners, owner = _loop_triangles(mesh, polygons)
-        chosen = _selected(mesh) if selected_only else np.ones(len(mesh.polygons), bool)
-        corners, owner = corners[chosen[owner]], owner[chosen[owner]]
-        positions = _attribute(mesh, "position", np.float32, 3).astype(float)
-        surface = Surface(
-            name=obj.name,
-            positions=positions,
-            triangles=corner_vertex[corners],
-            corners=corners,
-            polygons=owner,
-            seams=_seams(mesh, np.repeat(chosen, polygons[1])),
-            corner_vertex=corner_vertex,
-            polygon_start=polygons[0],
-            polygon_size=polygons[1],
-        )
-        if uv_layer is not None and uv_layer in mesh.uv_layers:
-            surface.uv = uv_maps.read(mesh, uv_layer)
-            pins = _attribute(mesh, f".pn.{uv_layer}", bool)
-            surface.pinned = pins if len(pins) else None
-    if world and not has_uniform_scale(obj):
-        with np.errstate(invalid="ignore"):
-            surface.positions = surface.positions @ _world_shape(obj)
-    else:
-        surface.positions *= _world_size(obj, surface)
+        surface = _of_mesh(mesh, obj.name, selected_only, uv_layer)
+    _scale(surface, obj, world)
     return surface
+
+
+def read_from(obj: MeshObject, mesh: bpy.types.Mesh, uv_layer: str) -> Surface:
+    """The surface in the world of an object by a mesh not in edit mode, as modifiers may have made it."""
+    surface = _of_mesh(mesh, obj.name, False, uv_layer)
+    _scale(surface, obj, True)
+    return surface
+
+
+def points(mesh: bpy.types.Mesh) -> Singles:
+    """The positions (n, 3) of the vertices of a mesh that is not in edit mode."""
+    return _attribute(mesh, "position", np.float32, 3)
+
+
+def hidden(mesh: bpy.types.Mesh) -> Booleans:
+    """Which polygons (p,) of a mesh are hidden."""
+    values = np.empty(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("hide", values)
+    return values
 
 
 def has_faces(obj: MeshObject) -> bool:
@@ -95,11 +93,45 @@ def write_face_attribute(mesh: bpy.types.Mesh, name: str, values: Floats, polygo
 
 def has_uniform_scale(obj: MeshObject) -> bool:
     """Whether the object's scale in the world is the same, up to mirroring, in all directions."""
-    matrix = np.array(obj.matrix_world, float)[:3, :3]
-    if not np.isfinite(matrix).all():
-        return True
-    scale = np.linalg.svd(matrix, compute_uv=False)
-    return bool(scale.max() - scale.min() <= 1e-4 * scale.max())
+    return _is_uniform(_scales(obj)[0])
+
+
+def _of_mesh(mesh: bpy.types.Mesh, name: str, selected_only: bool, uv_layer: str | None) -> Surface:
+    """The surface of a mesh in its own coordinates."""
+    polygons = _polygons(mesh)
+    corner_vertex = _attribute(mesh, ".corner_vert", np.int32)
+    corners, owner = _loop_triangles(mesh, polygons)
+    chosen = _selected(mesh) if selected_only else np.ones(len(mesh.polygons), bool)
+    if selected_only:
+        corners, owner = corners[chosen[owner]], owner[chosen[owner]]
+    surface = Surface(
+        name=name,
+        positions=points(mesh).astype(float),
+        triangles=corner_vertex[corners],
+        corners=corners,
+        polygons=owner,
+        seams=_seams(mesh, np.repeat(chosen, polygons[1])),
+        corner_vertex=corner_vertex,
+        polygon_start=polygons[0],
+        polygon_size=polygons[1],
+    )
+    if uv_layer is not None and uv_layer in mesh.uv_layers:
+        surface.uv = uv_maps.read(mesh, uv_layer)
+        pins = _attribute(mesh, f".pn.{uv_layer}", bool)
+        surface.pinned = pins if len(pins) else None
+    return surface
+
+
+def _scale(surface: Surface, obj: MeshObject, world: bool) -> None:
+    """Gives a surface the size of its object in the world, and if `world` its shape there."""
+    scale, axes = _scales(obj)
+    if _is_uniform(scale):
+        surface.positions *= scale.mean() or 1.0
+    elif world:
+        with np.errstate(invalid="ignore"):
+            surface.positions = surface.positions @ ((axes.T * scale) @ axes)
+    else:
+        surface.positions *= _world_size(obj, surface)
 
 
 @contextmanager
@@ -122,16 +154,15 @@ def _attribute(mesh: bpy.types.Mesh, name: str, dtype: DTypeLike, width: int = 1
     if attribute is None:  # an empty mesh lacks even its positions
         return np.empty((0, width) if width > 1 else 0, dtype)
     values = np.empty(len(attribute.data) * width, dtype)
-    attribute.data.foreach_get("value" if width == 1 else "vector", values)
+    attribute.data.foreach_get("vector" if attribute.data_type == "FLOAT_VECTOR" else "value", values)
     return values if width == 1 else values.reshape(-1, width)
 
 
 def _polygons(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """The first corner and the number of corners of each polygon."""
-    start, size = np.empty((2, len(mesh.polygons)), np.int32)
+    """The first corner and the number of corners of each polygon; one polygon's corners follow another's."""
+    start = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", start)
-    mesh.polygons.foreach_get("loop_total", size)
-    return start, size
+    return start, np.diff(start, append=np.int32(len(mesh.loops)))
 
 
 def _selected(mesh: bpy.types.Mesh) -> Booleans:
@@ -153,26 +184,33 @@ def _loop_triangles(
     values = np.empty(3 * len(mesh.loop_triangles), np.int32)
     owner = np.empty(len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("loops", values)
-    mesh.loop_triangles.foreach_get("polygon_index", owner)
+    mesh.loop_triangle_polygons.foreach_get("value", owner)
     return values.reshape(-1, 3), owner
 
 
 def _seams(mesh: bpy.types.Mesh, corner_chosen: Booleans) -> Integers:
     """The seams, as pairs of vertices, among the edges of the chosen corners' faces."""
-    seam = np.empty(len(mesh.edges), bool)
-    mesh.edges.foreach_get("use_seam", seam)
-    used = np.zeros(len(mesh.edges), bool)
-    if len(mesh.loops):
+    name = next((name for name in _SEAM if name in mesh.attributes), None)
+    seam = np.empty(0, np.int32) if name is None else np.flatnonzero(_attribute(mesh, name, bool))
+    if len(seam):
+        used = np.zeros(len(mesh.edges), bool)
         used[_attribute(mesh, ".corner_edge", np.int32)[corner_chosen]] = True
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    return ends.reshape(-1, 2)[seam & used]
+        seam = seam[used[seam]]
+    ends: Integers = _attribute(mesh, ".edge_verts", np.int32, 2)[seam]
+    return ends
 
 
-def _world_shape(obj: MeshObject) -> Floats:
-    """The symmetric factor (3, 3) of an object's matrix, without the rotation and mirroring of the other."""
-    _, scale, axes = np.linalg.svd(np.array(obj.matrix_world, float)[:3, :3])
-    return (axes.T * scale) @ axes
+def _scales(obj: MeshObject) -> tuple[Floats, Floats]:
+    """How much an object's matrix scales (3,), and the axes (3, 3) of the mesh along which it does so."""
+    matrix = np.array(obj.matrix_world, float)[:3, :3]
+    if not np.isfinite(matrix).all():
+        return np.ones(3), np.eye(3)
+    _, scale, axes = np.linalg.svd(matrix)
+    return scale, axes
+
+
+def _is_uniform(scale: Floats) -> bool:
+    return bool(scale.max() - scale.min() <= 1e-4 * scale.max())
 
 
 def _world_size(obj: MeshObject, surface: Surface) -> float:

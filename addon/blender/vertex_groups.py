@@ -4,6 +4,7 @@
 from typing import Any
 
 import bmesh
+import bpy
 import numpy as np
 
 from ..surfaces.arrays import Singles
@@ -15,9 +16,12 @@ def names(obj: MeshObject) -> list[str]:
     return [group.name for group in obj.vertex_groups]
 
 
-def weights(obj: MeshObject, name: str) -> Singles:
-    """The weights (n,) of all vertices in a group; 0 outside, or where the object has no such group."""
-    mesh = obj.data
+def weights(obj: MeshObject, name: str, shown: bpy.types.Mesh | None = None) -> Singles:
+    """The weights (n,) of all vertices in a group; 0 outside, or where the object has no such group.
+
+    Those of the object's mesh, or of the mesh `shown` as its modifiers have made it.
+    """
+    mesh = shown or obj.data
     group: Any = obj.vertex_groups.get(name)
     number = -1 if group is None else group.index
     if not mesh.is_editmode:

@@ -102,12 +102,23 @@ def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Bo
     return points, used, _cast_on_shown(obj) if same_faces else _cast_on_own(mesh, points)
 
 
+def keeps_topology(obj: MeshObject, shown: bpy.types.Mesh) -> bool:
+    """Whether an evaluated mesh has the vertices and faces of its object's mesh, moved at most."""
+    mesh = obj.data
+    pairs = ((mesh.vertices, shown.vertices), (mesh.loops, shown.loops), (mesh.polygons, shown.polygons))
+    return not _is_renumbered(obj) and all(len(own) == len(other) for own, other in pairs)
+
+
 def _shown_mesh(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
     """The evaluated mesh if its first vertices are those of the object's mesh; else the object's mesh."""
     mesh, shown = obj.data, obj.evaluated_get(depsgraph).data
-    renumbered = any(modifier.show_viewport and modifier.type in _RENUMBERING for modifier in obj.modifiers)
     added = len(shown.vertices) - len(mesh.vertices)
-    return shown if added == 0 or (added > 0 and not renumbered) else mesh
+    return shown if added == 0 or (added > 0 and not _is_renumbered(obj)) else mesh
+
+
+def _is_renumbered(obj: MeshObject) -> bool:
+    """Whether modifiers in use may give the vertices of the mesh other numbers."""
+    return any(modifier.show_viewport and modifier.type in _RENUMBERING for modifier in obj.modifiers)
 
 
 def _cast_on_shown(obj: MeshObject) -> Cast:

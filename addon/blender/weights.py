@@ -18,14 +18,17 @@ def names(obj: MeshObject) -> list[str]:
     return [*vertex_groups.names(obj), *colors]
 
 
-def of_corners(obj: MeshObject, name: str, corner_vertex: Integers) -> Reals | None:
+def of_corners(
+    obj: MeshObject, name: str, corner_vertex: Integers, shown: bpy.types.Mesh | None = None
+) -> Reals | None:
     """The weights (c,) in a vertex group, or the luminances of a color, at corners with vertices (c,).
 
-    A group comes first where both have the name; None where the object has neither.
+    Those of the object's mesh, or of the mesh `shown` as its modifiers have made it. A group comes first
+    where both have the name; None where the object has neither.
     """
     if name in vertex_groups.names(obj):
-        return vertex_groups.weights(obj, name)[corner_vertex]
-    with meshes.readable(obj.data) as mesh:
+        return vertex_groups.weights(obj, name, shown)[corner_vertex]
+    with meshes.readable(shown or obj.data) as mesh:
         color: Any = mesh.color_attributes.get(name)
         if color is None or color.domain not in ("POINT", "CORNER"):
             return None

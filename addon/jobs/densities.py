@@ -3,6 +3,8 @@
 
 from collections.abc import Sequence
 
+import bpy
+
 from ..blender import weights
 from ..blender.types import MeshObject
 from ..surfaces import density
@@ -19,8 +21,11 @@ def check(objects: Sequence[MeshObject], source: str) -> None:
         raise NoDensity(f'No selected object has the vertex group or color "{source}"; choose another')
 
 
-def apply(obj: MeshObject, surface: Surface, source: str) -> None:
-    """Sets the density of an object's surface; an object without the source has the same everywhere."""
+def apply(obj: MeshObject, surface: Surface, source: str, shown: bpy.types.Mesh | None = None) -> None:
+    """Sets the density of an object's surface; an object without the source has the same everywhere.
+
+    The surface is that of the object's mesh, or of the mesh `shown` as its modifiers have made it.
+    """
     if source:
-        painted = weights.of_corners(obj, source, surface.corner_vertex)
+        painted = weights.of_corners(obj, source, surface.corner_vertex, shown)
         surface.density = None if painted is None else density.of_polygons(surface, painted)

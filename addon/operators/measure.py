@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.props import StringProperty
 
-from ..blender import scene_changes, uv_maps, weights
-from ..blender.types import Status, is_mesh
+from ..blender import scene_changes, uv_maps
+from ..blender.types import Status
 from ..jobs import densities, measure, targets
-from . import poll
+from . import density, poll
 
 
 class Figures(NamedTuple):
@@ -34,11 +34,6 @@ def _looked_at(context: bpy.types.Context) -> object:
     return context.mode, objects, scene_changes.looks()
 
 
-def _group_names(_operator: bpy.types.Operator, context: bpy.types.Context, _text: str) -> list[str]:
-    obj = context.object
-    return weights.names(obj) if is_mesh(obj) else []
-
-
 class AUTHALIC_OT_measure(bpy.types.Operator):
     """Measure the area distortion of the active UV map, as figures and as a face attribute.
 
@@ -48,13 +43,7 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
     bl_label = "Measure Area Distortion"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
 
-    density_source: StringProperty(
-        name="Density",
-        description="A vertex group or color attribute that says where more texture is wanted: faces of the "
-        "weight or brightness 1 should get eight times as much as those of 0. Empty for the same everywhere",
-        default="",
-        search=_group_names,
-    )
+    density_source: density.property_of_sources()
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

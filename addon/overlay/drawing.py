@@ -28,11 +28,11 @@ def sources(context: bpy.types.Context) -> list[MeshObject]:
     return [obj for obj in objects if is_mesh(obj) and chosen & {obj, obj.authalic_target}]
 
 
-def redraw(context: bpy.types.Context) -> None:
-    """Asks for all 3D views to be drawn again."""
+def redraw(context: bpy.types.Context, spaces: Sequence[str] = ("VIEW_3D",)) -> None:
+    """Asks for all areas of some types to be drawn again."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
+            if area.type in spaces:
                 area.tag_redraw()
 
 
@@ -89,14 +89,14 @@ def label(text: str, pixel: Sequence[float] | Vector, size: float, color: Sequen
     left, bottom = pixel[0] + 11 * scale, pixel[1] + 4 * scale
     width, height = blf.dimensions(font, text)
     gpu.state.blend_set("ALPHA")
-    _plate(left - 3 * scale, bottom - 3 * scale, width + 6 * scale, height + 6 * scale, 0.6 * color[3])
+    plate(left - 3 * scale, bottom - 3 * scale, width + 6 * scale, height + 6 * scale, 0.6 * color[3])
     gpu.state.blend_set("NONE")
     blf.color(font, *color)
     blf.position(font, left, bottom, 0)
     blf.draw(font, text)
 
 
-def _plate(left: float, bottom: float, width: float, height: float, alpha: float) -> None:
+def plate(left: float, bottom: float, width: float, height: float, alpha: float) -> None:
     """A dark ground that makes text readable over wires."""
     right, top = left + width, bottom + height
     corners = [(left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0)]

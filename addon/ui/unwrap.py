@@ -6,8 +6,8 @@ from typing import Any
 import bpy
 
 from ..blender.types import PanelMixin
-from ..operators import mark_seams, measure, sphere_shape_key, unwrap
-from . import text
+from ..operators import mark_seams, sphere_shape_key, unwrap
+from . import spaces, text
 
 
 class _Panel(PanelMixin):
@@ -27,23 +27,6 @@ class _UnwrapPanel(_Panel):
         layout.use_property_decorate = False
         # The options that the button was last used with, and will use next.
         unwrap.draw_options(layout, context.window_manager.operator_properties_last("authalic.unwrap"))
-
-
-class _MeasurePanel(_Panel):
-    bl_label = "Area Distortion"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        column = layout.column(align=True)
-        column.operator("authalic.measure", text="Measure")
-        column.operator("authalic.fix_flips")
-        column = layout.column(align=True)
-        figures = measure.current(context)
-        if figures is not None:
-            text.draw_problems(layout, [figures.sentence], context, icon="INFO")
-            # one figure per line: a sidebar is narrow
-            for figure in figures.numbers:
-                column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
 
 class AUTHALIC_PT_unwrap_view3d(_UnwrapPanel, bpy.types.Panel):
@@ -76,10 +59,6 @@ def _draw_preview(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         text.draw_problems(layout, [manager.authalic_seam_figures], context, icon="INFO")
 
 
-class AUTHALIC_PT_measure_view3d(_MeasurePanel, bpy.types.Panel):
-    bl_space_type = "VIEW_3D"
-
-
 class AUTHALIC_PT_sphere_shape_key_view3d(_Panel, bpy.types.Panel):
     bl_label = "Sphere Shape Key"
     bl_space_type = "VIEW_3D"
@@ -97,9 +76,9 @@ class AUTHALIC_PT_sphere_shape_key_view3d(_Panel, bpy.types.Panel):
 class AUTHALIC_PT_unwrap_image(_UnwrapPanel, bpy.types.Panel):
     bl_space_type = "IMAGE_EDITOR"
 
-
-class AUTHALIC_PT_measure_image(_MeasurePanel, bpy.types.Panel):
-    bl_space_type = "IMAGE_EDITOR"
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return spaces.shows_uvs(context)
 
 
 def _draw_uv_menu(self: Any, _context: Any) -> None:
@@ -130,9 +109,7 @@ _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
     AUTHALIC_PT_seams_view3d,
     AUTHALIC_PT_sphere_shape_key_view3d,
-    AUTHALIC_PT_measure_view3d,
     AUTHALIC_PT_unwrap_image,
-    AUTHALIC_PT_measure_image,
 )
 
 

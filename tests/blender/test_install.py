@@ -9,8 +9,9 @@ import pytest
 
 MENUS = (
     *("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu"),
-    "VIEW3D_MT_edit_mesh_edges",
+    *("VIEW3D_MT_edit_mesh_edges", "VIEW3D_PT_overlay", "IMAGE_PT_overlay"),
 )
+ENTRIES = len(MENUS) + 2  # the UV menus have those of the heat map too
 
 
 def _menu_entries() -> list[Any]:
@@ -24,7 +25,7 @@ def _registered() -> set[str]:
 
 
 def test_enabled() -> None:
-    assert len(_menu_entries()) == len(MENUS)
+    assert len(_menu_entries()) == ENTRIES
     operators = {f"AUTHALIC_OT_{name}" for name in ("unwrap", "sphere_shape_key", "measure", "fix_flips")}
     assert operators | {"figures"} <= _registered()
     spaces = {getattr(bpy.types, name).bl_space_type for name in _registered() if "_PT_" in name}
@@ -35,7 +36,7 @@ def test_disabling_leaves_nothing(extension: str) -> None:
     bpy.ops.preferences.addon_disable(module=extension)
     assert not _menu_entries() and not _registered()
     bpy.ops.preferences.addon_enable(module=extension)
-    assert len(_menu_entries()) == len(MENUS) and _registered()
+    assert len(_menu_entries()) == ENTRIES and _registered()
 
 
 def test_uninstall_and_install_again(extension: str) -> None:
@@ -46,7 +47,7 @@ def test_uninstall_and_install_again(extension: str) -> None:
     assert extension not in bpy.context.preferences.addons
     assert not _menu_entries() and not _registered()
     conftest.install()
-    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == len(MENUS)
+    assert extension in bpy.context.preferences.addons and len(_menu_entries()) == ENTRIES
 
 
 def test_defaults_are_declared() -> None:

@@ -81,7 +81,7 @@ def uv_editor() -> None:
 
 
 STEPS = [
-    only_panels("Authalic Unwrap", "Area Distortion"),
+    only_panels("Authalic Unwrap", "Distortion"),
     scene,
     *sidebar(),
     picture("panel"),

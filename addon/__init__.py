@@ -17,6 +17,7 @@ from .operators import measure as operator_measure
 from .operators import register as operator_register
 from .operators import seam_preview as operator_seam_preview
 from .operators import sphere_shape_key as operator_sphere_shape_key
+from .operators import texel_density as operator_texel_density
 from .operators import transfer as operator_transfer
 from .operators import unwrap as operator_unwrap
 from .overlay import curves as overlay_curves
@@ -47,6 +48,7 @@ _MODULES = (
     operator_sphere_shape_key,
     operator_measure,
     operator_heat_map,
+    operator_texel_density,
     operators_of_couples,
     operators_of_points,
     operators_of_curves,

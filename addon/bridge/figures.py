@@ -69,7 +69,8 @@ def measure(surfaces: Sequence[Surface]) -> Measurement | None:
     spread = [_spread(good, values) for values in (areas, targets, ratios, angles, folded)]
     of_all = polygons.Triangles(*spread).split(surfaces)
     of_polygons = [polygons.of_triangles(*pair) for pair in zip(surfaces, of_all, strict=True)]
-    return Measurement(**vars(figures), mirrored=mirrored, polygons=of_polygons)
+    texels = float(np.sqrt(image_areas.sum() / areas.sum()))
+    return Measurement(**vars(figures), mirrored=mirrored, texel_density=texels, polygons=of_polygons)
 
 
 def _unmirrored(points: Floats, vertices: Integers, image: Singles) -> tuple[authalic.Distortion, int]:

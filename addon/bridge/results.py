@@ -113,10 +113,12 @@ class Figures:
 class Measurement(Figures):
     """Figures of UV maps whoever made them, with those of the polygons of each surface.
 
-    `mirrored` islands are mirrored as a whole, which is no flip.
+    `mirrored` islands are mirrored as a whole, which is no flip. `texel_density` is the root of UV area over
+    area in space.
     """
 
     mirrored: int
+    texel_density: float
     polygons: list[Polygons]
 
     @property

@@ -20,7 +20,7 @@ from ..jobs.job import Job
 from ..overlay import heat_map as overlay
 from ..surfaces import heat_map
 from . import density, poll
-from .measure import Figures
+from .measure import Figures, figures_of
 
 _INTERVAL = 0.1
 # Reading meshes may take this part of the time at most, so that large ones can be edited meanwhile.
@@ -79,7 +79,7 @@ def current(context: bpy.types.Context) -> Figures | None:
     """The figures of the heat map; None where none is shown, or they do not apply any more."""
     is_current = _settings(context).show and _state.meshes == _meshes(context)
     report = _state.map.report if is_current and _state.map is not None else None
-    return Figures(report.sentence, report.numbers) if report is not None else None
+    return figures_of(report) if report is not None else None
 
 
 def _settings(context: bpy.types.Context) -> Any:

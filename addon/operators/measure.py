@@ -13,10 +13,19 @@ from . import density, poll
 
 
 class Figures(NamedTuple):
-    """What the panel shows of a measurement: a sentence, and a phrase for each number."""
+    """What the panel shows of a measurement: a sentence, a phrase for each number, and the texel density.
+
+    That is as in `surfaces.texel_density`.
+    """
 
     sentence: str
     numbers: list[str]
+    texel_density: float
+
+
+def figures_of(report: measure.Report) -> Figures:
+    """The figures of a measurement for the panel."""
+    return Figures(report.sentence, report.numbers, report.figures.texel_density)
 
 
 # The last measurement, and what it was made of.
@@ -58,7 +67,7 @@ class AUTHALIC_OT_measure(bpy.types.Operator):
             return {"CANCELLED"}
         if context.view_layer:
             context.view_layer.update()  # counts the change that the attribute is
-        _last = Figures(report.sentence, report.numbers), _looked_at(context)
+        _last = figures_of(report), _looked_at(context)
         self.report({"INFO"}, str(report))
         return {"FINISHED"}
 

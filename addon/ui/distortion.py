@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 
 from ..blender.types import PanelMixin
-from ..operators import heat_map, measure
+from ..operators import heat_map, measure, texel_density
 from . import spaces, text
 
 
@@ -48,6 +48,23 @@ class _NumbersPanel(_Panel):
             column.label(text=figure[:1].upper() + figure[1:], translate=False)
 
 
+class _TexelDensityPanel(_Panel):
+    bl_label = "Texel Density"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        # The options that the button was last used with, and will use next.
+        options = context.window_manager.operator_properties_last("authalic.set_texel_density")
+        figures = _figures(context)
+        if figures is not None:
+            layout.label(text=f"Now {texel_density.now(context, figures, options):.4g} px/m", translate=False)
+        layout.operator("authalic.set_texel_density")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        texel_density.draw_options(layout, options, context)
+
+
 class _InUvEditor(PanelMixin):
     bl_space_type = "IMAGE_EDITOR"
 
@@ -65,11 +82,20 @@ class AUTHALIC_PT_distortion_numbers_view3d(_NumbersPanel, bpy.types.Panel):
     bl_parent_id = "AUTHALIC_PT_distortion_view3d"
 
 
+class AUTHALIC_PT_texel_density_view3d(_TexelDensityPanel, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+    bl_parent_id = "AUTHALIC_PT_distortion_view3d"
+
+
 class AUTHALIC_PT_distortion_image(_InUvEditor, _DistortionPanel, bpy.types.Panel):
     pass
 
 
 class AUTHALIC_PT_distortion_numbers_image(_InUvEditor, _NumbersPanel, bpy.types.Panel):
+    bl_parent_id = "AUTHALIC_PT_distortion_image"
+
+
+class AUTHALIC_PT_texel_density_image(_InUvEditor, _TexelDensityPanel, bpy.types.Panel):
     bl_parent_id = "AUTHALIC_PT_distortion_image"
 
 
@@ -107,6 +133,8 @@ def _draw_popover(self: Any, context: bpy.types.Context) -> None:
 
 def _draw_menu(self: Any, _context: Any) -> None:
     self.layout.operator("authalic.show_heat_map")
+    self.layout.operator("authalic.measure")
+    self.layout.operator("authalic.set_texel_density")
 
 
 _TYPES: Any = bpy.types
@@ -115,8 +143,10 @@ _POPOVERS = ("VIEW3D_PT_overlay", "IMAGE_PT_overlay")
 _MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
     AUTHALIC_PT_distortion_view3d,
+    AUTHALIC_PT_texel_density_view3d,
     AUTHALIC_PT_distortion_numbers_view3d,
     AUTHALIC_PT_distortion_image,
+    AUTHALIC_PT_texel_density_image,
     AUTHALIC_PT_distortion_numbers_image,
 )
 

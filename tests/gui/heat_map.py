@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The heat map over the 3D view and the UV editor, and its panel; see README.md beside this file."""
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+from driver import MODULE, Until, area, call, check, only_panels, picture, settled, sidebar
+
+NAME = "Camel"
+
+
+def scene() -> None:
+    call(bpy.ops.mesh.primitive_monkey_add)
+    obj = bpy.context.object
+    obj.name = NAME
+    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = 2
+    call(bpy.ops.object.modifier_apply, modifier=modifier.name)
+    call(bpy.ops.view3d.view_selected)
+
+
+def part(name: str) -> Any:
+    return importlib.import_module(f"{MODULE}.{name}")
+
+
+def choose(**values: object) -> Callable[[], None]:
+    """A step that sets options of the heat map in the panel."""
+
+    def act() -> None:
+        settings: Any = bpy.context.window_manager
+        for name, value in values.items():
+            setattr(settings.authalic_heat_map, name, value)
+
+    return act
+
+
+def up_to_date() -> Until:
+    return Until("the heat map is up to date", lambda: part("operators.heat_map").is_settled(bpy.context))
+
+
+def tangle() -> None:
+    """Moves the UVs of some vertices across their neighbors."""
+    mesh = bpy.data.objects[NAME].data
+    vertices = np.array([loop.vertex_index for loop in mesh.loops])
+    uv = np.empty((len(vertices), 2), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", uv.ravel())
+    foremost = np.argsort([vertex.co.y for vertex in mesh.vertices])[:6]
+    uv[np.isin(vertices, foremost)] += 0.08
+    mesh.attributes[mesh.uv_layers.active.name].data.foreach_set("vector", uv.ravel())
+    mesh.update()
+
+
+def flipped() -> bool:
+    return "none flipped" not in part("operators.heat_map").current(bpy.context).sentence
+
+
+def edit() -> None:
+    call(bpy.ops.object.mode_set, mode="EDIT")
+    call(bpy.ops.mesh.select_all, action="SELECT")
+
+
+def uv_editor() -> None:
+    area().ui_type = "UV"
+
+
+STEPS = [
+    only_panels("Distortion", "Texel Density", "Advanced"),
+    scene,
+    *sidebar(),
+    choose(show=True),
+    up_to_date(),
+    check("nothing is flipped", flipped, False),
+    settled,
+    picture("heat_map_of_areas"),
+    choose(quantity="SHEAR"),
+    up_to_date(),
+    settled,
+    picture("heat_map_of_shear"),
+    choose(quantity="AREA"),
+    tangle,
+    up_to_date(),
+    check("the heat map has found the flips", flipped, True),
+    settled,
+    picture("heat_map_of_flips"),
+    edit,
+    up_to_date(),
+    settled,
+    picture("heat_map_in_edit_mode"),
+    uv_editor,
+    *sidebar("UV"),
+    up_to_date(),
+    settled,
+    picture("heat_map_of_uvs"),
+]

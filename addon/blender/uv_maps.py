@@ -80,9 +80,13 @@ def has_room_for(mesh: bpy.types.Mesh, layer: str) -> bool:
 
 
 def ensure(mesh: bpy.types.Mesh, layer: str) -> str:
-    """Makes a UV layer the active one, adding it as a copy of the active one if need be; returns its name."""
+    """Makes a UV layer the active one, adding it if need be; returns its name.
+
+    A layer that is added is a copy of the active one. Without one all its UVs are (0, 0): Blender's default,
+    every face over the whole square, would lie over whatever is written.
+    """
     if layer not in mesh.uv_layers:
-        layer = _add_edited(mesh, layer) if mesh.is_editmode else mesh.uv_layers.new(name=layer).name
+        layer = _add_edited(mesh, layer) if mesh.is_editmode else _add(mesh, layer)
     mesh.uv_layers.active = mesh.uv_layers[layer]
     return layer
 
@@ -98,6 +102,10 @@ def _write_edited(mesh: bpy.types.Mesh, layer: str, corners: Integers, uv: Singl
                 loop[uv_layer].uv = values[corner]
         start += len(face.loops)
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+def _add(mesh: bpy.types.Mesh, name: str) -> str:
+    return str(mesh.uv_layers.new(name=name, do_init=bool(mesh.uv_layers)).name)
 
 
 def _add_edited(mesh: bpy.types.Mesh, name: str) -> str:

@@ -13,7 +13,7 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from .patches import SurfacePatch, checked, surface_patches
+from .patches import SurfacePatch, checked, opened, surface_patches
 from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import Island, Mapping
 from .seams import disks
@@ -49,7 +49,9 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
     """
     result = Mapping()
     if settings.seams is None:
-        patches = surface_patches(surfaces, result)
+        patches = [
+            part for piece in surface_patches(surfaces, result) for part in opened(piece, result.notes)[0]
+        ]
         progress = share_of(progress, READING, 1.0 - READING)
     else:
         share = 1.0 if settings.solver.is_even else _SEAMS
@@ -75,6 +77,8 @@ def _unmapped_disks(
     """The disks along seams that are found; those that the search has mapped become islands of the result."""
     result.seams, found = disks(surfaces, search, settings.solver.is_even, progress)
     result.refusals += result.seams.refusals
+    result.at_a_point += result.seams.at_a_point
+    result.left_out |= result.seams.left_out
     result.islands += [_mapped_by_search(disk.piece, disk.uv) for disk in found if disk.uv is not None]
     return [disk.piece for disk in found if disk.uv is None]
 
@@ -108,8 +112,9 @@ def _by_disk(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) 
     faces = np.asarray(piece.patch.faces)
     turned = spherical.turned(faces, np.asarray(disk_map.faces))
     island = _island(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
+    figures = _figures(disk_map.distortion, piece)
     remedy = _CUT if settings.solver.is_free else _NOT_FREE
-    island.shortfall = shortfall(disk_map.status, disk_map.distortion, settings.solver, UNEVEN_DISK, remedy)
+    island.shortfall = shortfall(disk_map.status, figures, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
 
@@ -140,7 +145,7 @@ def _laid_flat(piece: SurfacePatch, settings: UnwrapSettings, solver: Solver, pr
     points, uv = np.asarray(layout.vertex_of), np.asarray(layout.points, float)
     native = authalic.Surface(piece.points[points], corner_point)
     island = _island(piece, native, uv, corner_point, turned, points)
-    figures = authalic.distortion(native, island.uv)
+    figures = _figures(authalic.distortion(native, island.uv), piece)
     island.shortfall = shortfall(sphere.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
     return island
 
@@ -169,6 +174,15 @@ def _layout(
     )
 
 
+def _figures(distortion: authalic.Distortion, piece: SurfacePatch) -> tuple[float, float]:
+    """The standard deviation of area ratios, and the mean angle distortion, of faces that have an area."""
+    if not piece.slivers.any():
+        return float(distortion.area_ratio_std), float(distortion.angle_distortion_mean)
+    counted = ~piece.slivers
+    ratios = np.exp2(np.asarray(distortion.log2_area_ratio)[counted])
+    return float(ratios.std()), float(np.asarray(distortion.angle_distortion)[counted].mean())
+
+
 def _island(
     piece: SurfacePatch,
     native: authalic.Surface,
@@ -178,16 +192,17 @@ def _island(
     points: Integers,
 ) -> Island:
     """An `Island` of the patch's points (n,) with UVs (n, 2) and triangles `faces`."""
-    real = piece.corners >= 0
+    real, corner_point = piece.corners >= 0, faces.ravel()
     return Island(
         name=piece.name,
         surface=piece.index,
         polygon=piece.polygon,
         points=piece.points[points],
         faces=faces,
-        corners=piece.corners[real],
-        corner_point=faces.ravel()[real],
+        corners=np.concatenate([piece.corners[real], piece.carried]),
+        corner_point=np.concatenate([corner_point[real], corner_point[piece.hosts]]),
         uv=uv,
         turned=np.unique(piece.polygons[turned]),
         native=native,
+        has_divided_polygons=bool(piece.slivers.any()) or not real.all(),
     )

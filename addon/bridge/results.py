@@ -24,7 +24,8 @@ class Island(PlanarIsland):
     the points `corner_point` (k,). `turned` are the polygons whose normals point against those of the rest;
     they are mirrored in the map. `native` holds points and faces in the native library. `figures` are those
     of the UVs in single precision, None until asked for. `shortfall` is None if the map is as good as it
-    should be. `may_turn` says that the outline has no upper side.
+    should be. `may_turn` says that the outline has no upper side. `has_divided_polygons` says that triangles
+    differ from Blender's, as around the centers of divided polygons.
     """
 
     name: str
@@ -34,14 +35,10 @@ class Island(PlanarIsland):
     corner_point: Integers
     turned: Integers
     native: authalic.Surface
+    has_divided_polygons: bool = False
     figures: authalic.Distortion | None = None
     shortfall: Shortfall | None = None
     may_turn: bool = False
-
-    @property
-    def has_divided_polygons(self) -> bool:
-        """Whether triangles differ from Blender's, as around the centers of divided polygons."""
-        return len(self.corners) < self.faces.size
 
 
 @dataclass
@@ -64,8 +61,8 @@ class FoundSeams:
     The surfaces are divided into `islands`. The `length` of the new seams, over the root of the area, and the
     predicted `shear` are of all surfaces together. Where the wanted shear was left to the search, `presets`
     has that of each surface that was cut, the highest of its islands. `notes` name what is sheared more than
-    it should be. `ended_early` says that it was asked to end before it was done: the last island has quick
-    seams then.
+    it should be, and what was mended. `at_a_point` and `left_out` as for a mapping. `ended_early` says that
+    it was asked to end before it was done: the last island has quick seams then.
     """
 
     edges: list[Integers]
@@ -74,6 +71,8 @@ class FoundSeams:
     shear: float = 1.0
     presets: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    at_a_point: list[tuple[int, Integers]] = field(default_factory=list)
+    left_out: dict[int, Integers] = field(default_factory=dict)
     refusals: list[Refusal] = field(default_factory=list)
     ended_early: bool = False
 
@@ -82,10 +81,16 @@ class FoundSeams:
 class Mapping:
     """The result of `unwrap`; `ended_early` says that it was asked to end before it was done.
 
-    `seams` are those that were found for it, None where those of the surfaces count.
+    `seams` are those that were found for it, None where those of the surfaces count. `at_a_point` are the
+    mesh corners (k,) of some surfaces, by number, that belong to islands without area. `left_out` are the
+    polygons (p,) of some surfaces that no island has: those without area, and duplicates; the corners of the
+    islands include theirs. `notes` name what was mended or done in another way than asked for.
     """
 
     islands: list[Island] = field(default_factory=list)
+    at_a_point: list[tuple[int, Integers]] = field(default_factory=list)
+    left_out: dict[int, Integers] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
     ended_early: bool = False
     seams: FoundSeams | None = None

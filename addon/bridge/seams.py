@@ -14,7 +14,7 @@ from ..surfaces import seam_costs, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from .patches import SurfacePatch, checked, surface_patches
+from .patches import SurfacePatch, checked, opened, surface_patches
 from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import FoundSeams
 from .settings import FEW_SEAMS, LOW_SHEAR, SeamSettings
@@ -99,10 +99,14 @@ class _Search:
         """Cuts a patch into disks."""
         if piece.is_pinned:
             raise Unsuitable(suitability.PINNED)
-        suitability.check_sides(piece.patch)
-        wanted, seams = self._suitable(piece, progress)
-        self.disks += _disks(piece, seams)
-        self._record(piece, wanted, seams)
+        parts, across = opened(piece, self._found.notes)
+        edges = self._found.edges
+        for part in parts:
+            suitability.check_sides(part.patch)
+            wanted, seams = self._suitable(part, progress)
+            self.disks += _disks(part, seams)
+            self._record(part, wanted, seams)
+        edges[piece.index] = np.concatenate([edges[piece.index], across])
 
     def finish(self) -> None:
         area, length, shear = self._sums
@@ -113,7 +117,7 @@ class _Search:
         index, found, shear = piece.index, self._found, _shear(seams)
         if self._settings.shear is None:
             found.presets[piece.name] = max(wanted, found.presets.get(piece.name, 0.0))
-        found.edges[index] = np.concatenate([found.edges[index], piece.vertices[np.asarray(seams.edges)]])
+        found.edges[index] = np.concatenate([found.edges[index], piece.mesh_edges(np.asarray(seams.edges))])
         found.islands += seams.islands
         self._islands[index] += seams.islands - 1
         area = triangulation.areas(piece.points[np.asarray(piece.patch.faces)]).sum()
@@ -158,7 +162,7 @@ class _Search:
     def _are_edges(self, piece: SurfacePatch, pairs: Integers) -> Booleans:
         """Which pairs (k, 2) of vertices of a patch are edges of the mesh, and no diagonals of polygons."""
         surface, keys = self._surfaces[piece.index], self._edges[piece.index]
-        return seam_costs.are_edges(surface, keys, piece.vertices[pairs])
+        return seam_costs.are_edges(surface, keys, piece.mesh_edges(pairs))
 
     def _factors(self, piece: SurfacePatch, edges: Integers) -> Floats:
         """How dear a seam is at edges (e, 2) of a patch, (e,)."""

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import authalic
-
 from .solver import Solver
 
 UNEVEN_DISK, UNEVEN_SPHERE = 0.1, 0.5
@@ -43,13 +41,14 @@ class Shortfall:
 
 
 def shortfall(
-    status: str, figures: authalic.Distortion, solver: Solver, uneven: float, remedy: str
+    status: str, figures: tuple[float, float], solver: Solver, uneven: float, remedy: str
 ) -> Shortfall | None:
-    """The `Shortfall` of a map by its figures; None if it has converged and is good enough for its weight.
+    """The `Shortfall` of a map; None if it has converged and is good enough for its weight.
 
-    `uneven` is a deviation of area ratios that is bad where areas count.
+    `figures` are the standard deviation of area ratios and the mean angle distortion. `uneven` is a deviation
+    that is bad where areas count.
     """
-    deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
+    deviation, angle = figures
     limit = max(uneven, min(_UNEVEN, UNEVEN_DISK + solver.area_tolerance + np.sqrt(solver.weight) / 2))
     is_uneven, is_sheared = bool(deviation > limit), bool(angle > _SHEARED)
     if not is_uneven and not is_sheared and status in {"converged", "cancelled"}:

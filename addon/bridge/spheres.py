@@ -51,13 +51,14 @@ def sphere_shape(
             f"{messages.count(len(figures.folded), 'triangle')} would fold over in the precision of "
             "coordinates; remesh its thin parts"
         )
+    deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
     return SphereShape(
         positions=written[: len(surface.positions)],
         radius=float(radius),
-        deviation=float(figures.area_ratio_std),
+        deviation=deviation,
         flips=len(figures.folded),
-        angle=float(figures.angle_distortion_mean),
-        shortfall=shortfall(sphere.status, figures, solver, UNEVEN_SPHERE, _OF_A_KEY),
+        angle=angle,
+        shortfall=shortfall(sphere.status, (deviation, angle), solver, UNEVEN_SPHERE, _OF_A_KEY),
         ended_early=sphere.status == "cancelled",
     )
 

@@ -108,9 +108,12 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
     def finish(mapping: bridge.Mapping) -> Report:
         mapping.refusals[:0] = refusals
         _check_unchanged(chosen)
+        unmapped = [obj.name for obj, _, _ in chosen if not uv_maps.names(obj)]
         figures = _write(chosen, mapping, settings)
         seconds = time.perf_counter() - started
-        notes = _notes(chosen, mapping.islands, figures)
+        notes = mapping.notes + _notes(chosen, mapping.islands, figures)
+        if {refusal.name for refusal in mapping.refusals} & set(unmapped):
+            notes.append("on a mesh without a UV map, these lie in the lower left corner")
         if mapping.ended_early:
             notes.insert(0, messages.ENDED_EARLY)
         if mapping.seams is not None:
@@ -151,8 +154,8 @@ def _check_unchanged(chosen: Sequence[Chosen]) -> None:
 def _write(chosen: Sequence[Chosen], mapping: bridge.Mapping, settings: Settings) -> bridge.Figures:
     """Packs the islands and writes them, after the last thing that can fail; returns their figures."""
     _place(mapping, settings.packing)
-    parts = [_gather(mapping.islands, index) for index in range(len(chosen))]
-    figures = _figures([surface for _, _, surface in chosen], parts, mapping.islands)
+    parts = [_gather(mapping, index) for index in range(len(chosen))]
+    figures = _figures(_measured(chosen, mapping), parts, mapping.islands)
     if figures is None:
         raise CannotUnwrap("No face has an area in the packed UVs; nothing was changed")
     marks = _marks(chosen, mapping) if settings.mark_seams else []
@@ -195,12 +198,24 @@ def _place(mapping: bridge.Mapping, settings: PackSettings) -> None:
     raise CannotUnwrap(f"No island could be unwrapped: {messages.listed(mapping.refusals)}")
 
 
-def _gather(islands: Sequence[bridge.Island], index: int) -> tuple[Integers, Singles]:
-    """The corners (k,) of the islands of one surface, and their UVs (k, 2) as Blender will keep them."""
-    of_surface = [island for island in islands if island.surface == index]
-    corners = np.concatenate([np.empty(0, int), *(island.corners for island in of_surface)])
+def _gather(mapping: bridge.Mapping, index: int) -> tuple[Integers, Singles]:
+    """The corners (k,) to write of one surface, and their UVs (k, 2) as Blender will keep them.
+
+    They are those of its islands, and those of islands without area, which lie in the lower left corner.
+    """
+    of_surface = [island for island in mapping.islands if island.surface == index]
+    at_a_point = [corners for surface, corners in mapping.at_a_point if surface == index]
+    corners = np.concatenate([np.empty(0, int), *(island.corners for island in of_surface), *at_a_point])
     uv = np.concatenate([np.empty((0, 2)), *(island.uv[island.corner_point] for island in of_surface)])
-    return corners, uv.astype(np.float32)
+    return corners, np.pad(uv, ((0, len(corners) - len(uv)), (0, 0))).astype(np.float32)
+
+
+def _measured(chosen: Sequence[Chosen], mapping: bridge.Mapping) -> list[Surface]:
+    """The surfaces without polygons that are in no island."""
+    surfaces = [surface for _, _, surface in chosen]
+    for index, polygons in mapping.left_out.items():
+        surfaces[index] = surfaces[index].without(polygons)
+    return surfaces
 
 
 def _figures(

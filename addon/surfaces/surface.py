@@ -49,6 +49,21 @@ class Surface:
         """The density (t,) of each triangle, 1 where none is given."""
         return np.ones(len(self.triangles)) if self.density is None else self.density[self.polygons]
 
+    def corners_of(self, polygons: Integers) -> Integers:
+        """All mesh corners of some polygons (k,), one polygon after the other."""
+        start, size = self.polygon_start[polygons], self.polygon_size[polygons]
+        first = np.repeat(start - np.cumsum(size) + size, size)
+        corners: Integers = first + np.arange(len(first))
+        return corners
+
+    def without(self, polygons: Integers) -> "Surface":
+        """The surface without some of its polygons (k,)."""
+        kept = np.ones(self.polygon_count, bool)
+        kept[polygons] = False
+        chosen = kept[self.polygons]
+        arrays = {name: getattr(self, name)[chosen] for name in ("triangles", "corners", "polygons")}
+        return replace(self, **arrays)
+
     def restricted(self, triangles: Booleans, uv: Singles) -> "Surface":
         """The part of the surface given by a mask (t,) of its triangles, with other UVs."""
         kept = {name: getattr(self, name)[triangles] for name in ("triangles", "corners", "polygons")}

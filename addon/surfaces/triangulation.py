@@ -54,24 +54,59 @@ def welded(vertices: Integers, uv: Reals) -> tuple[Integers, Integers]:
 def has_area(triangles: Floats) -> Booleans:
     """Which triangles (t, 3, 3) are no lines that have an area by the rounding of their coordinates, (t,)."""
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
-    rounding = _ROUNDING * np.abs(triangles).max(axis=(1, 2), initial=0)
-    has_height: Booleans = 2 * areas(triangles) > sides * np.minimum(rounding, _FLAT * sides)
+    has_height: Booleans = 2 * areas(triangles) > sides * rounding(triangles)
     return has_height
 
 
-def sound(surface: Surface) -> Triangles:
-    """The triangles of a surface, with bad polygons divided from their center.
+def rounding(triangles: Floats) -> Floats:
+    """The height (t,) up to which triangles (t, 3, 3) are lines, by the rounding of their coordinates."""
+    sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
+    by_place = _ROUNDING * np.abs(triangles).max(axis=(1, 2), initial=0)
+    height: Floats = np.minimum(by_place, _FLAT * sides)
+    return height
+
+
+def flat(positions: Floats, triangles: Integers) -> Booleans:
+    """Which triangles (t, 3) between positions (n, 3) that are finite have no area, (t,)."""
+    points = positions[triangles]
+    with np.errstate(invalid="ignore"):
+        is_flat: Booleans = ~has_area(points) & np.isfinite(points).all(axis=(1, 2))
+    return is_flat
+
+
+def edge_keys(faces: Integers, count: int) -> Integers:
+    """A number for each edge of triangles (m, 3) between `count` vertices, (m, 3), the same for all at it."""
+    following = np.roll(faces, -1, axis=1)
+    low, high = np.minimum(faces, following), np.maximum(faces, following)
+    keys: Integers = low.astype(np.int64) * count + high
+    return keys
+
+
+def branching_edges(faces: Integers, count: int) -> Integers:
+    """The `edge_keys` of edges that more than two triangles, of (m, 3), have, ascending."""
+    edges = np.sort(edge_keys(faces, count), axis=None)
+    return np.unique(edges[2:][edges[2:] == edges[:-2]])
+
+
+def sound(surface: Surface, also: Integers | None = None) -> Triangles:
+    """The triangles of a surface, with bad polygons, and those of `also` (k,), divided from their center.
 
     A polygon is bad if one of its diagonals is also an edge or a diagonal of another polygon, where the
-    surface would seem to branch, or if one of its triangles has no area, as corners in a line give.
+    surface would seem to branch, or if one of its triangles has no area, as corners in a line give. Polygons
+    that have no area at all stay as they are.
     """
     bad = _branching(surface) | _with_flat_triangle(surface)
     bad &= surface.polygon_size > 3
+    if also is not None:
+        bad[also] = True
+    if not bad.any():
+        return Triangles(surface.positions, surface.triangles, surface.corners, surface.polygons)
+    bad &= _have_area(surface)
     keep = ~bad[surface.polygons]
     kept = Triangles(
         surface.positions, surface.triangles[keep], surface.corners[keep], surface.polygons[keep]
     )
-    return _divided(surface, np.flatnonzero(bad), kept) if bad.any() else kept
+    return _divided(surface, np.flatnonzero(bad), kept)
 
 
 def _branching(surface: Surface) -> Booleans:
@@ -98,12 +133,17 @@ def _branching(surface: Surface) -> Booleans:
 
 
 def _with_flat_triangle(surface: Surface) -> Booleans:
+    """Which polygons (p,) have a triangle without area."""
     bad = np.zeros(surface.polygon_count, bool)
-    points = surface.positions[surface.triangles]
-    with np.errstate(invalid="ignore"):
-        flat = ~has_area(points) & np.isfinite(points).all(axis=(1, 2))
-    bad[surface.polygons[flat]] = True
+    bad[surface.polygons[flat(surface.positions, surface.triangles)]] = True
     return bad
+
+
+def _have_area(surface: Surface) -> Booleans:
+    """Which polygons (p,) have a triangle with an area, or with coordinates that are not finite."""
+    have = np.zeros(surface.polygon_count, bool)
+    have[surface.polygons[~flat(surface.positions, surface.triangles)]] = True
+    return have
 
 
 def _divided(surface: Surface, polygons: Integers, kept: Triangles) -> Triangles:

@@ -65,7 +65,7 @@ def _corner_uvs(surface: Surface, mesh: triangulation.Triangles) -> Singles:
         return image
     polygons = mesh.polygons[center.any(axis=1)]
     owner = np.repeat(np.arange(surface.polygon_count), surface.polygon_size)
-    corners = _corners_of(surface, np.arange(surface.polygon_count))
+    corners = surface.corners_of(np.arange(surface.polygon_count))
     sums = [np.bincount(owner, surface.uvs[corners, axis], surface.polygon_count) for axis in (0, 1)]
     means = np.stack(sums, axis=1) / surface.polygon_size[:, None]
     image[center] = means[polygons]
@@ -84,18 +84,11 @@ def _pinned(surface: Surface, mesh: triangulation.Triangles, faces: Integers, co
 def _shared(surface: Surface, vertices: Integers, uv: Singles) -> Booleans:
     """Which UV vertices (n,) are also those of faces that are left out."""
     left_out = np.ones(len(surface.corner_vertex), bool)
-    left_out[_corners_of(surface, np.unique(surface.polygons))] = False
+    left_out[surface.corners_of(np.unique(surface.polygons))] = False
     if not left_out.any():
         return np.zeros(len(vertices), bool)
     left_out_keys = _keys(surface.corner_vertex[left_out], surface.uvs[left_out])
     return np.isin(_keys(vertices, uv), left_out_keys)
-
-
-def _corners_of(surface: Surface, polygons: Integers) -> Integers:
-    """All corners of some polygons."""
-    start, size = surface.polygon_start[polygons], surface.polygon_size[polygons]
-    first = np.repeat(start - np.cumsum(size) + size, size)
-    return first + np.arange(len(first))
 
 
 def _keys(vertices: Integers, uv: Singles) -> NDArray[np.void]:

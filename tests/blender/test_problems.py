@@ -73,17 +73,10 @@ def refusal(call: Callable[..., Any], **options: Any) -> str:
 
 
 def islands() -> str:
-    """Islands with a bad coordinate, without area, one-sided, and with a handle."""
-    flat = (np.array([[9.0, 0, 0], [10, 0, 0], [11, 0, 0]]), [[0, 1, 2]])
-    shapes = meshes.grid(), flat, meshes.moebius(offset=(4, 0, 0)), meshes.ring((0, 5, 0))
+    """Islands with a bad coordinate, and with a handle."""
+    shapes = meshes.grid(), meshes.ring((0, 5, 0))
     obj = meshes.add(*meshes.together(*shapes), "Mixed")
     obj.data.vertices[7].co.x = float("nan")
-    return refusal(bpy.ops.authalic.unwrap)
-
-
-def repeated_vertex() -> str:
-    vertices, faces = meshes.grid()
-    meshes.add([*vertices, (5, 0, 0), (6, 0, 0)], [*faces, [49, 50, 50]])
     return refusal(bpy.ops.authalic.unwrap)
 
 
@@ -253,8 +246,7 @@ def turned_over(obj: MeshObject) -> None:
 
 
 CASES: dict[str, tuple[Callable[[], str], list[str]]] = {
-    "islands": (islands, ["no area in face 36", "vertex 7", "one-sided"]),
-    "repeated_vertex": (repeated_vertex, ["the same vertex twice in face 36"]),
+    "islands": (islands, ["vertex 7", "is closed and has a handle"]),
     "handle": (handle, ["is closed and has a handle"]),
     "landmark": (landmark_on_the_boundary, ['Landmark "Landmark 2" is on the boundary of Sheet']),
     "holes": (holes, ["2 boundaries"]),

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
+from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
 
 from ..blender import scene_changes, uv_maps
@@ -167,6 +168,14 @@ def _toggled(_settings_: Any, _context: bpy.types.Context) -> None:
         bpy.app.timers.register(_beat, persistent=True)
 
 
+@persistent  # type: ignore[untyped-decorator]
+def _loaded(*_: object) -> None:
+    """A startup file may have been saved with the heat map on."""
+    settings = _settings(bpy.context)
+    if settings.show:
+        _toggled(settings, bpy.context)
+
+
 def _redraw(_settings_: Any, context: bpy.types.Context) -> None:
     overlay.redraw_all(context)
 
@@ -256,10 +265,12 @@ def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     _PROPERTIES.authalic_heat_map = PointerProperty(type=AUTHALIC_PG_heat_map)
+    bpy.app.handlers.load_post.append(_loaded)
 
 
 def unregister() -> None:
     global _state
+    bpy.app.handlers.load_post.remove(_loaded)
     if bpy.app.timers.is_registered(_beat):
         bpy.app.timers.unregister(_beat)
     for running in (_state.measuring, _state.painting):

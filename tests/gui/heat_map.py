@@ -57,6 +57,15 @@ def flipped() -> bool:
     return "none flipped" not in part("operators.heat_map").current(bpy.context).sentence
 
 
+def measure() -> None:
+    call(bpy.ops.authalic.measure)
+
+
+def measured() -> bool:
+    """Whether the panel still has the figures of the last measurement."""
+    return part("operators.measure").current(bpy.context) is not None
+
+
 def edit() -> None:
     call(bpy.ops.object.mode_set, mode="EDIT")
     call(bpy.ops.mesh.select_all, action="SELECT")
@@ -70,6 +79,9 @@ STEPS = [
     only_panels("Distortion", "Texel Density", "Advanced"),
     scene,
     *sidebar(),
+    measure,
+    *[settled] * 3,
+    check("figures stay while nothing changes", measured, True),
     choose(show=True),
     up_to_date(),
     check("nothing is flipped", flipped, False),
@@ -81,11 +93,16 @@ STEPS = [
     picture("heat_map_of_shear"),
     choose(quantity="AREA"),
     tangle,
+    settled,
+    check("figures go when UVs change", measured, False),
     up_to_date(),
     check("the heat map has found the flips", flipped, True),
     settled,
     picture("heat_map_of_flips"),
     edit,
+    measure,
+    *[settled] * 3,
+    check("figures stay in edit mode", measured, True),
     up_to_date(),
     settled,
     picture("heat_map_in_edit_mode"),

@@ -48,10 +48,10 @@ def test_panels_of_the_image_editor_are_for_uvs_only(editor: Any) -> None:
 def test_panels_stay_off_renders(editor: Any) -> None:
     meshes.add_grid()
     editor.mode = "UV"
-    bpy.context.scene.render.engine = "CYCLES"
-    bpy.context.scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 8
-    bpy.context.scene.cycles.samples = 1
+    scene: Any = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     bpy.ops.render.render()
     editor.image = next(image for image in bpy.data.images if image.type == "RENDER_RESULT")
     assert shown() == {False}

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 MODULE = "bl_ext.user_default.authalic"
@@ -105,6 +106,12 @@ def sidebar(editor: str = "VIEW_3D") -> list[Step]:
         area(editor).tag_redraw()
 
     return [show, choose, settled]
+
+
+def uvs_in_view() -> None:
+    """A step that fits the view of the UV editor to the UVs."""
+    with bpy.context.temp_override(window=window(), area=area("UV"), region=region("WINDOW", "UV")):
+        bpy.ops.image.view_all(fit_view=True)
 
 
 def settled() -> None:
@@ -206,6 +213,15 @@ def picture(name: str) -> Callable[[], None]:
         subprocess.run(["import", "-window", "root", os.path.join(_OUT, f"{name}.png")], check=True)
 
     return take
+
+
+def colorful(editor: str = "VIEW_3D") -> float:
+    """The share of an editor's pixels that are colored strongly."""
+    part = region("WINDOW", editor)
+    crop = f"{part.width}x{part.height}+{part.x}+{window().height - part.y - part.height}"
+    command = ["import", "-window", "root", "-crop", crop, "-depth", "8", "rgb:-"]
+    pixels = np.frombuffer(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout, np.uint8)
+    return float(np.mean(np.ptp(pixels.reshape(-1, 3), axis=1) > 80))
 
 
 def check(what: str, get: Callable[[], object], expected: object) -> Callable[[], None]:

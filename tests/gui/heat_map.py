@@ -7,9 +7,25 @@ from typing import Any
 
 import bpy
 import numpy as np
-from driver import MODULE, Until, area, call, check, only_panels, picture, settled, sidebar
+from driver import (
+    MODULE,
+    Until,
+    area,
+    call,
+    check,
+    colorful,
+    only_panels,
+    picture,
+    settled,
+    sidebar,
+    uvs_in_view,
+)
 
 NAME = "Camel"
+
+
+FEW, MANY = 0.04, 0.08
+"""Shares of strongly colored pixels, without and with a heat map."""
 
 
 def scene() -> None:
@@ -82,8 +98,11 @@ STEPS = [
     measure,
     *[settled] * 3,
     check("figures stay while nothing changes", measured, True),
+    check("the window has few colors", lambda: colorful() < FEW, True),
     choose(show=True),
     up_to_date(),
+    settled,
+    check("the heat map is seen", lambda: colorful() > MANY, True),
     check("nothing is flipped", flipped, False),
     settled,
     picture("heat_map_of_areas"),
@@ -108,7 +127,12 @@ STEPS = [
     picture("heat_map_in_edit_mode"),
     uv_editor,
     *sidebar("UV"),
+    uvs_in_view,
     up_to_date(),
     settled,
     picture("heat_map_of_uvs"),
+    check("it is seen in the UV editor", lambda: colorful("UV") > MANY, True),
+    choose(show=False),
+    settled,
+    check("and no longer when it is off", lambda: colorful("UV") < FEW, True),
 ]

@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Landmark curves are added, drawn and registered in a real window; see README.md beside this file."""
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
 import bmesh
 import bpy
 from bl_ext.user_default.authalic.landmarks import curves as landmark_curves
-from driver import area, call, check, only_panels, picture, settled, sidebar, start, until_done
+from driver import Pulse, area, call, check, only_panels, picture, say, settled, sidebar, start, until_done
 from mathutils import Vector
 
 A, B = "Ball", "Egg"
+RESPONSE = 1.5
+"""The most seconds in which the window may do nothing, on a slow machine that draws by software."""
 ROWS = (0.45, -0.05, -0.55)  # heights of the curves
+
+
+pulse = Pulse()
 
 
 def scene() -> None:
@@ -88,15 +94,51 @@ def keys() -> list[str]:
     return [key.name for key in shape_keys.key_blocks] if shape_keys else []
 
 
-def half() -> None:
-    bpy.data.objects[A].data.shape_keys.key_blocks[-1].value = 1.0
+def slide(value: float) -> None:
+    bpy.data.objects[A].data.shape_keys.key_blocks[-1].value = value
+
+
+def scrub() -> Iterator[None]:
+    """Moves the slider of the morph from 0 to 1, drawing each time."""
+    for step in range(11):
+        slide(step / 10)
+        settled()
+        yield
+
+
+def height() -> float:
+    """The height of the source as it is shown."""
+    shown = bpy.data.objects[A].evaluated_get(call(bpy.context.evaluated_depsgraph_get))
+    heights = [vertex.co.z for vertex in shown.data.vertices]
+    return round(max(heights) - min(heights), 2)
+
+
+def is_halfway() -> bool:
+    """Whether each vertex is shown in the middle of its places in the two shape keys."""
+    source = bpy.data.objects[A]
+    first, last = source.data.shape_keys.key_blocks[0].data, source.data.shape_keys.key_blocks[-1].data
+    shown = source.evaluated_get(call(bpy.context.evaluated_depsgraph_get)).data.vertices
+    places = zip(first, last, shown, strict=True)
+    return all((a.co.lerp(b.co, 0.5) - vertex.co).length < 1e-5 for a, b, vertex in places)
+
+
+def reopen() -> None:
+    """Saves the file and opens it again."""
+    path = os.path.join(os.environ["AUTHALIC_GUI_OUT"], "morph.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+
+
+def steady() -> bool:
+    say("longest time without an answer", round(pulse.longest, 2))
+    return pulse.longest < RESPONSE
 
 
 MISSING = f"has no edges on {B}"
 PAIR = (True, True, None)
 
 STEPS = [
-    only_panels("Registration"),
+    only_panels("Wrap and Morph", "Landmark Curves", "Wrap"),
     scene,
     *sidebar(),
     picture("panel"),
@@ -133,9 +175,23 @@ STEPS = [
     start("register", method="CURVES"),
     until_done("the registration ends"),
     check("the morph is there", keys, ["Basis", f"Morph → {B}"]),
-    half,
-    settled,
+    lambda: slide(0.0),
+    check("at first the source has its own height", height, 2.0),
+    pulse.start,
+    scrub,
+    check("the window stays alive while the slider moves", steady, True),
+    pulse.stop,
+    check("then it has nearly the target's", lambda: 2.3 < height() <= 2.4, True),
     picture("registered"),
+    lambda: slide(0.5),
+    check("halfway every vertex is halfway", is_halfway, True),
+    reopen,
+    settled,
+    check("a file that is opened again has the curves", curves, [PAIR, PAIR, PAIR]),
+    check("and the key of the morph", keys, ["Basis", f"Morph → {B}"]),
+    check("which is still halfway", is_halfway, True),
+    *sidebar(),
+    picture("reopened"),
     lambda: call(bpy.ops.authalic.landmark_curve_select, index=1, side="TARGET"),
     settled,
     picture("selected"),

@@ -73,7 +73,7 @@ def delete_first_vertex() -> None:
 
 
 STEPS = [
-    only_panels("Registration"),
+    only_panels("Wrap and Morph", "Landmarks"),
     scene,
     *sidebar(),
     lambda: call(bpy.ops.ed.undo_push, message="Two heads"),

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from driver import area, call, check, only_panels, picture, sidebar, start, until_done
+from driver import area, call, check, only_panels, picture, settled, sidebar, start, until_done, uvs_in_view
 
 NAME = "Suzanne"
 
@@ -104,5 +104,7 @@ STEPS = [
     picture("fixed"),
     uv_editor,
     *sidebar("UV"),
+    uvs_in_view,
+    settled,
     picture("uv_editor"),
 ]

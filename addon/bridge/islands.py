@@ -13,8 +13,9 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from .disks import disk_maps
 from .patches import SurfacePatch, checked, opened, surface_patches
-from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
+from .progress import READING, Progress, keep_going, one_by_one, refused, share_of, to_the_end
 from .results import Island, Mapping
 from .seams import disks
 from .settings import SeamSettings, UnwrapSettings
@@ -60,11 +61,49 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
         if result.seams is not None and result.seams.ended_early:  # seams are worth nothing here without maps
             progress = to_the_end(progress)
 
-    def mapped(piece: SurfacePatch, step: Progress) -> None:
-        result.islands.append(_map(piece, settings, step))
-
-    one_by_one(patches, mapped, result, progress)
+    result.islands += _mapped(patches, settings, result, progress)
     return result
+
+
+def _mapped(
+    pieces: Sequence[SurfacePatch], settings: UnwrapSettings, result: Mapping, progress: Progress
+) -> list[Island]:
+    """The islands of patches, in their order: the disks in one go, then the spheres one by one."""
+    disks: list[SurfacePatch] = []
+    spheres: list[SurfacePatch] = []
+    known = len(result.refusals)
+    for piece in pieces:
+        with refused(piece, result):
+            (disks if _domain(piece, settings) == "DISK" else spheres).append(piece)
+    islands: dict[int, Island] = {}
+    share = _face_count(disks) / max(_face_count(pieces), 1)
+    maps = disk_maps(disks, settings, result, share_of(progress, 0.0, share))
+    for piece, disk_map in zip(disks, maps, strict=True):
+        if disk_map is not None:
+            islands[id(piece)] = _of_disk_map(piece, disk_map, settings)
+
+    def lay_flat(piece: SurfacePatch, step: Progress) -> None:
+        islands[id(piece)] = _by_sphere(piece, settings, step)
+
+    one_by_one(spheres, lay_flat, result, share_of(progress, share, 1.0 - share))
+    # in the order of the patches, whatever was mapped first
+    order = {(piece.name, piece.polygon): number for number, piece in enumerate(pieces)}
+    result.refusals[known:] = sorted(
+        result.refusals[known:], key=lambda refusal: order.get((refusal.name, refusal.polygon or 0), 0)
+    )
+    return [islands[id(piece)] for piece in pieces if id(piece) in islands]
+
+
+def _face_count(pieces: Sequence[SurfacePatch]) -> int:
+    return sum(len(piece.polygons) for piece in pieces)
+
+
+def _domain(piece: SurfacePatch, settings: UnwrapSettings) -> str:
+    """What an island is mapped onto, "DISK" or "SPHERE"; raises `Unsuitable` if it cannot be mapped."""
+    if piece.is_pinned:
+        raise Unsuitable(suitability.PINNED)
+    domain = settings.domain if settings.seams is None else "DISK"
+    return suitability.choose(piece.patch, domain, settings.fill_holes)
 
 
 def _unmapped_disks(
@@ -95,20 +134,9 @@ def _mapped_by_search(piece: SurfacePatch, uv: Floats) -> Island:
     return island
 
 
-def _map(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
-    """The UVs of one island; most of its faces are counter-clockwise."""
-    if piece.is_pinned:
-        raise Unsuitable(suitability.PINNED)
-    domain = settings.domain if settings.seams is None else "DISK"
-    domain = suitability.choose(piece.patch, domain, settings.fill_holes)
-    return (_by_disk if domain == "DISK" else _by_sphere)(piece, settings, progress)
-
-
-def _by_disk(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
+def _of_disk_map(piece: SurfacePatch, disk_map: authalic.DiskMap, settings: UnwrapSettings) -> Island:
+    """An island by its disk map; most of its faces are counter-clockwise."""
     native = checked(piece.patch, piece.points)
-    disk_map = authalic.disk_map(
-        native, fill_holes=settings.fill_holes, progress=progress, **settings.solver.disk_options()
-    )
     faces = np.asarray(piece.patch.faces)
     turned = spherical.turned(faces, np.asarray(disk_map.faces))
     island = _island(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Islands that are computed one by one: the progress of the whole, and refusals."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Protocol, TypeVar
 
 import authalic
@@ -51,7 +52,7 @@ def one_by_one(
     """Calls `do(piece, progress)` for every piece; if that raises, the piece is refused in the result."""
     total = sum(len(piece.polygons) for piece in pieces)
     done = 0
-    listen = _noting_the_end(progress, result)
+    listen = noting_the_end(progress, result)
     for number, piece in enumerate(pieces):
         share = len(piece.polygons)
         message = f"Island {number + 1} of {len(pieces)}"
@@ -59,14 +60,21 @@ def one_by_one(
             result.refusals.append(Refusal(piece.name, piece.polygon, NOT_REACHED))
             continue
         step = _sub_progress(listen, done / total, share / total, message)
-        try:
+        with refused(piece, result):
             do(piece, step)
-        except Unsuitable as problem:
-            result.refusals.append(Refusal(piece.name, piece.polygon, str(problem)))
-        except (authalic.MeshError, authalic.SolverError) as error:
-            reason = problems.in_words(error, piece.polygons, piece.vertices)
-            result.refusals.append(Refusal(piece.name, piece.polygon, reason))
         done += share
+
+
+@contextmanager
+def refused(piece: Piece, result: Result) -> Iterator[None]:
+    """A piece for which the body raises what is wrong with it is refused in the result."""
+    try:
+        yield
+    except Unsuitable as problem:
+        result.refusals.append(Refusal(piece.name, piece.polygon, str(problem)))
+    except (authalic.MeshError, authalic.SolverError) as error:
+        reason = problems.in_words(error, piece.polygons, piece.vertices)
+        result.refusals.append(Refusal(piece.name, piece.polygon, reason))
 
 
 def share_of(progress: Progress, start: float, share: float) -> Progress:
@@ -84,7 +92,7 @@ def to_the_end(progress: Progress) -> Progress:
     return tell
 
 
-def _noting_the_end(progress: Progress, result: Result) -> Progress:
+def noting_the_end(progress: Progress, result: Result) -> Progress:
     """The progress callback, which also notes in the result that it was asked to end."""
 
     def listen(fraction: float, message: str) -> bool:

@@ -162,14 +162,14 @@ def test_island_that_falls_short_is_named(
 ) -> None:
     meshes.add_grid()
     bridge, islands = part("bridge"), part("bridge.islands")
-    map_ = islands._map
+    map_ = islands._of_disk_map
 
     def stalled(*arguments: Any) -> Any:
         island = map_(*arguments)
         island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, "cut it")
         return island
 
-    monkeypatch.setattr(islands, "_map", stalled)
+    monkeypatch.setattr(islands, "_of_disk_map", stalled)
     assert bpy.ops.authalic.unwrap() == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Warning: Unwrapped 1 island" in said

@@ -129,27 +129,33 @@ def _written(obj: MeshObject) -> Array:
 
 
 def test_what_was_not_reached_before_enter_is_named_and_left_alone() -> None:
-    obj = meshes.add(*meshes.together(*(meshes.grid(offset=(4 * k, 0, 0)) for k in range(3))))
+    # islands that are large enough to be mapped one after the other
+    n = 50
+    obj = meshes.add(*meshes.together(*(meshes.grid(n, offset=(4 * k, 0, 0)) for k in range(3))))
     obj.data.uv_layers.new(name="UVMap")
     before, islands, unwrap = meshes.uv(obj), part("bridge.islands"), part("jobs.unwrap")
     job = unwrap.job(bpy.context, unwrap.Settings())
-    map_ = islands._map
+    disk_maps = islands.disk_maps
 
-    def first_only(*arguments: Any) -> Any:
-        job.end_early()
-        return map_(*arguments)
+    def first_only(pieces: Any, settings: Any, result: Any, progress: Any) -> Any:
+        def listen(fraction: float, message: str) -> Any:
+            if message.startswith("Island 2 of 3"):
+                job.end_early()
+            return progress(fraction, message)
 
-    islands._map = first_only
+        return disk_maps(pieces, settings, result, listen)
+
+    islands.disk_maps = first_only
     try:
         report = job.execute()
     finally:
-        islands._map = map_
+        islands.disk_maps = disk_maps
     assert report.islands == 1
     assert [str(refusal) for refusal in report.refusals] == [
-        f"Mesh at face {face}: was not reached before the end" for face in (36, 72)
+        f"Mesh at face {face}: was not reached before the end" for face in (n * n, 2 * n * n)
     ]
-    after = meshes.uv(obj)
-    assert (after[144:] == before[144:]).all() and (after[:144] != before[:144]).any()
+    after, first = meshes.uv(obj), 4 * n * n
+    assert (after[first:] == before[first:]).all() and (after[:first] != before[:first]).any()
 
 
 def test_the_last_island_kept_early_is_said_too() -> None:

@@ -203,6 +203,14 @@ pub fn distortion(
     measure(triangles.points, triangles.faces, image.view(), &targets)
 }
 
+/// Measures many maps in one go, each as [`distortion`] does, with an image and maybe a density of its own.
+pub fn distortions(maps: &[(Surface, Array2<f64>, Option<Array1<f64>>)]) -> Vec<Result<Distortion, Error>> {
+    parallel::lone_tasks(maps.len(), |k| {
+        let (surface, image, density) = &maps[k];
+        distortion(surface, image.view(), density.as_ref().map(|density| density.view()))
+    })
+}
+
 /// Measures a map of the surface `points`, `faces` with one positive target area per face.
 ///
 /// The lengths must agree, indices must be in range, and the faces must have area and one orientation, as those of a

@@ -4,6 +4,7 @@
 //! Every output element is written by one closure call, and every sum is taken over chunks of a fixed length
 //! whose partial sums are added in order, so 1 and 64 threads agree bit for bit.
 
+use std::cell::Cell;
 use std::sync::{Arc, Mutex};
 
 use rayon::ThreadPool;
@@ -14,6 +15,16 @@ const CHUNK: usize = 4096;
 
 /// The threads of one process, with its id: a forked child inherits the pool but none of its threads.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+thread_local! {
+    /// Whether this thread does the work of a task by itself.
+    static IS_ALONE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this is a thread of the pool that may share its work with others.
+fn is_sharing() -> bool {
+    rayon::current_thread_index().is_some() && !IS_ALONE.get()
+}
 
 /// The threads of this process; `None` where they cannot be had right now. The results are the same without
 /// them.
@@ -32,7 +43,7 @@ fn threads() -> Option<Arc<ThreadPool>> {
 
 /// Runs `work` on the threads of this process, so that [`join`] finds them; where there are none, on this one.
 pub(crate) fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    if rayon::current_thread_index().is_some() {
+    if IS_ALONE.get() || is_sharing() {
         return work();
     }
     match threads() {
@@ -46,10 +57,7 @@ pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    match rayon::current_thread_index() {
-        Some(_) => rayon::join(one, other),
-        None => (one(), other()),
-    }
+    if is_sharing() { rayon::join(one, other) } else { (one(), other()) }
 }
 
 /// Calls `work(first index, chunk)` for every chunk of `length` elements, on all threads where there are
@@ -61,10 +69,10 @@ fn for_each_chunk<T: Send>(out: &mut [T], length: usize, work: &(dyn Fn(usize, &
         out.par_chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part));
     };
     let is_one_task = out.len() <= length;
-    if !is_one_task && rayon::current_thread_index().is_some() {
+    if !is_one_task && is_sharing() {
         return on_these_threads(out);
     }
-    match if is_one_task { None } else { threads() } {
+    match if is_one_task || IS_ALONE.get() { None } else { threads() } {
         Some(pool) => pool.install(|| on_these_threads(out)),
         None => out.chunks_mut(length).enumerate().for_each(|(chunk, part)| work(chunk * length, part)),
     }
@@ -96,6 +104,27 @@ pub(crate) fn tasks<T: Send>(n: usize, value: impl Fn(usize) -> T + Sync + Send)
     let mut out: Vec<Option<T>> = (0..n).map(|_| None).collect();
     for_each_chunk(&mut out, 1, &|i, slot| slot[0] = Some(value(i)));
     out.into_iter().flatten().collect()
+}
+
+/// [`tasks`] that share no work of their own: for very many small ones, which would only wait for each other.
+pub(crate) fn lone_tasks<T: Send>(n: usize, value: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    tasks(n, |i| {
+        let alone = Alone { was: IS_ALONE.replace(true) };
+        let value = value(i);
+        drop(alone);
+        value
+    })
+}
+
+/// While it lives, its thread works alone.
+struct Alone {
+    was: bool,
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        IS_ALONE.set(self.was);
+    }
 }
 
 /// Σ value(i) over `0..n`.
@@ -145,6 +174,18 @@ mod tests {
         assert_eq!(on(1).to_bits(), on(2).to_bits());
         assert_eq!(on(1).to_bits(), on(7).to_bits());
         assert!((on(1) - (100_003_f64.ln() + 0.577_215_664_9)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn lone_tasks_sum_the_same_bits_on_one_thread_each() {
+        let term = |i: usize| 1.0 / (1.0 + i as f64);
+        let sums = lone_tasks(20, |_| {
+            let here = std::thread::current().id();
+            let is_here = all(3 * CHUNK, |_| std::thread::current().id() == here);
+            (is_here, sum(100_003, term).to_bits())
+        });
+        assert_eq!(sums, vec![(true, sum(100_003, term).to_bits()); 20]);
+        assert!(!IS_ALONE.get());
     }
 
     #[test]

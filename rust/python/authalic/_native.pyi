@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Types of the native module, whose own docstrings document it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
@@ -415,6 +415,12 @@ def distortion(
     *,
     density: ArrayLike | None = None,
 ) -> Distortion: ...
+def distortions(
+    surfaces: Sequence[_Surface],
+    images: Sequence[ArrayLike],
+    *,
+    densities: Sequence[ArrayLike | None] | None = None,
+) -> list[Distortion | MeshError]: ...
 def disk_map(
     vertices: ArrayLike | _Handle,
     faces: ArrayLike | None = None,
@@ -433,6 +439,20 @@ def disk_map(
     aspect: float | None = None,
     progress: _Progress | None = None,
 ) -> DiskMap: ...
+def disk_maps(
+    surfaces: Sequence[_Surface],
+    *,
+    densities: Sequence[ArrayLike | None] | None = None,
+    method: Literal["gauss_newton", "conjugate_gradient", "fixed_point"] = "gauss_newton",
+    boundary: Literal["sliding", "arc_length", "free", "rectangle"] = "sliding",
+    angle_weight: float = 0.0,
+    area_tolerance: float | None = None,
+    max_iterations: int | None = None,
+    tolerance: float | None = None,
+    fill_holes: bool = False,
+    overlap: bool = False,
+    progress: _Progress | None = None,
+) -> list[DiskMap | MeshError | SolverError | None]: ...
 def sphere_map(
     vertices: ArrayLike | _Handle,
     faces: ArrayLike | None = None,

@@ -104,3 +104,18 @@ pub fn shape_words(shape: &[usize]) -> String {
         _ => format!("of shape ({})", lengths.join(", ")),
     }
 }
+
+/// One array or `None` for each of `count` surfaces; `None` for all where there is no list.
+pub fn reals_of_each(
+    py: Python<'_>,
+    list: Option<Vec<Option<Bound<'_, PyAny>>>>,
+    [name, of_each]: [&'static str; 2],
+    count: usize,
+) -> PyResult<Vec<Option<Array1<f64>>>> {
+    let Some(list) = list else { return Ok(vec![None; count]) };
+    if list.len() != count {
+        let (found, expected) = (format!("of length {}", list.len()), format!("of length {count}"));
+        return Err(bad_array(py, name, found, expected));
+    }
+    list.iter().map(|each| each.as_ref().map(|array| reals(array, of_each)).transpose()).collect()
+}

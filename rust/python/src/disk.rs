@@ -1,38 +1,43 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::disk_map`.
 
-use authalic::{Boundary, DiskMapOptions, DiskMethod};
+use authalic::{Boundary, DiskMapOptions, DiskMethod, Error, Record};
 use numpy::PyArray2;
 use numpy::ndarray::ArrayView2;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 
-use crate::arrays::{Reals, from_array, real_table, reals};
+use crate::arrays::{Reals, from_array, real_table, reals, reals_of_each};
 use crate::distortion::Distortion;
-use crate::errors::{bad_array, bad_option};
+use crate::errors::{bad_array, bad_option, to_python};
 use crate::indices::{from_indices, index_list};
 use crate::options::{history, parse_iterations};
 use crate::run::run;
 use crate::surface::{Given, oriented};
 
 /// A map of a disk to the unit disk or onto a rectangle, one-to-one but for `overlap`.
-#[pyclass(frozen, get_all, module = "authalic")]
+#[pyclass(frozen, module = "authalic")]
 pub struct DiskMap {
     /// (n, 2) float64: the image of each vertex in the unit disk, or on the rectangle asked for.
+    #[pyo3(get)]
     uv: Reals,
     /// (m, 3) int64: the faces as oriented; faces turned against the rest are flipped.
+    #[pyo3(get)]
     faces: Py<PyArray2<i64>>,
     /// "converged", "max_iterations", "stalled" or "cancelled". The map is sound in every case.
+    #[pyo3(get)]
     status: &'static str,
     /// Iterations done, fixed-point steps included.
+    #[pyo3(get)]
     iterations: usize,
-    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds: one record per
-    /// iteration, the start first. gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's
-    /// metric; 0 for a start that "gauss_newton" keeps.
-    history: Py<PyAny>,
     /// The figures of the map.
+    #[pyo3(get)]
     distortion: Py<Distortion>,
     /// Wall time of the call.
+    #[pyo3(get)]
     seconds: f64,
+    records: Vec<Record>,
+    history: PyOnceLock<Py<PyAny>>,
 }
 
 impl DiskMap {
@@ -42,7 +47,8 @@ impl DiskMap {
             faces: from_indices(py, faces),
             status: map.status.as_str(),
             iterations: map.history.iterations(),
-            history: history(py, map.history.records())?,
+            records: map.history.records().to_vec(),
+            history: PyOnceLock::new(),
             distortion: Py::new(py, Distortion::new(py, map.distortion))?,
             seconds: map.seconds,
         })
@@ -51,6 +57,14 @@ impl DiskMap {
 
 #[pymethods]
 impl DiskMap {
+    /// Structured array with the fields iteration, authalic_energy, step, gradient_norm, seconds: one record per
+    /// iteration, the start first. gradient_norm is √(gᵀM⁻¹g), the norm of the gradient in the preconditioner's
+    /// metric; 0 for a start that "gauss_newton" keeps.
+    #[getter]
+    fn history(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        Ok(self.history.get_or_try_init(py, || history(py, &self.records))?.clone_ref(py))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!(
             "DiskMap({} vertices, {} after {} iterations, {:.2} s, {})",
@@ -200,6 +214,106 @@ pub fn disk_map(
     })?;
     // 3. The result
     DiskMap::new(py, map, oriented(&surface).view())
+}
+
+/// Maps many disks in one go, which is much faster than one by one where they are small.
+///
+/// Every map is what `disk_map` makes of its surface with the same options, which are explained there.
+///
+/// Parameters
+/// ----------
+/// surfaces : sequence of Surface, Patch or (vertices, faces)
+///     The disks.
+/// densities : sequence of (m,) real arrays or None, optional
+///     The target measures of the faces of each surface. Default: the face areas.
+/// method : {"gauss_newton", "conjugate_gradient", "fixed_point"}
+/// boundary : {"sliding", "arc_length", "free", "rectangle"}
+/// angle_weight : float
+/// area_tolerance : float, optional
+/// max_iterations : int, optional
+/// tolerance : float, optional
+/// fill_holes : bool
+/// overlap : bool
+///     These are as for `disk_map`, and for all surfaces the same.
+/// progress : callable(fraction, message) -> bool, optional
+///     Called between surfaces and within large ones; False ends the run.
+///
+/// Returns
+/// -------
+/// list of DiskMap, MeshError, SolverError or None
+///     The map of each surface, or why it has none. None for those that were not begun when `progress` ended the run.
+///
+/// Raises
+/// ------
+/// MeshError
+///     The arrays of a surface have a wrong shape or index.
+/// ValueError
+///     An option is out of its range.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
+/// >>> pyramid = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0]], [[0, 1, 2], [0, 2, 3], [0, 3, 1]]
+/// >>> [len(each.uv) for each in authalic.disk_maps([triangle, pyramid], boundary="free", angle_weight=0.001)]
+/// [3, 4]
+#[pyfunction]
+#[pyo3(signature = (surfaces, *, densities=None, method="gauss_newton", boundary="sliding", angle_weight=0.0,
+                    area_tolerance=None, max_iterations=None, tolerance=None, fill_holes=false, overlap=false,
+                    progress=None))]
+#[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
+pub fn disk_maps(
+    py: Python<'_>,
+    surfaces: Vec<Bound<'_, PyAny>>,
+    densities: Option<Vec<Option<Bound<'_, PyAny>>>>,
+    method: &str,
+    boundary: &str,
+    angle_weight: f64,
+    area_tolerance: Option<f64>,
+    max_iterations: Option<i64>,
+    tolerance: Option<f64>,
+    fill_holes: bool,
+    overlap: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Option<Py<PyAny>>>> {
+    // 1. Arguments to plain data
+    let (method, boundary) = (parse_method(method)?, parse_boundary(boundary)?);
+    let max_iterations = max_iterations.map(parse_iterations).transpose()?;
+    let names = ["surfaces", "vertices", "faces"];
+    let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
+    let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
+    // 2. The run
+    let (maps, surfaces) = run(py, progress, move |observer| {
+        let surfaces = given.into_iter().map(Given::surface).collect::<Result<Vec<_>, Error>>()?;
+        let with_options = surfaces.iter().zip(&densities).map(|(surface, density)| {
+            let options = DiskMapOptions {
+                method,
+                boundary,
+                density: density.as_ref().map(|density| density.view()),
+                angle_weight,
+                area_tolerance,
+                max_iterations,
+                tolerance,
+                fill_holes,
+                overlap,
+                ..Default::default()
+            };
+            (surface.clone(), options)
+        });
+        let maps = authalic::disk_maps(&with_options.collect::<Vec<_>>(), observer);
+        Ok((maps, surfaces))
+    })?;
+    // 3. The results
+    let results = maps.into_iter().zip(&surfaces).map(|(map, surface)| match map {
+        None => Ok(None),
+        Some(Ok(map)) => {
+            let map = DiskMap::new(py, map, oriented(surface).view())?;
+            Ok(Some(Py::new(py, map)?.into_any()))
+        }
+        Some(Err(error @ Error::InvalidOption { .. })) => Err(to_python(py, &error)),
+        Some(Err(error)) => Ok(Some(to_python(py, &error).into_value(py).into_any())),
+    });
+    results.collect()
 }
 
 fn parse_method(method: &str) -> PyResult<DiskMethod> {

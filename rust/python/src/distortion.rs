@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of `authalic::distortion`.
 
+use authalic::Error;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, from_array, reals};
+use crate::arrays::{self, from_array, reals, reals_of_each};
+use crate::errors::{bad_array, to_python};
 use crate::indices::from_index_list;
 use crate::run::run;
 use crate::surface::Given;
@@ -109,4 +111,66 @@ pub fn distortion(
         authalic::distortion(&given.surface()?, map.view(), density.as_ref().map(|density| density.view()))
     })?;
     Ok(Distortion::new(py, figures))
+}
+
+/// Measures many maps in one go, which is much faster than one by one where they are small.
+///
+/// Parameters
+/// ----------
+/// surfaces : sequence of Surface, Patch or (vertices, faces)
+///     The surfaces.
+/// images : sequence of (n, 2) or (n, 3) real arrays
+///     The map of each surface, as for `distortion`.
+/// densities : sequence of (m,) real arrays or None, optional
+///     The target measures of the faces of each surface. Default: the face areas.
+///
+/// Returns
+/// -------
+/// list of Distortion or MeshError
+///     The figures of each map, or why it has none.
+///
+/// Raises
+/// ------
+/// MeshError
+///     The arrays of a surface have a wrong shape or index, or a list another length.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
+/// >>> images = [[0, 0], [1, 0], [0, 1]], [[0, 0], [0, 1], [1, 0]]
+/// >>> [len(each.folded) for each in authalic.distortions([triangle, triangle], images)]
+/// [0, 1]
+#[pyfunction]
+#[pyo3(signature = (surfaces, images, *, densities=None))]
+pub fn distortions(
+    py: Python<'_>,
+    surfaces: Vec<Bound<'_, PyAny>>,
+    images: Vec<Bound<'_, PyAny>>,
+    densities: Option<Vec<Option<Bound<'_, PyAny>>>>,
+) -> PyResult<Vec<Py<PyAny>>> {
+    if images.len() != surfaces.len() {
+        let (found, expected) =
+            (format!("of length {}", images.len()), format!("of length {}", surfaces.len()));
+        return Err(bad_array(py, "images", found, expected));
+    }
+    let names = ["surfaces", "vertices", "faces"];
+    let given = surfaces.iter().map(|each| Given::pair(each, names)).collect::<PyResult<Vec<_>>>()?;
+    let images = images.iter().map(arrays::image).collect::<PyResult<Vec<_>>>()?;
+    let densities = reals_of_each(py, densities, ["densities", "density"], given.len())?;
+    let figures = run(py, None, move |_| {
+        let surfaces = given.into_iter().map(Given::surface).collect::<Result<Vec<_>, Error>>()?;
+        let maps: Vec<_> = surfaces
+            .into_iter()
+            .zip(images)
+            .zip(densities)
+            .map(|((surface, image), density)| (surface, image, density))
+            .collect();
+        Ok(authalic::distortions(&maps))
+    })?;
+    let results = figures.into_iter().map(|figures| match figures {
+        Ok(figures) => Ok(Py::new(py, Distortion::new(py, figures))?.into_any()),
+        Err(error) => Ok(to_python(py, &error).into_value(py).into_any()),
+    });
+    results.collect()
 }

@@ -41,7 +41,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<seams::Unwrap>()?;
     module.add_function(wrap_pyfunction!(surface::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
+    module.add_function(wrap_pyfunction!(distortion::distortions, module)?)?;
     module.add_function(wrap_pyfunction!(disk::disk_map, module)?)?;
+    module.add_function(wrap_pyfunction!(disk::disk_maps, module)?)?;
     module.add_function(wrap_pyfunction!(sphere::sphere_map, module)?)?;
     module.add_function(wrap_pyfunction!(hessian::stretch_hessian, module)?)?;
     module.add_function(wrap_pyfunction!(untangle::untangle, module)?)?;

@@ -16,6 +16,7 @@ mod checks;
 mod free;
 mod gauss_newton;
 mod holes;
+mod many;
 mod options;
 mod published;
 mod rectangle;
@@ -35,6 +36,7 @@ use crate::parallel;
 use crate::codomain::planar::PlanarMap;
 use free::QuickStart;
 pub(crate) use holes::closed;
+pub use many::disk_maps;
 pub use options::{Boundary, DiskMapOptions, DiskMethod};
 use run::Run;
 

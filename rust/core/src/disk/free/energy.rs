@@ -167,7 +167,8 @@ impl<'a> Energy<'a> {
         parallel::map(self.mesh.n_faces(), |face| self.of_face(map, face, weight))
     }
 
-    fn of_face(&self, map: &[[f64; 2]], face: usize, weight: f64) -> f64 {
+    /// The part of a face in E, infinite where it folds.
+    pub(super) fn of_face(&self, map: &[[f64; 2]], face: usize, weight: f64) -> f64 {
         let jacobian = self.jacobian(map, face);
         let rho = jacobian.ratio;
         if rho.is_nan() || rho <= 0.0 {

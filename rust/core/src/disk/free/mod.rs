@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Maps with a free outline, which may take any shape that does not cross itself.
 //!
-//! 1. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that
+//! 1. A surface that bends without stretching is laid flat face by face (`development`), and done.
+//! 2. Starts of free outline (`starts`): plan view, spectral conformal, as rigid as possible; the best of those that
 //!    are one-to-one. Where none is, or all have collapsed, an area-preserving map to the disk, which is one-to-one
 //!    always. Islands may start from another map, whose outlines are pushed apart (`apart`), or from wanted images of
 //!    their faces.
-//! 2. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
-//!    (`contact`), until the map is stationary.
-//! 3. Where contacts remain, further descents with contacts of shorter range.
+//! 3. A descent (`descent`) on the energy of areas and angles (`energy`) and of contacts of the outline with itself
+//!    (`contact`), first with heavier weights of angles (`stages`), until the map is stationary.
+//! 4. Where contacts remain, further descents with contacts of shorter range.
 //!
 //! Holes are outlines like the longest loop. Cost: some four factorizations of two unknowns per vertex for the start,
 //! and ten to fifty for the descent.
@@ -16,6 +17,7 @@ mod apart;
 mod arap;
 mod contact;
 mod descent;
+mod development;
 mod energy;
 mod face;
 mod least_shear;
@@ -26,6 +28,7 @@ mod mend;
 mod outline;
 mod poisson;
 mod quick;
+mod stages;
 mod start;
 mod starts;
 mod surface;
@@ -42,11 +45,13 @@ use crate::error::Error;
 use crate::mesh::renumbering::Renumbered;
 use crate::sparse::{Analysis, Order, elimination_order};
 use descent::{Descent, Goal, LowerLocally, Problem};
+use development::developed;
 use energy::Energy;
 use least_shear::least_shear;
 use local::lowered_locally;
 use outline::Outline;
 use quick::quickly;
+use stages::by_stages;
 use start::Start;
 use surface::Prepared;
 pub(super) use surface::{Free, QuickStart, Schedule};
@@ -84,6 +89,9 @@ impl Free<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(PlanarMap, Status, f64), Error> {
+        if let Some(map) = self.exact(history) {
+            return Ok((map, Status::Converged, HEAVIEST));
+        }
         let order = elimination_order(self.mesh.n_vertices(), self.mesh.faces())?;
         let by_order = Renumbered::new(self.mesh, order);
         let targets = by_order.of_faces(self.targets);
@@ -100,6 +108,20 @@ impl Free<'_> {
         let free = Free { mesh: &by_order.mesh, targets: &targets, options: &options, schedule };
         let (map, status, weight) = free.in_order(history, observer)?;
         Ok((by_order.given(&map), status, weight))
+    }
+
+    /// The map that stretches no face, if there is one and no start is given.
+    fn exact(&self, history: &mut History) -> Option<PlanarMap> {
+        let has_start = matches!(self.schedule, Schedule::Quick { start: Some(_), .. });
+        if has_start || self.options.initial.is_some() {
+            return None;
+        }
+        let energy = Energy::new(self.mesh, self.targets);
+        let outline = Outline::new(&energy);
+        let map = developed(&energy, (!self.options.overlap).then_some(&outline))?;
+        let map = self.within_the_disk(&outline, &map);
+        history.push_start(energy.unevenness(&map), 0.0);
+        Some(map)
     }
 
     /// The map of a mesh in elimination order.
@@ -145,7 +167,7 @@ impl Free<'_> {
     fn descend(
         &self,
         prepared: &Prepared<'_>,
-        (start, is_given): (PlanarMap, bool),
+        (start, has_start): (PlanarMap, bool),
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (PlanarMap, Status, f64) {
@@ -162,18 +184,29 @@ impl Free<'_> {
         };
         if let Schedule::Quick { tolerance, start: from } = self.schedule {
             let weight = match from {
-                Some(QuickStart::Initial { weight }) if is_given => Some(weight),
+                Some(QuickStart::Initial { weight }) if has_start => Some(weight),
                 _ => None,
             };
             let (map, status) =
                 quickly(&mut descent, start, &mut goal, (tolerance, weight), history, observer);
             return (map, status, goal.weight);
         }
-        let mut map = start;
-        let mut status = Status::MaxIterations;
-        if let Some(tolerance) = self.wanted_deviation() {
-            let is_given = self.options.area_tolerance.is_some();
-            goal.weight = if is_given { HEAVIEST } else { HEAVY };
+        let wanted = self.wanted_deviation();
+        let is_given = self.options.area_tolerance.is_some();
+        goal.weight = match wanted {
+            None => self.options.angle_weight,
+            Some(_) if is_given => HEAVIEST,
+            Some(_) => HEAVY,
+        };
+        let (mut map, mut status) = if has_start {
+            (start, Status::Converged)
+        } else {
+            by_stages(&mut descent, start, &goal, history, observer)
+        };
+        if matches!(status, Status::Cancelled | Status::MaxIterations) {
+            return (map, status, goal.weight);
+        }
+        if let Some(tolerance) = wanted {
             let most = if is_given { MOST } else { HEAVY };
             (map, status) = least_shear(&mut descent, map, &mut goal, (tolerance, most), history, observer);
             if status != Status::Converged || !is_given {

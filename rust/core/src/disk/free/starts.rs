@@ -135,7 +135,7 @@ fn pulled_in(energy: &Energy<'_>, outline: &Outline, map: &[[f64; 2]]) -> Planar
 }
 
 /// The projection along the sum of the area vectors.
-fn plan_view(energy: &Energy<'_>) -> Option<PlanarMap> {
+pub(super) fn plan_view(energy: &Energy<'_>) -> Option<PlanarMap> {
     let mesh = energy.mesh;
     let normal = mesh
         .faces()

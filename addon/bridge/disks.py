@@ -22,6 +22,8 @@ def disk_maps(
     for number, piece in enumerate(pieces):
         with refused(piece, result):
             natives[number] = checked(piece.patch, piece.points)
+    if not natives:
+        return [None] * len(pieces)
     options = settings.solver.disk_options()
     listen = noting_the_end(progress, result)
     found = authalic.disk_maps(

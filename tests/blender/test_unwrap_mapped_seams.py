@@ -179,7 +179,7 @@ def test_nothing_is_mapped_twice(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("mapped twice")
 
     meshes.torus()
-    monkeypatch.setattr(part("bridge.islands").authalic, "disk_map", fail)
+    monkeypatch.setattr(part("bridge.disks").authalic, "disk_maps", fail)
     assert unwrap(seams="AUTOMATIC") == {"FINISHED"}
 
 
@@ -191,14 +191,14 @@ def test_nothing_is_mapped_twice(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_other_maps_are_made_where_they_are_asked_for(
     options: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    library, asked = part("bridge.islands").authalic, []
-    disk_map = library.disk_map
+    library, asked = part("bridge.disks").authalic, []
+    disk_maps = library.disk_maps
 
-    def listen(*given: Any, **options: Any) -> Any:
-        asked.append(options)
-        return disk_map(*given, **options)
+    def listen(surfaces: Any, **options: Any) -> Any:
+        asked.extend(surfaces)
+        return disk_maps(surfaces, **options)
 
-    monkeypatch.setattr(library, "disk_map", listen)
+    monkeypatch.setattr(library, "disk_maps", listen)
     obj = meshes.torus()
     assert unwrap(seams="AUTOMATIC", **options) == {"FINISHED"}
     assert len(asked) == meshes.islands(obj).max() + 1

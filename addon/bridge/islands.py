@@ -3,43 +3,31 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 
 import numpy as np
 
 import authalic
 
 from ..surfaces import spherical, suitability, triangulation
-from ..surfaces.arrays import Booleans, Floats, Integers
+from ..surfaces.arrays import Floats
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from . import closed
 from .disks import disk_maps
+from .island import figures_of, island_of
 from .patches import SurfacePatch, checked, opened, surface_patches
 from .progress import READING, Progress, keep_going, one_by_one, refused, share_of, to_the_end
-from .results import Island, Mapping
-from .seams import disks
+from .results import Island, Mapping, Note
+from .seams import Cutter, disks
 from .settings import SeamSettings, UnwrapSettings
-from .shortfall import UNEVEN_DISK, UNEVEN_SPHERE, shortfall
-from .solver import Solver
-from .spheres import sphere_map
+from .shortfall import UNEVEN_DISK, shortfall
 
 _CUT = "cut its long parts open by seams"
 _NOT_FREE = f"set Outline to Free, or {_CUT}"
-_OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
-# A slider position whose shapes a layout of the sphere does not fold.
-_FIT_TO_LAY_FLAT = 0.9
-# The directions of the pole, and of the seam at the angle 0.
-_AXES = {
-    "X": ((1, 0, 0), (0, 1, 0)),
-    "Y": ((0, 1, 0), (0, 0, -1)),
-    "Z": ((0, 0, 1), (0, 1, 0)),
-}
+# The part of the time that a map onto the sphere takes; seams take the rest, where they are needed.
+_LAYOUTS = 0.9
 # The part of the time that the search for seams takes; the maps take the rest, where the search made none.
 _SEAMS = 0.7
-# The part of the time that the sphere map takes; the layout takes the rest.
-_SPHERE = 0.9
-# The most vertices that a layout needs for its poles.
-_POLES = 4
 
 
 def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Progress = keep_going) -> Mapping:
@@ -61,12 +49,17 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
         if result.seams is not None and result.seams.ended_early:  # seams are worth nothing here without maps
             progress = to_the_end(progress)
 
-    result.islands += _mapped(patches, settings, result, progress)
+    cutter = Cutter(surfaces, SeamSettings(), settings.solver.is_even)
+    result.islands += _mapped(patches, settings, cutter, result, progress)
     return result
 
 
 def _mapped(
-    pieces: Sequence[SurfacePatch], settings: UnwrapSettings, result: Mapping, progress: Progress
+    pieces: Sequence[SurfacePatch],
+    settings: UnwrapSettings,
+    cutter: Cutter,
+    result: Mapping,
+    progress: Progress,
 ) -> list[Island]:
     """The islands of patches, in their order: the disks in one go, then the spheres one by one."""
     disks: list[SurfacePatch] = []
@@ -75,15 +68,15 @@ def _mapped(
     for piece in pieces:
         with refused(piece, result):
             (disks if _domain(piece, settings) == "DISK" else spheres).append(piece)
-    islands: dict[int, Island] = {}
+    islands: dict[int, list[Island]] = {}
     share = _face_count(disks) / max(_face_count(pieces), 1)
     maps = disk_maps(disks, settings, result, share_of(progress, 0.0, share))
     for piece, disk_map in zip(disks, maps, strict=True):
         if disk_map is not None:
-            islands[id(piece)] = _of_disk_map(piece, disk_map, settings)
+            islands[id(piece)] = [_of_disk_map(piece, disk_map, settings)]
 
     def lay_flat(piece: SurfacePatch, step: Progress) -> None:
-        islands[id(piece)] = _by_sphere(piece, settings, step)
+        islands[id(piece)] = _by_sphere(piece, settings, cutter, result, step)
 
     one_by_one(spheres, lay_flat, result, share_of(progress, share, 1.0 - share))
     # in the order of the patches, whatever was mapped first
@@ -91,7 +84,7 @@ def _mapped(
     result.refusals[known:] = sorted(
         result.refusals[known:], key=lambda refusal: order.get((refusal.name, refusal.polygon or 0), 0)
     )
-    return [islands[id(piece)] for piece in pieces if id(piece) in islands]
+    return [island for piece in pieces for island in islands.get(id(piece), [])]
 
 
 def _face_count(pieces: Sequence[SurfacePatch]) -> int:
@@ -129,9 +122,36 @@ def _mapped_by_search(piece: SurfacePatch, uv: Floats) -> Island:
     if 2 * np.count_nonzero(turned) + int(turned[0]) > len(turned):
         # the island's own orientation is that of most of its faces, at a tie that of the first
         uv, turned = uv * [-1.0, 1.0], ~turned
-    island = _island(piece, native, uv, faces, turned, np.arange(len(piece.points)))
+    island = island_of(piece, native, uv, faces, turned, np.arange(len(piece.points)))
     island.may_turn = True
     return island
+
+
+def _by_sphere(
+    piece: SurfacePatch, settings: UnwrapSettings, cutter: Cutter, result: Mapping, progress: Progress
+) -> list[Island]:
+    """The islands of a closed one: itself laid flat or, where no layout is good, cut open by seams."""
+    found = closed.laid_flat(piece, settings, share_of(progress, 0.0, _LAYOUTS))
+    step = share_of(progress, _LAYOUTS, 1.0 - _LAYOUTS)
+    if not found.is_good and settings.domain != "SPHERE":
+        with suppress(Unsuitable, authalic.MeshError, authalic.SolverError):
+            cut = _cut_open(piece, settings, cutter, result, step)
+            result.notes.append(Note(piece.name, piece.polygon, closed.CUT_OPEN))
+            return cut
+    closed.soften(found, settings, step)
+    return [found.island(result.notes)]
+
+
+def _cut_open(
+    piece: SurfacePatch, settings: UnwrapSettings, cutter: Cutter, result: Mapping, progress: Progress
+) -> list[Island]:
+    """The islands of a closed one along seams that are found for it."""
+    found = cutter.disks(piece, share_of(progress, 0.0, _SEAMS))
+    unmapped = [disk.piece for disk in found if disk.uv is None]
+    maps = disk_maps(unmapped, settings, result, share_of(to_the_end(progress), _SEAMS, 1.0 - _SEAMS))
+    mapped = [_mapped_by_search(disk.piece, disk.uv) for disk in found if disk.uv is not None]
+    pairs = zip(unmapped, maps, strict=True)
+    return mapped + [_of_disk_map(part, each, settings) for part, each in pairs if each is not None]
 
 
 def _of_disk_map(piece: SurfacePatch, disk_map: authalic.DiskMap, settings: UnwrapSettings) -> Island:
@@ -139,98 +159,9 @@ def _of_disk_map(piece: SurfacePatch, disk_map: authalic.DiskMap, settings: Unwr
     native = checked(piece.patch, piece.points)
     faces = np.asarray(piece.patch.faces)
     turned = spherical.turned(faces, np.asarray(disk_map.faces))
-    island = _island(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
-    figures = _figures(disk_map.distortion, piece)
+    island = island_of(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
+    figures = figures_of(disk_map.distortion, piece)
     remedy = _CUT if settings.solver.is_free else _NOT_FREE
     island.shortfall = shortfall(disk_map.status, figures, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
-
-
-def _by_sphere(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> Island:
-    """Lays the sphere map flat; if its faces are too thin for that, one with better shapes."""
-    solver = settings.solver
-    try:
-        return _laid_flat(piece, settings, solver, progress)
-    except authalic.SolverError as problem:
-        if problem.kind != "layout_fold":
-            raise
-        if solver.method == "GAUSS_NEWTON" and solver.angle_weight < _FIT_TO_LAY_FLAT:
-            solver = replace(solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
-            with suppress(authalic.SolverError):
-                return _laid_flat(piece, settings, solver, progress)
-        raise
-
-
-def _laid_flat(piece: SurfacePatch, settings: UnwrapSettings, solver: Solver, progress: Progress) -> Island:
-    faces = np.asarray(piece.patch.faces)
-    native = checked(piece.patch, piece.points)
-    sphere, over, turned = sphere_map(native, solver, share_of(progress, 0.0, _SPHERE))
-    layout = _layout(sphere, over, piece, settings, share_of(progress, _SPHERE, 1.0 - _SPHERE))
-    # the map has turned some faces over: back to the order of the mesh
-    order = (np.asarray(sphere.faces)[:, None, :] == faces[:, :, None]).argmax(axis=2)
-    corner_point = np.take_along_axis(np.asarray(layout.faces), order, axis=1)
-    points, uv = np.asarray(layout.vertex_of), np.asarray(layout.points, float)
-    native = authalic.Surface(piece.points[points], corner_point)
-    island = _island(piece, native, uv, corner_point, turned, points)
-    figures = _figures(authalic.distortion(native, island.uv), piece)
-    island.shortfall = shortfall(sphere.status, figures, solver, UNEVEN_SPHERE, _OF_A_SPHERE)
-    return island
-
-
-def _layout(
-    sphere: authalic.SphereMap,
-    over: Floats,
-    piece: SurfacePatch,
-    settings: UnwrapSettings,
-    progress: Progress,
-) -> authalic.Layout:
-    """The layout of a sphere map by the settings; `over` lays the map over the surface, whose axes count."""
-    pole, start = np.array(_AXES[settings.pole_axis], float)
-    angle = settings.seam_direction
-    seam = np.cos(angle) * start + np.sin(angle) * np.cross(pole, start)
-    real = piece.vertices >= 0
-    return sphere.layout(
-        "lambert" if settings.layout == "LAMBERT" else "octahedral",
-        pole=over @ pole,
-        seam=over @ seam,
-        polygons=piece.polygons,
-        candidates=real if np.count_nonzero(real) >= _POLES else None,
-        precision="float32",
-        # a map that ended early has to be laid flat, too
-        progress=to_the_end(progress),
-    )
-
-
-def _figures(distortion: authalic.Distortion, piece: SurfacePatch) -> tuple[float, float]:
-    """The standard deviation of area ratios, and the mean angle distortion, of faces that have an area."""
-    if not piece.slivers.any():
-        return float(distortion.area_ratio_std), float(distortion.angle_distortion_mean)
-    counted = ~piece.slivers
-    ratios = np.exp2(np.asarray(distortion.log2_area_ratio)[counted])
-    return float(ratios.std()), float(np.asarray(distortion.angle_distortion)[counted].mean())
-
-
-def _island(
-    piece: SurfacePatch,
-    native: authalic.Surface,
-    uv: Floats,
-    faces: Integers,
-    turned: Booleans,
-    points: Integers,
-) -> Island:
-    """An `Island` of the patch's points (n,) with UVs (n, 2) and triangles `faces`."""
-    real, corner_point = piece.corners >= 0, faces.ravel()
-    return Island(
-        name=piece.name,
-        surface=piece.index,
-        polygon=piece.polygon,
-        points=piece.points[points],
-        faces=faces,
-        corners=np.concatenate([piece.corners[real], piece.carried]),
-        corner_point=np.concatenate([corner_point[real], corner_point[piece.hosts]]),
-        uv=uv,
-        turned=np.unique(piece.polygons[turned]),
-        native=native,
-        has_divided_polygons=bool(piece.slivers.any()) or not real.all(),
-    )

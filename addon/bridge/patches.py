@@ -24,7 +24,7 @@ from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.carried import Carried
 from ..surfaces.carried import carried as carried_corners
 from ..surfaces.surface import Surface
-from .results import Refusal
+from .results import Note, Refusal
 
 _NO_AREA = "no face has an area; scale it up, or dissolve its faces"
 
@@ -133,12 +133,12 @@ class SurfacePatch(_Numbers):
         return [self.restricted(part) for part in cut(self.points, np.asarray(self.patch.faces), seams)]
 
 
-def opened(piece: SurfacePatch, notes: list[str]) -> tuple[list[SurfacePatch], Integers]:
+def opened(piece: SurfacePatch, notes: list[Note]) -> tuple[list[SurfacePatch], Integers]:
     """A patch, or its parts if it is one-sided: it is cut across then, at edges of the mesh (k, 2)."""
     if piece.patch.genus is not None:
         return [piece], np.empty((0, 2), int)
     across = one_sided.edges_across(np.asarray(piece.patch.faces), piece.polygons)
-    notes.append(f"{piece.name} at face {piece.polygon}: one-sided, like a Moebius strip; cut across")
+    notes.append(Note(piece.name, piece.polygon, "one-sided, like a Moebius strip; cut across"))
     return piece.parts(across), piece.mesh_edges(across)
 
 
@@ -146,7 +146,7 @@ class Noting(Protocol):
     """A result that names what was left as it was, and what is remarkable."""
 
     refusals: list[Refusal]
-    notes: list[str]
+    notes: list[Note]
     at_a_point: list[tuple[int, Integers]]
     left_out: dict[int, Integers]
 
@@ -167,7 +167,7 @@ def surface_patches(
 def _patches(surface: Surface, index: int, result: Noting, with_seams: bool) -> list[SurfacePatch]:
     collapsed = degenerate.collapsed(surface, surface.seams if with_seams else np.empty((0, 2), int))
     mesh = collapsed.mesh
-    if len(collapsed.flat) == len(np.unique(surface.polygons)):
+    if not len(collapsed.mesh.triangles) or collapsed.slivers.all():
         result.refusals.append(Refusal(surface.name, None, _NO_AREA))
         return []
     used, faces = np.unique(mesh.triangles, return_inverse=True)
@@ -245,7 +245,7 @@ def _numbers(
     )
 
 
-def _notes(surface: Surface, collapsed: degenerate.Collapsed, lost: Integers, branches: int) -> list[str]:
+def _notes(surface: Surface, collapsed: degenerate.Collapsed, lost: Integers, branches: int) -> list[Note]:
     """What is remarkable about a surface: faces without area, duplicate faces, edges of more than two faces.
 
     `lost` are mesh corners of faces without area that no other face touches.
@@ -263,4 +263,4 @@ def _notes(surface: Surface, collapsed: degenerate.Collapsed, lost: Integers, br
         notes.append(f"{messages.count(doubled, 'duplicate face')}, put over the first ones")
     if branches:
         notes.append(f"cut along {messages.count(branches, 'edge')} of more than two faces")
-    return [f"{surface.name}: {note}" for note in notes]
+    return [Note(surface.name, None, note) for note in notes]

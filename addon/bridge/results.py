@@ -54,6 +54,19 @@ class Refusal:
         return f"{self.name}{where}: {self.reason}"
 
 
+@dataclass(frozen=True)
+class Note:
+    """What is remarkable about an island, or with `polygon` None about a whole object."""
+
+    name: str
+    polygon: int | None
+    text: str
+
+    def __str__(self) -> str:
+        where = "" if self.polygon is None else f" at face {self.polygon}"
+        return f"{self.name}{where}: {self.text}"
+
+
 @dataclass
 class FoundSeams:
     """The result of `find_seams`: `edges` (k, 2) are the vertices of the new seams of each surface.
@@ -70,7 +83,7 @@ class FoundSeams:
     length: float = 0.0
     shear: float = 1.0
     presets: dict[str, float] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
     at_a_point: list[tuple[int, Integers]] = field(default_factory=list)
     left_out: dict[int, Integers] = field(default_factory=dict)
     refusals: list[Refusal] = field(default_factory=list)
@@ -90,7 +103,7 @@ class Mapping:
     islands: list[Island] = field(default_factory=list)
     at_a_point: list[tuple[int, Integers]] = field(default_factory=list)
     left_out: dict[int, Integers] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
     ended_early: bool = False
     seams: FoundSeams | None = None

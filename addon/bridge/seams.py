@@ -16,7 +16,7 @@ from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
 from .patches import SurfacePatch, checked, opened, surface_patches
 from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
-from .results import FoundSeams
+from .results import FoundSeams, Note
 from .settings import FEW_SEAMS, LOW_SHEAR, SeamSettings
 
 _NO_CUT = "has no seams along its edges that cut it open; triangulate or remesh it"
@@ -74,6 +74,23 @@ def disks(
     return found, search.disks
 
 
+class Cutter:
+    """Cuts patches of some surfaces into disks, one by one; what they share is computed at the first one."""
+
+    def __init__(self, surfaces: Sequence[Surface], settings: SeamSettings, with_maps: bool) -> None:
+        self._surfaces, self._settings, self._with_maps = surfaces, settings, with_maps
+        self._search: _Search | None = None
+
+    def disks(self, piece: SurfacePatch, progress: Progress) -> list[Disk]:
+        """The disks that a patch becomes, if wanted with maps; a search that ends early has none."""
+        if self._search is None:
+            found = FoundSeams([np.empty((0, 2), int) for _ in self._surfaces])
+            self._search = _Search(self._surfaces, self._settings, self._with_maps, found)
+        before = len(self._search.disks)
+        self._search.cut(piece, progress)
+        return self._search.disks[before:]
+
+
 class _Search:
     """A search on the patches of some surfaces, and what has been found so far."""
 
@@ -128,7 +145,7 @@ class _Search:
             self._note(piece, missed)
 
     def _note(self, piece: SurfacePatch, remark: str) -> None:
-        note = f"{piece.name} at face {piece.polygon}: {remark}"
+        note = Note(piece.name, piece.polygon, remark)
         if note not in self._found.notes:
             self._found.notes.append(note)
 

@@ -31,13 +31,17 @@ class Shortfall:
     is_sheared: bool
     remedy: str
 
-    def __str__(self) -> str:
+    @property
+    def faults(self) -> str:
+        """What is bad, in words; empty if the map has just not converged."""
         faults = {"uneven": self.is_uneven, "sheared": self.is_sheared}
-        named = [fault for fault, applies in faults.items() if applies]
-        ended = [_ENDS[self.status]] if self.status in _ENDS else []
+        return ", ".join(fault for fault, applies in faults.items() if applies)
+
+    def __str__(self) -> str:
+        said = ", ".join(filter(None, [self.faults, _ENDS.get(self.status)]))
         figures = f"area ratio SD {self.deviation:.3g}, angle distortion {self.angle:.2f}"
-        remedy = self.remedy if named else _GOES_ON if self.status == "max_iterations" else ""
-        return "; ".join([f"{', '.join(named + ended)} ({figures})", *filter(None, [remedy])])
+        remedy = self.remedy if self.faults else _GOES_ON if self.status == "max_iterations" else ""
+        return "; ".join([f"{said} ({figures})", *filter(None, [remedy])])
 
 
 def shortfall(

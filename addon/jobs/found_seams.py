@@ -36,7 +36,7 @@ def shear(value: float, found: bridge.FoundSeams) -> str:
 def notes(found: bridge.FoundSeams) -> list[str]:
     """Remarks on seams that may not be as wanted."""
     early = [messages.ENDED_EARLY_SEEKING] if found.ended_early else []
-    return early + ([messages.listed(found.notes)] if found.notes else [])
+    return early + ([messages.listed(messages.grouped(found.notes))] if found.notes else [])
 
 
 def _preset(found: bridge.FoundSeams) -> str:

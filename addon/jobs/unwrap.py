@@ -111,7 +111,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[bridge.Mapping, R
         unmapped = [obj.name for obj, _, _ in chosen if not uv_maps.names(obj)]
         figures = _write(chosen, mapping, settings)
         seconds = time.perf_counter() - started
-        notes = mapping.notes + _notes(chosen, mapping.islands, figures)
+        notes = messages.grouped(mapping.notes) + _notes(chosen, mapping.islands, figures)
         if {refusal.name for refusal in mapping.refusals} & set(unmapped):
             notes.append("on a mesh without a UV map, these lie in the lower left corner")
         if mapping.ended_early:

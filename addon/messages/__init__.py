@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Counts and lists in words. No bpy."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,13 @@ ENDED_EARLY_SEEKING = "stopped early; a longer run finds shorter seams"
 ENDED_EARLY_FIXING = "stopped early; a longer run may fix more"
 _NAMED = 3
 _PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
+
+
+class Note(Protocol):
+    """What is remarkable about something: as a string, its name and the text."""
+
+    @property
+    def text(self) -> str: ...
 
 
 def count(number: int, noun: str) -> str:
@@ -38,3 +45,11 @@ def listed(items: Sequence[object]) -> str:
     named = "; ".join(str(item) for item in items[:_NAMED])
     more = len(items) - _NAMED
     return f"{named}; and {more} more" if more > 0 else named
+
+
+def grouped(notes: Iterable[Note]) -> list[str]:
+    """Notes in words, those with the same text as one."""
+    groups: dict[str, list[Note]] = {}
+    for note in notes:
+        groups.setdefault(note.text, []).append(note)
+    return [f"{same[0]}{f' (and {len(same) - 1} more)' if len(same) > 1 else ''}" for same in groups.values()]

@@ -39,7 +39,7 @@ def carried(surface: Surface, collapsed: Collapsed, patch_of: Integers) -> Carri
 
     `patch_of` (m,) numbers the patches of the triangles; -1 for those that are left out, too.
     """
-    polygons = np.unique(surface.polygons)
+    polygons = surface.chosen
     is_there = np.zeros(len(surface.corner_vertex) + 1, bool)  # the last is for the number -1
     is_there[collapsed.mesh.corners[patch_of >= 0]] = True
     owner = np.repeat(polygons, surface.polygon_size[polygons])

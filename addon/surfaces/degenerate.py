@@ -53,6 +53,7 @@ def collapsed(surface: Surface, seams: Integers) -> Collapsed:
     """
     count = len(surface.positions)
     flat = triangulation.flat(surface.positions, surface.triangles)
+    no_area = _missing(surface, surface.polygons[~flat])
     stands_for = _joined(surface.positions, surface.triangles, flat)
     torn = np.empty(0, int)
     for _ in range(_ROUNDS):
@@ -61,7 +62,7 @@ def collapsed(surface: Surface, seams: Integers) -> Collapsed:
         welded = replace(
             surface, triangles=lowest[surface.triangles], corner_vertex=lowest[surface.corner_vertex]
         )
-        duplicates = np.intersect1d(_duplicates(welded), surface.polygons[~flat])
+        duplicates = np.setdiff1d(_duplicates(welded), no_area)
         # 2. Polygons whose triangles would seem to branch, or have no area beside others, divided.
         mesh = triangulation.sound(welded.without(duplicates), torn)
         stands_for = np.concatenate([lowest, np.arange(count, len(mesh.positions))])
@@ -76,11 +77,19 @@ def collapsed(surface: Surface, seams: Integers) -> Collapsed:
         mesh=mesh,
         stands_for=stands_for,
         seams=_edges_among(stands_for[seams], mesh),
-        flat=np.setdiff1d(surface.polygons, surface.polygons[~flat]),
-        left_out=np.setdiff1d(surface.polygons, mesh.polygons),
+        flat=no_area,
+        left_out=_missing(surface, mesh.polygons),
         duplicates=duplicates,
         slivers=triangulation.flat(positions, mesh.triangles),
     )
+
+
+def _missing(surface: Surface, polygons: Integers) -> Integers:
+    """The polygons of a surface, ascending, that are not among others (k,)."""
+    chosen, there = surface.chosen, np.zeros(surface.polygon_count, bool)
+    there[polygons] = True
+    missing: Integers = chosen[~there[chosen]]
+    return missing
 
 
 def _torn(mesh: Triangles) -> Integers:
@@ -121,7 +130,7 @@ def _edges_among(pairs: Integers, mesh: Triangles) -> Integers:
 
 def _duplicates(surface: Surface) -> Integers:
     """The polygons of a surface on the vertices of one before, ascending."""
-    polygons = np.unique(surface.polygons)
+    polygons = surface.chosen
     # Sums of random numbers are the same for the same vertices, whatever their order, and for no others.
     numbers = np.random.default_rng(0).integers(2**63, size=len(surface.positions), dtype=np.uint64)
     sums = np.add.reduceat(numbers[surface.corner_vertex], surface.polygon_start)[polygons]

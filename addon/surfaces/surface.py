@@ -49,6 +49,13 @@ class Surface:
         """The density (t,) of each triangle, 1 where none is given."""
         return np.ones(len(self.triangles)) if self.density is None else self.density[self.polygons]
 
+    @property
+    def chosen(self) -> Integers:
+        """The polygons that have triangles here, ascending."""
+        has_triangle = np.zeros(self.polygon_count, bool)
+        has_triangle[self.polygons] = True
+        return np.flatnonzero(has_triangle)
+
     def corners_of(self, polygons: Integers) -> Integers:
         """All mesh corners of some polygons (k,), one polygon after the other."""
         start, size = self.polygon_start[polygons], self.polygon_size[polygons]
@@ -58,6 +65,8 @@ class Surface:
 
     def without(self, polygons: Integers) -> "Surface":
         """The surface without some of its polygons (k,)."""
+        if not len(polygons):
+            return self
         kept = np.ones(self.polygon_count, bool)
         kept[polygons] = False
         chosen = kept[self.polygons]

@@ -53,9 +53,19 @@ def welded(vertices: Integers, uv: Reals) -> tuple[Integers, Integers]:
 
 def has_area(triangles: Floats) -> Booleans:
     """Which triangles (t, 3, 3) are no lines that have an area by the rounding of their coordinates, (t,)."""
-    sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0)
-    has_height: Booleans = 2 * areas(triangles) > sides * rounding(triangles)
-    return has_height
+    first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    sides = np.stack([_squares(first), _squares(second), _squares(second - first)]).max(axis=0)
+    good: Booleans = _squares(np.cross(first, second)) > (_FLAT * sides) ** 2
+    # few are left to be looked at closely
+    rest = np.flatnonzero(~good)
+    good[rest] = 2 * areas(triangles[rest]) > np.sqrt(sides[rest]) * rounding(triangles[rest])
+    return good
+
+
+def _squares(vectors: Floats) -> Floats:
+    """The squared lengths (k,) of vectors (k, 3)."""
+    squares: Floats = np.einsum("ij,ij->i", vectors, vectors)
+    return squares
 
 
 def rounding(triangles: Floats) -> Floats:
@@ -95,13 +105,17 @@ def sound(surface: Surface, also: Integers | None = None) -> Triangles:
     surface would seem to branch, or if one of its triangles has no area, as corners in a line give. Polygons
     that have no area at all stay as they are.
     """
-    bad = _branching(surface) | _with_flat_triangle(surface)
+    is_flat = flat(surface.positions, surface.triangles)
+    bad = _branching(surface)
+    bad[surface.polygons[is_flat]] = True
     bad &= surface.polygon_size > 3
     if also is not None:
         bad[also] = True
     if not bad.any():
         return Triangles(surface.positions, surface.triangles, surface.corners, surface.polygons)
-    bad &= _have_area(surface)
+    has_any = np.zeros(surface.polygon_count, bool)
+    has_any[surface.polygons[~is_flat]] = True
+    bad &= has_any
     keep = ~bad[surface.polygons]
     kept = Triangles(
         surface.positions, surface.triangles[keep], surface.corners[keep], surface.polygons[keep]
@@ -130,20 +144,6 @@ def _branching(surface: Surface) -> Booleans:
     shared[index[polygons != lowest[index]]] = True
     bad[polygons[shared[index] | np.isin(diagonals, key[~is_diagonal])[index]]] = True
     return bad
-
-
-def _with_flat_triangle(surface: Surface) -> Booleans:
-    """Which polygons (p,) have a triangle without area."""
-    bad = np.zeros(surface.polygon_count, bool)
-    bad[surface.polygons[flat(surface.positions, surface.triangles)]] = True
-    return bad
-
-
-def _have_area(surface: Surface) -> Booleans:
-    """Which polygons (p,) have a triangle with an area, or with coordinates that are not finite."""
-    have = np.zeros(surface.polygon_count, bool)
-    have[surface.polygons[~flat(surface.positions, surface.triangles)]] = True
-    return have
 
 
 def _divided(surface: Surface, polygons: Integers, kept: Triangles) -> Triangles:

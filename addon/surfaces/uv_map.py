@@ -84,7 +84,7 @@ def _pinned(surface: Surface, mesh: triangulation.Triangles, faces: Integers, co
 def _shared(surface: Surface, vertices: Integers, uv: Singles) -> Booleans:
     """Which UV vertices (n,) are also those of faces that are left out."""
     left_out = np.ones(len(surface.corner_vertex), bool)
-    left_out[surface.corners_of(np.unique(surface.polygons))] = False
+    left_out[surface.corners_of(surface.chosen)] = False
     if not left_out.any():
         return np.zeros(len(vertices), bool)
     left_out_keys = _keys(surface.corner_vertex[left_out], surface.uvs[left_out])

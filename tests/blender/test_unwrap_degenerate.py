@@ -298,7 +298,7 @@ def _spoil(points: list[list[float]], faces: list[list[int]], chance: random.Ran
         faces += [[a, b, d, c] for a, b, c, d in sides]
 
 
-@pytest.mark.parametrize("seed", range(11))
+@pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("seams", ["GIVEN", "AUTOMATIC"])
 def test_no_mesh_is_refused_for_its_bad_faces(
     seed: int, seams: Any, capfd: pytest.CaptureFixture[str]

@@ -253,7 +253,7 @@ def test_mesh_too_coarse_is_refused_and_left_alone(layout: str) -> None:
     with pytest.raises(
         RuntimeError, match=r"Mesh at face 0: \d triangles? would fold.*another Layout, Pole Axis"
     ):
-        unwrap(uv_layer="New", sphere_layout=layout)
+        unwrap(uv_layer="New", sphere_layout=layout, domain="SPHERE")
     assert len(obj.data.uv_layers) == 0
 
 
@@ -314,10 +314,10 @@ def real_meshes() -> list[Any]:
 def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with np.load(path) as file:
         vertices, faces = file["V"], file["F"]
-    names = "bridge", "bridge.islands", "blender.meshes"
-    bridge, islands, mesh_io = (part(name) for name in names)
+    names = "bridge", "bridge.closed", "blender.meshes"
+    bridge, closed, mesh_io = (part(name) for name in names)
     surface = mesh_io.read(meshes.add(vertices - vertices.mean(axis=0), faces))
-    bridge_map = islands.sphere_map
+    bridge_map = closed.sphere_map
     cache: dict[float, Any] = {}
     last: list[Any] = []
 
@@ -326,9 +326,9 @@ def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         cache[solver.angle_weight] = last[0]
         return last[0]
 
-    monkeypatch.setattr(islands, "sphere_map", remembered)
+    monkeypatch.setattr(closed, "sphere_map", remembered)
     for layout in LAYOUTS:
-        found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout))
+        found = bridge.unwrap([surface], bridge.UnwrapSettings(layout=layout, domain="SPHERE"))
         if path.stem == "bull_6200" and found.refusals:
             pytest.xfail(f"limbs one face wide: {found.refusals[0]}")
         assert not found.refusals

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed islands: mapped onto the sphere, which is laid flat in the layout that suits them."""
+
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+import authalic
+
+from ..surfaces.arrays import Booleans, Floats
+from .island import figures_of, island_of
+from .patches import SurfacePatch, checked
+from .progress import Progress, share_of, to_the_end
+from .results import Island, Note
+from .settings import UnwrapSettings
+from .shortfall import UNEVEN_SPHERE, shortfall
+from .solver import Solver
+from .spheres import sphere_map
+
+CUT_OPEN = (
+    "cut open by seams, which are not marked, because its sphere cannot be laid flat well; set Seams to "
+    "Automatic to mark them"
+)
+_OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
+# A slider position whose shapes a layout of the sphere does not fold.
+_FIT_TO_LAY_FLAT = 0.9
+# The directions of the pole, and of the seam at the angle 0.
+_AXES = {
+    "X": ((1, 0, 0), (0, 1, 0)),
+    "Y": ((0, 1, 0), (0, 0, -1)),
+    "Z": ((0, 0, 1), (0, 1, 0)),
+}
+_NAMES = {"LAMBERT": "Lambert Cylindrical", "OCTAHEDRAL": "Octahedral"}
+# The part of the time that the sphere map takes; the layouts take the rest.
+_SPHERE = 0.9
+# The most vertices that a layout needs for its poles.
+_POLES = 4
+# Islands of more triangles are cut open only if no layout of theirs is without folds: seams take their time.
+_SMALL = 5000
+
+
+@dataclass
+class LaidFlat:
+    """The islands that a closed one becomes in the layouts that were tried, in this order.
+
+    A layout with folds has none; `problem` is the error of the first one.
+    """
+
+    piece: SurfacePatch
+    islands: dict[str, Island] = field(default_factory=dict)
+    problem: authalic.SolverError | None = None
+    tried: list[str] = field(default_factory=list)
+
+    @property
+    def is_good(self) -> bool:
+        """Whether one of the islands is good enough, or can be no better in reasonable time."""
+        is_large = len(self.piece.polygons) > _SMALL
+        return any(is_large or _is_good(island) for island in self.islands.values())
+
+    def island(self, notes: list[Note]) -> Island:
+        """The best island, with a note if its layout is not the wanted one; without any, raises the error."""
+        if not self.islands:
+            assert self.problem is not None
+            raise self.problem
+        layout = min(self.islands, key=self._badness)
+        if layout != self.tried[0]:
+            first = self.islands.get(self.tried[0])
+            fault = "fold" if first is None or first.shortfall is None else f"be {first.shortfall.faults}"
+            said = f"laid out as {_NAMES[layout]}, because it would {fault} as {_NAMES[self.tried[0]]}"
+            notes.append(Note(self.piece.name, self.piece.polygon, said))
+        return self.islands[layout]
+
+    def _badness(self, layout: str) -> tuple[bool, float]:
+        short = self.islands[layout].shortfall
+        return not _is_good(self.islands[layout]), short.deviation if short else 0.0
+
+
+def laid_flat(piece: SurfacePatch, settings: UnwrapSettings, progress: Progress) -> LaidFlat:
+    """The wanted layout of a closed island and, if that is bad or has folds, the other one."""
+    result = LaidFlat(piece)
+    try:
+        _lay_flat(result, settings, settings.solver, progress)
+    except authalic.SolverError as problem:
+        if problem.kind == "cancelled":
+            raise
+        result.problem = problem
+    return result
+
+
+def soften(result: LaidFlat, settings: UnwrapSettings, progress: Progress) -> None:
+    """Adds a layout of a map with better shapes where faces are too thin to be laid flat."""
+    solver = settings.solver
+    if not result.islands and solver.method == "GAUSS_NEWTON" and solver.angle_weight < _FIT_TO_LAY_FLAT:
+        with suppress(authalic.SolverError):
+            solver = replace(solver, angle_weight=_FIT_TO_LAY_FLAT, area_tolerance=0.0)
+            _lay_flat(result, settings, solver, progress)
+
+
+def _lay_flat(result: LaidFlat, settings: UnwrapSettings, solver: Solver, progress: Progress) -> None:
+    """Adds layouts of the map onto the sphere to the result, until one is good."""
+    sphere = _Sphere.of(result.piece, solver, share_of(progress, 0.0, _SPHERE))
+    for number, layout in enumerate(sorted(_NAMES, key=lambda name: name != settings.layout)):
+        share = (1.0 - _SPHERE) / len(_NAMES)
+        if layout not in result.tried:
+            result.tried.append(layout)
+        try:
+            island = sphere.island(layout, settings, share_of(progress, _SPHERE + number * share, share))
+        except authalic.SolverError as problem:
+            if problem.kind != "layout_fold":
+                raise
+            result.problem = result.problem or problem
+            continue
+        result.islands[layout] = island
+        if _is_good(island):
+            return
+
+
+def _is_good(island: Island) -> bool:
+    short = island.shortfall
+    return short is None or not (short.is_uneven or short.is_sheared)
+
+
+@dataclass
+class _Sphere:
+    """The sphere map of a closed island; `over` (3, 3) lays it over the island, `turned` as for spheres."""
+
+    piece: SurfacePatch
+    solver: Solver
+    map: authalic.SphereMap
+    over: Floats
+    turned: Booleans
+
+    @classmethod
+    def of(cls, piece: SurfacePatch, solver: Solver, progress: Progress) -> "_Sphere":
+        return cls(piece, solver, *sphere_map(checked(piece.patch, piece.points), solver, progress))
+
+    def island(self, layout: str, settings: UnwrapSettings, progress: Progress) -> Island:
+        """The island in one layout."""
+        piece, faces = self.piece, np.asarray(self.piece.patch.faces)
+        laid = self._layout(layout, settings, progress)
+        # the map has turned some faces over: back to the order of the mesh
+        order = (np.asarray(self.map.faces)[:, None, :] == faces[:, :, None]).argmax(axis=2)
+        corner_point = np.take_along_axis(np.asarray(laid.faces), order, axis=1)
+        points, uv = np.asarray(laid.vertex_of), np.asarray(laid.points, float)
+        native = authalic.Surface(piece.points[points], corner_point)
+        island = island_of(piece, native, uv, corner_point, self.turned, points)
+        figures = figures_of(authalic.distortion(native, island.uv), piece)
+        island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, _OF_A_SPHERE)
+        return island
+
+    def _layout(self, layout: str, settings: UnwrapSettings, progress: Progress) -> authalic.Layout:
+        """A layout by the settings; the pole and the seam lie on the island's own axes."""
+        pole, start = np.array(_AXES[settings.pole_axis], float)
+        angle = settings.seam_direction
+        seam = np.cos(angle) * start + np.sin(angle) * np.cross(pole, start)
+        real = self.piece.vertices >= 0
+        return self.map.layout(
+            "lambert" if layout == "LAMBERT" else "octahedral",
+            pole=self.over @ pole,
+            seam=self.over @ seam,
+            polygons=self.piece.polygons,
+            candidates=real if np.count_nonzero(real) >= _POLES else None,
+            precision="float32",
+            # a map that ended early has to be laid flat, too
+            progress=to_the_end(progress),
+        )

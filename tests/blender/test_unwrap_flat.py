@@ -15,9 +15,8 @@ from meshes import MeshObject
 PRESETS = ("EVEN", "BALANCED", "SOFT")
 SEVEN = [(0, 0), (1, 0), (0.5, 0.9), (0.5, -0.5), (1.4, -0.9), (-0.4, -0.9), (-0.65, -0.25)]
 """An outline in which some triangles have all corners on the boundary."""
-ARMS = [[(1, -1), (1, -3), (-1, -3)], [(-1, -1), (-3, -1), (-3, 1)], [(-1, 1), (-1, 3), (1, 3)]]
-CROSS = [*sum(ARMS, []), (1, 1), (3, 1), (3, -1)]
-"""The twelve corners of a cross."""
+CROSS = [(-1, -3), (1, -3), (1, -1), (3, -1), (3, 1), (1, 1), (1, 3), (-1, 3), (-1, 1), (-3, 1), (-3, -1)]
+CROSS.append((-1, -1))
 
 
 def flat(points: Any, faces: Any) -> MeshObject:

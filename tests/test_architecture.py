@@ -333,3 +333,26 @@ def test_upward_rust_arrows_are_seen(made_up_crate: Path) -> None:
     assert upward_arrows(arrows, ({"square"}, {"circle"}), ("shapes",)) == [
         "shapes::square -> shapes::circle"
     ]
+
+
+def class_names(node: ast.ClassDef) -> set[str]:
+    """The names that the body of a class binds."""
+    names = {part.name for part in node.body if isinstance(part, ast.FunctionDef | ast.ClassDef)}
+    for part in node.body:
+        if isinstance(part, ast.Assign):
+            names |= {target.id for target in part.targets if isinstance(target, ast.Name)}
+        if isinstance(part, ast.AnnAssign) and part.value is not None and isinstance(part.target, ast.Name):
+            names.add(part.target.id)
+    return names
+
+
+@pytest.mark.parametrize("file", python_files(ADDON), ids=lambda file: str(file.relative_to(ADDON)))
+def test_properties_use_no_name_of_their_class(file: Path) -> None:
+    """Python 3.14 evaluates annotations late, and finds methods before what the file imports."""
+    classes = [
+        node for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.ClassDef)
+    ]
+    for node in classes:
+        annotations = [part.annotation for part in node.body if isinstance(part, ast.AnnAssign)]
+        names = {name.id for part in annotations for name in ast.walk(part) if isinstance(name, ast.Name)}
+        assert not names & class_names(node), f"{node.name}: {names & class_names(node)}"

@@ -26,6 +26,8 @@ _PRESETS = (
     ("AUTHALIC", "Authalic", "The former name of Circle", "NONE", 0),
 )
 _SHOWN = _PRESETS[:4]
+# A name of its own: within a class that has a method `solver`, Python 3.14 takes `solver` for that.
+_DEFAULT_WEIGHT = solver.PRESETS["EVEN"]
 
 
 def _values(properties: Any) -> tuple[float, str | None, float]:
@@ -87,7 +89,7 @@ class Solving(OperatorMixin):
         max=1.0,
         precision=3,
         update=_set_preset,
-        default=solver.PRESETS["EVEN"],
+        default=_DEFAULT_WEIGHT,
     )
     area_tolerance: FloatProperty(
         name="Area Tolerance",

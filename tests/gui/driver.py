@@ -215,13 +215,14 @@ def picture(name: str) -> Callable[[], None]:
     return take
 
 
-def colorful(editor: str = "VIEW_3D") -> float:
-    """The share of an editor's pixels that are colored strongly."""
+def blue(editor: str = "VIEW_3D") -> float:
+    """The share of an editor's pixels that are blue."""
     part = region("WINDOW", editor)
     crop = f"{part.width}x{part.height}+{part.x}+{window().height - part.y - part.height}"
     command = ["import", "-window", "root", "-crop", crop, "-depth", "8", "rgb:-"]
     pixels = np.frombuffer(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout, np.uint8)
-    return float(np.mean(np.ptp(pixels.reshape(-1, 3), axis=1) > 80))
+    colors = pixels.reshape(-1, 3).astype(int)
+    return float(np.mean(colors[:, 2] > colors[:, 0] + 80))
 
 
 def check(what: str, get: Callable[[], object], expected: object) -> Callable[[], None]:

@@ -11,9 +11,9 @@ from driver import (
     MODULE,
     Until,
     area,
+    blue,
     call,
     check,
-    colorful,
     only_panels,
     picture,
     settled,
@@ -25,7 +25,7 @@ NAME = "Camel"
 
 
 FEW, MANY = 0.04, 0.08
-"""Shares of strongly colored pixels, without and with a heat map."""
+"""Shares of blue pixels, without and with a heat map."""
 
 
 def scene() -> None:
@@ -98,11 +98,11 @@ STEPS = [
     measure,
     *[settled] * 3,
     check("figures stay while nothing changes", measured, True),
-    check("the window has few colors", lambda: colorful() < FEW, True),
+    check("hardly anything is blue", lambda: blue() < FEW, True),
     choose(show=True),
     up_to_date(),
     settled,
-    check("the heat map is seen", lambda: colorful() > MANY, True),
+    check("the heat map is seen", lambda: blue() > MANY, True),
     check("nothing is flipped", flipped, False),
     settled,
     picture("heat_map_of_areas"),
@@ -131,8 +131,8 @@ STEPS = [
     up_to_date(),
     settled,
     picture("heat_map_of_uvs"),
-    check("it is seen in the UV editor", lambda: colorful("UV") > MANY, True),
+    check("it is seen in the UV editor", lambda: blue("UV") > MANY, True),
     choose(show=False),
     settled,
-    check("and no longer when it is off", lambda: colorful("UV") < FEW, True),
+    check("and no longer when it is off", lambda: blue("UV") < FEW, True),
 ]

@@ -96,6 +96,7 @@ def _draw_lines() -> None:
         return
     drawn = _prepared(context)
     gpu.state.blend_set("ALPHA")
+    gpu.state.depth_mask_set(False)  # rims must not hide the lines that they are around
     passes: tuple[tuple[Any, float], ...] = (("NONE", BEHIND), ("LESS_EQUAL", 1.0))
     for depth_test, alpha in passes:
         gpu.state.depth_test_set(depth_test)

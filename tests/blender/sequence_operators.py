@@ -2,6 +2,7 @@
 """The extension's operators with random options, and what must hold after each of them."""
 
 import random
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -29,11 +30,35 @@ def mark_seams(sequence: Sequence) -> None:
 
 
 def fix_flips(sequence: Sequence) -> None:
-    _ours(sequence, "fix_flips", {}, lambda before, _: {f"uv {before.active_uv}"})
+    _ours(sequence, "fix_flips", {}, _active_uv)
 
 
 def measure(sequence: Sequence) -> None:
     _ours(sequence, "measure", {}, lambda *_: set())
+
+
+def set_texel_density(sequence: Sequence) -> None:
+    """Whole islands change, also where only some of their faces are selected."""
+    options = _options(sequence, "set_texel_density")
+    _ours(
+        sequence, "set_texel_density", options, lambda before, _: {f"uv {before.active_uv}"}, is_strict=False
+    )
+
+
+def heat_map(sequence: Sequence) -> None:
+    """Turns the heat map on or off, which changes no mesh, and lets it work."""
+    before, manager = states.read(), bpy.context.window_manager
+    manager.authalic_heat_map.show = not manager.authalic_heat_map.show
+    for _ in range(5):
+        part("operators.heat_map").tick(bpy.context)
+        time.sleep(0.002)
+    difference = states.difference(before, states.read())
+    assert not difference, f"the heat map changed {difference}"
+
+
+def landmark_curve(sequence: Sequence) -> None:
+    """Adds the edges that are selected as a landmark curve."""
+    _ours(sequence, "landmark_curve_add", {}, lambda *_: set())
 
 
 def sphere_shape_key(sequence: Sequence) -> None:
@@ -61,10 +86,13 @@ _SHAPE = {"vertices", "corners", "sizes", "seams"}
 _Allowed = Callable[[MeshState, MeshState], set[str]]
 
 
-def _ours(sequence: Sequence, name: str, options: dict[str, Any], allowed: _Allowed) -> None:
+def _ours(
+    sequence: Sequence, name: str, options: dict[str, Any], allowed: _Allowed, is_strict: bool = True
+) -> None:
     """Calls an operator of the extension and checks what it leaves behind.
 
-    `allowed(before, after)` are the data of a selected mesh that may differ.
+    `allowed(before, after)` are the data of a selected mesh that may differ. If `is_strict`, UVs may differ
+    in edit mode at selected faces only.
     """
     sequence.say(
         f"  bpy.ops.authalic.{name}({', '.join(f'{key}={value!r}' for key, value in options.items())})"
@@ -83,7 +111,7 @@ def _ours(sequence: Sequence, name: str, options: dict[str, Any], allowed: _Allo
         changes = {*states.changed(before[mesh], after[mesh])}
         permitted = allowed(before[mesh], after[mesh]) if mesh in writable else set()
         assert changes <= permitted, f"{mesh}: changed {sorted(changes - permitted)}"
-        _check_uv(before[mesh], after[mesh], in_edit_mode=around[0] == "EDIT_MESH")
+        _check_uv(before[mesh], after[mesh], in_edit_mode=is_strict and around[0] == "EDIT_MESH")
         assert all(np.isfinite(values).all() for values in after[mesh].keys.values()), "NaN in a shape key"
 
 
@@ -105,6 +133,10 @@ def _surroundings() -> tuple[Any, ...]:
     layer = bpy.context.view_layer
     modes = [(obj.name_full, obj.mode, obj.select_get()) for obj in layer.objects]
     return bpy.context.mode, layer.objects.active and layer.objects.active.name_full, modes
+
+
+def _active_uv(before: MeshState, _after: MeshState) -> set[str]:
+    return {f"uv {before.active_uv}"}
 
 
 def _changed_by_unwrap(before: MeshState, after: MeshState) -> set[str]:

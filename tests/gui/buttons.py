@@ -39,7 +39,7 @@ def scene() -> None:
     call(bpy.ops.uv.seams_from_islands)
     call(bpy.ops.object.mode_set, mode="OBJECT")
     modifier = obj.modifiers.new("Subdivision", "SUBSURF")
-    modifier.levels = 3
+    modifier.levels = 2
     call(bpy.ops.object.modifier_apply, modifier=modifier.name)
     call(bpy.ops.view3d.view_selected)
 

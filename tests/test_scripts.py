@@ -42,6 +42,7 @@ import demo.figures
 import demo.measure
 import pythons
 import steps
+import windows
 from shell import ROOT, CommandFailed, Unavailable, run, version
 
 
@@ -99,6 +100,25 @@ def test_rust_is_checked_with_the_features_of_the_wheel():
     maturin = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["maturin"]
     options = steps.CARGO_OPTIONS
     assert options[options.index("--features") + 1 :] == tuple(maturin["features"])
+
+
+def test_without_root_there_is_no_window(monkeypatch, tmp_path):
+    monkeypatch.setattr(windows.os, "geteuid", lambda: 1000)
+    with pytest.raises(Unavailable, match="needs root"):
+        windows.run_scripts(tmp_path / "authalic.zip", ["buttons"], tmp_path / "log")
+
+
+def test_a_debian_system_that_cannot_be_made_is_left_out(monkeypatch, tmp_path):
+    def fail(command, *_):
+        raise CommandFailed(command, 1, "cannot resolve deb.debian.org")
+
+    monkeypatch.setattr(windows.os, "geteuid", lambda: 0)
+    monkeypatch.setattr(windows.shutil, "which", lambda name: name)
+    monkeypatch.setattr(windows, "_CACHE", tmp_path)
+    monkeypatch.setattr(windows, "run", fail)
+    with pytest.raises(Unavailable, match=r"cannot resolve deb\.debian\.org"):
+        windows.run_scripts(tmp_path / "authalic.zip", ["buttons"], tmp_path / "log")
+    assert not [path for path in tmp_path.iterdir() if path.is_dir()]
 
 
 ALL = {step.name for step in steps.STEPS}

@@ -120,6 +120,7 @@ def _make_system(folder: Path, log: Path) -> None:
     try:
         if not shutil.which("mmdebstrap"):
             env = {"DEBIAN_FRONTEND": "noninteractive"}
+            run(["apt-get", "update"], env, log)
             run(["apt-get", "-o", "DPkg::Lock::Timeout=300", "install", "-y", "-qq", "mmdebstrap"], env, log)
         options = [f"--aptopt={option}" for option in _APT_OPTIONS]
         command = ["mmdebstrap", "--variant=minbase", "--skip=check/empty", *options]

@@ -8,6 +8,7 @@ import numpy as np
 
 import authalic
 
+from ..surfaces import triangulation
 from ..surfaces.arrays import Booleans, Floats
 from .island import figures_of, island_of
 from .patches import SurfacePatch, checked
@@ -22,7 +23,6 @@ CUT_OPEN = (
     "cut open by seams, which are not marked, because its sphere cannot be laid flat well; set Seams to "
     "Automatic to mark them"
 )
-_OF_A_SPHERE = "try another Layout, mark seams that cut its long parts open, or poke large n-gons"
 # A slider position whose shapes a layout of the sphere does not fold.
 _FIT_TO_LAY_FLAT = 0.9
 # The directions of the pole, and of the seam at the angle 0.
@@ -116,6 +116,12 @@ def _lay_flat(result: LaidFlat, settings: UnwrapSettings, solver: Solver, progre
             return
 
 
+def _remedy(piece: SurfacePatch) -> str:
+    """What improves the layout of a closed island."""
+    seams = "set Seams to Automatic, or mark seams in it"
+    return f"poke its large n-gons, {seams}" if triangulation.has_large_polygon(piece.polygons) else seams
+
+
 def _is_good(island: Island) -> bool:
     short = island.shortfall
     return short is None or not (short.is_uneven or short.is_sheared)
@@ -146,7 +152,7 @@ class _Sphere:
         native = authalic.Surface(piece.points[points], corner_point)
         island = island_of(piece, native, uv, corner_point, self.turned, points)
         figures = figures_of(authalic.distortion(native, island.uv), piece)
-        island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, _OF_A_SPHERE)
+        island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, _remedy(piece))
         return island
 
     def _layout(self, layout: str, settings: UnwrapSettings, progress: Progress) -> authalic.Layout:

@@ -22,8 +22,6 @@ from .seams import Cutter, disks
 from .settings import SeamSettings, UnwrapSettings
 from .shortfall import UNEVEN_DISK, shortfall
 
-_CUT = "cut its long parts open by seams"
-_NOT_FREE = f"set Outline to Free, or {_CUT}"
 # The part of the time that a map onto the sphere takes; seams take the rest, where they are needed.
 _LAYOUTS = 0.9
 # The part of the time that the search for seams takes; the maps take the rest, where the search made none.
@@ -161,7 +159,13 @@ def _of_disk_map(piece: SurfacePatch, disk_map: authalic.DiskMap, settings: Unwr
     turned = spherical.turned(faces, np.asarray(disk_map.faces))
     island = island_of(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
     figures = figures_of(disk_map.distortion, piece)
-    remedy = _CUT if settings.solver.is_free else _NOT_FREE
-    island.shortfall = shortfall(disk_map.status, figures, settings.solver, UNEVEN_DISK, remedy)
+    status, remedy = disk_map.status, _remedy(settings)
+    island.shortfall = shortfall(status, figures, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
+
+
+def _remedy(settings: UnwrapSettings) -> str:
+    """What improves the map of an open island."""
+    seams = "set Seams to Add, or mark seams in it" if settings.seams is None else "mark more seams in it"
+    return seams if settings.solver.is_free else f"set Outline to Free, or {seams}"

@@ -17,7 +17,8 @@ from .results import SphereShape
 from .shortfall import UNEVEN_SPHERE, shortfall
 from .solver import Solver
 
-_OF_A_KEY = "its limbs may be too long or too thin, or its n-gons too large (poke them)"
+_LIMBS = "its limbs may be too long or too thin"
+_LARGE = "poke its large n-gons; " + _LIMBS
 
 
 def sphere_shape(
@@ -52,13 +53,14 @@ def sphere_shape(
             "coordinates; remesh its thin parts"
         )
     deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
+    remedy = _LARGE if triangulation.has_large_polygon(mesh.polygons) else _LIMBS
     return SphereShape(
         positions=written[: len(surface.positions)],
         radius=float(radius),
         deviation=deviation,
         flips=len(figures.folded),
         angle=angle,
-        shortfall=shortfall(sphere.status, (deviation, angle), solver, UNEVEN_SPHERE, _OF_A_KEY),
+        shortfall=shortfall(sphere.status, (deviation, angle), solver, UNEVEN_SPHERE, remedy),
         ended_early=sphere.status == "cancelled",
     )
 

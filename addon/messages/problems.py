@@ -23,7 +23,10 @@ ERRORS = {
     "index_out_of_range": _REPORT,
     "repeated_vertex": "the same vertex twice in {its.faces}: remove these degenerate faces",
     "duplicate_face": "{its.faces} on the vertices of another face: remove the duplicates",
-    "zero_area": "no area in {its.faces}: the corners lie on a line; dissolve or collapse these faces",
+    "zero_area": (
+        "no area in {its.faces}: the corners lie on a line; remove these faces (Mesh > Clean Up > Degenerate "
+        "Dissolve)"
+    ),
     "non_manifold_edge": (
         "more than two faces at {its.edges}: delete the inner faces there, or mark these edges as seams"
     ),

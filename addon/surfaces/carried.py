@@ -50,7 +50,8 @@ def carried(surface: Surface, collapsed: Collapsed, patch_of: Integers) -> Carri
         return Carried(left_out, left_out, left_out)
     search = _Search(surface, collapsed, patch_of, corners)
     ends = np.cumsum(surface.polygon_size[incomplete])[:-1]
-    found = search.run([each.tolist() for each in np.split(corners, ends)])
+    pieces = [each.tolist() for each in np.split(corners, ends)]
+    found = search.run(list(zip(incomplete.tolist(), pieces, strict=True)))
     hosts = np.array([found.get(corner, -1) for corner in left_out.tolist()])
     order = np.argsort(hosts, kind="stable")
     order = order[hosts[order] >= 0]
@@ -62,7 +63,7 @@ class _Search:
 
     def __init__(self, surface: Surface, collapsed: Collapsed, patch_of: Integers, corners: Integers) -> None:
         self._faces, self._patch_of = collapsed.mesh.triangles, patch_of
-        self._positions = collapsed.mesh.positions
+        self._positions, self._polygons = collapsed.mesh.positions, collapsed.mesh.polygons
         vertices = collapsed.stands_for[surface.corner_vertex[corners]]
         self._vertex = dict(zip(corners.tolist(), vertices.tolist(), strict=True))
         wanted = np.zeros(len(self._positions), bool)
@@ -73,43 +74,56 @@ class _Search:
         for place in np.flatnonzero(is_near).tolist():
             self._at.setdefault(int(self._faces.flat[place]), []).append(place)
 
-    def run(self, polygons: Sequence[list[int]]) -> dict[int, int]:
-        """The hosts of mesh corners; those of polygons that no triangle touches are found from others."""
+    def run(self, polygons: Sequence[tuple[int, list[int]]]) -> dict[int, int]:
+        """The hosts of the mesh corners of polygons, each with its number.
+
+        Those of polygons that no triangle touches are found from others.
+        """
         found: dict[int, int] = {}
         while polygons:
-            later = [corners for corners in polygons if not self._place(corners, found)]
+            later = [each for each in polygons if not self._place(*each, found)]
             if len(later) == len(polygons):
                 return found
             polygons = later
         return found
 
-    def _place(self, corners: list[int], found: dict[int, int]) -> bool:
+    def _place(self, polygon: int, corners: list[int], found: dict[int, int]) -> bool:
         """Finds hosts for the corners of a polygon, if any of them is where a triangle has a corner."""
         vertices = [self._vertex[corner] for corner in corners]
-        triangle = self._neighbor(vertices)
+        triangle = self._neighbor(polygon, vertices)
         if triangle is None:
             return False
         for corner, vertex in zip(corners, vertices, strict=True):
-            found[corner] = self._host(vertex, triangle)
+            found[corner] = self._host(polygon, vertex, triangle)
             self._at.setdefault(vertex, [found[corner]])
         return True
 
-    def _neighbor(self, vertices: list[int]) -> int | None:
-        """The triangle that has most of some vertices."""
+    def _neighbor(self, polygon: int, vertices: list[int]) -> int | None:
+        """The triangle that has most of some vertices, of the polygon itself if it has any."""
         shared = Counter(place // 3 for vertex in set(vertices) for place in self._at.get(vertex, ()))
         if not shared:
             return None
-        most = max(shared.values())
-        return min(triangle for triangle, count in shared.items() if count == most)
 
-    def _host(self, vertex: int, triangle: int) -> int:
-        """The corner at a vertex of a triangle, or of one of its patch; else the nearest of the triangle."""
+        def rank(triangle: int) -> tuple[bool, int, int]:
+            return self._polygons[triangle] != polygon, -shared[triangle], triangle
+
+        return min(shared, key=rank)
+
+    def _host(self, polygon: int, vertex: int, triangle: int) -> int:
+        """The corner at a vertex of the polygon's own triangles, of a triangle, or of one of its patch.
+
+        If there is none, the nearest corner of the triangle.
+        """
+
+        def rank(place: int) -> int:
+            host = place // 3
+            if self._polygons[host] == polygon:
+                return 0
+            return 1 if host == triangle else 2 if self._patch_of[host] == self._patch_of[triangle] else 3
+
         places = self._at.get(vertex, [])
-        for place in places:
-            if place // 3 == triangle:
-                return place
-        for place in places:
-            if self._patch_of[place // 3] == self._patch_of[triangle]:
-                return place
+        best = min(places, key=rank, default=None)
+        if best is not None and rank(best) < 3:
+            return best
         away = np.linalg.norm(self._positions[self._faces[triangle]] - self._positions[vertex], axis=1)
         return 3 * triangle + int(away.argmin())

@@ -117,6 +117,6 @@ def check_one_piece(count: int, patches: Sequence[Patch]) -> None:
         )
     if len(patches) > 1:
         raise Unsuitable(
-            f"consists of {len(patches)} pieces where one is allowed; separate it by loose parts, or join "
-            "them by a remesh"
+            f"consists of {len(patches)} pieces where one is allowed; where they touch, merge vertices "
+            "(Mesh > Merge > By Distance), else separate it by loose parts"
         )

@@ -15,6 +15,9 @@ _ROUNDING = 2 * float(np.finfo(np.float32).eps)
 # are coarse, triangles of better shapes are as low as rounding, but their areas are not.
 _FLAT = 2.0**-10
 
+# The triangles of a polygon whose corners are few beside its area.
+_LARGE = 4
+
 
 @dataclass
 class Triangles:
@@ -82,6 +85,11 @@ def flat(positions: Floats, triangles: Integers) -> Booleans:
     with np.errstate(invalid="ignore"):
         is_flat: Booleans = ~has_area(points) & np.isfinite(points).all(axis=(1, 2))
     return is_flat
+
+
+def has_large_polygon(polygons: Integers) -> bool:
+    """Whether a polygon has so many triangles, of (t,), that no map can be even in it."""
+    return bool(np.bincount(polygons).max(initial=0) > _LARGE)
 
 
 def edge_keys(faces: Integers, count: int) -> Integers:

@@ -14,6 +14,7 @@ from .operators import landmark_pick as operator_pick
 from .operators import landmark_points as operators_of_points
 from .operators import mark_seams as operator_mark_seams
 from .operators import measure as operator_measure
+from .operators import redo as operator_redo
 from .operators import register as operator_register
 from .operators import seam_preview as operator_seam_preview
 from .operators import sphere_shape_key as operator_sphere_shape_key
@@ -41,6 +42,7 @@ _MODULES = (
     overlay_points,
     overlay_curves,
     overlay_seams,
+    operator_redo,
     operator_unwrap,
     operator_mark_seams,
     operator_seam_preview,

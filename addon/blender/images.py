@@ -24,6 +24,21 @@ def size(image: bpy.types.Image) -> Size:
     return int(pixels[0]), int(pixels[1])
 
 
+def aspect(image: bpy.types.Image | None) -> float:
+    """The width of an image over its height; 1 without one."""
+    width, height = size(image) if image is not None else (1, 1)
+    return width / height
+
+
+def tile(image: bpy.types.Image | None) -> tuple[int, int]:
+    """Column and row of the active UDIM tile of an image; those of the first one where it has no tiles."""
+    chosen = image.tiles.active if image is not None and image.source == "TILED" else None
+    if chosen is None:
+        return 0, 0
+    row, column = divmod(chosen.number - 1001, 10)
+    return column, row
+
+
 def _of_material(obj: bpy.types.Object | None) -> bpy.types.Image | None:
     material = obj.active_material if obj is not None else None
     if material is None or material.node_tree is None:

@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..surfaces import triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.surface import Surface
-from . import uv_maps
+from . import selection, subdivision, uv_maps
 from .types import MeshObject
 
 # The attribute that marks seams: of Blender 4.5 and newer, and of older versions.
@@ -20,23 +21,37 @@ _SEAM = ("uv_seam", ".uv_seam")
 
 
 def read(
-    obj: MeshObject, *, selected_only: bool = False, uv_layer: str | None = None, world: bool = False
+    obj: MeshObject,
+    *,
+    selected_only: bool = False,
+    uv_layer: str | None = None,
+    uv_selection: bool = False,
+    world: bool = False,
+    subdivided: bool = False,
 ) -> Surface:
     """The surface of an object; with `selected_only` that of its selected, visible faces.
 
-    It has the size of the object in the world, and with `world` its shape there, turned back and never
-    mirrored: all lengths and areas are those in the world, all directions those of the mesh.
+    With `uv_selection` faces must be selected in the UV map too. The surface has the size of the object in
+    the world, and with `world` its shape there, turned back and never mirrored: all lengths and areas are
+    those in the world, all directions those of the mesh. With `subdivided` vertices and areas are those of
+    the Subdivision Surface modifier, if there is one.
     """
     with readable(obj.data) as mesh:
-        surface = _of_mesh(mesh, obj.name, selected_only, uv_layer)
-    _scale(surface, obj, world)
+        surface = _of_mesh(mesh, obj.name, selected_only, uv_layer, uv_selection)
+        shape = _shape(surface, obj, world)
+        smooth = subdivision.smoothed(obj, mesh, shape) if subdivided else None
+    if smooth is None:
+        _scale(surface, shape)
+    else:
+        surface.positions, areas = smooth
+        surface.density = _densities(surface, areas)
     return surface
 
 
 def read_from(obj: MeshObject, mesh: bpy.types.Mesh, uv_layer: str) -> Surface:
     """The surface in the world of an object by a mesh not in edit mode, as modifiers may have made it."""
     surface = _of_mesh(mesh, obj.name, False, uv_layer)
-    _scale(surface, obj, True)
+    _scale(surface, _shape(surface, obj, True))
     return surface
 
 
@@ -96,13 +111,17 @@ def has_uniform_scale(obj: MeshObject) -> bool:
     return _is_uniform(_scales(obj)[0])
 
 
-def _of_mesh(mesh: bpy.types.Mesh, name: str, selected_only: bool, uv_layer: str | None) -> Surface:
+def _of_mesh(
+    mesh: bpy.types.Mesh, name: str, selected_only: bool, uv_layer: str | None, uv_selection: bool = False
+) -> Surface:
     """The surface of a mesh in its own coordinates."""
     polygons = _polygons(mesh)
     corner_vertex = _attribute(mesh, ".corner_vert", np.int32)
     corners, owner = _loop_triangles(mesh, polygons)
     chosen = _selected(mesh) if selected_only else np.ones(len(mesh.polygons), bool)
-    if selected_only:
+    if uv_selection and uv_layer is not None:
+        chosen &= selection.uv_faces(mesh, uv_layer, polygons[0])
+    if not chosen.all():
         corners, owner = corners[chosen[owner]], owner[chosen[owner]]
     surface = Surface(
         name=name,
@@ -122,16 +141,31 @@ def _of_mesh(mesh: bpy.types.Mesh, name: str, selected_only: bool, uv_layer: str
     return surface
 
 
-def _scale(surface: Surface, obj: MeshObject, world: bool) -> None:
-    """Gives a surface the size of its object in the world, and if `world` its shape there."""
+def _shape(surface: Surface, obj: MeshObject, world: bool) -> float | Floats:
+    """What gives a surface the size of its object in the world, and if `world` its shape there.
+
+    A factor of its points, or a matrix (3, 3).
+    """
     scale, axes = _scales(obj)
     if _is_uniform(scale):
-        surface.positions *= scale.mean() or 1.0
-    elif world:
-        with np.errstate(invalid="ignore"):
-            surface.positions = surface.positions @ ((axes.T * scale) @ axes)
+        return float(scale.mean()) or 1.0
+    return (axes.T * scale) @ axes if world else _world_size(obj, surface)
+
+
+def _scale(surface: Surface, shape: float | Floats) -> None:
+    if isinstance(shape, float):
+        surface.positions *= shape
     else:
-        surface.positions *= _world_size(obj, surface)
+        with np.errstate(invalid="ignore"):
+            surface.positions = surface.positions @ shape
+
+
+def _densities(surface: Surface, areas: Floats) -> Floats:
+    """The density (p,) by which polygons have the areas (p,) of a finer surface."""
+    triangles = triangulation.areas(surface.positions[surface.triangles])
+    own = np.bincount(surface.polygons, triangles, surface.polygon_count)
+    density: Floats = np.divide(areas, own, out=np.ones(len(own)), where=(own > 0) & (areas > 0))
+    return density
 
 
 @contextmanager
@@ -219,7 +253,7 @@ def _world_size(obj: MeshObject, surface: Surface) -> float:
     matrix = np.array(obj.matrix_world)[:3, :3]
     local, world = _total_area(points), _total_area(points @ matrix.T)
     ratio = np.sqrt(world / local) if local > 0 else 1.0
-    return ratio if np.isfinite(ratio) and ratio > 0 else 1.0
+    return float(ratio) if np.isfinite(ratio) and ratio > 0 else 1.0
 
 
 def _total_area(triangles: Floats) -> float:

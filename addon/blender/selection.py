@@ -6,8 +6,9 @@ from typing import Any
 
 import bmesh
 import bpy
+import numpy as np
 
-from ..surfaces.arrays import Edge
+from ..surfaces.arrays import Booleans, Edge, Integers
 from .types import MeshObject
 
 
@@ -75,6 +76,45 @@ def select_edges(obj: MeshObject, edges: Sequence[Edge]) -> None:
         edge.select = frozenset(ends) in wanted
     for vertex in {vertex for edge in edges for vertex in edge}:
         mesh.vertices[vertex].select = True
+
+
+def counts_in_uvs(context: bpy.types.Context, obj: MeshObject) -> bool:
+    """Whether the selection of UVs counts beside that of the mesh: where one works in the UV editor.
+
+    Without synchronization UVs have a selection of their own. With it they may have one since Blender 5.0,
+    of corners.
+    """
+    space: Any = context.space_data
+    if space is None or space.type != "IMAGE_EDITOR" or not obj.data.is_editmode:
+        return False
+    if not context.scene.tool_settings.use_uv_select_sync:
+        return True
+    return bool(getattr(bmesh.from_edit_mesh(obj.data), "uv_select_sync_valid", False))
+
+
+def uv_faces(mesh: bpy.types.Mesh, layer: str, first_corner: Integers) -> Booleans:
+    """Which polygons (p,), by their first corners (p,), are selected in a UV map of a mesh.
+
+    All of their corners and edges are. Before Blender 5.0 every UV map has a selection of its own.
+    """
+    if not len(first_corner):
+        return np.zeros(0, bool)
+    names = (
+        (".uv_select_vert", ".uv_select_edge")
+        if bpy.app.version >= (5, 0)
+        else (f".vs.{layer}", f".es.{layer}")
+    )
+    corners = _corner_values(mesh, names[0]) & _corner_values(mesh, names[1])
+    return np.logical_and.reduceat(corners, first_corner)
+
+
+def _corner_values(mesh: bpy.types.Mesh, name: str) -> Booleans:
+    """A truth value (c,) of each corner; False where the mesh has no such attribute."""
+    values = np.zeros(len(mesh.loops), bool)
+    attribute: Any = mesh.attributes.get(name)
+    if attribute is not None:
+        attribute.data.foreach_get("value", values)
+    return values
 
 
 def _deselect_all(mesh: bpy.types.Mesh) -> None:

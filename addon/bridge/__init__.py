@@ -2,13 +2,15 @@
 """The only folder that imports the native library: functions on numpy arrays and plain data, no bpy."""
 
 from ..surfaces.suitability import Unsuitable
-from .figures import folds, measure, measure_islands
+from .figures import measure
 from .flips import fix_flips
 from .islands import unwrap
+from .known import forget
+from .placement import Placed, place
 from .registrations import kept, morphed, pull, register
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
-from .settings import SeamSettings, UnwrapSettings
+from .settings import PlacementSettings, SeamSettings, UnwrapSettings
 from .shortfall import Shortfall
 from .solver import Solver
 from .spheres import sphere_shape
@@ -19,6 +21,8 @@ __all__ = (
     "Island",
     "Mapping",
     "Measurement",
+    "Placed",
+    "PlacementSettings",
     "Refusal",
     "SeamSettings",
     "Shortfall",
@@ -29,11 +33,11 @@ __all__ = (
     "UnwrapSettings",
     "find_seams",
     "fix_flips",
-    "folds",
+    "forget",
     "kept",
     "measure",
-    "measure_islands",
     "morphed",
+    "place",
     "pull",
     "register",
     "sphere_shape",

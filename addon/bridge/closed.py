@@ -10,6 +10,7 @@ import authalic
 
 from ..surfaces import triangulation
 from ..surfaces.arrays import Booleans, Floats
+from . import known
 from .island import figures_of, island_of
 from .patches import SurfacePatch, checked
 from .progress import Progress, share_of, to_the_end
@@ -139,7 +140,11 @@ class _Sphere:
 
     @classmethod
     def of(cls, piece: SurfacePatch, solver: Solver, progress: Progress) -> "_Sphere":
-        return cls(piece, solver, *sphere_map(checked(piece.patch, piece.points), solver, progress))
+        return cls(
+            piece,
+            solver,
+            *sphere_map(checked(piece.patch, piece.points), solver, progress, piece.target_areas),
+        )
 
     def island(self, layout: str, settings: UnwrapSettings, progress: Progress) -> Island:
         """The island in one layout."""
@@ -151,7 +156,7 @@ class _Sphere:
         points, uv = np.asarray(laid.vertex_of), np.asarray(laid.points, float)
         native = authalic.Surface(piece.points[points], corner_point)
         island = island_of(piece, native, uv, corner_point, self.turned, points)
-        figures = figures_of(authalic.distortion(native, island.uv), piece)
+        figures = figures_of(authalic.distortion(native, island.uv, density=piece.target_areas), piece)
         island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, _remedy(piece))
         return island
 
@@ -161,13 +166,14 @@ class _Sphere:
         angle = settings.seam_direction
         seam = np.cos(angle) * start + np.sin(angle) * np.cross(pole, start)
         real = self.piece.vertices >= 0
-        return self.map.layout(
-            "lambert" if layout == "LAMBERT" else "octahedral",
-            pole=self.over @ pole,
-            seam=self.over @ seam,
-            polygons=self.piece.polygons,
-            candidates=real if np.count_nonzero(real) >= _POLES else None,
-            precision="float32",
-            # a map that ended early has to be laid flat, too
-            progress=to_the_end(progress),
-        )
+        options = {
+            "kind": "lambert" if layout == "LAMBERT" else "octahedral",
+            "pole": self.over @ pole,
+            "seam": self.over @ seam,
+            "polygons": self.piece.polygons,
+            "density": self.piece.target_areas,
+            "candidates": real if np.count_nonzero(real) >= _POLES else None,
+            "precision": "float32",
+        }
+        # a map that ended early has to be laid flat, too
+        return known.result(authalic.SphereMap.layout, self.map, options, to_the_end(progress))

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps of many islands into the plane, all in one call of the native library."""
+"""Maps of many islands into the plane, in one call of the native library but for those that are known."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import authalic
 
+from ..surfaces.arrays import Floats
+from .known import Request
 from .patches import SurfacePatch, checked
-from .progress import NOT_REACHED, Progress, Result, noting_the_end, refused
+from .progress import NOT_REACHED, Progress, Result, noting_the_end, refused, share_of
 from .results import Refusal
 from .settings import UnwrapSettings
 
@@ -22,13 +25,10 @@ def disk_maps(
     for number, piece in enumerate(pieces):
         with refused(piece, result):
             natives[number] = checked(piece.patch, piece.points)
-    if not natives:
-        return [None] * len(pieces)
-    options = settings.solver.disk_options()
+    options = {"fill_holes": settings.fill_holes, **settings.solver.disk_options()}
+    targets = [pieces[number].target_areas for number in natives]
     listen = noting_the_end(progress, result)
-    found = authalic.disk_maps(
-        list(natives.values()), fill_holes=settings.fill_holes, progress=listen, **options
-    )
+    found = _found(list(natives.values()), targets, options, settings.from_last, listen)
     maps: list[authalic.DiskMap | None] = [None] * len(pieces)
     for number, each in zip(natives, found, strict=True):
         piece = pieces[number]
@@ -40,3 +40,54 @@ def disk_maps(
             else:
                 raise each
     return maps
+
+
+def _found(
+    natives: Sequence[authalic.Surface],
+    targets: Sequence[Floats | None],
+    options: Mapping[str, Any],
+    from_last: bool,
+    progress: Progress,
+) -> list[authalic.DiskMap | authalic.MeshError | authalic.SolverError | None]:
+    """The map of each surface with the areas (m,) that its faces are to get, or what is wrong with it."""
+    pairs = list(zip(natives, targets, strict=True))
+    requests = [
+        Request(authalic.disk_map, native, {"density": areas, **options}, from_last)
+        for native, areas in pairs
+    ]
+    found: list[Any] = [request.known() for request in requests]
+    initial = [request.initial() for request in requests]
+    rest = [number for number, each in enumerate(found) if each is None]
+    again = [number for number in rest if initial[number] is not None]
+    new = [number for number in rest if initial[number] is None]
+    share = len(again) / max(len(rest), 1)
+    for place, number in enumerate(again):
+        step = share_of(progress, share * place / len(again), share / len(again))
+        found[number] = _map_from(natives[number], targets[number], initial[number], options, step)
+    if new:
+        maps = authalic.disk_maps(
+            [natives[number] for number in new],
+            densities=[targets[number] for number in new],
+            progress=share_of(progress, share, 1.0 - share),
+            **options,
+        )
+        for number, each in zip(new, maps, strict=True):
+            found[number] = each
+    for number in rest:
+        if isinstance(found[number], authalic.DiskMap):
+            requests[number].keep(found[number], began_with_last=initial[number] is not None)
+    return found
+
+
+def _map_from(
+    native: authalic.Surface,
+    areas: Floats | None,
+    initial: Floats | None,
+    options: Mapping[str, Any],
+    progress: Progress,
+) -> authalic.DiskMap | authalic.MeshError | authalic.SolverError:
+    """The map of a surface that begins with another one, or what is wrong with the surface."""
+    try:
+        return authalic.disk_map(native, density=areas, initial=initial, progress=progress, **options)
+    except (authalic.MeshError, authalic.SolverError) as problem:
+        return problem

@@ -43,7 +43,8 @@ def measure_islands(islands: Sequence[Island]) -> Figures | None:
     if not good.any():
         return None
     areas, image_areas = _areas(points[good], image[good])
-    ratios, is_folded = _ratios(areas, image_areas), np.zeros(len(areas), bool)
+    densities = np.concatenate([island.wanted_areas(np.ones(len(island.faces))) for island in islands])
+    ratios, is_folded = _ratios(areas * densities[good], image_areas), np.zeros(len(areas), bool)
     return _figures(areas, ratios, is_folded, angles[good], int(np.count_nonzero(~good)))
 
 

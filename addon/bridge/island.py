@@ -38,6 +38,7 @@ def island_of(
         corners=np.concatenate([piece.corners[real], piece.carried]),
         corner_point=np.concatenate([corner_point[real], corner_point[piece.hosts]]),
         uv=uv,
+        density=piece.density,
         turned=np.unique(piece.polygons[turned]),
         native=native,
         has_divided_polygons=bool(piece.slivers.any()) or not real.all(),

@@ -41,13 +41,13 @@ def unwrap(surfaces: Sequence[Surface], settings: UnwrapSettings, progress: Prog
         ]
         progress = share_of(progress, READING, 1.0 - READING)
     else:
-        share = 1.0 if settings.solver.is_even else _SEAMS
+        share = 1.0 if _are_mapped_by_search(surfaces, settings) else _SEAMS
         patches = _unmapped_disks(surfaces, settings, settings.seams, result, share_of(progress, 0.0, share))
         progress = share_of(progress, share, 1.0 - share)
         if result.seams is not None and result.seams.ended_early:  # seams are worth nothing here without maps
             progress = to_the_end(progress)
 
-    cutter = Cutter(surfaces, SeamSettings(), settings.solver.is_even)
+    cutter = Cutter(surfaces, SeamSettings(), _are_mapped_by_search(surfaces, settings))
     result.islands += _mapped(patches, settings, cutter, result, progress)
     return result
 
@@ -91,8 +91,6 @@ def _face_count(pieces: Sequence[SurfacePatch]) -> int:
 
 def _domain(piece: SurfacePatch, settings: UnwrapSettings) -> str:
     """What an island is mapped onto, "DISK" or "SPHERE"; raises `Unsuitable` if it cannot be mapped."""
-    if piece.is_pinned:
-        raise Unsuitable(suitability.PINNED)
     domain = settings.domain if settings.seams is None else "DISK"
     return suitability.choose(piece.patch, domain, settings.fill_holes)
 
@@ -105,12 +103,17 @@ def _unmapped_disks(
     progress: Progress,
 ) -> list[SurfacePatch]:
     """The disks along seams that are found; those that the search has mapped become islands of the result."""
-    result.seams, found = disks(surfaces, search, settings.solver.is_even, progress)
+    result.seams, found = disks(surfaces, search, _are_mapped_by_search(surfaces, settings), progress)
     result.refusals += result.seams.refusals
     result.at_a_point += result.seams.at_a_point
     result.left_out |= result.seams.left_out
     result.islands += [_mapped_by_search(disk.piece, disk.uv) for disk in found if disk.uv is not None]
     return [disk.piece for disk in found if disk.uv is None]
+
+
+def _are_mapped_by_search(surfaces: Sequence[Surface], settings: UnwrapSettings) -> bool:
+    """Whether the maps of the search for seams are those that are wanted."""
+    return settings.solver.is_even and all(surface.density is None for surface in surfaces)
 
 
 def _mapped_by_search(piece: SurfacePatch, uv: Floats) -> Island:

@@ -49,10 +49,11 @@ class _Numbers:
     """The mesh's numbers for the corners (3m,), faces (m,) and vertices (n,) of triangles of a surface.
 
     Corners and vertices are -1 at the centers of divided polygons. The surface has the number `index`.
-    `pinned_corners` (3m,) tells which corners have pinned UVs. Mesh corners `carried` (k,) have the UVs of
-    the corners `hosts` (k,), ascending, of the triangles. `own_vertices` (3m,) are the vertices that the mesh
-    has at the corners, where others stand for them; None where they are the same. `slivers` (m,) are
-    triangles that have no area in the mesh: `points` are not quite its vertices there.
+    `density` (m,), if there is one, says how much more UV area faces are to get than their areas ask for.
+    Mesh corners `carried` (k,) have the UVs of the corners `hosts` (k,), ascending, of the triangles.
+    `own_vertices` (3m,) are the vertices that the mesh has at the corners, where others stand for them; None
+    where they are the same. `slivers` (m,) are triangles that have no area in the mesh: `points` are not
+    quite its vertices there.
     """
 
     name: str
@@ -61,7 +62,7 @@ class _Numbers:
     corners: Integers
     polygons: Integers
     vertices: Integers
-    pinned_corners: Booleans
+    density: Floats | None
     carried: Integers
     hosts: Integers
     own_vertices: Integers | None
@@ -78,7 +79,7 @@ class _Numbers:
             corners=self.corners[corners],
             polygons=self.polygons[patch.face_of],
             vertices=self.vertices[patch.vertex_of],
-            pinned_corners=self.pinned_corners[corners],
+            density=None if self.density is None else self.density[patch.face_of],
             carried=carried,
             hosts=hosts,
             own_vertices=None if self.own_vertices is None else self.own_vertices[corners],
@@ -106,8 +107,11 @@ class SurfacePatch(_Numbers):
         return int(self.polygons[0])
 
     @property
-    def is_pinned(self) -> bool:
-        return bool(self.pinned_corners.any())
+    def target_areas(self) -> Floats | None:
+        """The areas (m,) that faces are to get, on any scale; None where these are their own."""
+        if self.density is None or np.ptp(self.density) == 0:
+            return None
+        return self.density * triangulation.areas(self.points[np.asarray(self.patch.faces)])
 
     def mesh_edges(self, pairs: Integers) -> Integers:
         """Pairs of vertices of the mesh (k, 2) for pairs of the patch's; an edge where there is one."""
@@ -228,7 +232,6 @@ def _numbers(
 ) -> _Numbers:
     """The mesh's numbers for the triangles that a surface is cut from, between `points` (n, 3)."""
     corners = collapsed.mesh.corners.ravel()
-    pinned = np.zeros(len(corners), bool) if surface.pinned is None else surface.pinned[corners]
     own = np.where(corners >= 0, surface.corner_vertex[corners], -1) if collapsed.has_joined else None
     return _Numbers(
         name=surface.name,
@@ -237,7 +240,7 @@ def _numbers(
         corners=corners,
         polygons=collapsed.mesh.polygons,
         vertices=vertices,
-        pinned_corners=pinned & (corners >= 0),
+        density=None if surface.density is None else surface.density[collapsed.mesh.polygons],
         carried=carried.corners,
         hosts=carried.hosts,
         own_vertices=own,

@@ -14,6 +14,7 @@ from ..surfaces import seam_costs, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from . import known
 from .patches import SurfacePatch, checked, opened, surface_patches
 from .progress import READING, Progress, keep_going, one_by_one, share_of, to_the_end
 from .results import FoundSeams, Note
@@ -114,8 +115,6 @@ class _Search:
 
     def cut(self, piece: SurfacePatch, progress: Progress) -> None:
         """Cuts a patch into disks."""
-        if piece.is_pinned:
-            raise Unsuitable(suitability.PINNED)
         parts, across = opened(piece, self._found.notes)
         edges = self._found.edges
         for part in parts:
@@ -214,8 +213,8 @@ class _Search:
         if not settings.is_draft:
             try:
                 if self._with_maps:
-                    return authalic.unwrap(native, pack=False, progress=progress, **options)
-                return authalic.seams(native, progress=progress, **options)
+                    return known.result(authalic.unwrap, native, {"pack": False, **options}, progress)
+                return known.result(authalic.seams, native, options, progress)
             except authalic.SolverError as problem:
                 if problem.kind != "cancelled":
                     raise

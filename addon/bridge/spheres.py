@@ -11,6 +11,7 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
+from . import known
 from .patches import checked, cut
 from .progress import Progress, keep_going
 from .results import SphereShape
@@ -72,13 +73,18 @@ def _whole(mesh: triangulation.Triangles) -> tuple[Integers, list[authalic.Patch
 
 
 def sphere_map(
-    surface: authalic.Surface, solver: Solver, progress: Progress
+    surface: authalic.Surface, solver: Solver, progress: Progress, density: Floats | None = None
 ) -> tuple[authalic.SphereMap, Floats, Booleans]:
-    """A sphere map, the matrix that lays it over the surface, and a mask (m,) of the faces it has turned."""
-    sphere = authalic.sphere_map(surface, progress=progress, **solver.sphere_options())
+    """A sphere map, the matrix that lays it over the surface, and a mask (m,) of the faces it has turned.
+
+    `density` (m,), if there is one, are the areas that faces are to get, on any scale.
+    """
+    options = {"density": density, **solver.sphere_options()}
+    sphere = known.result(authalic.sphere_map, surface, options, progress)
     is_poor = sphere.status == "stalled" and solver.puts_areas_first
     if is_poor or _is_thin(sphere):  # coarse meshes may come out worse than the start
-        start = authalic.sphere_map(surface, method="fixed_point", max_iterations=0)
+        options = {"method": "fixed_point", "max_iterations": 0, "density": density}
+        start = known.result(authalic.sphere_map, surface, options, keep_going)
         sphere = min(sphere, start, key=lambda each: (_is_thin(each), each.distortion.authalic_energy))
     oriented = np.asarray(sphere.faces)
     over = spherical.over_surface(np.asarray(surface.vertices), oriented, np.asarray(sphere.positions))

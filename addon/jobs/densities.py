@@ -22,10 +22,12 @@ def check(objects: Sequence[MeshObject], source: str) -> None:
 
 
 def apply(obj: MeshObject, surface: Surface, source: str, shown: bpy.types.Mesh | None = None) -> None:
-    """Sets the density of an object's surface; an object without the source has the same everywhere.
+    """Raises the density of an object's surface where the source says so.
 
     The surface is that of the object's mesh, or of the mesh `shown` as its modifiers have made it.
     """
     if source:
         painted = weights.of_corners(obj, source, surface.corner_vertex, shown)
-        surface.density = None if painted is None else density.of_polygons(surface, painted)
+        if painted is not None:
+            wanted = density.of_polygons(surface, painted)
+            surface.density = wanted if surface.density is None else wanted * surface.density

@@ -61,11 +61,20 @@ class Job(Generic[Computed, Result]):
         """
         if not self._cancel.is_set():
             self._thread.join()
-        if self._cancel.is_set():
+        return self.apply_result_of(self)
+
+    def apply_result_of(self, other: "Job[Computed, Any]") -> Result:
+        """Hands what another job has computed to `finish`."""
+        if other._cancel.is_set():
             raise Cancelled("cancelled, nothing was changed")
-        if self._error is not None:
-            raise self._error
-        return self._finish(self._result)
+        if other._error is not None:
+            raise other._error
+        return self._finish(other._result)
+
+    def wait(self, seconds: float) -> bool:
+        """Waits for the end of the computation, up to a time; whether it has ended."""
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
 
     def execute(self) -> Result:
         """The whole job at once, for scripts; Ctrl-C cancels it."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that run a `Job`: at once for scripts and the redo panel, else while the window stays alive.
+"""Operators that run a `Job`: at once for scripts, else while the window stays alive.
 
 One at a time: while an operator runs in a window, all others are refused.
 """
@@ -12,10 +12,9 @@ import bpy
 from ..blender.types import OperatorMixin, Status
 from ..jobs import targets
 from ..jobs.job import Cancelled, Job
+from . import redo, status_bar
 
 _INTERVAL = 0.1
-_BAR_WIDTH = 18.0
-"""In units of the interface, each as wide as an icon. A bar without a width is cut off."""
 # Events that only move the view. Any other could change the meshes of the job.
 _PASSED_ON = {
     *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN"),
@@ -39,6 +38,8 @@ class Modal(OperatorMixin):
         def job(self, context: bpy.types.Context) -> Job[Any, Any]: ...
         def line(self, report: Any) -> str: ...
 
+    is_redo = False
+    """Whether the operator is run again because its options have changed."""
     _running: Any = None
     _timer: Any = None
 
@@ -70,10 +71,16 @@ class Modal(OperatorMixin):
 
     def _execute(self, context: bpy.types.Context) -> Status:
         _refuse_if_busy()
-        return self._say(self.job(context).execute())
+        self.is_redo = redo.is_one(self, context)
+        if not self.is_redo:
+            redo.cancel()
+            return self._say(self.job(context).execute())
+        report = redo.run(self, context, self.job(context))
+        return {"CANCELLED"} if report is None else self._say(report)
 
     def _start(self, context: bpy.types.Context) -> Status:
         _refuse_if_busy()
+        redo.cancel()
         self._running = self.job(context).start()
         _in_window.append(self.bl_label)
         manager = context.window_manager
@@ -85,15 +92,13 @@ class Modal(OperatorMixin):
 
     def _show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
         context.window_manager.progress_update(round(100 * fraction))
-        if context.workspace is not None:
-            context.workspace.status_text_set(_status_bar(self.bl_label, fraction, message))
+        status_bar.show(context, self.bl_label, fraction, message)
 
     def _leave(self, context: bpy.types.Context) -> None:
         _in_window.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
+        status_bar.clear(context)
 
     def _attempt(self, step: Callable[[], Status]) -> Status:
         """Runs a step; if the job is refused, reports the reason. Nothing has changed then."""
@@ -115,19 +120,3 @@ class Modal(OperatorMixin):
 def _refuse_if_busy() -> None:
     for label in _in_window:
         raise Busy(f"{label} is still running; wait for its end, or cancel it with Esc")
-
-
-def _status_bar(title: str, fraction: float, message: str) -> Callable[[bpy.types.Header, Any], None]:
-    """A function that draws the status bar: the keys, the operator's name, and a bar with the message."""
-    text = f"{message} — {100 * fraction:.0f} %"
-
-    def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
-        layout = header.layout
-        layout.label(text="Cancel", icon="EVENT_ESC")
-        layout.label(text="Finish Early", icon="EVENT_RETURN")
-        layout.label(text=title)
-        row = layout.row()
-        row.ui_units_x = _BAR_WIDTH
-        row.progress(factor=fraction, text=text)
-
-    return draw

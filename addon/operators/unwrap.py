@@ -9,11 +9,12 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from .. import bridge
-from ..blender import packing, uv_maps
+from ..blender import images, uv_maps
 from ..blender.types import is_mesh
-from ..jobs import seam_groups, unwrap
+from ..jobs import densities, seam_groups, unwrap
 from ..jobs.job import Job
 from . import poll, seaming, solving
+from .density import property_of_sources
 from .modal import Modal
 from .seaming import Seaming
 from .solving import Outlining
@@ -30,7 +31,7 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
     bl_idname = "authalic.unwrap"
     bl_label = "Authalic Unwrap"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 (Blender reads a plain set)
-    refused = (unwrap.CannotUnwrap, seam_groups.NoGroup)
+    refused = (unwrap.CannotUnwrap, seam_groups.NoGroup, densities.NoDensity)
 
     seams: EnumProperty(
         name="Seams",
@@ -119,6 +120,36 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         search=_layer_names,
         search_options={"SUGGESTION"},
     )
+    density_source: property_of_sources()
+    use_subsurf_data: BoolProperty(
+        name="Use Subdivision Surface",
+        description="Make areas even on the surface of the Subdivision Surface modifier, if it is the first",
+        default=False,
+    )
+    keep_position: BoolProperty(
+        name="Keep Position and Scale",
+        description="Leave islands where their UVs are, at their size. Islands without UVs are packed",
+        default=False,
+    )
+    pack_objects: EnumProperty(
+        name="Objects",
+        description="Whether several objects share the texture",
+        items=(
+            ("TOGETHER", "Together", "All objects share one texture, at one texel density"),
+            ("EACH", "Each by Itself", "Every object fills a texture of its own"),
+        ),
+        default="TOGETHER",
+    )
+    rotate_method: EnumProperty(
+        name="Rotation",
+        description="How packing may turn islands",
+        items=(
+            ("ANY", "Any", "Any angle. An island that is alone lies level"),
+            ("AXIS_ALIGNED", "Axis-Aligned", "Islands lie level or upright in their minimal rectangle"),
+            ("NONE", "None", "Islands are not turned to be packed"),
+        ),
+        default="ANY",
+    )
     margin_method: EnumProperty(
         name="Margin Method",
         description="The unit of the margin",
@@ -132,13 +163,26 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
     margin: FloatProperty(
         name="Margin", description="Space between islands", min=0.0, max=1.0, precision=3, default=0.001
     )
+    texel_density: FloatProperty(
+        name="Texel Density",
+        description="Pixels per meter on the active image, or on one of 1024 pixels. 0 fills the image",
+        min=0.0,
+        soft_max=4096.0,
+        precision=1,
+        default=0.0,
+    )
+    correct_aspect: BoolProperty(
+        name="Correct Aspect",
+        description="Keep shapes on the active image where it is not square",
+        default=True,
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return poll.has_meshes(cls, context)
 
     def job(self, context: bpy.types.Context) -> Job[Any, unwrap.Report]:
-        return unwrap.job(context, self._settings())
+        return unwrap.job(context, self._settings(context))
 
     def line(self, report: unwrap.Report) -> str:
         return f"Unwrapped {report}"
@@ -148,11 +192,14 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         self.layout.use_property_decorate = False
         draw_options(self.layout, self)
 
-    def _settings(self) -> unwrap.Settings:
+    def _settings(self, context: bpy.types.Context) -> unwrap.Settings:
+        image = images.active(context)
         return unwrap.Settings(
             uv_layer=self.uv_layer,
             mark_seams=self.mark_seams,
             groups=seaming.groups(self.properties),
+            density_source=self.density_source,
+            subdivided=self.use_subsurf_data,
             mapping=bridge.UnwrapSettings(
                 fill_holes=self.fill_holes,
                 solver=self.solver(),
@@ -161,9 +208,25 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
                 pole_axis=self.pole_axis,
                 seam_direction=self.seam_direction,
                 seams=self._search(),
+                from_last=self.is_redo,
             ),
-            packing=packing.PackSettings(self.margin_method, self.margin),
+            placement=bridge.PlacementSettings(
+                keep=self.keep_position,
+                each_by_itself=self.pack_objects == "EACH",
+                rotation=self.rotate_method,
+                margin_method=self.margin_method,
+                margin=_plain(self.margin),
+                density=self._density(context, image),
+                aspect=images.aspect(image) if self.correct_aspect else 1.0,
+                tile=images.tile(image),
+            ),
         )
+
+    def _density(self, context: bpy.types.Context, image: bpy.types.Image | None) -> float:
+        """The texel density in heights of the image per unit of length; 0 if the image is to be filled."""
+        height = images.size(image)[1] if image is not None else _HEIGHT
+        meters = context.scene.unit_settings.scale_length if context.scene else 1.0
+        return _plain(self.texel_density) * meters / height
 
     def _search(self) -> bridge.SeamSettings | None:
         """The search for seams, if there is to be one."""
@@ -171,6 +234,11 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
             return None
         search = seaming.search(self.properties)
         return replace(search, keep_given=self.seams == "ADD", overlap=self.allow_overlap)
+
+
+def _plain(value: float) -> float:
+    """A number rounded, so that Blender's single precision makes no difference."""
+    return float(f"{value:.6g}")
 
 
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
@@ -188,6 +256,8 @@ def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
         seaming.draw_options(box, properties)
         box.prop(properties, "mark_seams")
     solving.draw_options(column, properties)
+    column.prop(properties, "density_source", icon="GROUP_VERTEX")
+    column.prop(properties, "use_subsurf_data")
     column.prop(properties, "uv_layer", placeholder="Active")
     if is_given:
         layout.label(text="Closed Islands")
@@ -200,8 +270,13 @@ def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
         column.prop(properties, name)
 
 
+# The height in pixels of an image that is not there.
+_HEIGHT = 1024
 _SPHERE = ("sphere_layout", "pole_axis", "seam_direction")
-_PACKING = ("margin_method", "margin")
+_PACKING = (
+    *("keep_position", "pack_objects", "rotate_method", "margin_method", "margin", "texel_density"),
+    "correct_aspect",
+)
 
 
 def register() -> None:
@@ -209,4 +284,5 @@ def register() -> None:
 
 
 def unregister() -> None:
+    bridge.forget()
     bpy.utils.unregister_class(AUTHALIC_OT_unwrap)

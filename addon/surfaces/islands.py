@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Islands as shapes in the plane: texel density and bounding boxes. Plain numpy, no bpy."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,23 +11,65 @@ from .arrays import Floats, Integers
 
 # Angles tried at a time, and directions in which the outermost points stand for an outline.
 _TURNS, _DIRECTIONS = 60, 120
+# Below this correlation of two sets of points no angle fits better than others.
+_NO_TURN = 1e-6
 
 
 @dataclass
 class PlanarIsland:
-    """A map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3)."""
+    """A map `uv` (n, 2) of the triangles `faces` (m, 3) between `points` (n, 3).
+
+    `density` (m,), if there is one, says how much more area in the map each triangle is to get than its area
+    asks for.
+    """
 
     points: Floats
     faces: Integers
     uv: Floats
+    density: Floats | None
+
+    def wanted_areas(self, areas: Floats) -> Floats:
+        """The shares (m,) of the map that triangles with some areas (m,) are to get."""
+        return areas if self.density is None else areas * self.density
 
 
 def scale_to_one_density(islands: Sequence[PlanarIsland]) -> None:
-    """Scales islands so that the UV area of each is its share of the whole surface's area."""
-    areas = [triangulation.areas(island.points[island.faces]).sum() for island in islands]
+    """Scales islands so that the UV area of each is its share of the whole surface's area, by density."""
+    areas = np.array([_area(island) for island in islands])
+    total = areas.sum()
     for island, area in zip(islands, areas, strict=True):
         uv_area = np.abs(triangulation.signed_areas(island.uv[island.faces])).sum()
-        island.uv *= np.sqrt(area / sum(areas) / uv_area)
+        island.uv = island.uv * np.sqrt(area / total / uv_area)
+
+
+def _area(island: PlanarIsland) -> float:
+    return float(island.wanted_areas(triangulation.areas(island.points[island.faces])).sum())
+
+
+def density(islands: Sequence[PlanarIsland]) -> float:
+    """Lengths in the maps of islands over those on their surfaces, where the density is 1."""
+    area = sum(np.abs(triangulation.signed_areas(island.uv[island.faces])).sum() for island in islands)
+    return float(np.sqrt(area / sum(map(_area, islands))))
+
+
+def laid_over(triangles: Floats, others: Floats) -> Callable[[Floats], Floats] | None:
+    """The similarity that lays triangles (t, 3, 2) over others (t, 3, 2), as a function of points (n, 2).
+
+    It keeps the area and the mean of the others, and mirrors nothing. None if either have no area, or are not
+    finite.
+    """
+    area, wanted_area = (np.abs(triangulation.signed_areas(each)).sum() for each in (triangles, others))
+    if not (np.isfinite(wanted_area) and area > 0 and wanted_area > 0):
+        return None
+    center, other_center = triangles.mean(axis=(0, 1)), others.mean(axis=(0, 1))
+    own, wanted = (
+        (each - middle).reshape(-1, 2) for each, middle in ((triangles, center), (others, other_center))
+    )
+    # points as complex numbers: the turn that makes the sum of products real
+    products = np.sum((own[:, 0] - 1j * own[:, 1]) * (wanted[:, 0] + 1j * wanted[:, 1]))
+    is_turned = abs(products) > _NO_TURN * np.linalg.norm(own) * np.linalg.norm(wanted)
+    angle, scale = float(np.angle(products)) if is_turned else 0.0, np.sqrt(wanted_area / area)
+    return lambda points: scale * _turned(points - center, angle) + other_center
 
 
 def box(uv: Floats) -> Floats:

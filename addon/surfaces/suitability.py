@@ -9,8 +9,6 @@ import numpy as np
 from .. import messages
 from .arrays import Integers
 
-PINNED = "has pinned UVs, which would have to move; unpin them first"
-"""Why an island with pinned UVs is not unwrapped."""
 # What cuts open whatever can be cut open.
 _AUTOMATIC = "set Seams to Automatic"
 

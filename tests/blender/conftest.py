@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import bpy
 import pytest
-from installed import MODULE
+from installed import MODULE, part
 
 _STATUS = pytest.StashKey[int]()
 
@@ -52,7 +52,7 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 @pytest.fixture(autouse=True)
 def empty_file(extension: str) -> None:
-    """A file without objects for every test, and undo that starts there."""
+    """A file without objects for every test, undo that starts there, and no maps of earlier tests."""
     for obj in list(bpy.context.view_layer.objects):
         if obj.mode != "OBJECT":
             bpy.context.view_layer.objects.active = obj
@@ -60,3 +60,4 @@ def empty_file(extension: str) -> None:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if MODULE not in bpy.context.preferences.addons:
         bpy.ops.preferences.addon_enable(module=MODULE)
+    part("bridge").forget()

@@ -131,19 +131,6 @@ def test_two_objects() -> None:
         assert_cut_as_marked(obj)
 
 
-@pytest.mark.usefixtures("quick")
-def test_pinned_parts_are_left_alone(capfd: pytest.CaptureFixture[str]) -> None:
-    parts = [meshes.ring(n=6), meshes.ring((4, 0, 0), n=6)]
-    obj = meshes.add(*meshes.together(*parts), "Mixed")
-    obj.data.uv_layers.new(name="UVMap")
-    obj.data.attributes.new(".pn.UVMap", "BOOLEAN", "CORNER").data[150].value = True
-    before = meshes.uv(obj)
-    assert unwrap(seams="AUTOMATIC") == {"FINISHED"}
-    assert (meshes.uv(obj)[144:] == before[144:]).all()
-    assert "Mixed at face 36: has pinned UVs" in capfd.readouterr().out
-    assert max(vertex for pair in marked(obj) for vertex in pair) < 36
-
-
 def test_refusals_offer_automatic_seams() -> None:
     meshes.torus()
     with pytest.raises(RuntimeError, match="has a handle, which Seams set to Automatic cuts open"):
@@ -208,7 +195,7 @@ def test_a_packer_that_fails_changes_nothing(monkeypatch: pytest.MonkeyPatch) ->
     def fail(*_: Any) -> None:
         raise RuntimeError("no room")
 
-    monkeypatch.setattr(part("jobs.unwrap"), "pack", fail)
+    monkeypatch.setattr(part("bridge.placement"), "_pack", fail)
     with pytest.raises(RuntimeError, match="no room"):
         unwrap(seams="AUTOMATIC")
     assert not marked(obj)

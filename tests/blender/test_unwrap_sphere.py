@@ -321,8 +321,8 @@ def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache: dict[float, Any] = {}
     last: list[Any] = []
 
-    def remembered(whole: Any, solver: Any, progress: Callable[[float, str], Any]) -> Any:
-        last[:] = [cache.get(solver.angle_weight) or bridge_map(whole, solver, progress)]
+    def remembered(whole: Any, solver: Any, *others: Any) -> Any:
+        last[:] = [cache.get(solver.angle_weight) or bridge_map(whole, solver, *others)]
         cache[solver.angle_weight] = last[0]
         return last[0]
 
@@ -333,7 +333,7 @@ def test_real_meshes(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             pytest.xfail(f"limbs one face wide: {found.refusals[0]}")
         assert not found.refusals
         (island,) = found.islands
-        assert not bridge.folds(island)
+        assert not part("bridge.figures").folds(island)
         ratios = meshes.uv_areas(island.uv[island.faces]) / meshes.surface_areas(island.points[island.faces])
         deviation = last[0][0].distortion.area_ratio_std
         assert (ratios > 0).all()

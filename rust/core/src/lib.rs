@@ -158,6 +158,7 @@ pub use hyperbolic::{
 pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, layout};
 pub use mesh::{Corner, Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
+pub use packing::{Island as PlanarIsland, Margin, PackOptions, Packing, Place, Rotation, pack};
 pub use registration::{
     Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,
     homotopy, register_disks, register_spheres,

@@ -10,6 +10,5 @@ pub use crate::mesh::{TriangleMesh, consistent, geometry};
 pub use crate::optimize::published::gradient_descent::{self, DescentOptions};
 pub use crate::optimize::published::nonlinear_cg::{self, CgOptions};
 pub use crate::optimize::published::{Energies, Objective, Stopping};
-pub use crate::packing::{Island, PackOptions, Packing, Place, pack};
 pub use crate::sparse::Laplacian;
 pub use crate::vector::Vector3;

@@ -18,6 +18,7 @@ __all__ = [
     "HyperbolicStructure",
     "Layout",
     "MeshError",
+    "Packing",
     "Pants",
     "Patch",
     "Refinement",
@@ -36,6 +37,7 @@ __all__ = [
     "distortions",
     "homotopy",
     "hyperbolic_structure",
+    "pack",
     "register_disks",
     "register_hyperbolic",
     "register_spheres",
@@ -284,6 +286,17 @@ class Unwrap:
     def seconds(self) -> float: ...
 
 @final
+class Packing:
+    @property
+    def uv(self) -> _Reals: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def angles(self) -> _Reals: ...
+    @property
+    def seconds(self) -> float: ...
+
+@final
 class Registration:
     @property
     def positions(self) -> _Reals: ...
@@ -517,6 +530,17 @@ def unwrap(
     rotate: bool = True,
     progress: _Progress | None = None,
 ) -> Unwrap: ...
+def pack(
+    uv: ArrayLike,
+    faces: ArrayLike,
+    island_of: ArrayLike,
+    *,
+    margin: float = 0.002,
+    margin_unit: Literal["square", "islands"] = "square",
+    rotate: bool | Literal["cardinal"] = True,
+    aspect: float = 1.0,
+    progress: _Progress | None = None,
+) -> Packing: ...
 def register_disks(
     source: _Surface,
     target: _Surface,

@@ -10,6 +10,7 @@ mod hessian;
 mod indices;
 mod layout;
 mod options;
+mod packing;
 mod registration;
 mod run;
 mod seams;
@@ -39,6 +40,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<untangle::Untangled>()?;
     module.add_class::<seams::Seams>()?;
     module.add_class::<seams::Unwrap>()?;
+    module.add_class::<packing::Packing>()?;
     module.add_function(wrap_pyfunction!(surface::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortions, module)?)?;
@@ -49,6 +51,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(untangle::untangle, module)?)?;
     module.add_function(wrap_pyfunction!(seams::seams, module)?)?;
     module.add_function(wrap_pyfunction!(seams::unwrap, module)?)?;
+    module.add_function(wrap_pyfunction!(packing::pack, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_disks, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_spheres, module)?)?;
     module.add_function(wrap_pyfunction!(registration::register_hyperbolic, module)?)?;

@@ -10,19 +10,24 @@ pub(super) fn turned(point: Point, [cos, sin]: [f64; 2]) -> Point {
     [cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]]
 }
 
+/// The point of a plane in which lengths count, in the square of a texture whose width is `aspect` times its height.
+pub(super) fn flattened(point: Point, aspect: f64) -> Point {
+    [point[0] / aspect, point[1]]
+}
+
 /// Cosine and sine.
 pub(super) fn direction(angle: f64) -> [f64; 2] {
     [angle.cos(), angle.sin()]
 }
 
-/// The lowest and the highest coordinates of points turned by an angle; zeros without points.
-pub(super) fn turned_box(points: &[Point], angle: f64) -> [Point; 2] {
+/// The lowest and the highest coordinates of points turned by an angle, then flattened; zeros without points.
+pub(super) fn turned_box(points: &[Point], angle: f64, aspect: f64) -> [Point; 2] {
     if points.is_empty() {
         return [[0.0; 2]; 2];
     }
     let direction = direction(angle);
     let mut corners = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for point in points.iter().map(|&point| turned(point, direction)) {
+    for point in points.iter().map(|&point| flattened(turned(point, direction), aspect)) {
         for axis in 0..2 {
             corners[0][axis] = corners[0][axis].min(point[axis]);
             corners[1][axis] = corners[1][axis].max(point[axis]);
@@ -31,38 +36,38 @@ pub(super) fn turned_box(points: &[Point], angle: f64) -> [Point; 2] {
     corners
 }
 
-/// Width and height of points turned by an angle.
-pub(super) fn turned_size(points: &[Point], angle: f64) -> Point {
-    let [low, high] = turned_box(points, angle);
+/// Width and height of points turned by an angle, then flattened.
+pub(super) fn turned_size(points: &[Point], angle: f64, aspect: f64) -> Point {
+    let [low, high] = turned_box(points, angle, aspect);
     [high[0] - low[0], high[1] - low[1]]
 }
 
 /// `n` angles all around, the one of the smallest bounding box first.
 pub(super) fn angles_around(hull: &[Point], n: usize) -> Vec<f64> {
     let first = least(&flush_angles(hull), |angle| {
-        let [width, height] = turned_size(hull, angle);
+        let [width, height] = turned_size(hull, angle, 1.0);
         width * height
     });
     (0..n).map(|k| first + TAU * k as f64 / n as f64).collect()
 }
 
-/// The angle at which the smallest upright square holds the hull.
+/// The angle at which the smallest upright square holds the flattened hull.
 ///
 /// Between two angles at which an edge lies flush with the square, width and height are A cos θ + B sin θ and each has
 /// its least value at an end; their maximum may have its least value also where they are equal.
-pub(super) fn square_angle(hull: &[Point]) -> f64 {
+pub(super) fn square_angle(hull: &[Point], aspect: f64) -> f64 {
     let flush = flush_angles(hull);
     let ends = flush.iter().skip(1).copied().chain([FRAC_PI_2 + flush[0]]);
     let equal: Vec<f64> =
-        flush.iter().zip(ends).filter_map(|(&from, to)| equal_sides(hull, from, to)).collect();
+        flush.iter().zip(ends).filter_map(|(&from, to)| equal_sides(hull, aspect, from, to)).collect();
     least(&[flush, equal].concat(), |angle| {
-        let [width, height] = turned_size(hull, angle);
+        let [width, height] = turned_size(hull, angle, aspect);
         width.max(height)
     })
 }
 
-/// The angle between two neighboring flush angles at which width and height are equal.
-fn equal_sides(hull: &[Point], from: f64, to: f64) -> Option<f64> {
+/// The angle between two neighboring flush angles at which width and height of the flattened hull are equal.
+fn equal_sides(hull: &[Point], aspect: f64, from: f64, to: f64) -> Option<f64> {
     // the corners that touch the box are the same all the way
     let middle = 0.5 * (from + to);
     let along = |angle: f64| {
@@ -72,8 +77,8 @@ fn equal_sides(hull: &[Point], from: f64, to: f64) -> Option<f64> {
         let [low, high] = [hull.iter().min_by(by_height)?, hull.iter().max_by(by_height)?];
         Some([high[0] - low[0], high[1] - low[1]])
     };
-    let [across, upward] = [along(-middle)?, along(FRAC_PI_2 - middle)?];
-    // width = cos θ across₀ − sin θ across₁ = height = sin θ upward₀ + cos θ upward₁
+    let [across, upward] = [along(-middle)?.map(|x| x / aspect), along(FRAC_PI_2 - middle)?];
+    // width / aspect = cos θ across₀ − sin θ across₁ = height = sin θ upward₀ + cos θ upward₁
     let angle = (across[0] - upward[1]).atan2(across[1] + upward[0]);
     (-2..=2).map(|k| angle + f64::from(k) * 2.0 * FRAC_PI_2).find(|angle| (from..=to).contains(angle))
 }
@@ -110,10 +115,10 @@ mod tests {
 
     #[test]
     fn no_sampled_angle_has_a_smaller_square() {
-        for seed in 0..20 {
+        for (seed, aspect) in (0..20).zip([1.0, 2.0, 0.3].into_iter().cycle()) {
             let hull = scattered(seed);
-            let side = |angle: f64| turned_size(&hull, angle).into_iter().fold(0.0, f64::max);
-            let best = side(square_angle(&hull));
+            let side = |angle: f64| turned_size(&hull, angle, aspect).into_iter().fold(0.0, f64::max);
+            let best = side(square_angle(&hull, aspect));
             let sampled = (0..9000).map(|k| side(f64::from(k) * 1e-4 * TAU)).fold(f64::INFINITY, f64::min);
             assert!(best <= sampled + 1e-12 && best > sampled - 1e-3, "{seed}: {best} {sampled}");
         }
@@ -121,7 +126,8 @@ mod tests {
 
     #[test]
     fn the_square_of_a_stick_stands_around_its_diagonal() {
-        let side = turned_size(&[[0.0, 0.0], [1.0, 0.0]], square_angle(&[[0.0, 0.0], [1.0, 0.0]]));
+        let stick = [[0.0, 0.0], [1.0, 0.0]];
+        let side = turned_size(&stick, square_angle(&stick, 1.0), 1.0);
         assert!((side[0] - 0.5_f64.sqrt()).abs() < 1e-12 && (side[1] - side[0]).abs() < 1e-12);
     }
 
@@ -129,7 +135,7 @@ mod tests {
     fn the_first_angle_has_the_smallest_box() {
         let [cos, sin] = direction(0.3);
         let hull = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(|point| turned(point, [cos, sin]));
-        let size = turned_size(&hull, angles_around(&hull, 4)[0]);
+        let size = turned_size(&hull, angles_around(&hull, 4)[0], 1.0);
         assert!((size[0] * size[1] - 3.0).abs() < 1e-12);
     }
 }

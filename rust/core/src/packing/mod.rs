@@ -19,6 +19,7 @@
 
 mod angles;
 mod atlas;
+mod margin;
 mod mask;
 mod outline;
 mod placement;
@@ -30,7 +31,8 @@ use std::f64::consts::FRAC_PI_2;
 use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::parallel;
-use angles::{angles_around, direction, square_angle, turned, turned_box, turned_size};
+use angles::{angles_around, direction, flattened, square_angle, turned, turned_box, turned_size};
+pub use margin::Margin;
 pub use outline::Island;
 use outline::{Outline, Point};
 use search::{Arrangement, MESSAGE, Placed, Task, smallest_square};
@@ -47,19 +49,32 @@ const FIRST_SHARE: f64 = 0.45;
 /// Options of [`pack`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PackOptions {
-    /// The least distance between islands, and to the border of the square, in units of the square.
-    pub margin: f64,
+    /// The least distance between islands, and to the border of the square.
+    pub margin: Margin,
     /// Whether islands may be turned.
-    pub rotate: bool,
+    pub rotation: Rotation,
+    /// Width over height of the texture that the square stands for: islands keep their shapes on it.
+    pub aspect: f64,
+}
+
+/// By which angles islands may be turned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rotation {
+    /// None.
+    Fixed,
+    /// Right angles.
+    Cardinal,
+    /// Any.
+    Free,
 }
 
 impl Default for PackOptions {
     fn default() -> Self {
-        Self { margin: 0.002, rotate: true }
+        Self { margin: Margin::OfSquare(0.002), rotation: Rotation::Free, aspect: 1.0 }
     }
 }
 
-/// Where an island goes: turned about the origin, then scaled by the common scale, then moved.
+/// Where an island goes: turned about the origin, then scaled, then moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The angle, counterclockwise.
@@ -71,8 +86,10 @@ pub struct Place {
 /// Where all islands go.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packing {
-    /// The common scale.
+    /// The common scale, upward.
     pub scale: f64,
+    /// Width over height of the texture: the scale to the right is the common one divided by it.
+    pub aspect: f64,
     /// The places of the islands, in their order.
     pub places: Vec<Place>,
 }
@@ -80,13 +97,13 @@ pub struct Packing {
 impl Packing {
     /// Islands that stay where they are.
     pub(crate) fn unmoved(islands: usize) -> Self {
-        Self { scale: 1.0, places: vec![Place { angle: 0.0, offset: [0.0; 2] }; islands] }
+        Self { scale: 1.0, aspect: 1.0, places: vec![Place { angle: 0.0, offset: [0.0; 2] }; islands] }
     }
 
     /// Where a point of an island goes.
     pub fn apply(&self, island: usize, point: [f64; 2]) -> [f64; 2] {
         let Place { angle, offset } = self.places[island];
-        let [x, y] = turned(point, direction(angle));
+        let [x, y] = flattened(turned(point, direction(angle)), self.aspect);
         [self.scale * x + offset[0], self.scale * y + offset[1]]
     }
 }
@@ -104,7 +121,7 @@ pub fn pack(
 ) -> Result<Packing, Error> {
     check(islands, options)?;
     if islands.is_empty() {
-        return Ok(Packing { scale: 1.0, places: Vec::new() });
+        return Ok(Packing { scale: 1.0, aspect: options.aspect, places: Vec::new() });
     }
     // 1. Outlines and angles.
     let outlines = outlines(islands, &Watch::new(observer, 0.0, MESSAGE))?;
@@ -115,22 +132,23 @@ pub fn pack(
     let angles =
         parallel::tasks(islands.len(), |k| tried_angles(&outlines[k].hull, outlines[k].area / area, options));
     // 2. The smallest square that holds the islands.
-    let task = Task { outlines: &outlines, angles: &angles, margin: options.margin };
+    let task = Task { outlines: &outlines, angles: &angles, margin: options.margin, aspect: options.aspect };
     let arrangement = if let [outline] = &outlines[..] {
         alone(outline, options)
     } else {
-        parallel::install(|| smallest_square(&task, first_side(&task, area), observer))?
+        parallel::install(|| smallest_square(&task, first_side(&task, area / options.aspect), observer))?
     };
     // 3. That square, within the margin, in the unit square.
-    Ok(in_unit_square(&arrangement, options.margin))
+    Ok(in_unit_square(&arrangement, options))
 }
 
 fn check(islands: &[Island<'_>], options: &PackOptions) -> Result<(), Error> {
-    if !(0.0..0.5).contains(&options.margin) {
+    options.margin.check()?;
+    if !(options.aspect > 0.0 && options.aspect.is_finite()) {
         return Err(Error::InvalidOption {
-            name: "margin",
-            found: options.margin.to_string(),
-            expected: "a number ≥ 0 and < .5".into(),
+            name: "aspect",
+            found: options.aspect.to_string(),
+            expected: "a finite number > 0".into(),
         });
     }
     let is_finite = |island: &Island<'_>| island.points.as_flattened().iter().all(|x| x.is_finite());
@@ -153,13 +171,15 @@ fn outlines(islands: &[Island<'_>], watch: &Watch<'_>) -> Result<Vec<Outline>, E
 
 /// The angles at which an island is tried that has a share of the area of all.
 fn tried_angles(hull: &[Point], share: f64, options: &PackOptions) -> Vec<f64> {
-    if !options.rotate {
-        return vec![0.0];
+    match options.rotation {
+        Rotation::Fixed => return vec![0.0],
+        Rotation::Cardinal => return (0..4).map(|k| f64::from(k) * FRAC_PI_2).collect(),
+        Rotation::Free => {}
     }
     let n = ANGLES.iter().find(|&&(least, _)| share >= least).map_or(1, |&(_, n)| n);
     let mut angles = angles_around(hull, n);
     if share >= LARGE {
-        let upright = square_angle(hull);
+        let upright = square_angle(hull, options.aspect);
         angles.extend((0..4).map(|k| upright + f64::from(k) * FRAC_PI_2));
     }
     angles
@@ -168,31 +188,42 @@ fn tried_angles(hull: &[Point], share: f64, options: &PackOptions) -> Vec<f64> {
 /// The side of the square to begin with: no smaller than one that holds the largest island.
 fn first_side(task: &Task<'_>, area: f64) -> f64 {
     let squares = task.outlines.iter().zip(task.angles).map(|(outline, angles)| {
-        let sides = angles.iter().map(|&angle| longer_side(&outline.hull, angle));
+        let sides = angles.iter().map(|&angle| longer_side(&outline.hull, angle, task.aspect));
         sides.fold(f64::INFINITY, f64::min)
     });
     squares.fold((area / FIRST_SHARE).sqrt(), f64::max) * (1.0 + 1e-9)
 }
 
-fn longer_side(hull: &[Point], angle: f64) -> f64 {
-    let [width, height] = turned_size(hull, angle);
+fn longer_side(hull: &[Point], angle: f64, aspect: f64) -> f64 {
+    let [width, height] = turned_size(hull, angle, aspect);
     width.max(height)
 }
 
 /// The smallest square that holds one island.
 fn alone(outline: &Outline, options: &PackOptions) -> Arrangement {
-    let angle = if options.rotate { square_angle(&outline.hull) } else { 0.0 };
-    let [corner, _] = turned_box(&outline.hull, angle);
+    let angle = match options.rotation {
+        Rotation::Fixed => 0.0,
+        Rotation::Cardinal => [0.0, FRAC_PI_2]
+            .into_iter()
+            .min_by(|&a, &b| {
+                let side = |angle| longer_side(&outline.hull, angle, options.aspect);
+                side(a).total_cmp(&side(b))
+            })
+            .unwrap_or(0.0),
+        Rotation::Free => square_angle(&outline.hull, options.aspect),
+    };
+    let [corner, _] = turned_box(&outline.hull, angle, options.aspect);
     let place = Placed { angle, offset: corner.map(|x| -x) };
-    Arrangement { side: longer_side(&outline.hull, angle), places: vec![place] }
+    Arrangement { side: longer_side(&outline.hull, angle, options.aspect), places: vec![place] }
 }
 
 /// An arrangement scaled into the unit square without a margin around it.
-fn in_unit_square(arrangement: &Arrangement, margin: f64) -> Packing {
-    let scale = (1.0 - 2.0 * margin) / arrangement.side;
+fn in_unit_square(arrangement: &Arrangement, &PackOptions { margin, aspect, .. }: &PackOptions) -> Packing {
+    let gap = margin.gap(arrangement.side);
+    let scale = 1.0 / (arrangement.side + 2.0 * gap);
     let places = arrangement.places.iter().map(|&Placed { angle, offset }| {
-        let offset = offset.map(|x| margin + scale * x);
+        let offset = offset.map(|x| scale * (gap + x));
         Place { angle, offset }
     });
-    Packing { scale, places: places.collect() }
+    Packing { scale, aspect, places: places.collect() }
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! An island turned by one angle, as cells of a grid.
 
-use super::angles::{direction, turned, turned_box};
+use super::angles::{direction, flattened, turned, turned_box};
 use super::atlas::{Grid, Probes};
 use super::mask::Mask;
 use super::outline::{Outline, Point};
 
-/// An island turned by one angle, its bounding box moved to the origin.
+/// An island turned by one angle and flattened, its bounding box moved to the origin.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pose {
     /// The angle, counterclockwise.
@@ -24,9 +24,10 @@ pub(super) struct Pose {
 }
 
 impl Pose {
-    /// The cells of an island that keeps a gap around it; none where the island is larger than the grid.
-    pub fn new(outline: &Outline, angle: f64, gap: f64, grid: Grid) -> Self {
-        let [corner, end] = turned_box(&outline.hull, angle);
+    /// The cells of an island that keeps a gap around it; none where the island is larger than the grid. Turned, it is
+    /// flattened by the `aspect` of the texture.
+    pub fn new(outline: &Outline, angle: f64, aspect: f64, gap: f64, grid: Grid) -> Self {
+        let [corner, end] = turned_box(&outline.hull, angle, aspect);
         let size = [end[0] - corner[0], end[1] - corner[1]];
         let cells = size.map(|length| (length / grid.cell) as usize + 1);
         let pose = Self { angle, corner, size, cells, ..Self::default() };
@@ -35,7 +36,7 @@ impl Pose {
         }
         let direction = direction(angle);
         let to_cells = |point| {
-            let point = turned(point, direction);
+            let point = flattened(turned(point, direction), aspect);
             [(point[0] - corner[0]) / grid.cell, (point[1] - corner[1]) / grid.cell]
         };
         let edges: Vec<_> = outline.edges.iter().map(|edge| edge.map(to_cells)).collect();

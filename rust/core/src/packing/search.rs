@@ -3,6 +3,7 @@
 //! and less room.
 
 use super::atlas::Grid;
+use super::margin::Margin;
 use super::outline::{Outline, Point};
 use super::placement::{Layout, Plan, Rule, place_all};
 use super::pose::Pose;
@@ -65,12 +66,12 @@ const SHUFFLE: f64 = 1.5;
 /// How often a plan holds the first island in one pose.
 const FIRST_POSE_SHARE: f64 = 0.7;
 
-/// An island turned by `angle`, then moved so that the corner of its bounding box lies in `corner`.
+/// An island turned by `angle`, flattened, then moved so that the corner of its bounding box lies in `corner`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     /// The angle, counterclockwise.
     pub angle: f64,
-    /// What is added to the turned points.
+    /// What is added to the points.
     pub offset: Point,
 }
 
@@ -91,7 +92,9 @@ pub(super) struct Task<'a> {
     /// The angles that are tried of each.
     pub angles: &'a [Vec<f64>],
     /// The distance between islands, and to the border of the unit square.
-    pub margin: f64,
+    pub margin: Margin,
+    /// Width over height of the texture, by which turned islands are flattened.
+    pub aspect: f64,
 }
 
 /// A square and the plan that led to it.
@@ -127,7 +130,7 @@ fn first_square(task: &Task<'_>, side: f64, observer: &mut dyn Observer) -> Resu
     }
     Err(Error::InvalidOption {
         name: "margin",
-        found: task.margin.to_string(),
+        found: task.margin.value().to_string(),
         expected: format!("small enough for {} islands", task.outlines.len()),
     })
 }
@@ -187,7 +190,7 @@ fn refined(
 /// The islands in all poses.
 fn all_poses(task: &Task<'_>, grid: Grid, watch: &Watch<'_>) -> Result<Vec<Vec<Pose>>, Error> {
     // what is left of the unit square within the margin is the whole grid at the most
-    let gap = task.margin * grid.length() / (1.0 - 2.0 * task.margin);
+    let gap = task.margin.gap(grid.length());
     let pairs: Vec<(&Outline, f64)> = task
         .outlines
         .iter()
@@ -196,7 +199,7 @@ fn all_poses(task: &Task<'_>, grid: Grid, watch: &Watch<'_>) -> Result<Vec<Vec<P
         .collect();
     let poses = parallel::tasks(pairs.len(), |k| {
         let (outline, angle) = pairs[k];
-        if watch.goes_on() { Pose::new(outline, angle, gap, grid) } else { Pose::default() }
+        if watch.goes_on() { Pose::new(outline, angle, task.aspect, gap, grid) } else { Pose::default() }
     });
     if !watch.goes_on() {
         return Err(Error::CancelledEarly);

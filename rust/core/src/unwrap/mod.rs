@@ -18,7 +18,7 @@ use crate::arrays::from_rows;
 use crate::control::{Observer, Phase, Status};
 use crate::error::Error;
 use crate::mesh::{Face, Surface, Vertex};
-use crate::packing::{self, PackOptions, Packing, pack};
+use crate::packing::{self, Margin, PackOptions, Packing, Rotation, pack};
 use crate::parallel;
 use crate::seams::{Island, MapFigures, SeamOptions, figures, seams_and_maps};
 use islands::{CutSurface, along};
@@ -49,9 +49,8 @@ pub struct UnwrapOptions<'a> {
 
 impl Default for UnwrapOptions<'_> {
     fn default() -> Self {
-        let PackOptions { margin, rotate } = PackOptions::default();
         let seams = UnwrapSeams::Automatic(SeamOptions::default());
-        Self { seams, overlap: false, pack: true, margin, rotate }
+        Self { seams, overlap: false, pack: true, margin: 0.002, rotate: true }
     }
 }
 
@@ -186,7 +185,8 @@ fn places(
         .iter()
         .map(|island| packing::Island { points: &island.map.uv, faces: island.map.mesh.faces() })
         .collect();
-    pack(&shapes, &PackOptions { margin, rotate }, observer)
+    let rotation = if rotate { Rotation::Free } else { Rotation::Fixed };
+    pack(&shapes, &PackOptions { margin: Margin::OfSquare(margin), rotation, aspect: 1.0 }, observer)
 }
 
 /// The vertices of an island's face in the order of the corners of the surface's face.

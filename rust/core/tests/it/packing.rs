@@ -2,11 +2,12 @@
 //! Packing: every pair of islands is checked edge by edge.
 
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::time::{Duration, Instant};
 
-use authalic::testing::{Island, PackOptions, Packing, pack};
-use authalic::{Error, ErrorKind, Silent, Vertex};
+use authalic::{
+    Error, ErrorKind, Margin, PackOptions, Packing, PlanarIsland as Island, Rotation, Silent, Vertex, pack,
+};
 
 use super::common::planar::side;
 use super::common::random::Random;
@@ -149,7 +150,9 @@ fn assert_apart(shapes: &[Shape], margin: f64, context: &str) {
 fn islands_lie_apart_in_the_square_and_fill_it() {
     for (n, share, margin) in [(1, 0.3, 0.002), (2, 0.4, 0.0), (7, 0.5, 0.002), (25, 0.5, 0.01)] {
         let shapes = mixed(n, 7 + n as u64);
-        let packing = packed(&shapes, &PackOptions { margin, rotate: true }).unwrap();
+        let packing =
+            packed(&shapes, &PackOptions { margin: Margin::OfSquare(margin), ..PackOptions::default() })
+                .unwrap();
         let placed = placed(&shapes, &packing);
         assert_apart(&placed, margin, &format!("{n} islands"));
         let covered: f64 = placed.iter().map(Shape::area).sum();
@@ -161,12 +164,28 @@ fn islands_lie_apart_in_the_square_and_fill_it() {
 
 #[test]
 fn equal_squares_fill_the_square() {
-    for rotate in [false, true] {
+    for rotation in [Rotation::Fixed, Rotation::Cardinal, Rotation::Free] {
         let shapes = vec![rectangle([1.0, 1.0], 0.0); 9];
-        let packing = packed(&shapes, &PackOptions { margin: 0.0, rotate }).unwrap();
+        let packing =
+            packed(&shapes, &PackOptions { margin: Margin::OfSquare(0.0), rotation, aspect: 1.0 }).unwrap();
         assert_apart(&placed(&shapes, &packing), 0.0, "squares");
         assert!(packing.scale > 0.98 / 3.0, "{}", packing.scale);
-        assert!(rotate || packing.places.iter().all(|place| place.angle == 0.0));
+        let is_allowed = |angle: f64| match rotation {
+            Rotation::Fixed => angle == 0.0,
+            Rotation::Cardinal => (angle / FRAC_PI_2).fract() == 0.0,
+            Rotation::Free => true,
+        };
+        assert!(packing.places.iter().all(|place| is_allowed(place.angle)));
+    }
+}
+
+#[test]
+fn a_margin_may_be_a_length_of_the_islands() {
+    for n in [1, 6] {
+        let shapes = vec![rectangle([1.0, 2.0], 0.0); n];
+        let options = PackOptions { margin: Margin::OfIslands(0.1), ..PackOptions::default() };
+        let packing = packed(&shapes, &options).unwrap();
+        assert_apart(&placed(&shapes, &packing), 0.1 * packing.scale, &format!("{n} rectangles"));
     }
 }
 
@@ -175,9 +194,40 @@ fn one_island_lies_in_the_smallest_square() {
     // the square around a rectangle that stands on its corner has the side (a + b)/√2, which is less than a for a > 2.4 b
     for (size, square) in [([1.0, 1.0], 1.0), ([1.0, 0.5], 1.0), ([1.0, 0.1], 1.1 * 0.5_f64.sqrt())] {
         let shape = [rectangle(size, 0.4)];
-        let packing = packed(&shape, &PackOptions { margin: 0.05, rotate: true }).unwrap();
+        let packing =
+            packed(&shape, &PackOptions { margin: Margin::OfSquare(0.05), ..PackOptions::default() })
+                .unwrap();
         assert!((packing.scale - 0.9 / square).abs() < 1e-12, "{size:?}: {}", packing.scale);
         assert_apart(&placed(&shape, &packing), 0.05, "one island");
+    }
+}
+
+#[test]
+fn islands_keep_their_shapes_on_a_wide_or_a_high_texture() {
+    for aspect in [2.0, 0.5] {
+        let options = PackOptions { margin: Margin::OfSquare(0.01), aspect, ..PackOptions::default() };
+        for shapes in [mixed(1, 5), mixed(9, 6)] {
+            let packing = packed(&shapes, &options).unwrap();
+            let placed = placed(&shapes, &packing);
+            assert_apart(&placed, 0.01, &format!("aspect {aspect}"));
+            for (shape, on_square) in shapes.iter().zip(&placed) {
+                let on_texture = on_square.points.iter().map(|&[u, v]| [aspect * u, v]).collect::<Vec<_>>();
+                for [a, b] in shape.outline() {
+                    let [before, after] =
+                        [&shape.points, &on_texture].map(|p| (p[b][0] - p[a][0]).hypot(p[b][1] - p[a][1]));
+                    assert!((after - packing.scale * before).abs() < 1e-12);
+                }
+            }
+        }
+        // twice as wide as high: two squares side by side
+        let squares = vec![rectangle([1.0, 1.0], 0.0); 2];
+        let packing = packed(
+            &squares,
+            &PackOptions { margin: Margin::OfSquare(0.0), aspect, ..PackOptions::default() },
+        )
+        .unwrap();
+        let best = if aspect > 1.0 { 1.0 } else { 0.5 };
+        assert!(packing.scale > 0.99 * best, "{aspect}: {}", packing.scale);
     }
 }
 
@@ -258,9 +308,17 @@ fn nothing_and_islands_without_faces_are_no_errors() {
 
 #[test]
 fn what_cannot_be_packed_is_refused() {
-    let kind =
-        |shapes: &[Shape], margin| packed(shapes, &PackOptions { margin, rotate: true }).unwrap_err().kind();
+    let kind = |shapes: &[Shape], margin| {
+        packed(shapes, &PackOptions { margin: Margin::OfSquare(margin), ..PackOptions::default() })
+            .unwrap_err()
+            .kind()
+    };
     let square = rectangle([1.0, 1.0], 0.0);
+    for aspect in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let options = PackOptions { aspect, ..PackOptions::default() };
+        let error = packed(std::slice::from_ref(&square), &options).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::InvalidOption);
+    }
     for margin in [-0.1, 0.5, f64::NAN] {
         assert_eq!(kind(std::slice::from_ref(&square), margin), ErrorKind::InvalidOption);
     }

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import authalic
 
-from ..surfaces import components, polygons, triangulation
+from ..surfaces import components, degenerate, polygons, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers, Singles
 from ..surfaces.surface import Surface
 from .results import Figures, Island, Measurement
@@ -137,10 +137,18 @@ def _figures(areas: Floats, ratios: Floats, folded: Booleans, angles: Floats, wi
 
 
 def _vertices(surfaces: Sequence[Surface]) -> Integers:
-    """The vertices of the triangles of all surfaces, (t, 3), numbered on from one surface to the next."""
+    """The vertices of the triangles of all surfaces, (t, 3), numbered on from one surface to the next.
+
+    Duplicate faces have vertices of their own: they are no part of the island that they lie on.
+    """
     starts = np.cumsum([0, *(len(surface.positions) for surface in surfaces)])
-    numbered = zip(surfaces, starts[:-1], strict=True)
-    return np.concatenate([surface.triangles + start for surface, start in numbered])
+    numbered = []
+    for surface, start in zip(surfaces, starts[:-1], strict=True):
+        copy = np.zeros(surface.polygon_count, np.int64)
+        duplicates = degenerate.duplicates_of(surface)
+        copy[duplicates] = 1 + np.arange(len(duplicates))
+        numbered.append(surface.triangles + start + copy[surface.polygons, None] * starts[-1])
+    return np.concatenate(numbered)
 
 
 def _spread(good: Booleans, values: NDArray[Any]) -> NDArray[Any]:

@@ -62,7 +62,7 @@ def collapsed(surface: Surface, seams: Integers) -> Collapsed:
         welded = replace(
             surface, triangles=lowest[surface.triangles], corner_vertex=lowest[surface.corner_vertex]
         )
-        duplicates = np.setdiff1d(_duplicates(welded), no_area)
+        duplicates = np.setdiff1d(duplicates_of(welded), no_area)
         # 2. Polygons whose triangles would seem to branch, or have no area beside others, divided.
         mesh = triangulation.sound(welded.without(duplicates), torn)
         stands_for = np.concatenate([lowest, np.arange(count, len(mesh.positions))])
@@ -82,6 +82,11 @@ def collapsed(surface: Surface, seams: Integers) -> Collapsed:
         duplicates=duplicates,
         slivers=triangulation.flat(positions, mesh.triangles),
     )
+
+
+def without_area(surface: Surface) -> Integers:
+    """The polygons of a surface that have no area, ascending."""
+    return _missing(surface, surface.polygons[~triangulation.flat(surface.positions, surface.triangles)])
 
 
 def _missing(surface: Surface, polygons: Integers) -> Integers:
@@ -128,7 +133,7 @@ def _edges_among(pairs: Integers, mesh: Triangles) -> Integers:
     return edges
 
 
-def _duplicates(surface: Surface) -> Integers:
+def duplicates_of(surface: Surface) -> Integers:
     """The polygons of a surface on the vertices of one before, ascending."""
     polygons = surface.chosen
     # Sums of random numbers are the same for the same vertices, whatever their order, and for no others.

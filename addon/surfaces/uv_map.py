@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import triangulation
+from . import degenerate, triangulation
 from .arrays import Booleans, Floats, Integers, Singles
 from .surface import Surface
 
@@ -32,7 +32,12 @@ class UvMap:
 
 
 def joined(surface: Surface) -> UvMap:
-    """The UV map of a surface with UVs, its triangles joined."""
+    """The UV map of a surface with UVs, its triangles joined.
+
+    Faces without area and duplicate faces are left out.
+    """
+    surface = surface.without(degenerate.without_area(surface))
+    surface = surface.without(degenerate.duplicates_of(surface))
     mesh = triangulation.sound(surface)
     image = _corner_uvs(surface, mesh)
     first, faces = triangulation.welded(mesh.triangles, image)

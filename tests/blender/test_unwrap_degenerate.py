@@ -216,6 +216,32 @@ def test_a_duplicate_face_lies_on_the_first(face: Sequence[int], capfd: pytest.C
     assert "1 duplicate face, put over the first ones" in said and "0 flips" in said
 
 
+def test_a_duplicate_face_is_no_flip_for_measure(capfd: pytest.CaptureFixture[str]) -> None:
+    obj = sheet([], [(0, 1, 5, 4), (0, 1, 5, 4), (5, 6, 10, 9)])
+    assert unwrap() == {"FINISHED"}
+    assert bpy.ops.authalic.measure() == {"FINISHED"}
+    said = capfd.readouterr().out.splitlines()[-1]
+    assert "none flipped" in said and "100 %" in said
+    assert len(obj.data.polygons) == 12
+
+
+@pytest.mark.parametrize("face", [(0, 16, 1), (0, 1, 5, 4), (4, 5, 1, 0)])
+def test_bad_faces_do_not_keep_flips_from_being_fixed(
+    face: Sequence[int], capfd: pytest.CaptureFixture[str]
+) -> None:
+    obj = sheet([(0, 0, 0)], [face])
+    unwrap()
+    uv = meshes.uv(obj)
+    at = [loop.vertex_index == 10 for loop in obj.data.loops]
+    uv[at] += 0.6 * (uv[0] - uv[at][0])  # one inner vertex crosses over two others
+    meshes.set_uv(obj, uv)
+    corners = meshes.triangles(obj)[0][:18]
+    assert (meshes.uv_areas(meshes.uv(obj)[corners]) < 0).any()
+    assert bpy.ops.authalic.fix_flips() == {"FINISHED"}
+    assert (meshes.uv_areas(meshes.uv(obj)[corners]) > 0).all()
+    assert "Fixed" in capfd.readouterr().out
+
+
 # Edges of more than two faces, and one-sided strips
 
 

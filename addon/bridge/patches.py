@@ -89,6 +89,8 @@ class _Numbers:
 
     def _carried_by(self, corners: Integers) -> tuple[Integers, Integers]:
         """The mesh corners that some corners (l,), ascending, are hosts of, and the place of each host."""
+        if not len(self.hosts):
+            return self.carried, self.hosts
         first, last = np.searchsorted(self.hosts, [corners[0], corners[-1] + 1])
         hosts = self.hosts[first:last]
         places = np.searchsorted(corners, hosts)

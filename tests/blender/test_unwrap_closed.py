@@ -10,6 +10,7 @@ import meshes
 import numpy as np
 import pytest
 import shears
+from installed import part
 from meshes import MeshObject
 
 LAYOUTS = ("LAMBERT", "OCTAHEDRAL")
@@ -110,3 +111,20 @@ def test_a_sphere_that_is_asked_for_is_not_cut_open() -> None:
     meshes.add(*meshes.tetrahedron())
     with pytest.raises(RuntimeError, match="would fold over"):
         unwrap(domain="SPHERE")
+
+
+def test_esc_is_heard_while_seams_are_sought_in_place_of_a_layout() -> None:
+    obj = cylinder(256)
+    unwrap_job = part("jobs.unwrap")
+    job = unwrap_job.job(bpy.context, unwrap_job.Settings()).start()
+    while "seams" not in job.poll()[2]:
+        assert job.poll()[0], "the search is over before it could be cancelled"
+        time.sleep(0.02)
+    before, cancelled = meshes.uv(obj), time.perf_counter()
+    job.cancel()
+    with pytest.raises(part("jobs.job").Cancelled):
+        job.apply()
+    assert time.perf_counter() - cancelled < 0.2
+    job._thread.join(5)
+    assert not job._thread.is_alive()
+    assert (meshes.uv(obj) == before).all()

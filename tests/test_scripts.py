@@ -40,6 +40,7 @@ import bench.tables.stability
 import changes
 import demo.figures
 import demo.measure
+import manual
 import pythons
 import steps
 import windows
@@ -132,6 +133,7 @@ OF_THE_WHEEL = {"wheel", "types", "python", "extension"} | INSTALLED
     [
         ("README.md", {"python"}),
         ("docs/comparison.jpg", {"python"}),
+        ("docs/blender.md", {"python", "extension"} | IN_BLENDER),
         ("rust/core/src/disk/mod.rs", ALL),
         ("rust/core/README.md", ALL),
         ("rust/core/tests/it/disk.rs", {"rustfmt", "clippy", "rust"}),
@@ -578,3 +580,22 @@ def test_the_demo_draws_sphere_layouts_when_one_is_missing(tmp_path):
     maps = {"one": {"Lambert": arrays, "Octahedral": arrays}, "other": {"Lambert": arrays}}
     demo.figures.draw_sphere_layouts(maps, tmp_path / "layouts.png")
     assert (tmp_path / "layouts.png").stat().st_size > 0
+
+
+def test_the_manual_is_a_page_of_its_own():
+    page = manual.to_html(
+        "<!-- licence -->\n# A & B\n\n- [One](#part-one)\n- see\n  [far](far.md#x)\n\n## Part One\n"
+        "Text with `a < b`, *words* and\n**more** 2 * 3.\n\n"
+        "1. first\n2. second\n\n![picture](p.jpg)\n\n| a | b |\n|---|---|\n"
+        "| *c* | `d` |\n\n    code <x>\n"
+    )
+    for part in (
+        *('<h1 id="a--b">A &amp; B</h1>', '<ul><li><a href="#part-one">One</a></li><li>see far</li></ul>'),
+        '<h2 id="part-one">Part One</h2>\n<p>Text with <code>a &lt; b</code>, <i>words</i> and',
+        "<b>more</b> 2 * 3.</p>",
+        *("<ol><li>first</li><li>second</li></ol>", "<tr><th>a</th><th>b</th></tr><tr><td><i>c</i></td>"),
+        "<pre>code &lt;x&gt;</pre>",
+    ):
+        assert part in page, part
+    assert "licence" not in page
+    assert "picture" not in page

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only folder that imports the native library: functions on numpy arrays and plain data, no bpy."""
 
+from authalic import set_threads
+
 from ..surfaces.suitability import Unsuitable
 from .figures import measure
 from .flips import fix_flips
@@ -40,6 +42,7 @@ __all__ = (
     "place",
     "pull",
     "register",
+    "set_threads",
     "sphere_shape",
     "unwrap",
 )

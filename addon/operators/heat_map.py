@@ -29,8 +29,8 @@ _SHARE = 0.2
 
 Meshes = tuple[object, ...]
 """The objects with their UV maps and scales, a number for the state of all meshes, and the density."""
-Look = tuple[heat_map.Scale, float]
-"""The scale of the colors, and their opacity."""
+Look = tuple[heat_map.Scale, float, heat_map.Colors]
+"""The scale of the colors, their opacity, and the colors."""
 
 
 @dataclass
@@ -101,7 +101,7 @@ def _scale(obj: MeshObject) -> tuple[float, ...]:
 def _look(settings: Any) -> Look:
     is_area = settings.quantity == heat_map.AREA
     end = settings.area_end if is_area else settings.shear_end
-    return heat_map.Scale(settings.quantity, round(end, 4)), round(settings.opacity, 4)
+    return heat_map.Scale(settings.quantity, round(end, 4)), round(settings.opacity, 4), overlay.colors()
 
 
 def _start(context: bpy.types.Context, meshes: Meshes) -> None:
@@ -122,7 +122,7 @@ def _collect(measuring: Job[Any, mapping.HeatMap]) -> None:
 
 
 def _paint(map_: mapping.HeatMap, look: Look) -> None:
-    colors, (scale, alpha) = overlay.colors(), look
+    scale, alpha, colors = look
 
     def work(_progress: Any) -> list[overlay.Layer]:
         return [

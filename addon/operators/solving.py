@@ -25,7 +25,8 @@ _PRESETS = (
     ("CUSTOM", "Custom", "The values below", "NONE", 3),
     ("AUTHALIC", "Authalic", "The former name of Circle", "NONE", 0),
 )
-_SHOWN = _PRESETS[:4]
+SHOWN = _PRESETS[:4]
+"""The presets that are shown, as the items of an enumeration."""
 # A name of its own: within a class that has a method `solver`, Python 3.14 takes `solver` for that.
 _DEFAULT_WEIGHT = solver.PRESETS["EVEN"]
 
@@ -181,6 +182,6 @@ def _draw_presets(column: bpy.types.UILayout, properties: Any) -> None:
     """Two rows of buttons; none is pressed if the values belong to no preset."""
     grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     grid.use_property_split = False
-    for name, text, *_ in _SHOWN:
+    for name, text, *_ in SHOWN:
         is_sphere = name == "CIRCLE" and not hasattr(properties, "outline")
         grid.prop_enum(properties, "angle_preset", name, text="Areas Only" if is_sphere else text)

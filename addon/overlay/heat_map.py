@@ -30,6 +30,7 @@ class Layer(NamedTuple):
 
 _layers: list[Layer] = []
 _scale: Scale | None = None
+_colors = Colors()
 # The triangles ready to be drawn, in space and in the plane, by the names of their objects.
 _batches: dict[str, tuple[Any, Any]] = {}
 _handles: list[tuple[Any, Any]] = []
@@ -37,7 +38,13 @@ _handles: list[tuple[Any, Any]] = []
 
 def colors() -> Colors:
     """The colors in use."""
-    return Colors()
+    return _colors
+
+
+def use(chosen: Colors) -> None:
+    """Draws in other colors from now on; what is drawn already stays until it is shown again."""
+    global _colors
+    _colors = chosen
 
 
 def show(context: bpy.types.Context, layers: Sequence[Layer], scale: Scale | None) -> None:

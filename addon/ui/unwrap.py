@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels of the 3D view and the UV editor, and the entries in menus."""
+"""The sidebar panels of the 3D view and the UV editor."""
 
 from typing import Any
 
@@ -81,30 +81,6 @@ class AUTHALIC_PT_unwrap_image(_UnwrapPanel, bpy.types.Panel):
         return spaces.shows_uvs(context)
 
 
-def _draw_uv_menu(self: Any, _context: Any) -> None:
-    self.layout.separator()
-    self.layout.operator("authalic.unwrap")
-
-
-def _draw_tools_menu(self: Any, _context: Any) -> None:
-    self.layout.separator()
-    self.layout.operator("authalic.mark_seams")
-    self.layout.operator("authalic.fix_flips")
-
-
-def _draw_edge_menu(self: Any, _context: Any) -> None:
-    self.layout.separator()
-    self.layout.operator("authalic.mark_seams")
-
-
-def _draw_shape_key_menu(self: Any, _context: Any) -> None:
-    self.layout.separator()
-    self.layout.operator("authalic.sphere_shape_key", icon="SHAPEKEY_DATA")
-
-
-_MENUS: Any = bpy.types
-# The UV menus of the UV editor and of the 3D view.
-_TOOLS_MENUS = ("IMAGE_MT_uvs", "VIEW3D_MT_uv_map")
 _CLASSES = (
     AUTHALIC_PT_unwrap_view3d,
     AUTHALIC_PT_seams_view3d,
@@ -116,19 +92,8 @@ _CLASSES = (
 def register() -> None:
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
-    # This menu serves the UV editor and the 3D view.
-    _MENUS.IMAGE_MT_uvs_unwrap.append(_draw_uv_menu)
-    for menu in _TOOLS_MENUS:
-        getattr(_MENUS, menu).append(_draw_tools_menu)
-    _MENUS.VIEW3D_MT_edit_mesh_edges.append(_draw_edge_menu)
-    _MENUS.MESH_MT_shape_key_context_menu.append(_draw_shape_key_menu)
 
 
 def unregister() -> None:
-    _MENUS.MESH_MT_shape_key_context_menu.remove(_draw_shape_key_menu)
-    _MENUS.VIEW3D_MT_edit_mesh_edges.remove(_draw_edge_menu)
-    for menu in _TOOLS_MENUS:
-        getattr(_MENUS, menu).remove(_draw_tools_menu)
-    _MENUS.IMAGE_MT_uvs_unwrap.remove(_draw_uv_menu)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -19,6 +19,7 @@ RUST = ("rustfmt", "clippy", "rust", "rustdoc")
 EVERYTHING = ("environments", *RUST, "ruff", *BUILT)
 STRUCTURE = ("tests/test_architecture.py", "tests/test_docs.py")
 PROJECT = (*STRUCTURE, "tests/test_scripts.py")
+_OF_MANUAL = ("tests/blender/test_preferences.py",)
 
 
 def _whole(*steps: str) -> Selection:
@@ -50,6 +51,8 @@ _RULES: tuple[tuple[str, Selection], ...] = (
     ("scripts/build", {"ruff": (), "python": PROJECT}),
     ("scripts/demo", {"ruff": (), "python": PROJECT}),
     ("scripts/requirements/peer-*", {}),
+    # The manual, which the zip holds.
+    ("docs/blender.md", {"python": PROJECT, "extension": (), **dict.fromkeys(BLENDER, _OF_MANUAL)}),
     ("docs/*", {"python": PROJECT}),
     ("*.md", {"python": PROJECT}),
     ("*", _whole(*EVERYTHING)),

@@ -10,6 +10,7 @@ import sysconfig
 from pathlib import Path
 
 import environment
+import manual
 from environment import Environment
 from shell import DIST, OUT, ROOT, Unavailable, content_hash, files_below, run, say, version
 
@@ -56,7 +57,7 @@ def build_zip(wheel: Path, blender: Environment, log: Path | None = None) -> Pat
     """
     target = DIST / f"authalic-{version()}-{platform()}.zip"
     stamp = DIST / "extension.stamp"
-    wanted = content_hash([*files_below("addon"), wheel])
+    wanted = content_hash([*files_below("addon", "docs/blender.md", "scripts/lib/manual.py"), wheel])
     if not target.exists() or not stamp.exists() or stamp.read_text() != wanted:
         stamp.unlink(missing_ok=True)
         _zip(target, wheel, blender, log)
@@ -126,6 +127,8 @@ def _lay_out_extension(folder: Path, wheel: Path) -> None:
     manifest = template.replace("@VERSION@", version()).replace("@PLATFORMS@", json.dumps([platform()]))
     manifest = manifest.replace("@WHEELS@", json.dumps([f"./wheels/{wheel.name}"]))
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
+    text = (ROOT / "docs" / "blender.md").read_text(encoding="utf-8")
+    (folder / "manual.html").write_text(manual.to_html(text), encoding="utf-8")
 
 
 def _blender_ext(blender: Environment) -> Path:

@@ -47,6 +47,7 @@ NAMES = {
     "register_hyperbolic",
     "register_spheres",
     "seams",
+    "set_threads",
     "sphere_map",
     "stretch_hessian",
     "untangle",
@@ -226,6 +227,7 @@ def test_a_keyword_given_by_position_is_refused(name):
         "Untangled",
         "Seams",
         "Unwrap",
+        "set_threads",
     ],
 )
 def test_everything_is_documented(name):

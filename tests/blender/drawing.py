@@ -96,7 +96,8 @@ def context(**more: Any) -> Any:
     seen = {name: getattr(bpy.context, name, None) for name in (*names, "objects_in_mode", "tool_settings")}
     system = SimpleNamespace(ui_scale=1.0)  # which is 0 without a window
     seen["preferences"] = SimpleNamespace(system=system, addons=bpy.context.preferences.addons)
-    seen |= {"region": SimpleNamespace(width=280), "space_data": None, "area": None, "workspace": None}
+    seen |= {"region": SimpleNamespace(width=280), "area": None, "workspace": None}
+    seen["space_data"] = SimpleNamespace(mode="UV", show_render=False, region_3d=None)
     return SimpleNamespace(**seen | more)
 
 

@@ -9,7 +9,13 @@ import pytest
 
 MENUS = (
     *("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "MESH_MT_shape_key_context_menu"),
-    *("VIEW3D_MT_edit_mesh_edges", "VIEW3D_PT_overlay", "IMAGE_PT_overlay"),
+    *(
+        "VIEW3D_MT_object",
+        "VIEW3D_MT_make_links",
+        "VIEW3D_MT_edit_mesh_edges",
+        "VIEW3D_PT_overlay",
+        "IMAGE_PT_overlay",
+    ),
 )
 ENTRIES = len(MENUS) + 2  # the UV menus have those of the heat map too
 

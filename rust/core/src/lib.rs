@@ -159,6 +159,7 @@ pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces
 pub use mesh::{Corner, Face, Patch, Surface, Topology, Vertex};
 pub use optimize::published::gradient_descent::LineSearch;
 pub use packing::{Island as PlanarIsland, Margin, PackOptions, Packing, Place, Rotation, pack};
+pub use parallel::set_threads;
 pub use registration::{
     Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,
     homotopy, register_disks, register_spheres,

@@ -5,6 +5,7 @@
 //! whose partial sums are added in order, so 1 and 64 threads agree bit for bit.
 
 use std::cell::Cell;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use rayon::ThreadPool;
@@ -13,8 +14,19 @@ use rayon::prelude::*;
 /// Elements per task: long enough to hide the scheduling, short enough to keep two cores busy.
 const CHUNK: usize = 4096;
 
-/// The threads of one process, with its id: a forked child inherits the pool but none of its threads.
-static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+/// The number of threads that is wanted, 0 for as many as there are processors.
+static WANTED: AtomicUsize = AtomicUsize::new(0);
+
+/// The threads of one process, with its id and their wanted number: a forked child inherits the pool but none
+/// of its threads.
+static POOL: Mutex<Option<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// Sets the number of threads for all that is computed from now on. 0 stands for as many as there are
+/// processors, or as the environment variable `RAYON_NUM_THREADS` says. Results do not depend on it. What is
+/// being computed goes on with the threads that it has.
+pub fn set_threads(count: usize) {
+    WANTED.store(count, Ordering::Relaxed);
+}
 
 thread_local! {
     /// Whether this thread does the work of a task by itself.
@@ -31,14 +43,16 @@ fn is_sharing() -> bool {
 fn threads() -> Option<Arc<ThreadPool>> {
     // a fork may have copied the lock while it was held, so never wait for it
     let mut pool = POOL.try_lock().ok()?;
-    let process = std::process::id();
-    if pool.as_ref().is_none_or(|(owner, _)| *owner != process) {
+    let (process, wanted) = (std::process::id(), WANTED.load(Ordering::Relaxed));
+    if pool.as_ref().is_some_and(|(owner, ..)| *owner != process) {
         // the parent's threads do not exist here, so do not stop them
         std::mem::forget(pool.take());
-        let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
-        *pool = Some((process, Arc::new(threads)));
     }
-    pool.as_ref().map(|(_, threads)| threads.clone())
+    if pool.as_ref().is_none_or(|(_, count, _)| *count != wanted) {
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(wanted).build().ok()?;
+        *pool = Some((process, wanted, Arc::new(threads)));
+    }
+    pool.as_ref().map(|(.., threads)| threads.clone())
 }
 
 /// Runs `work` on the threads of this process, so that [`join`] finds them; where there are none, on this one.

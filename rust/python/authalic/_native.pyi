@@ -42,6 +42,7 @@ __all__ = [
     "register_hyperbolic",
     "register_spheres",
     "seams",
+    "set_threads",
     "sphere_map",
     "stretch_hessian",
     "untangle",
@@ -513,6 +514,7 @@ def seams(
     method: Literal["search", "cones"] = "search",
     progress: _Progress | None = None,
 ) -> Seams: ...
+def set_threads(count: int) -> None: ...
 def unwrap(
     surface: _Surface,
     *,

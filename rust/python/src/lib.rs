@@ -41,6 +41,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<seams::Seams>()?;
     module.add_class::<seams::Unwrap>()?;
     module.add_class::<packing::Packing>()?;
+    module.add_function(wrap_pyfunction!(run::set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(surface::cut, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortion, module)?)?;
     module.add_function(wrap_pyfunction!(distortion::distortions, module)?)?;

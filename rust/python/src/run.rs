@@ -52,6 +52,26 @@ impl<T: Send> Observer for Remote<T> {
     }
 }
 
+/// Sets the number of threads of all computations that start from now on.
+///
+/// Results do not depend on it, bit for bit.
+///
+/// Parameters
+/// ----------
+/// count : int
+///     The number of threads. 0 stands for as many as there are processors, or as the environment variable
+///     RAYON_NUM_THREADS says.
+///
+/// Examples
+/// --------
+/// >>> import authalic
+/// >>> authalic.set_threads(2)
+/// >>> authalic.set_threads(0)
+#[pyfunction]
+pub fn set_threads(count: usize) {
+    authalic::set_threads(count);
+}
+
 /// Runs `work` to its end, or until the progress function or Ctrl-C stops it.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,

@@ -17,6 +17,7 @@ from .operators import measure as operator_measure
 from .operators import redo as operator_redo
 from .operators import register as operator_register
 from .operators import seam_preview as operator_seam_preview
+from .operators import select_reported as operator_select_reported
 from .operators import sphere_shape_key as operator_sphere_shape_key
 from .operators import texel_density as operator_texel_density
 from .operators import transfer as operator_transfer
@@ -48,6 +49,7 @@ _MODULES = (
     operator_mark_seams,
     operator_seam_preview,
     operator_fix_flips,
+    operator_select_reported,
     operator_sphere_shape_key,
     operator_measure,
     operator_heat_map,

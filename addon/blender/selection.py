@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..surfaces.arrays import Booleans, Edge, Integers
+from .element_marks import element_counts
 from .types import MeshObject
 
 
@@ -134,3 +135,22 @@ def _select_edited_edges(mesh: bpy.types.Mesh, edges: Sequence[Edge]) -> None:
         edge.select_set(True)
     edit.select_history.clear()
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+def has_polygons(obj: MeshObject, polygons: Integers) -> bool:
+    """Whether the mesh of an object has polygons of these numbers."""
+    return len(polygons) == 0 or int(polygons.max()) < element_counts(obj.data)[2]
+
+
+def select_polygons(obj: MeshObject, polygons: Integers) -> None:
+    """Selects polygons and nothing else of an object in edit mode; those that are hidden are shown."""
+    edit, wanted = bmesh.from_edit_mesh(obj.data), {*polygons.tolist()}
+    for elements in (edit.verts, edit.edges, edit.faces):
+        for element in elements:
+            element.select = False
+    for number, face in enumerate(edit.faces):
+        if number in wanted:
+            face.hide_set(False)
+            face.select_set(True)
+    edit.select_history.clear()
+    bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)

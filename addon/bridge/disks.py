@@ -9,8 +9,7 @@ import authalic
 from ..surfaces.arrays import Floats
 from .known import Request
 from .patches import SurfacePatch, checked
-from .progress import NOT_REACHED, Progress, Result, noting_the_end, refused, share_of
-from .results import Refusal
+from .progress import NOT_REACHED, Progress, Result, noting_the_end, refusal, refused, share_of
 from .settings import UnwrapSettings
 
 
@@ -34,7 +33,7 @@ def disk_maps(
         piece = pieces[number]
         with refused(piece, result):
             if each is None:
-                result.refusals.append(Refusal(piece.name, piece.polygon, NOT_REACHED))
+                result.refusals.append(refusal(piece, NOT_REACHED))
             elif isinstance(each, authalic.DiskMap):
                 maps[number] = each
             else:

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Protocol, TypeVar
 
+import numpy as np
+
 import authalic
 
 from ..messages import problems
@@ -57,12 +59,17 @@ def one_by_one(
         share = len(piece.polygons)
         message = f"Island {number + 1} of {len(pieces)}"
         if result.ended_early or not listen(done / total, message):
-            result.refusals.append(Refusal(piece.name, piece.polygon, NOT_REACHED))
+            result.refusals.append(refusal(piece, NOT_REACHED))
             continue
         step = _sub_progress(listen, done / total, share / total, message)
         with refused(piece, result):
             do(piece, step)
         done += share
+
+
+def refusal(piece: Piece, reason: str) -> Refusal:
+    """The refusal of a piece."""
+    return Refusal(piece.name, piece.polygon, reason, np.unique(piece.polygons[piece.polygons >= 0]))
 
 
 @contextmanager
@@ -71,10 +78,10 @@ def refused(piece: Piece, result: Result) -> Iterator[None]:
     try:
         yield
     except Unsuitable as problem:
-        result.refusals.append(Refusal(piece.name, piece.polygon, str(problem)))
+        result.refusals.append(refusal(piece, str(problem)))
     except (authalic.MeshError, authalic.SolverError) as error:
         reason = problems.in_words(error, piece.polygons, piece.vertices)
-        result.refusals.append(Refusal(piece.name, piece.polygon, reason))
+        result.refusals.append(refusal(piece, reason))
 
 
 def share_of(progress: Progress, start: float, share: float) -> Progress:

@@ -43,11 +43,15 @@ class Island(PlanarIsland):
 
 @dataclass
 class Refusal:
-    """An island, or with `polygon` None a whole object, that was left as it was."""
+    """An island, or with `polygon` None a whole object, that was left as it was.
+
+    `polygons` (p,) are all of the island, where they are known.
+    """
 
     name: str
     polygon: int | None
     reason: str
+    polygons: Integers = field(default_factory=lambda: np.empty(0, int), compare=False, repr=False)
 
     def __str__(self) -> str:
         where = "" if self.polygon is None else f" at face {self.polygon}"

@@ -12,7 +12,7 @@ from ..blender import edges, meshes, selection, uv_maps
 from ..blender.types import MeshObject
 from ..bridge.progress import Progress, share_of
 from ..surfaces.surface import Surface
-from . import densities, found_seams, seam_groups, targets
+from . import densities, found_seams, reported, seam_groups, targets
 from .job import Job
 from .seam_groups import SeamGroups
 
@@ -25,7 +25,11 @@ Chosen = tuple[MeshObject, str, Surface]
 
 
 class CannotUnwrap(Exception):
-    """The unwrap was refused and nothing was changed."""
+    """The unwrap was refused and nothing was changed; `refusals` are those of islands."""
+
+    def __init__(self, reason: str, refusals: Sequence[bridge.Refusal] = ()) -> None:
+        super().__init__(reason)
+        self.refusals = refusals
 
 
 @dataclass
@@ -50,7 +54,8 @@ class Settings:
 class Report:
     """The number of mapped islands, their figures, and the islands that were left as they were.
 
-    `seams` are those that were found for it, None where those of the meshes count.
+    `seams` are those that were found for it, None where those of the meshes count. `places` are the islands
+    that are not as good as they should be, worst first.
     """
 
     islands: int
@@ -59,6 +64,7 @@ class Report:
     refusals: list[bridge.Refusal]
     notes: list[str]
     seconds: float
+    places: list[reported.Place] = field(default_factory=list)
 
     def __str__(self) -> str:
         parts = [messages.count(self.islands, "island")]
@@ -111,7 +117,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapp
             rest = share_of(progress, _MAPS, 1.0 - _MAPS)
             return mapping, bridge.place(mapping, surfaces, settings.placement, rest)
         except bridge.Unsuitable as problem:
-            raise CannotUnwrap(str(problem)) from problem
+            raise CannotUnwrap(str(problem), mapping.refusals) from problem
 
     def finish(result: tuple[bridge.Mapping, bridge.Placed]) -> Report:
         mapping, placed = result
@@ -120,6 +126,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapp
         unmapped = [obj.name for obj, _, _ in chosen if not uv_maps.names(obj)]
         _write(chosen, mapping, placed, settings)
         seconds = time.perf_counter() - started
+        places = reported.of_islands(surfaces, mapping.islands)
         notes = messages.grouped(mapping.notes) + _notes(mapping.islands, figures)
         if {refusal.name for refusal in mapping.refusals} & set(unmapped):
             notes.append("on a mesh without a UV map, these lie in the lower left corner")
@@ -127,7 +134,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapp
             notes.insert(0, messages.ENDED_EARLY)
         if mapping.seams is not None:
             notes[:0] = found_seams.notes(mapping.seams)
-        return Report(len(mapping.islands), figures, mapping.seams, mapping.refusals, notes, seconds)
+        return Report(len(mapping.islands), figures, mapping.seams, mapping.refusals, notes, seconds, places)
 
     return Job(work, finish)
 

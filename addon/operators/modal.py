@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..blender.types import OperatorMixin, Status
-from ..jobs import targets
+from ..jobs import reported, targets
 from ..jobs.job import Cancelled, Job
 from . import redo, status_bar
 
@@ -107,12 +107,14 @@ class Modal(OperatorMixin):
         except Cancelled as outcome:
             self.report({"INFO"}, f"{self.bl_label}: {outcome}")
         except (Busy, targets.CannotWrite, *self.refused) as problem:  # type: ignore[misc]
+            reported.remember((), getattr(problem, "refusals", ()))
             self.report({"ERROR"}, str(problem))
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
         return {"CANCELLED"}
 
     def _say(self, report: Any) -> Status:
+        reported.remember(getattr(report, "places", ()), report.refusals)
         self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, self.line(report))
         return {"FINISHED"}
 

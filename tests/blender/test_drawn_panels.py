@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panels draw, and the operators on the two objects of a registration."""
+
+from typing import Any
+
+import bpy
+import drawing
+import meshes
+import numpy as np
+import pairing
+import pairs
+import pytest
+from installed import part
+from mathutils import Matrix
+from meshes import MeshObject
+
+AUTHALIC = bpy.ops.authalic
+
+
+def panels() -> list[str]:
+    kinds: Any = bpy.types.Panel.__subclasses__()
+    named = [getattr(kind, "bl_idname", "") or kind.__name__ for kind in kinds]
+    return sorted({name for name in named if name.startswith("AUTHALIC_PT") and hasattr(bpy.types, name)})
+
+
+def couple() -> tuple[MeshObject, MeshObject]:
+    source, target = pairing.heads()
+    for vertex in (16, 18, 32):
+        pairing.add(vertex, vertex + 5)
+    AUTHALIC.landmark_curve_add(source_vertices="36 37 38", target_vertices="36 37 38")
+    return source, target
+
+
+@pytest.mark.parametrize("has_objects", [False, True])
+def test_all_panels_draw(has_objects: bool) -> None:
+    """Without an error, whatever is selected; `Layout` finds operators and properties that are not there."""
+    if has_objects:
+        couple()
+    assert len(panels()) > 8
+    drawn = {name: drawing.draw_panel(name) for name in panels()}
+    if has_objects:
+        assert all(layout is not None and layout.labels for layout in drawn.values()), drawn
+
+
+def test_parts_of_wrap_and_morph() -> None:
+    parent: Any = bpy.types.AUTHALIC_PT_registration_view3d
+    assert parent.bl_label == "Wrap and Morph"
+    kinds: list[Any] = [getattr(bpy.types, name) for name in panels()]
+    inner = [kind for kind in kinds if getattr(kind, "bl_parent_id", "") == "AUTHALIC_PT_registration_view3d"]
+    closed = {kind.bl_label for kind in inner if "DEFAULT_CLOSED" in getattr(kind, "bl_options", ())}
+    assert {kind.bl_label for kind in inner} == {"Landmarks", "Landmark Curves", "Wrap", "Transfer"}
+    assert closed == {"Landmark Curves", "Transfer"}
+
+
+def test_the_slider_of_the_morph_is_in_the_panel() -> None:
+    source, target = pairing.heads()
+    for vertex in (16, 18, 32):
+        pairing.add(vertex, vertex + 5)
+    assert "Morph" not in drawing.draw_panel("AUTHALIC_PT_wrap").labels
+    AUTHALIC.register()
+    layout = drawing.draw_panel("AUTHALIC_PT_wrap")
+    assert layout.labels[-2:] == ["Wrap onto Target", "Morph"] and layout.properties[-1] == "value"
+    source.data.shape_keys.key_blocks["Morph → Head B"].name = "Mine"
+    assert "Morph" not in drawing.draw_panel("AUTHALIC_PT_wrap").labels
+    assert target.data.shape_keys is None
+
+
+def test_swap() -> None:
+    source, target = couple()
+    before = pairing.listed(source)
+    curves = part("landmarks.curves")
+    path, other = [getattr(curves.pairs(source)[0], side).vertices for side in ("source", "target")]
+    assert AUTHALIC.swap_target() == {"FINISHED"}
+    assert bpy.context.object == target and target.authalic_target == source
+    assert source.authalic_target is None and not source.authalic_landmarks
+    assert not source.authalic_landmark_curves
+    assert pairing.listed(target) == [(name, b, a, problem) for name, a, b, problem in before]
+    (curve,) = curves.pairs(target)
+    assert (curve.source.vertices, curve.target.vertices, curve.problem) == (other, path, None)
+    names = {name for name in source.data.attributes.keys() if name.startswith("authalic")}  # noqa: SIM118
+    assert len(names) == 3, "marks of the old direction are gone"
+    AUTHALIC.swap_target()
+    assert pairing.listed(source) == before and curves.pairs(source)[0].source.vertices == path
+
+
+def test_swap_is_one_step_of_undo() -> None:
+    source, target = couple()
+    before = pairing.listed(source)
+    bpy.ops.ed.undo_push(message="before")
+    AUTHALIC.swap_target("EXEC_DEFAULT", True)
+    bpy.ops.ed.undo()
+    source, target = bpy.data.objects["Head A"], bpy.data.objects["Head B"]
+    assert source.authalic_target == target and target.authalic_target is None
+    assert pairing.listed(source) == before
+    assert part("landmarks.curves").pairs(source)[0].problem is None
+
+
+@pytest.mark.parametrize("why", ["landmarks", "target", "lost"])
+def test_swap_is_refused_by_name_and_changes_nothing(why: str) -> None:
+    source, target = couple()
+    third = meshes.add_grid("Third")
+    meshes.select(source)
+    words = "Head B has a target of its own"
+    if why == "target":
+        target.authalic_target = third
+    elif why == "landmarks":
+        target.authalic_target = source
+        part("landmarks.points").add(target, 3, 3)
+        words = "Head B has 1 landmark of its own"
+    else:
+        pairing.in_edit_mode(source, 18, do=lambda: bpy.ops.mesh.delete(type="VERT"))
+        words = "Landmark 2: its vertex on Head A is gone.*first"
+    before = pairing.listed(source), pairing.listed(target), target.authalic_target
+    with pytest.raises(RuntimeError, match=words):
+        AUTHALIC.swap_target()
+    assert (pairing.listed(source), pairing.listed(target), target.authalic_target) == before
+    assert source.authalic_target == target
+
+
+@pytest.mark.parametrize("has_parent", [False, True])
+def test_side_by_side(has_parent: bool) -> None:
+    source, target = pairing.heads()
+    source.matrix_world = pairs.TILTED
+    target.matrix_world = Matrix.Translation((0.5, 7, 3)) @ Matrix.Scale(2, 4) @ Matrix.Rotation(1, 4, "Z")
+    if has_parent:
+        parent = bpy.data.objects.new("Parent", None)
+        bpy.context.collection.objects.link(parent)
+        parent.matrix_world = pairs.SQUEEZED
+        target.parent = parent
+    bpy.context.view_layer.update()
+    before = np.array(target.matrix_world)
+    assert AUTHALIC.side_by_side() == {"FINISHED"}
+    bpy.context.view_layer.update()
+    own, other = (pairs.moved(pairs.positions(obj), obj.matrix_world) for obj in (source, target))
+    gap = other[:, 0].min() - own[:, 0].max()
+    widest = max(np.ptp(own[:, 0]), np.ptp(other[:, 0]))
+    # Boxes about tilted boxes are larger than those about the vertices.
+    assert 0.09 * widest < gap < 0.6 * widest
+    np.testing.assert_allclose(np.array(target.matrix_world)[:3, :3], before[:3, :3], atol=1e-5)
+
+
+def test_side_by_side_needs_a_target_that_can_move() -> None:
+    meshes.add_grid("Alone")
+    with pytest.raises(RuntimeError, match="There is no target object"):
+        AUTHALIC.side_by_side()

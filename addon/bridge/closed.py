@@ -8,9 +8,8 @@ import numpy as np
 
 import authalic
 
-from ..surfaces import triangulation
 from ..surfaces.arrays import Booleans, Floats
-from . import known
+from . import known, remedies
 from .island import figures_of, island_of
 from .patches import SurfacePatch, checked
 from .progress import Progress, share_of, to_the_end
@@ -117,12 +116,6 @@ def _lay_flat(result: LaidFlat, settings: UnwrapSettings, solver: Solver, progre
             return
 
 
-def _remedy(piece: SurfacePatch) -> str:
-    """What improves the layout of a closed island."""
-    seams = "set Seams to Automatic, or mark seams in it"
-    return f"poke its large n-gons, {seams}" if triangulation.has_large_polygon(piece.polygons) else seams
-
-
 def _is_good(island: Island) -> bool:
     short = island.shortfall
     return short is None or not (short.is_uneven or short.is_sheared)
@@ -157,7 +150,8 @@ class _Sphere:
         native = authalic.Surface(piece.points[points], corner_point)
         island = island_of(piece, native, uv, corner_point, self.turned, points)
         figures = figures_of(authalic.distortion(native, island.uv, density=piece.target_areas), piece)
-        island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, _remedy(piece))
+        remedy = remedies.of_layout(settings, piece.polygons)
+        island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, remedy)
         return island
 
     def _layout(self, layout: str, settings: UnwrapSettings, progress: Progress) -> authalic.Layout:

@@ -12,7 +12,7 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Floats
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from . import closed
+from . import closed, remedies
 from .disks import disk_maps
 from .island import figures_of, island_of
 from .patches import SurfacePatch, checked, opened, surface_patches
@@ -162,13 +162,7 @@ def _of_disk_map(piece: SurfacePatch, disk_map: authalic.DiskMap, settings: Unwr
     turned = spherical.turned(faces, np.asarray(disk_map.faces))
     island = island_of(piece, native, np.array(disk_map.uv), faces, turned, np.arange(len(piece.points)))
     figures = figures_of(disk_map.distortion, piece)
-    status, remedy = disk_map.status, _remedy(settings)
-    island.shortfall = shortfall(status, figures, settings.solver, UNEVEN_DISK, remedy)
+    remedy = remedies.of_disk(settings)
+    island.shortfall = shortfall(disk_map.status, figures, settings.solver, UNEVEN_DISK, remedy)
     island.may_turn = settings.solver.is_free
     return island
-
-
-def _remedy(settings: UnwrapSettings) -> str:
-    """What improves the map of an open island."""
-    seams = "set Seams to Add, or mark seams in it" if settings.seams is None else "mark more seams in it"
-    return seams if settings.solver.is_free else f"set Outline to Free, or {seams}"

@@ -59,7 +59,10 @@ def place(
         if all(is_sound):
             break
         mapping.refusals += [
-            Refusal(island.name, island.polygon, _why(island, surfaces))
+            Refusal(
+                *(island.name, island.polygon, _why(island, surfaces)),
+                surfaces[island.surface].polygons_of(island.corners),
+            )
             for island, sound in zip(mapping.islands, is_sound, strict=True)
             if not sound
         ]

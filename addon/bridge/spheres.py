@@ -11,15 +11,12 @@ from ..surfaces import spherical, suitability, triangulation
 from ..surfaces.arrays import Booleans, Floats, Integers
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from . import known
+from . import known, remedies
 from .patches import checked, cut
 from .progress import Progress, keep_going
 from .results import SphereShape
 from .shortfall import UNEVEN_SPHERE, shortfall
 from .solver import Solver
-
-_LIMBS = "its limbs may be too long or too thin"
-_LARGE = "poke its large n-gons; " + _LIMBS
 
 
 def sphere_shape(
@@ -35,7 +32,7 @@ def sphere_shape(
     vertices = np.append(np.arange(len(surface.positions)), np.full(len(mesh.positions), -1))
     try:
         used, patches = _whole(mesh)
-        suitability.check_closed_mesh(used, len(surface.positions), patches)
+        suitability.check_closed_mesh(used, mesh.positions, len(surface.positions), patches)
         # one piece of all vertices has the numbers of the mesh
         native = checked(patches[0], mesh.positions)
         sphere, over, turned = sphere_map(native, solver, progress)
@@ -54,7 +51,7 @@ def sphere_shape(
             "coordinates; remesh its thin parts"
         )
     deviation, angle = float(figures.area_ratio_std), float(figures.angle_distortion_mean)
-    remedy = _LARGE if triangulation.has_large_polygon(mesh.polygons) else _LIMBS
+    remedy = remedies.of_sphere(mesh.polygons)
     return SphereShape(
         positions=written[: len(surface.positions)],
         radius=float(radius),

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
-import numpy as np
 
 from ..bridge import Island, Refusal
 from ..surfaces.arrays import Integers
@@ -25,18 +24,13 @@ _last: list[Place] = []
 
 
 def of_islands(surfaces: Sequence[Surface], islands: Sequence[Island]) -> list[Place]:
-    """The islands that are not as good as they should be, the least even first."""
+    """The islands that are not as good as they should be, the worst first."""
     short = [(island, island.shortfall) for island in islands if island.shortfall is not None]
-    short.sort(key=lambda pair: -pair[1].deviation)
+    short.sort(key=lambda pair: -pair[1].severity)
     return [
-        Place(island.name, _polygons(surfaces[island.surface], island.corners), str(shortfall))
+        Place(island.name, surfaces[island.surface].polygons_of(island.corners), str(shortfall))
         for island, shortfall in short
     ]
-
-
-def _polygons(surface: Surface, corners: Integers) -> Integers:
-    """The polygons (p,) that corners (k,) belong to."""
-    return np.unique(np.searchsorted(surface.polygon_start, corners, side="right") - 1)
 
 
 def remember(places: Sequence[Place], refusals: Sequence[object]) -> None:

@@ -206,7 +206,7 @@ def _marks(chosen: Sequence[Chosen], mapping: bridge.Mapping) -> list[tuple[Mesh
 def _notes(islands: Sequence[bridge.Island], figures: bridge.Figures) -> list[str]:
     """Remarks on UVs that were written but may not be as wanted."""
     short = [(island, island.shortfall) for island in islands if island.shortfall is not None]
-    short.sort(key=lambda pair: -pair[1].deviation)
+    short.sort(key=lambda pair: -pair[1].severity)
     notes = [f"{island.name} at face {island.polygon}: {shortfall}" for island, shortfall in short]
     if len(notes) > _NAMED:
         notes[_NAMED:] = [f"and {messages.count(len(notes) - _NAMED, 'island')} more"]

@@ -59,14 +59,16 @@ ERRORS = {
     "outline_fold": "{its.faces} cannot be unfolded without moving the outline; unwrap them again",
     "still_folded": "{its.faces} could not be unfolded; smooth the outline there or unwrap them again",
     "layout_fold": (
-        "{its.triangles} would fold over when its sphere is laid flat; try another Layout, Pole Axis or "
-        "Angle Weight, poke its n-gons, subdivide the mesh, mark seams or set Seams to Automatic"
+        "{its.triangles} would fold over when its sphere is laid flat; set Seams to Automatic, or try "
+        "another Pole Axis or Angle Weight"
     ),
     "no_embedding": (
         "no map without folds was found in double precision, left over: {its.faces}; cut the long thin parts "
         "there open by seams, or remesh them"
     ),
-    "factorization_failed": "is too badly conditioned; dissolve its slivers or remesh it",
+    "factorization_failed": (
+        "is too badly conditioned; dissolve its slivers (Mesh > Clean Up > Degenerate Dissolve)"
+    ),
     "cancelled": "cancelled before there was a map without folds; let it run longer",
     "internal": _REPORT,
     # Landmark points

@@ -65,7 +65,7 @@ def _by_object(context: bpy.types.Context, places: list[reported.Place]) -> list
     polygons: dict[str, list[Integers]] = {}
     for place in places:
         polygons.setdefault(place.name, []).append(place.polygons)
-    objects = [context.view_layer.objects.get(name) for name in polygons]
+    objects: list[Any] = [context.view_layer.objects.get(name) for name in polygons]
     return [
         (obj, np.unique(np.concatenate(polygons[obj.name])))
         for obj in objects

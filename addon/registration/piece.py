@@ -11,7 +11,7 @@ from .sides import Side
 def check_piece(side: Side, patches: Sequence[Patch]) -> Patch:
     """The one piece (`authalic.Patch`) without handles that a side must be. Raises `Unsuitable`."""
     try:
-        suitability.check_one_piece(len(side.points), patches)
+        suitability.check_one_piece(side.points, patches)
         if patches[0].genus is None:
             raise Unsuitable("is one-sided, like a Moebius strip, and cannot be registered; remesh it")
         if patches[0].genus > 0:

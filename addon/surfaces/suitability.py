@@ -7,10 +7,12 @@ from typing import Protocol
 import numpy as np
 
 from .. import messages
-from .arrays import Integers
+from .arrays import Floats, Integers
 
 # What cuts open whatever can be cut open.
 _AUTOMATIC = "set Seams to Automatic"
+# Vertices lie on each other within this part of the size of the mesh.
+_TOUCHING = 1e-5
 
 
 class Patch(Protocol):
@@ -81,11 +83,11 @@ def handles(patch: Patch) -> str:
     return "a handle" if patch.genus == 1 else f"{patch.genus} handles"
 
 
-def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> None:
+def check_closed_mesh(used: Integers, points: Floats, count: int, patches: Sequence[Patch]) -> None:
     """Raises `Unsuitable` unless a mesh is one closed surface without handles.
 
-    `used` (u,) are the vertices that have faces, of the mesh's `count` and of centers beyond these; `patches`
-    are the pieces that the mesh is cut into without seams.
+    `used` (u,) are the vertices that have faces, of the mesh's `count` and of centers beyond these, all of
+    which are `points` (n, 3); `patches` are the pieces that the mesh is cut into without seams.
     """
     loose = np.setdiff1d(np.arange(count), used)
     if len(loose):
@@ -93,11 +95,12 @@ def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> N
             f"has {messages.count(len(loose), 'loose vertex')} without a face ({messages.numbers(loose)}); "
             "delete loose geometry"
         )
-    check_one_piece(len(used), patches)
+    check_one_piece(points[used], patches)
     patch = patches[0]
     if patch.genus is None:
         raise Unsuitable("is one-sided, like a Klein bottle, and has no map onto a sphere; remesh it")
     if not patch.is_closed:
+        check_joined(points[used], patches)
         holes = messages.count(len(patch.boundary_loops), "open boundary")
         raise Unsuitable(f"has {holes}, but a sphere has none; fill the holes first")
     if patch.genus > 0:
@@ -106,15 +109,33 @@ def check_closed_mesh(used: Integers, count: int, patches: Sequence[Patch]) -> N
         )
 
 
-def check_one_piece(count: int, patches: Sequence[Patch]) -> None:
-    """Raises `Unsuitable` unless `count` vertices with faces are cut into one patch, none of them twice."""
-    if sum(len(patch.vertex_of) for patch in patches) > count:
+def check_one_piece(points: Floats, patches: Sequence[Patch]) -> None:
+    """Raises `Unsuitable` unless vertices with faces, at `points` (u, 3), are in one patch, none twice."""
+    if sum(len(patch.vertex_of) for patch in patches) > len(points):
         raise Unsuitable(
             "has edges or vertices where surfaces meet that should be apart; separate them or delete inner "
             "faces (Select > All by Trait > Non Manifold shows them)"
         )
     if len(patches) > 1:
+        check_joined(points, patches)
         raise Unsuitable(
-            f"consists of {len(patches)} pieces where one is allowed; where they touch, merge vertices "
-            "(Mesh > Merge > By Distance), else separate it by loose parts"
+            f"consists of {len(patches)} pieces where one is allowed; separate it by loose parts"
+        )
+
+
+def check_joined(points: Floats, patches: Sequence[Patch]) -> None:
+    """Raises `Unsuitable` if boundary vertices lie on each other: faces that touch, but are not joined.
+
+    Vertices with faces are at `points` (u, 3).
+    """
+    loops = [np.asarray(patch.vertex_of)[loop] for patch in patches for loop in patch.boundary_loops]
+    border = np.unique(np.concatenate([np.empty(0, int), *loops]))
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    places = np.round(points[border] / (_TOUCHING * size if size > 0 else 1.0))
+    _, counts = np.unique(places, axis=0, return_counts=True)
+    doubles = int(counts[counts > 1].sum())
+    if doubles:
+        raise Unsuitable(
+            f"has {messages.count(doubles, 'vertex')} that lie on each other, but are not joined; join them "
+            "(Mesh > Merge > By Distance)"
         )

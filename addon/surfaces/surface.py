@@ -63,6 +63,11 @@ class Surface:
         corners: Integers = first + np.arange(len(first))
         return corners
 
+    def polygons_of(self, corners: Integers) -> Integers:
+        """The polygons (k,) that some mesh corners belong to, ascending."""
+        polygons: Integers = np.unique(np.searchsorted(self.polygon_start, corners, side="right") - 1)
+        return polygons
+
     def without(self, polygons: Integers) -> "Surface":
         """The surface without some of its polygons (k,)."""
         if not len(polygons):

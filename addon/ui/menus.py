@@ -15,6 +15,7 @@ class AUTHALIC_MT_object(bpy.types.Menu):
         layout.operator("authalic.unwrap", icon="UV")
         layout.operator("authalic.mark_seams")
         layout.operator("authalic.fix_flips")
+        layout.operator("authalic.select_reported")
         layout.operator("authalic.measure")
         layout.operator("authalic.show_heat_map")
         layout.separator()
@@ -47,6 +48,7 @@ def _draw_uv_menu(self: Any, _context: Any) -> None:
     self.layout.separator()
     self.layout.operator("authalic.mark_seams")
     self.layout.operator("authalic.fix_flips")
+    self.layout.operator("authalic.select_reported")
 
 
 def _draw_edge_menu(self: Any, _context: Any) -> None:

@@ -97,7 +97,9 @@ def context(**more: Any) -> Any:
     system = SimpleNamespace(ui_scale=1.0)  # which is 0 without a window
     seen["preferences"] = SimpleNamespace(system=system, addons=bpy.context.preferences.addons)
     seen |= {"region": SimpleNamespace(width=280), "area": None, "workspace": None}
-    seen["space_data"] = SimpleNamespace(mode="UV", show_render=False, region_3d=None)
+    seen["space_data"] = SimpleNamespace(
+        type="IMAGE_EDITOR", mode="UV", image=None, show_render=False, region_3d=None
+    )
     return SimpleNamespace(**seen | more)
 
 

@@ -52,7 +52,7 @@ def test_they_are_drawn(preferences: Any) -> None:
 def test_threads_reach_the_library(preferences: Any) -> None:
     """Those of the library stay after a run, until their number is changed."""
     meshes.add_grid(n=80)
-    counts = []
+    counts: list[int] = []
     for threads in (7, 2):
         preferences.threads = threads
         assert bpy.ops.authalic.unwrap() == {"FINISHED"}

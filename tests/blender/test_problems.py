@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+import bmesh
 import bpy
 import curving
 import meshes
@@ -302,3 +303,85 @@ def test_the_sentences_stay_when_every_message_of_the_library_changes(
     after = told(case, capfd)
     assert "xyzzy" not in after
     assert after == before
+
+
+# The right remedy
+
+
+def split(obj: MeshObject, kind: str) -> MeshObject:
+    """Separates the faces of a mesh: all, or along the edges of one face."""
+    meshes.edit(obj)
+    bpy.ops.mesh.select_all(action="SELECT" if kind == "all faces" else "DESELECT")
+    if kind == "one face":
+        edit = bmesh.from_edit_mesh(obj.data)
+        edit.faces.ensure_lookup_table()
+        edit.faces[0].select_set(True)
+        bmesh.update_edit_mesh(obj.data)
+        bpy.ops.mesh.split()
+    else:
+        bpy.ops.mesh.edge_split(type="EDGE")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return obj
+
+
+@pytest.mark.parametrize("kind", ["all faces", "one face"])
+def test_split_vertices_are_to_be_merged(kind: str) -> None:
+    """And that helps."""
+    obj = split(meshes.icosphere(2), kind)
+    with pytest.raises(RuntimeError, match=r"lie on each other, but are not joined.*Merge > By Distance"):
+        bpy.ops.authalic.sphere_shape_key()
+    meshes.edit(obj)
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.remove_doubles()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert bpy.ops.authalic.sphere_shape_key() == {"FINISHED"}
+
+
+def test_split_vertices_of_a_registration_are_to_be_merged() -> None:
+    source, target = meshes.icosphere(2), split(meshes.icosphere(2), "all faces")
+    source.authalic_target = target
+    part("landmarks.points").add(source, 0, 0)
+    meshes.select(source)
+    with pytest.raises(RuntimeError, match=r"lie on each other, but are not joined.*Merge > By Distance"):
+        bpy.ops.authalic.register()
+
+
+def test_pieces_that_do_not_touch_are_not_to_be_merged() -> None:
+    vertices, faces = meshes.grid(n=3)
+    above = vertices + np.array([0, 0, 5])
+    meshes.add([*vertices, *above], [*faces, *(faces + len(vertices))], "Two")
+    with pytest.raises(RuntimeError, match="consists of 2 pieces") as problem:
+        bpy.ops.authalic.sphere_shape_key()
+    assert "Merge" not in str(problem.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "uneven", "sheared"),
+    [
+        ({}, "set Seams to Add", "set Seams to Add"),
+        ({"outline": "CIRCLE"}, "set Outline to Free", "set Outline to Free"),
+        ({"angle_weight": 0.9}, "choose the preset Even", "set Seams to Add"),
+        ({"method": "FIXED_POINT"}, "set Method to Gauss-Newton", "set Seams to Add"),
+    ],
+)
+def test_the_remedy_of_an_island_is_one_that_applies(
+    options: dict[str, Any], uneven: str, sheared: str
+) -> None:
+    solver = part("bridge.solver").Solver(**options)
+    settings = part("bridge.settings").UnwrapSettings(solver=solver)
+    assert part("bridge.remedies").of_disk(settings) == (uneven, sheared)
+    make = part("bridge.shortfall").shortfall
+    assert str(make("converged", (9.0, 1.0), solver, 0.1, (uneven, sheared))).endswith(f"; {uneven}")
+    assert str(make("converged", (0.0, 99.0), solver, 0.1, (uneven, sheared))).endswith(f"; {sheared}")
+
+
+@pytest.mark.parametrize(("size", "is_named"), [(3, False), (4, False), (9, True)])
+def test_only_n_gons_are_to_be_poked(size: int, is_named: bool) -> None:
+    polygons = np.repeat(np.arange(5), size - 2)
+    remedies = part("bridge.remedies")
+    said = [
+        *remedies.of_sphere(polygons),
+        *remedies.of_layout(part("bridge.settings").UnwrapSettings(), polygons),
+    ]
+    assert any("poke" in remedy for remedy in said) == is_named
+    assert not any("Layout" in remedy for remedy in said)

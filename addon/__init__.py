@@ -29,7 +29,7 @@ from .overlay import seams as overlay_seams
 from .ui import couple as ui_couple
 from .ui import curves as ui_curves
 from .ui import distortion as ui_distortion
-from .ui import keymap, manual, menus, preferences
+from .ui import keymap, manual, menus, preferences, translations
 from .ui import landmarks as ui_landmarks
 from .ui import register as ui_register
 from .ui import unwrap as ui_unwrap
@@ -71,6 +71,7 @@ _MODULES = (
     keymap,
     manual,
     preferences,
+    translations,
 )
 
 

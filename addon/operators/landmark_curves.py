@@ -132,13 +132,14 @@ class AUTHALIC_OT_landmark_curve_select(_CurveOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: Any) -> str:
         """The tooltip, with the edges of the pair and its last error."""
-        said, source = [str(cls.__doc__)], active_source(context)
+        words = bpy.app.translations.pgettext_tip
+        said, source = [words(str(cls.__doc__))], active_source(context)
         if source is not None and 0 <= properties.index < len(source.authalic_landmark_curves):
             pair = landmark_curves.pairs(source)[properties.index]
             error = source.authalic_landmark_curves[properties.index].error
             said.append(pair.problem or _both(pair, source))
             if pair.problem is None and error >= 0:
-                said.append(f"Missed by {error:.3f} % of the target's size")
+                said.append(words("Missed by {error:.3f} % of the target's size").format(error=error))
         return ".\n".join(said)
 
     def run(self, context: bpy.types.Context, source: MeshObject) -> Status:

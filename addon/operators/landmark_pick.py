@@ -203,13 +203,16 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
 
     def _say(self, context: bpy.types.Context, text: str) -> None:
         missing = [side for side in _SIDES if side not in self._chosen]
-        where = "the source or the target" if len(missing) == 2 else f"the {missing[0]}" if missing else ""
-        names = dict(zip(_SIDES, self._names, strict=True))
-        named = f" ({names[missing[0]]})" if len(missing) == 1 else ""
+        words = bpy.app.translations.pgettext_iface
+        wanted = words("Pick on the source or the target")
+        if missing == ["source"]:
+            wanted = words("Pick on the source ({name})").format(name=self._names[0])
+        elif missing == ["target"]:
+            wanted = words("Pick on the target ({name})").format(name=self._names[1])
 
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             layout = header.layout
-            layout.label(text=f"Pick on {where}{named}", icon="MOUSE_LMB")
+            layout.label(text=wanted, icon="MOUSE_LMB", translate=False)
             layout.label(text="Undo", icon=_backspace())
             layout.label(text="Done", icon="EVENT_ESC")
             layout.label(text=text, translate=False)

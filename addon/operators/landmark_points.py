@@ -111,7 +111,8 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: Any) -> str:
         """The tooltip, with the vertices of the pair and its last error."""
-        said, source = [str(cls.__doc__)], active_source(context)
+        words = bpy.app.translations.pgettext_tip
+        said, source = [words(str(cls.__doc__))], active_source(context)
         if source is not None and 0 <= properties.index < len(source.authalic_landmarks):
             pair, landmark = (
                 landmark_points.pairs(source)[properties.index],
@@ -119,7 +120,9 @@ class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
             )
             said.append(pair.problem or _vertices(pair, source))
             if pair.problem is None and landmark.error >= 0:
-                said.append(f"Missed by {landmark.error:.3f} % of the target's size")
+                said.append(
+                    words("Missed by {error:.3f} % of the target's size").format(error=landmark.error)
+                )
         return ".\n".join(said)
 
     def run(self, context: bpy.types.Context, source: MeshObject) -> Status:

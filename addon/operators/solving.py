@@ -161,10 +161,28 @@ class Outlining(Solving):
 
 
 def draw_options(column: bpy.types.UILayout, properties: Any) -> None:
-    """The options, in the redo panel and in the sidebar."""
+    """All options, in the redo panel and in the sidebar."""
+    draw_presets(column, properties)
+    draw_advanced(column, properties)
+
+
+def draw_presets(column: bpy.types.UILayout, properties: Any) -> None:
+    """A row of buttons from areas to shapes; none is pressed if the values belong to no preset."""
+    trade = column.column(align=True)
+    trade.active = properties.method == "GAUSS_NEWTON"
+    trade.use_property_split = False
+    trade.label(text="Area ↔ Shape")
+    row = trade.row(align=True)
+    if not hasattr(properties, "outline"):
+        row.prop_enum(properties, "angle_preset", "CIRCLE", text="Areas Only")
+    for name in ("EVEN", "BALANCED", "SOFT"):
+        row.prop_enum(properties, "angle_preset", name)
+
+
+def draw_advanced(column: bpy.types.UILayout, properties: Any) -> None:
+    """The values behind the presets, the outline of open islands, and the method."""
     trade = column.column()
     trade.active = properties.method == "GAUSS_NEWTON"
-    _draw_presets(trade, properties)
     row = trade.row()
     row.active = properties.area_tolerance == 0
     row.prop(properties, "angle_weight", slider=True)
@@ -176,12 +194,3 @@ def draw_options(column: bpy.types.UILayout, properties: Any) -> None:
         row.prop(properties, "allow_overlap")
     column.prop(properties, "method")
     column.prop(properties, "iterations")
-
-
-def _draw_presets(column: bpy.types.UILayout, properties: Any) -> None:
-    """Two rows of buttons; none is pressed if the values belong to no preset."""
-    grid = column.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
-    grid.use_property_split = False
-    for name, text, *_ in SHOWN:
-        is_sphere = name == "CIRCLE" and not hasattr(properties, "outline")
-        grid.prop_enum(properties, "angle_preset", name, text="Areas Only" if is_sphere else text)

@@ -242,41 +242,66 @@ def _plain(value: float) -> float:
 
 
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
-    """The options, in the redo panel and in the sidebar."""
+    """All options, in the redo panel."""
+    draw_main(layout, properties)
+    if has_closed(properties):
+        layout.label(text="Closed Meshes")
+        draw_closed(layout, properties)
+    layout.label(text="Packing")
+    draw_packing(layout, properties)
+    layout.label(text="Advanced")
+    draw_advanced(layout, properties)
+
+
+def draw_main(layout: bpy.types.UILayout, properties: Any) -> None:
+    """The options that are wanted most."""
     column = layout.column()
+    solving.draw_presets(column, properties)
     column.prop(properties, "seams")
-    is_given = properties.seams == "GIVEN"
-    if is_given:
-        column.prop(properties, "domain")
-        row = column.row()
-        row.active = properties.domain != "SPHERE"
-        row.prop(properties, "fill_holes")
-    else:
+    if properties.seams != "GIVEN":
         box = column.box().column()
         seaming.draw_options(box, properties)
         box.prop(properties, "mark_seams")
-    solving.draw_options(column, properties)
     column.prop(properties, "density_source", icon="GROUP_VERTEX")
-    column.prop(properties, "use_subsurf_data")
-    column.prop(properties, "uv_layer", placeholder="Active")
-    if is_given:
-        layout.label(text="Closed Islands")
-        column = layout.column()
-        column.active = properties.domain != "DISK"
-        for name in _SPHERE:
-            column.prop(properties, name)
+    column.prop(properties, "keep_position")
+
+
+def has_closed(properties: Any) -> bool:
+    """Whether closed meshes keep to their seams, and so may be mapped onto spheres."""
+    return bool(properties.seams == "GIVEN")
+
+
+def draw_closed(layout: bpy.types.UILayout, properties: Any) -> None:
+    """How closed meshes without seams are laid out."""
+    column = layout.column()
+    column.active = properties.domain != "DISK" and has_closed(properties)
+    for name in ("sphere_layout", "pole_axis", "seam_direction"):
+        column.prop(properties, name)
+
+
+def draw_packing(layout: bpy.types.UILayout, properties: Any) -> None:
+    """Where islands go."""
     column = layout.column()
     for name in _PACKING:
         column.prop(properties, name)
 
 
+def draw_advanced(layout: bpy.types.UILayout, properties: Any) -> None:
+    """The solver, the shapes that it maps to, and what it reads and writes."""
+    column = layout.column()
+    if has_closed(properties):
+        column.prop(properties, "domain")
+        row = column.row()
+        row.active = properties.domain != "SPHERE"
+        row.prop(properties, "fill_holes")
+    solving.draw_advanced(column, properties)
+    column.prop(properties, "use_subsurf_data")
+    column.prop(properties, "uv_layer", placeholder="Active")
+
+
+_PACKING = (*("pack_objects", "rotate_method", "margin_method", "margin", "texel_density", "correct_aspect"),)
 # The height in pixels of an image that is not there.
 _HEIGHT = 1024
-_SPHERE = ("sphere_layout", "pole_axis", "seam_direction")
-_PACKING = (
-    *("keep_position", "pack_objects", "rotate_method", "margin_method", "margin", "texel_density"),
-    "correct_aspect",
-)
 
 
 def register() -> None:

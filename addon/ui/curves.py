@@ -48,13 +48,9 @@ class AUTHALIC_MT_landmark_curves(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
-        for side in ("SOURCE", "TARGET"):
-            operator = layout.operator(
-                "authalic.landmark_curve_reverse",
-                text=f"Reverse {side.capitalize()}",
-                icon="ARROW_LEFTRIGHT",
-            )
-            operator.side = side
+        reverse = "authalic.landmark_curve_reverse"
+        layout.operator(reverse, text="Reverse Source", icon="ARROW_LEFTRIGHT").side = "SOURCE"
+        layout.operator(reverse, text="Reverse Target", icon="ARROW_LEFTRIGHT").side = "TARGET"
         layout.separator()
         layout.operator("authalic.landmark_import", icon="IMPORT")
         layout.operator("authalic.landmark_export", icon="EXPORT")
@@ -93,13 +89,12 @@ def _draw_curves(body: bpy.types.UILayout, source: MeshObject, context: bpy.type
     column.separator()
     column.menu("AUTHALIC_MT_landmark_curves", text="", icon="DOWNARROW_HLT")
     row = body.row(align=True)
-    for side in ("SOURCE", "TARGET"):
-        operator = row.operator(
-            "authalic.landmark_curve_select", text=f"To {side.capitalize()}", icon="VIEWZOOM"
-        )
-        operator.side = side
-    row = body.row()
-    row.operator("authalic.landmark_curve_reverse", text="Reverse Target", icon="ARROW_LEFTRIGHT")
+    row.operator("authalic.landmark_curve_select", text="To Source", icon="VIEWZOOM").side = "SOURCE"
+    row.operator("authalic.landmark_curve_select", text="To Target", icon="VIEWZOOM").side = "TARGET"
+    reverse = body.row().operator(
+        "authalic.landmark_curve_reverse", text="Reverse Target", icon="ARROW_LEFTRIGHT"
+    )
+    reverse.side = "TARGET"
     text.draw_error(body, source.authalic_landmark_curves, source.authalic_landmark_curve_index)
     text.draw_problems(body, _problems(source), context)
 

@@ -59,9 +59,11 @@ class Layout:
         assert among in where.bl_rna.properties
         self.prop(data, name, **given)
 
-    def prop_enum(self, data: Any, name: str, value: str, **given: Any) -> None:
-        assert value in data.bl_rna.properties[name].enum_items
-        self.prop(data, name, **given)
+    def prop_enum(
+        self, data: Any, name: str, value: str, *, text: str | None = None, icon: str = "NONE"
+    ) -> None:
+        item = data.bl_rna.properties[name].enum_items[value]
+        self.prop(data, name, text=item.name if text is None else text, icon=icon)
 
     def menu(self, name: str, *, text: str | None = None, icon: str = "NONE", **_: Any) -> None:
         self._note(getattr(bpy.types, name).bl_label if text is None else text, icon)
@@ -110,11 +112,18 @@ def draw_panel(name: str, **more: Any) -> Layout | None:
     if hasattr(panel, "poll") and not panel.poll(seen):
         return None
     place = SimpleNamespace(layout=layout, bl_label=panel.bl_label)
+    if hasattr(panel, "draw_section"):
+        place.draw_section = panel.draw_section
     for step in ("draw_header", "draw_header_preset", "draw"):
         if hasattr(panel, step) and step in dir(panel):
             function = getattr(panel, step)
             function(place, seen)
     return layout
+
+
+def last(idname: str) -> Any:
+    """The options that an operator was last used with."""
+    return bpy.context.window_manager.operator_properties_last(idname)
 
 
 def tooltip(idname: str, properties: Any) -> str:

@@ -143,3 +143,62 @@ def test_side_by_side_needs_a_target_that_can_move() -> None:
     meshes.add_grid("Alone")
     with pytest.raises(RuntimeError, match="There is no target object"):
         AUTHALIC.side_by_side()
+
+
+SECTIONS = {
+    "Closed Meshes": {"sphere_layout", "pole_axis", "seam_direction"},
+    "Packing": {
+        "pack_objects",
+        "rotate_method",
+        "margin_method",
+        "margin",
+        "texel_density",
+        "correct_aspect",
+    },
+    "Advanced": {
+        *("domain", "fill_holes", "angle_weight", "area_tolerance", "outline", "allow_overlap", "method"),
+        *("iterations", "use_subsurf_data", "uv_layer"),
+    },
+}
+
+
+@pytest.mark.parametrize("space", ["view3d", "image"])
+def test_the_unwrap_has_few_options_and_closed_panels_with_the_rest(space: str) -> None:
+    meshes.add_grid()
+    layout = drawing.draw_panel(f"AUTHALIC_PT_unwrap_{space}")
+    assert layout.labels[:5] == ["Authalic Unwrap", "Area ↔ Shape", "Even", "Balanced", "Soft"]
+    assert set(layout.properties) == {"angle_preset", "seams", "density_source", "keep_position"}
+    kinds: list[Any] = [getattr(bpy.types, name) for name in panels() if name.endswith(space)]
+    inner = [kind for kind in kinds if getattr(kind, "bl_parent_id", "") == f"AUTHALIC_PT_unwrap_{space}"]
+    assert {kind.bl_label for kind in inner} == SECTIONS.keys()
+    for kind in inner:
+        assert kind.bl_options == {"DEFAULT_CLOSED"}
+        assert set(drawing.draw_panel(kind.__name__).properties) == SECTIONS[kind.bl_label]
+
+
+def test_every_option_of_the_unwrap_is_in_its_panels_and_in_the_redo_panel() -> None:
+    hidden = {"angle_preset", "shear_preset", "is_redo"}
+    options = drawing.last("authalic.unwrap")
+    every = {p.identifier for p in options.bl_rna.properties if not p.is_hidden} - hidden - {"rna_type"}
+    drawn = set()
+    try:
+        for seams in ("GIVEN", "AUTOMATIC"):
+            options.seams = seams
+            layout = drawing.Layout()
+            part("operators.unwrap").draw_options(layout, options)
+            drawn |= set(layout.properties)
+    finally:
+        options.property_unset("seams")
+    assert drawn - hidden == every
+
+
+def test_what_a_report_names_can_be_selected_in_the_panel() -> None:
+    meshes.add_grid()
+    AUTHALIC.unwrap()
+    assert "Select Worst" not in drawing.draw_panel("AUTHALIC_PT_unwrap_view3d").labels
+    bpy.ops.mesh.primitive_torus_add(major_segments=12, minor_segments=6)
+    with pytest.raises(RuntimeError, match="handle"):
+        AUTHALIC.unwrap()
+    layout = drawing.draw_panel("AUTHALIC_PT_unwrap_view3d")
+    buttons = [(name, given.which) for name, given in layout.operators if name.endswith("select_reported")]
+    assert buttons == [("authalic.select_reported", "WORST"), ("authalic.select_reported", "ALL")]

@@ -28,18 +28,23 @@ def island_of(
     points: Integers,
 ) -> Island:
     """An `Island` of the patch's points (n,) with UVs (n, 2) and triangles `faces`."""
-    real, corner_point = piece.corners >= 0, faces.ravel()
+    corners, corner_point = piece.corners, faces.ravel()
+    real = corners >= 0
+    is_whole = bool(real.all())
+    if not is_whole or len(piece.carried):
+        corners = np.concatenate([corners[real], piece.carried])
+        corner_point = np.concatenate([corner_point[real], corner_point[piece.hosts]])
     return Island(
         name=piece.name,
         surface=piece.index,
         polygon=piece.polygon,
         points=piece.points[points],
         faces=faces,
-        corners=np.concatenate([piece.corners[real], piece.carried]),
-        corner_point=np.concatenate([corner_point[real], corner_point[piece.hosts]]),
+        corners=corners,
+        corner_point=corner_point,
         uv=uv,
         density=piece.density,
-        turned=np.unique(piece.polygons[turned]),
+        turned=np.unique(piece.polygons[turned]) if turned.any() else piece.polygons[:0],
         native=native,
-        has_divided_polygons=bool(piece.slivers.any()) or not real.all(),
+        has_divided_polygons=bool(piece.slivers.any()) or not is_whole,
     )

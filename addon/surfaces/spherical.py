@@ -52,6 +52,8 @@ def is_thin(positions: Floats, faces: Integers) -> bool:
 
 def turned(faces: Integers, oriented: Integers) -> Booleans:
     """A mask (m,) of the faces (m, 3) that `oriented` (m, 3), in which all are oriented alike, turns over."""
+    if np.array_equal(faces, oriented):  # most islands, of which there may be thousands
+        return np.zeros(len(faces), bool)
     turns = np.stack([np.roll(faces, k, axis=1) for k in range(3)], axis=1)
     is_kept: Booleans = (oriented[:, None, :] == turns).all(axis=2).any(axis=1)
     return ~is_kept

@@ -44,11 +44,16 @@ pub(super) fn turned_size(points: &[Point], angle: f64, aspect: f64) -> Point {
 
 /// `n` angles all around, the one of the smallest bounding box first.
 pub(super) fn angles_around(hull: &[Point], n: usize) -> Vec<f64> {
-    let first = least(&flush_angles(hull), |angle| {
+    let first = least_box_angle(hull);
+    (0..n).map(|k| first + TAU * k as f64 / n as f64).collect()
+}
+
+/// The angle of the smallest bounding box, below a right angle.
+pub(super) fn least_box_angle(hull: &[Point]) -> f64 {
+    least(&flush_angles(hull), |angle| {
         let [width, height] = turned_size(hull, angle, 1.0);
         width * height
-    });
-    (0..n).map(|k| first + TAU * k as f64 / n as f64).collect()
+    })
 }
 
 /// The angle at which the smallest upright square holds the flattened hull.

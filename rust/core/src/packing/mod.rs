@@ -11,7 +11,8 @@
 //! 4. That is done again in less room, in other orders and by other rules, first on a coarse grid, then on a fine one;
 //!    the best is repeated on finer grids ([`search`]).
 //!
-//! One island alone is turned so that the smallest square holds it.
+//! One island alone is turned so that the smallest square holds it. Of very many islands the small ones are gathered in
+//! blocks first ([`blocks`]).
 //!
 //! Input: islands, which may overlap themselves. Cost: for each placement of all islands, (angles of all islands) · (words
 //! of the grid) · (the few rows of an island that show that a place is taken). There are up to 400 placements, fewer of
@@ -19,6 +20,7 @@
 
 mod angles;
 mod atlas;
+mod blocks;
 mod margin;
 mod mask;
 mod outline;
@@ -32,6 +34,7 @@ use crate::control::{Observer, Watch};
 use crate::error::Error;
 use crate::parallel;
 use angles::{angles_around, direction, flattened, square_angle, turned, turned_box, turned_size};
+use blocks::{MANY, Piece};
 pub use margin::Margin;
 pub use outline::Island;
 use outline::{Outline, Point};
@@ -45,6 +48,18 @@ const LARGE: f64 = 0.01;
 
 /// The share of the square that islands take at first; where they do not fit, the square grows.
 const FIRST_SHARE: f64 = 0.45;
+
+/// The share of the square that blocks are expected to take.
+const BLOCKS_SHARE: f64 = 0.85;
+
+/// The part of the usual effort that is made to pack blocks, which are all boxes.
+const BLOCKS_EFFORT: f64 = 0.1;
+
+/// How often the side of the square is estimated, and how often islands are gathered anew because it was too small.
+const SIDES: usize = 8;
+
+/// What is added to a side that was too small.
+const SPARE: f64 = 0.02;
 
 /// Options of [`pack`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,14 +144,13 @@ pub fn pack(
     if !(area > 0.0 && area.is_finite()) {
         return Err(invalid_islands(format!("of area {area}"), "of a positive area"));
     }
-    let angles =
-        parallel::tasks(islands.len(), |k| tried_angles(&outlines[k].hull, outlines[k].area / area, options));
     // 2. The smallest square that holds the islands.
-    let task = Task { outlines: &outlines, angles: &angles, margin: options.margin, aspect: options.aspect };
     let arrangement = if let [outline] = &outlines[..] {
         alone(outline, options)
+    } else if outlines.len() < MANY {
+        parallel::install(|| by_outlines(&outlines, options, 1.0, observer))?
     } else {
-        parallel::install(|| smallest_square(&task, first_side(&task, area / options.aspect), observer))?
+        parallel::install(|| in_blocks(&outlines, options, observer))?
     };
     // 3. That square, within the margin, in the unit square.
     Ok(in_unit_square(&arrangement, options))
@@ -167,6 +181,65 @@ fn outlines(islands: &[Island<'_>], watch: &Watch<'_>) -> Result<Vec<Outline>, E
         if watch.goes_on() { Outline::new(&islands[k]) } else { Outline::default() }
     });
     if watch.goes_on() { Ok(outlines) } else { Err(Error::CancelledEarly) }
+}
+
+/// The smallest square found by the outlines of all islands.
+fn by_outlines(
+    outlines: &[Outline],
+    options: &PackOptions,
+    effort: f64,
+    observer: &mut dyn Observer,
+) -> Result<Arrangement, Error> {
+    let area: f64 = outlines.iter().map(|outline| outline.area).sum();
+    let angles = parallel::tasks(outlines.len(), |k| {
+        tried_angles(&outlines[k].hull, outlines[k].area / area, options)
+    });
+    let PackOptions { margin, aspect, .. } = *options;
+    let task = Task { outlines, angles: &angles, margin, aspect, effort };
+    smallest_square(&task, first_side(&task, area / aspect), observer)
+}
+
+/// The smallest square found for many islands, the small ones in blocks.
+fn in_blocks(
+    outlines: &[Outline],
+    options: &PackOptions,
+    observer: &mut dyn Observer,
+) -> Result<Arrangement, Error> {
+    // the gap in a block must do for the square that the blocks will need
+    let gap = |side: f64| options.margin.gap(side) * options.aspect.max(1.0);
+    let room = |side: f64| {
+        let pieces = blocks::pieces(outlines, options.rotation, gap(side));
+        let area: f64 = pieces.iter().map(|piece| piece.outline.area).sum();
+        (area / BLOCKS_SHARE / options.aspect).sqrt()
+    };
+    let mut side = (0..SIDES).fold(room(0.0), |side, _| room(side));
+    for _ in 0..SIDES {
+        let pieces = blocks::pieces(outlines, options.rotation, gap(side));
+        let boxes: Vec<Outline> = pieces.iter().map(|piece| piece.outline.clone()).collect();
+        let arrangement = by_outlines(&boxes, options, BLOCKS_EFFORT, observer)?;
+        if gap(arrangement.side) <= gap(side) {
+            return Ok(of_members(&arrangement, &pieces, outlines.len(), options.aspect));
+        }
+        side = arrangement.side * (1.0 + SPARE);
+    }
+    Err(Error::InvalidOption {
+        name: "margin",
+        found: options.margin.value().to_string(),
+        expected: format!("small enough for {} islands", outlines.len()),
+    })
+}
+
+/// The places of the islands in pieces that have been placed.
+fn of_members(arrangement: &Arrangement, pieces: &[Piece], n_islands: usize, aspect: f64) -> Arrangement {
+    let mut places = vec![Placed { angle: 0.0, offset: [0.0; 2] }; n_islands];
+    for (piece, place) in pieces.iter().zip(&arrangement.places) {
+        for member in &piece.members {
+            let [x, y] = flattened(turned(member.offset, direction(place.angle)), aspect);
+            let offset = [place.offset[0] + x, place.offset[1] + y];
+            places[member.island] = Placed { angle: place.angle + member.angle, offset };
+        }
+    }
+    Arrangement { side: arrangement.side, places }
 }
 
 /// The angles at which an island is tried that has a share of the area of all.

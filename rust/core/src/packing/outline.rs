@@ -37,6 +37,13 @@ impl Outline {
         let area = 0.5 * edges.iter().map(|&[a, b]| a[0] * b[1] - a[1] * b[0]).sum::<f64>();
         Self { edges, hull, area }
     }
+
+    /// The outline of a box with a corner in the origin.
+    pub fn of_box([width, height]: Point) -> Self {
+        let hull = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+        let edges = (0..4).map(|k| [hull[k], hull[(k + 1) % 4]]).collect();
+        Self { edges, hull, area: width * height }
+    }
 }
 
 /// The edges of all faces, positively oriented, but for those that cancel.

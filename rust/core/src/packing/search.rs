@@ -41,7 +41,7 @@ impl Effort {
 
     /// How many plans are tried on the grid; at the least one, whether or not that is too many.
     fn n_plans(&self, task: &Task<'_>, grid: Grid) -> usize {
-        (self.max_words / words(task, grid)).clamp(1, self.max_plans)
+        ((task.effort * self.max_words as f64) as usize / words(task, grid)).clamp(1, self.max_plans)
     }
 }
 
@@ -95,6 +95,8 @@ pub(super) struct Task<'a> {
     pub margin: Margin,
     /// Width over height of the texture, by which turned islands are flattened.
     pub aspect: f64,
+    /// The part of the usual effort that is made.
+    pub effort: f64,
 }
 
 /// A square and the plan that led to it.

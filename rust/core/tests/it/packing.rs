@@ -328,3 +328,52 @@ fn what_cannot_be_packed_is_refused() {
     assert_eq!(kind(&[square, broken], 0.0), ErrorKind::InvalidArray);
     assert_eq!(kind(&[rectangle([1.0, 0.0], 0.0)], 0.0), ErrorKind::InvalidArray);
 }
+
+#[test]
+fn thousands_of_islands_are_packed_at_once_and_keep_the_margin() {
+    let mut random = Random::new(8);
+    let shapes: Vec<Shape> = (0..5000)
+        .map(|k| {
+            let size = if k < 3 { 12.0 } else { random.of_any_size(0.3, 1.0) };
+            rectangle([size * random.between(1.0, 3.0), size], random.between(0.0, TAU))
+        })
+        .collect();
+    for (rotation, aspect) in [(Rotation::Free, 1.0), (Rotation::Cardinal, 2.0), (Rotation::Fixed, 0.5)] {
+        let options = PackOptions { margin: Margin::OfSquare(0.001), rotation, aspect };
+        let began = Instant::now();
+        let packing = packed(&shapes, &options).unwrap();
+        assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
+        let shapes = placed(&shapes, &packing);
+        // neighbors by a grid of cells no smaller than the largest of the small islands
+        let boxes: Vec<[Point; 2]> = shapes
+            .iter()
+            .map(|shape| {
+                let low =
+                    shape.points.iter().fold([1.0; 2], |low: Point, p| [low[0].min(p[0]), low[1].min(p[1])]);
+                let high = shape
+                    .points
+                    .iter()
+                    .fold([0.0; 2], |high: Point, p| [high[0].max(p[0]), high[1].max(p[1])]);
+                [low, high]
+            })
+            .collect();
+        assert!(boxes.iter().flatten().flatten().all(|x| (0.001 - 1e-9..=0.999 + 1e-9).contains(x)));
+        let mut order: Vec<usize> = (0..shapes.len()).collect();
+        order.sort_by(|&one, &other| boxes[one][0][0].total_cmp(&boxes[other][0][0]));
+        for (k, &one) in order.iter().enumerate() {
+            for &other in
+                order[k + 1..].iter().take_while(|&&other| boxes[other][0][0] < boxes[one][1][0] + 0.001)
+            {
+                let is_above = boxes[other][0][1] > boxes[one][1][1] + 0.001 - 1e-9;
+                let is_below = boxes[one][0][1] > boxes[other][1][1] + 0.001 - 1e-9;
+                if !is_above && !is_below {
+                    let pair = [shapes[one].clone(), shapes[other].clone()];
+                    assert_apart(&pair, 0.001, &format!("{rotation:?}: {one} and {other}"));
+                }
+            }
+        }
+        let area: f64 = shapes.iter().map(Shape::area).sum();
+        let least = if rotation == Rotation::Free { 0.7 } else { 0.3 };
+        assert!(area > least, "{rotation:?}: {area}");
+    }
+}

@@ -24,6 +24,16 @@ def folds(island: Island) -> bool:
         return True
 
 
+def folding(islands: Sequence[Island]) -> list[bool]:
+    """Whether each island folds, as `folds` says, in one call of the library."""
+    found = authalic.distortions(
+        [island.native for island in islands], [island.uv.astype(np.float32) for island in islands]
+    )
+    for island, each in zip(islands, found, strict=True):
+        island.figures = each if isinstance(each, authalic.Distortion) else None
+    return [island.figures is None or len(island.figures.folded) > 0 for island in islands]
+
+
 def _in_uvs(island: Island) -> authalic.Distortion:
     """The figures of an island in single precision, by the library; kept until `folds` is asked again."""
     if island.figures is None:

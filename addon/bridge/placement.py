@@ -15,7 +15,7 @@ from ..surfaces.arrays import Floats, Integers, Singles
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
 from . import pinning
-from .figures import folds, measure, measure_islands
+from .figures import folding, measure, measure_islands
 from .progress import Progress, to_the_end
 from .results import Figures, Island, Mapping, Refusal
 from .settings import PlacementSettings
@@ -26,6 +26,8 @@ _NO_AREA = "No face has an area in the packed UVs; nothing was changed"
 
 # The library's names.
 _ROTATIONS: dict[str, bool | Literal["cardinal"]] = {"ANY": True, "AXIS_ALIGNED": "cardinal", "NONE": False}
+# So many islands are laid level by the packer, if it may turn them.
+_MANY = 400
 # A scaled margin of Blender's, over the sum of the islands' sizes.
 _SCALED = 0.1
 
@@ -48,14 +50,15 @@ def place(
     # 1. One density; islands without an upper side lie level, or all.
     if mapping.islands:
         shapes.scale_to_one_density(mapping.islands)
-    for island in mapping.islands:
-        if island.may_turn or settings.rotation == "AXIS_ALIGNED":
-            island.uv = shapes.upright(island.uv)
+    free = [island for island in mapping.islands if island.may_turn or settings.rotation == "AXIS_ALIGNED"]
+    if free:
+        for island, uv in zip(free, shapes.all_upright([island.uv for island in free]), strict=True):
+            island.uv = uv
     # 2. A place for each; once more without the islands that fold over there.
     maps = [island.uv for island in mapping.islands]
     while mapping.islands:
         _put(mapping.islands, surfaces, settings, progress)
-        is_sound = [not folds(island) for island in mapping.islands]
+        is_sound = [not is_folding for is_folding in folding(mapping.islands)]
         if all(is_sound):
             break
         mapping.refusals += [
@@ -161,8 +164,8 @@ def _margin(islands: Sequence[Island], settings: PlacementSettings) -> dict[str,
     """The margin as the library's options: as Blender counts it, if scaled by the sizes of islands."""
     if settings.margin_method == "FRACTION":
         return {"margin": settings.margin}
-    sizes = [np.sqrt(np.ptp(island.uv, axis=0).prod()) for island in islands]
-    scale = _SCALED * np.sum(sizes) if settings.margin_method == "SCALED" else 1.0
+    sizes = np.sqrt(shapes.box_sizes(islands).prod(axis=1))
+    scale = _SCALED * sizes.sum() if settings.margin_method == "SCALED" else 1.0
     return {"margin": settings.margin * scale, "margin_unit": "islands"}
 
 

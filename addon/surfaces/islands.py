@@ -35,21 +35,42 @@ class PlanarIsland:
 
 def scale_to_one_density(islands: Sequence[PlanarIsland]) -> None:
     """Scales islands so that the UV area of each is its share of the whole surface's area, by density."""
-    areas = np.array([_area(island) for island in islands])
-    total = areas.sum()
-    for island, area in zip(islands, areas, strict=True):
-        uv_area = np.abs(triangulation.signed_areas(island.uv[island.faces])).sum()
-        island.uv = island.uv * np.sqrt(area / total / uv_area)
-
-
-def _area(island: PlanarIsland) -> float:
-    return float(island.wanted_areas(triangulation.areas(island.points[island.faces])).sum())
+    areas = _wanted_areas(islands)
+    scales = np.sqrt(areas / areas.sum() / _uv_areas(islands))
+    for island, scale in zip(islands, scales.tolist(), strict=True):
+        island.uv = island.uv * scale
 
 
 def density(islands: Sequence[PlanarIsland]) -> float:
     """Lengths in the maps of islands over those on their surfaces, where the density is 1."""
-    area = sum(np.abs(triangulation.signed_areas(island.uv[island.faces])).sum() for island in islands)
-    return float(np.sqrt(area / sum(map(_area, islands))))
+    return float(np.sqrt(_uv_areas(islands).sum() / _wanted_areas(islands).sum()))
+
+
+def box_sizes(islands: Sequence[PlanarIsland]) -> Floats:
+    """Width and height (k, 2) of the bounding boxes of islands in the map."""
+    points, starts = _joined([island.uv for island in islands])
+    return np.maximum.reduceat(points, starts) - np.minimum.reduceat(points, starts)
+
+
+def _wanted_areas(islands: Sequence[PlanarIsland]) -> Floats:
+    """The shares (k,) of the map that islands are to get."""
+    triangles, starts = _joined([island.points[island.faces] for island in islands])
+    areas = triangulation.areas(triangles)
+    for island, start in zip(islands, starts.tolist(), strict=True):
+        if island.density is not None:
+            areas[start : start + len(island.faces)] *= island.density
+    return np.add.reduceat(areas, starts)
+
+
+def _uv_areas(islands: Sequence[PlanarIsland]) -> Floats:
+    """The areas (k,) of islands in the map."""
+    triangles, starts = _joined([island.uv[island.faces] for island in islands])
+    return np.add.reduceat(np.abs(triangulation.signed_areas(triangles)), starts)
+
+
+def _joined(arrays: Sequence[Floats]) -> tuple[Floats, Integers]:
+    """Arrays one after the other, and where each begins: thousands of islands in few calls."""
+    return np.concatenate(arrays), np.cumsum([0, *map(len, arrays[:-1])])
 
 
 def laid_over(triangles: Floats, others: Floats) -> Callable[[Floats], Floats] | None:
@@ -80,17 +101,40 @@ def box(uv: Floats) -> Floats:
 
 def upright(uv: Floats) -> Floats:
     """Points (n, 2) turned so that their bounding box is as small as possible, its long side horizontal."""
-    outline, angles = _outline(uv), np.linspace(0, np.pi / 2, _TURNS, endpoint=False)
-    angle = _tightest(outline, angles)
-    angle = _tightest(outline, angle + np.linspace(-angles[1], angles[1], _TURNS))
-    width, height = np.ptp(_turned(outline, angle), axis=0)
-    return _turned(uv, angle + np.pi / 2 if height > width else angle)
+    return all_upright([uv])[0]
 
 
-def _tightest(points: Floats, angles: Floats) -> float:
-    """The angle, of (k,), by which points must be turned for the smallest bounding box."""
-    sizes = [np.ptp(_turned(points, angle), axis=0).prod() for angle in angles]
-    return float(angles[np.argmin(sizes)])
+def all_upright(maps: Sequence[Floats]) -> list[Floats]:
+    """Maps (n, 2) of islands, each turned as `upright` does."""
+    points, starts = _joined([_outline(uv) if len(uv) > _DIRECTIONS else uv for uv in maps])
+    turns = np.linspace(0, np.pi / 2, _TURNS, endpoint=False)
+    angles = _tightest(points, starts, np.zeros(len(maps)), turns)
+    angles = _tightest(points, starts, angles, np.linspace(-turns[1], turns[1], _TURNS))
+    width, height = _turned_sizes(points, starts, angles)
+    angles += np.where(height > width, np.pi / 2, 0.0)
+    return [_turned(uv, angle) for uv, angle in zip(maps, angles.tolist(), strict=True)]
+
+
+def _tightest(points: Floats, starts: Integers, angles: Floats, turns: Floats) -> Floats:
+    """The angles (k,), with one of `turns` added to each, at which islands have the smallest bounding boxes.
+
+    The islands have the points (n, 2) from `starts` (k,) on.
+    """
+    best, least = angles, np.full(len(angles), np.inf)
+    for turn in turns:
+        size = np.prod(_turned_sizes(points, starts, angles + turn), axis=0)
+        best, least = np.where(size < least, angles + turn, best), np.minimum(size, least)
+    return best
+
+
+def _turned_sizes(points: Floats, starts: Integers, angles: Floats) -> tuple[Floats, Floats]:
+    """Width and height (k,) of the bounding boxes of islands turned by angles (k,)."""
+    counts = np.diff([*starts, len(points)])
+    cosine, sine = np.repeat(np.cos(angles), counts), np.repeat(np.sin(angles), counts)
+    u, v = points.T
+    x, y = cosine * u - sine * v, sine * u + cosine * v
+    width, height = (np.maximum.reduceat(c, starts) - np.minimum.reduceat(c, starts) for c in (x, y))
+    return width, height
 
 
 def _turned(points: Floats, angle: float) -> Floats:

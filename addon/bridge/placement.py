@@ -51,7 +51,8 @@ def place(
     if mapping.islands:
         shapes.scale_to_one_density(mapping.islands)
     free = [island for island in mapping.islands if island.may_turn or settings.rotation == "AXIS_ALIGNED"]
-    if free:
+    are_turned_anyway = settings.rotation == "ANY" and len(free) >= _MANY
+    if free and not are_turned_anyway:
         for island, uv in zip(free, shapes.all_upright([island.uv for island in free]), strict=True):
             island.uv = uv
     # 2. A place for each; once more without the islands that fold over there.

@@ -11,8 +11,8 @@ from meshes import Array, MeshObject
 
 TIMES = 5
 """How many times as long as ABF it may take."""
-UNNOTICED = 2.5
-"""Seconds that it may take however fast ABF is."""
+PATIENCE = 5.0
+"""Seconds that it may take on a busy machine however fast ABF is."""
 
 
 def squares(count: int) -> MeshObject:
@@ -59,7 +59,7 @@ def unwrapped(obj: MeshObject) -> float:
     began = time.perf_counter()
     assert bpy.ops.authalic.unwrap() == {"FINISHED"}
     seconds = time.perf_counter() - began
-    assert seconds < max(TIMES * abf, UNNOTICED), (seconds, abf)
+    assert seconds < max(TIMES * abf, PATIENCE), (seconds, abf)
     return seconds
 
 

@@ -12,9 +12,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::Rotation;
 use super::angles::{least_box_angle, turned_box, turned_size};
 use super::outline::{Outline, Point};
+use super::rotation::Rotation;
 
 /// From this number of islands on, small ones are gathered.
 pub(super) const MANY: usize = 400;

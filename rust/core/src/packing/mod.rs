@@ -26,6 +26,7 @@ mod mask;
 mod outline;
 mod placement;
 mod pose;
+mod rotation;
 mod search;
 
 use std::f64::consts::FRAC_PI_2;
@@ -38,6 +39,7 @@ use blocks::{MANY, Piece};
 pub use margin::Margin;
 pub use outline::Island;
 use outline::{Outline, Point};
+pub use rotation::Rotation;
 use search::{Arrangement, MESSAGE, Placed, Task, smallest_square};
 
 /// At how many angles all around an island is tried whose area is at least a share of that of all islands.
@@ -70,17 +72,6 @@ pub struct PackOptions {
     pub rotation: Rotation,
     /// Width over height of the texture that the square stands for: islands keep their shapes on it.
     pub aspect: f64,
-}
-
-/// By which angles islands may be turned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rotation {
-    /// None.
-    Fixed,
-    /// Right angles.
-    Cardinal,
-    /// Any.
-    Free,
 }
 
 impl Default for PackOptions {

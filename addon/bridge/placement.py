@@ -21,6 +21,7 @@ from .results import Figures, Island, Mapping, Refusal
 from .settings import PlacementSettings
 
 _FOLDS = "its faces would fold over in UV precision; cut its long or thin parts open by seams"
+_NO_ROOM = "The margin leaves no room for the islands; make it smaller. Nothing was changed"
 _NO_AREA = "No face has an area in the packed UVs; nothing was changed"
 
 
@@ -115,7 +116,10 @@ def _put(
     if not settings.each_by_itself:
         groups = [[island for group in groups for island in group]]
     for group in filter(None, groups):
-        _pack(group, settings, progress)
+        try:
+            _pack(group, settings, progress)
+        except ValueError as problem:  # of the library, which refuses margins only
+            raise Unsuitable(_NO_ROOM) from problem
 
 
 def _not_put_back(islands: Sequence[Island], surface: Surface, stretch: Floats) -> list[Island]:

@@ -17,6 +17,7 @@ from .job import Job
 from .seam_groups import SeamGroups
 
 _NAMED = 3
+_NO_ROOM = "A margin of {:.3g} of the UV map on every side leaves no room for islands; it must be below 0.5"
 # The part of the time that the maps take; packing takes the rest.
 _MAPS = 0.9
 
@@ -93,6 +94,9 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapp
     anything is computed.
     """
     started = time.perf_counter()
+    placement = settings.placement
+    if placement.margin_method == "FRACTION" and placement.margin >= 0.5:
+        raise CannotUnwrap(_NO_ROOM.format(placement.margin))
     objects, refusals = targets.editable(context)
     layers = [_layer(obj, settings.uv_layer) for obj in objects]
     read = [

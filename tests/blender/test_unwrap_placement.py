@@ -200,6 +200,16 @@ def test_objects_share_the_texture_or_not() -> None:
         assert area(np.concatenate(halves(obj))) > 0.4 and np.ptp(meshes.uv(obj), axis=0).max() > 0.99
 
 
+@pytest.mark.parametrize(
+    ("margin", "reason"), [(0.5, "below 0.5"), (0.499, "leaves no room for the islands; make it smaller")]
+)
+def test_a_margin_without_room_for_islands_is_refused(margin: float, reason: str) -> None:
+    obj = meshes.add(*meshes.together(*(meshes.grid(2, offset=(3 * k, 0, 0)) for k in range(9))))
+    with pytest.raises(RuntimeError, match=reason):
+        bpy.ops.authalic.unwrap(margin_method="FRACTION", margin=margin)
+    assert not obj.data.uv_layers
+
+
 @pytest.mark.parametrize("rotate_method", ["ANY", "AXIS_ALIGNED", "NONE"])
 @pytest.mark.parametrize("margin", [0.0, 0.03])
 def test_islands_keep_the_margin(rotate_method: str, margin: float) -> None:

@@ -156,6 +156,7 @@ fn check(islands: &[Island<'_>], options: &PackOptions) -> Result<(), Error> {
             expected: "a finite number > 0".into(),
         });
     }
+    options.margin.check_room(islands.len(), options.aspect)?;
     let is_finite = |island: &Island<'_>| island.points.as_flattened().iter().all(|x| x.is_finite());
     match islands.iter().position(|island| !is_finite(island)) {
         Some(island) => Err(invalid_islands(format!("not finite in island {island}"), "of finite points")),

@@ -3,7 +3,7 @@
 //! and less room.
 
 use super::atlas::Grid;
-use super::margin::Margin;
+use super::margin::{Margin, too_large};
 use super::outline::{Outline, Point};
 use super::placement::{Layout, Plan, Rule, place_all};
 use super::pose::Pose;
@@ -130,11 +130,7 @@ fn first_square(task: &Task<'_>, side: f64, observer: &mut dyn Observer) -> Resu
         }
         side *= GROWTH;
     }
-    Err(Error::InvalidOption {
-        name: "margin",
-        found: task.margin.value().to_string(),
-        expected: format!("small enough for {} islands", task.outlines.len()),
-    })
+    Err(too_large(task.margin, task.outlines.len()))
 }
 
 /// The smallest square of a number of plans, within the grid; gives up where the first `patience` of them find none.

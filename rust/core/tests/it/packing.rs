@@ -180,6 +180,19 @@ fn equal_squares_fill_the_square() {
 }
 
 #[test]
+fn a_margin_without_room_is_refused_at_once() {
+    let shapes = vec![rectangle([1.0, 1.0], 0.0); 9];
+    let options = |margin| PackOptions { margin: Margin::OfSquare(margin), ..PackOptions::default() };
+    let start = Instant::now();
+    for margin in [0.3, 0.4, 0.49, 0.4999] {
+        assert_eq!(packed(&shapes, &options(margin)).unwrap_err().kind(), ErrorKind::InvalidOption);
+    }
+    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+    // 9 points at a distance of .2 have room in a square of side .6
+    assert!(packed(&shapes, &options(0.2)).is_ok());
+}
+
+#[test]
 fn a_margin_may_be_a_length_of_the_islands() {
     for n in [1, 6] {
         let shapes = vec![rectangle([1.0, 2.0], 0.0); n];

@@ -4,6 +4,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 import authalic
 
 from ..surfaces.arrays import Floats
@@ -11,6 +13,11 @@ from .known import Request
 from .patches import SurfacePatch, checked
 from .progress import NOT_REACHED, Progress, Result, noting_the_end, refusal, refused, share_of
 from .settings import UnwrapSettings
+
+# Where areas count first, they may deviate by this.
+_EVEN = 0.01
+# How much lighter the weight of angles becomes where they deviate more, and the least one that is tried so.
+_LIGHTER, _LIGHTEST = 4.0, 1e-5
 
 
 def disk_maps(
@@ -27,7 +34,8 @@ def disk_maps(
     options = {"fill_holes": settings.fill_holes, **settings.solver.disk_options()}
     targets = [pieces[number].target_areas for number in natives]
     listen = noting_the_end(progress, result)
-    found = _found(list(natives.values()), targets, options, settings.from_last, listen)
+    most_uneven = _EVEN if settings.solver.is_even else np.inf
+    found = _found(list(natives.values()), targets, options, (settings.from_last, most_uneven), listen)
     maps: list[authalic.DiskMap | None] = [None] * len(pieces)
     for number, each in zip(natives, found, strict=True):
         piece = pieces[number]
@@ -45,10 +53,14 @@ def _found(
     natives: Sequence[authalic.Surface],
     targets: Sequence[Floats | None],
     options: Mapping[str, Any],
-    from_last: bool,
+    how: tuple[bool, float],
     progress: Progress,
 ) -> list[authalic.DiskMap | authalic.MeshError | authalic.SolverError | None]:
-    """The map of each surface with the areas (m,) that its faces are to get, or what is wrong with it."""
+    """The map of each surface with the areas (m,) that its faces are to get, or what is wrong with it.
+
+    `how` says whether to begin with the last maps, and which deviation of areas is too much.
+    """
+    from_last, most_uneven = how
     pairs = list(zip(natives, targets, strict=True))
     requests = [
         Request(authalic.disk_map, native, {"density": areas, **options}, from_last)
@@ -74,8 +86,31 @@ def _found(
             found[number] = each
     for number in rest:
         if isinstance(found[number], authalic.DiskMap):
+            found[number] = _evened(pairs[number], found[number], options, most_uneven, progress)
             requests[number].keep(found[number], began_with_last=initial[number] is not None)
     return found
+
+
+def _evened(
+    pair: tuple[authalic.Surface, Floats | None],
+    disk_map: authalic.DiskMap,
+    options: Mapping[str, Any],
+    most_uneven: float,
+    progress: Progress,
+) -> authalic.DiskMap:
+    """A map, or one with lighter weights of angles while areas deviate too much, as on long spikes."""
+    native, areas = pair
+    weight = options.get("angle_weight", 0.0)
+    while disk_map.distortion.area_ratio_std > most_uneven and weight > _LIGHTEST:
+        if disk_map.status == "cancelled":
+            break
+        weight /= _LIGHTER
+        lighter = {**options, "angle_weight": weight}
+        better = _map_from(native, areas, disk_map.uv, lighter, share_of(progress, 1.0, 0.0))
+        if not isinstance(better, authalic.DiskMap):
+            break
+        disk_map = better
+    return disk_map
 
 
 def _map_from(

@@ -165,7 +165,7 @@ def test_island_that_falls_short_is_named(
 
     def stalled(*arguments: Any) -> Any:
         island = map_(*arguments)
-        island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, "cut it")
+        island.shortfall = bridge.Shortfall(status, 6.0, 1.5, is_uneven, False, ("cut it", "mark seams"))
         return island
 
     monkeypatch.setattr(islands, "_of_disk_map", stalled)

@@ -90,3 +90,19 @@ def test_too_few_iterations_are_a_warning(preset: str, capfd: pytest.CaptureFixt
     assert bpy.ops.authalic.unwrap(angle_preset=preset, iterations=1) == {"FINISHED"}
     said = capfd.readouterr().out
     assert "Warning" in said and "stopped at the iteration limit" in said
+
+
+@pytest.mark.parametrize("sides", [4, 6, 10])
+def test_a_long_spike_is_even_though_its_faces_must_be_sheared(sides: int) -> None:
+    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
+    rim = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    points = np.concatenate([[[0.3, 0, 30]], rim * [0.5, 0.5, 1] + [0, 0, 15], rim])
+    k, after = np.arange(sides), (np.arange(sides) + 1) % sides
+    tip = np.stack([0 * k, 1 + k, 1 + after], axis=1)
+    side = np.stack([1 + k, 1 + sides + k, 1 + sides + after], axis=1)
+    other = np.stack([1 + k, 1 + sides + after, 1 + after], axis=1)
+    obj = meshes.add(points, np.concatenate([tip, side, other]))
+    assert bpy.ops.authalic.unwrap() == {"FINISHED"}
+    ratios = meshes.area_ratios(obj)
+    assert (ratios > 0).all()
+    assert ratios.std() / ratios.mean() < 0.01

@@ -203,8 +203,11 @@ pub fn distortion(
     measure(triangles.points, triangles.faces, image.view(), &targets)
 }
 
-/// Measures many maps in one go, each as [`distortion`] does, with an image and maybe a density of its own.
-pub fn distortions(maps: &[(Surface, Array2<f64>, Option<Array1<f64>>)]) -> Vec<Result<Distortion, Error>> {
+/// A surface with an image and maybe a density of its own, as [`distortion`] takes them.
+pub type Measurable = (Surface, Array2<f64>, Option<Array1<f64>>);
+
+/// Measures many maps in one go, each as [`distortion`] does.
+pub fn distortions(maps: &[Measurable]) -> Vec<Result<Distortion, Error>> {
     parallel::lone_tasks(maps.len(), |k| {
         let (surface, image, density) = &maps[k];
         distortion(surface, image.view(), density.as_ref().map(|density| density.view()))

@@ -145,7 +145,7 @@ mod vector;
 
 pub use control::{History, Observer, Record, Silent, Status};
 pub use disk::{Boundary, DiskMap, DiskMapOptions, DiskMethod, disk_map, disk_maps};
-pub use distortion::{Distortion, distortion, distortions};
+pub use distortion::{Distortion, Measurable, distortion, distortions};
 pub use energy::{SparseColumns, stretch_hessian};
 pub use error::{
     CurveError, Elements, Error, ErrorKind, LandmarkError, MapError, MeshError, NumericsError, Side,

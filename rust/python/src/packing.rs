@@ -129,7 +129,10 @@ pub fn pack(
     })
 }
 
-const UNITS: [(&str, fn(f64) -> Margin); 2] = [("square", Margin::OfSquare), ("islands", Margin::OfIslands)];
+/// A margin of a length in one of its units.
+type Unit = fn(f64) -> Margin;
+
+const UNITS: [(&str, Unit); 2] = [("square", Margin::OfSquare), ("islands", Margin::OfIslands)];
 
 /// A truth value, or "cardinal".
 #[derive(Clone, Copy)]

@@ -12,6 +12,7 @@ from .operators import landmark_curves as operators_of_curves
 from .operators import landmark_files as operators_of_files
 from .operators import landmark_pick as operator_pick
 from .operators import landmark_points as operators_of_points
+from .operators import live as operator_live
 from .operators import mark_seams as operator_mark_seams
 from .operators import measure as operator_measure
 from .operators import redo as operator_redo
@@ -46,6 +47,7 @@ _MODULES = (
     overlay_seams,
     operator_redo,
     operator_unwrap,
+    operator_live,
     operator_mark_seams,
     operator_seam_preview,
     operator_fix_flips,

@@ -119,6 +119,11 @@ class Modal(OperatorMixin):
         return {"FINISHED"}
 
 
+def is_busy() -> bool:
+    """Whether an operator runs in a window."""
+    return bool(_in_window)
+
+
 def _refuse_if_busy() -> None:
     for label in _in_window:
         raise Busy(f"{label} is still running; wait for its end, or cancel it with Esc")

@@ -182,7 +182,8 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         return poll.has_meshes(cls, context)
 
     def job(self, context: bpy.types.Context) -> Job[Any, unwrap.Report]:
-        return unwrap.job(context, self._settings(context))
+        chosen = self.solver()
+        return unwrap.job(context, _settings(context, self.properties, chosen, from_last=self.is_redo))
 
     def line(self, report: unwrap.Report) -> str:
         return f"Unwrapped {report}"
@@ -192,48 +193,68 @@ class AUTHALIC_OT_unwrap(Modal, Outlining, Seaming, bpy.types.Operator):
         self.layout.use_property_decorate = False
         draw_options(self.layout, self)
 
-    def _settings(self, context: bpy.types.Context) -> unwrap.Settings:
-        image = images.active(context)
-        return unwrap.Settings(
-            uv_layer=self.uv_layer,
-            mark_seams=self.mark_seams,
-            groups=seaming.groups(self.properties),
-            density_source=self.density_source,
-            subdivided=self.use_subsurf_data,
-            mapping=bridge.UnwrapSettings(
-                fill_holes=self.fill_holes,
-                solver=self.solver(),
-                domain=self.domain,
-                layout=self.sphere_layout,
-                pole_axis=self.pole_axis,
-                seam_direction=self.seam_direction,
-                seams=self._search(),
-                from_last=self.is_redo,
-            ),
-            placement=bridge.PlacementSettings(
-                keep=self.keep_position,
-                each_by_itself=self.pack_objects == "EACH",
-                rotation=self.rotate_method,
-                margin_method=self.margin_method,
-                margin=_plain(self.margin),
-                density=self._density(context, image),
-                aspect=images.aspect(image) if self.correct_aspect else 1.0,
-                tile=images.tile(image),
-            ),
-        )
 
-    def _density(self, context: bpy.types.Context, image: bpy.types.Image | None) -> float:
-        """The texel density in heights of the image per unit of length; 0 if the image is to be filled."""
-        height = images.size(image)[1] if image is not None else _HEIGHT
-        meters = context.scene.unit_settings.scale_length if context.scene else 1.0
-        return _plain(self.texel_density) * meters / height
+def last_settings(context: bpy.types.Context) -> unwrap.Settings:
+    """The options that the button was last used with, for maps that go on from the last ones."""
+    last: Any = context.window_manager.operator_properties_last("authalic.unwrap")
+    chosen = bridge.Solver(
+        last.method,
+        last.iterations,
+        last.angle_weight,
+        area_tolerance=last.area_tolerance,
+        outline=last.outline,
+        overlap=last.allow_overlap,
+    )
+    return _settings(context, last, chosen, from_last=True)
 
-    def _search(self) -> bridge.SeamSettings | None:
-        """The search for seams, if there is to be one."""
-        if self.seams == "GIVEN":
-            return None
-        search = seaming.search(self.properties)
-        return replace(search, keep_given=self.seams == "ADD", overlap=self.allow_overlap)
+
+def _settings(
+    context: bpy.types.Context, properties: Any, chosen: bridge.Solver, *, from_last: bool
+) -> unwrap.Settings:
+    """The options by the properties of the operator, but for those of the solver."""
+    image = images.active(context)
+    return unwrap.Settings(
+        uv_layer=properties.uv_layer,
+        mark_seams=properties.mark_seams,
+        groups=seaming.groups(properties),
+        density_source=properties.density_source,
+        subdivided=properties.use_subsurf_data,
+        mapping=bridge.UnwrapSettings(
+            fill_holes=properties.fill_holes,
+            solver=chosen,
+            domain=properties.domain,
+            layout=properties.sphere_layout,
+            pole_axis=properties.pole_axis,
+            seam_direction=properties.seam_direction,
+            seams=_search(properties),
+            from_last=from_last,
+        ),
+        placement=bridge.PlacementSettings(
+            keep=properties.keep_position,
+            each_by_itself=properties.pack_objects == "EACH",
+            rotation=properties.rotate_method,
+            margin_method=properties.margin_method,
+            margin=_plain(properties.margin),
+            density=_density(context, properties, image),
+            aspect=images.aspect(image) if properties.correct_aspect else 1.0,
+            tile=images.tile(image),
+        ),
+    )
+
+
+def _density(context: bpy.types.Context, properties: Any, image: bpy.types.Image | None) -> float:
+    """The texel density in heights of the image per unit of length; 0 if the image is to be filled."""
+    height = images.size(image)[1] if image is not None else _HEIGHT
+    meters = context.scene.unit_settings.scale_length if context.scene else 1.0
+    return _plain(properties.texel_density) * meters / height
+
+
+def _search(properties: Any) -> bridge.SeamSettings | None:
+    """The search for seams, if there is to be one."""
+    if properties.seams == "GIVEN":
+        return None
+    search = seaming.search(properties)
+    return replace(search, keep_given=properties.seams == "ADD", overlap=properties.allow_overlap)
 
 
 def _plain(value: float) -> float:

@@ -34,7 +34,21 @@ class _UnwrapPanel(_Panel):
             _draw_reported(layout)
         layout.use_property_split = True
         layout.use_property_decorate = False
+        _draw_live(layout, context)
         unwrap.draw_main(layout, _options(context))
+
+
+def _draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The slider from areas to shapes, which the UVs can follow."""
+    manager: Any = context.window_manager
+    row = layout.row(align=True)
+    row.use_property_split = False
+    slider = row.row(align=True)
+    slider.active = _options(context).method == "GAUSS_NEWTON" and _options(context).area_tolerance == 0
+    slider.prop(_options(context), "angle_weight", text="Shape", slider=True)
+    row.prop(manager, "authalic_live", toggle=True, icon="PAUSE" if manager.authalic_live else "PLAY")
+    if manager.authalic_live and manager.authalic_live_figures:
+        layout.label(text=manager.authalic_live_figures, translate=False)
 
 
 def _draw_reported(layout: bpy.types.UILayout) -> None:

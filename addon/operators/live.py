@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""UVs that follow the options of the unwrap while they are dragged.
+
+A timer compares the options with those of the last map. Each map begins with the one before.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from ..blender.types import MeshObject, is_mesh
+from ..jobs import densities, seam_groups, targets
+from ..jobs import unwrap as unwrapping
+from ..jobs.job import Cancelled, Job
+from . import modal, unwrap
+
+_INTERVAL = 0.05
+
+Wanted = tuple[str, str, unwrapping.Settings]
+"""The name of the object, the mode, and the options."""
+
+
+@dataclass
+class _State:
+    """What the UVs were made of, or None as long as nothing has changed; and what is being made."""
+
+    made: Wanted | None = None
+    making: Wanted | None = None
+    running: Job[Any, unwrapping.Report] | None = None
+
+
+_state = _State()
+
+
+def tick(context: bpy.types.Context) -> bool:
+    """Takes the UVs one step further; whether there is to be another tick."""
+    global _state
+    manager: Any = context.window_manager
+    if not manager.authalic_live:
+        if _state.running is not None:
+            _state.running.cancel()
+        _state = _State()
+        return False
+    wanted = None if modal.is_busy() else _wanted(context)
+    if _state.running is not None:
+        _collect(context, _state.running, wanted)
+    elif wanted is not None and (_state.made is None or _state.made[:2] != wanted[:2]):
+        _state.made = wanted  # another object: its UVs are as they are until an option changes
+    elif wanted is not None and wanted != _state.made:
+        _start(context, wanted)
+    return True
+
+
+def _wanted(context: bpy.types.Context) -> Wanted | None:
+    """The active object with the options; None if there is none to unwrap."""
+    obj = context.view_layer.objects.active if context.view_layer else None
+    if not is_mesh(obj) or context.mode not in {"OBJECT", "EDIT_MESH"}:
+        return None
+    return obj.name, context.mode, unwrap.last_settings(context)
+
+
+def _start(context: bpy.types.Context, wanted: Wanted) -> None:
+    obj: MeshObject = context.view_layer.objects[wanted[0]]  # type: ignore[assignment]
+    _state.making = wanted
+    try:
+        with context.temp_override(selected_objects=[obj]):
+            _state.running = unwrapping.job(bpy.context, wanted[2]).start()
+    except _REFUSED as problem:
+        _end(context, str(problem))
+
+
+def _collect(context: bpy.types.Context, running: Job[Any, unwrapping.Report], wanted: Wanted | None) -> None:
+    """Writes a map that is ready; a step of undo for the last one of a drag."""
+    if running.poll()[0]:
+        return
+    _state.running = None
+    try:
+        report = running.apply()
+    except _REFUSED as problem:
+        _end(context, str(problem))
+        return
+    is_last = wanted == _state.making
+    _end(context, f"Area ratio SD {report.figures.deviation:.3g}, shear {report.figures.shear:.2f}")
+    if is_last:
+        bpy.ops.ed.undo_push(message="Live Unwrap")
+
+
+def _end(context: bpy.types.Context, said: str) -> None:
+    manager: Any = context.window_manager
+    manager.authalic_live_figures = said
+    _state.made, _state.making = _state.making, None
+
+
+_REFUSED = (
+    *(unwrapping.CannotUnwrap, seam_groups.NoGroup, densities.NoDensity, targets.NothingToDo),
+    *(targets.CannotWrite, Cancelled),
+)
+
+
+def _beat() -> float | None:
+    """The timer; it runs without a window in its context."""
+    context = bpy.context
+    windows = context.window_manager.windows
+    if not windows:
+        return None
+    with context.temp_override(window=windows[0]):
+        return _INTERVAL if tick(bpy.context) else None
+
+
+def _toggled(_manager: bpy.types.WindowManager, _context: bpy.types.Context) -> None:
+    if not bpy.app.background and not bpy.app.timers.is_registered(_beat):
+        bpy.app.timers.register(_beat, persistent=True)
+
+
+_PROPERTIES: Any = bpy.types.WindowManager
+
+
+def register() -> None:
+    _PROPERTIES.authalic_live = BoolProperty(
+        name="Live",
+        description="Unwrap the active object again while options change",
+        update=_toggled,
+        options={"SKIP_SAVE"},
+    )
+    _PROPERTIES.authalic_live_figures = StringProperty(
+        name="Figures", description="The figures of the last live unwrap", options={"SKIP_SAVE"}
+    )
+
+
+def unregister() -> None:
+    if bpy.app.timers.is_registered(_beat):
+        bpy.app.timers.unregister(_beat)
+    if _state.running is not None:
+        _state.running.cancel()
+    del _PROPERTIES.authalic_live_figures
+    del _PROPERTIES.authalic_live

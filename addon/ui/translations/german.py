@@ -25,7 +25,9 @@ _NAMES = {
     "Area ↔ Shape": "Fläche ↔ Form",
     "Live": "Live",
     "Shape": "Form",
-    "Unwrap the active object again while options change": "Das aktive Objekt erneut abwickeln, während sich Optionen ändern",
+    "Unwrap the active object again while options change": (
+        "Das aktive Objekt erneut abwickeln, während sich Optionen ändern"
+    ),
     "The figures of the last live unwrap": "Die Kennzahlen der letzten Live-Abwicklung",
     "Areas Only": "Nur Flächen",
     "As It Should Be": "Wie es sein soll",

@@ -28,15 +28,16 @@ class MeshState:
 
 
 State = dict[str, MeshState]
-"""By the full names of the meshes that objects use."""
+"""By the full names of the meshes of the scene."""
 
 
 def read() -> State:
     """The present state; edit mode included."""
-    for obj in bpy.data.objects:
-        if obj.type == "MESH" and obj.mode == "EDIT":
+    objects = [obj for obj in bpy.context.scene.objects if obj.type == "MESH"]
+    for obj in objects:
+        if obj.mode == "EDIT":
             obj.update_from_editmode()
-    meshes = {obj.data.name_full: obj.data for obj in bpy.data.objects if obj.type == "MESH"}
+    meshes = {obj.data.name_full: obj.data for obj in objects}
     return {name: _read(mesh) for name, mesh in meshes.items()}
 
 

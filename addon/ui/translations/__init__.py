@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The words of the interface in other languages. Reports, figures and problems stay English."""
 
+import re
+from collections.abc import Iterable
+
 import bpy
 
 from . import german
@@ -11,10 +14,18 @@ _LANGUAGES = {"de": german.WORDS, "de_DE": german.WORDS}
 _CONTEXTS = ("*", "Operator")
 
 
+def forms(message: str) -> Iterable[str]:
+    """A message as it is and, for Python before 3.13, with the indents that it has as a docstring."""
+    return dict.fromkeys((message, re.sub(r"\n(?=[^\n])", "\n    ", message)))
+
+
 def register() -> None:
     words = {
         language: {
-            (context, message): text for message, text in translations.items() for context in _CONTEXTS
+            (context, form): text
+            for message, text in translations.items()
+            for form in forms(message)
+            for context in _CONTEXTS
         }
         for language, translations in _LANGUAGES.items()
     }

@@ -17,9 +17,15 @@ const CHUNK: usize = 4096;
 /// The number of threads that is wanted, 0 for as many as there are processors.
 static WANTED: AtomicUsize = AtomicUsize::new(0);
 
-/// The threads of one process, with its id and their wanted number: a forked child inherits the pool but none
-/// of its threads.
-static POOL: Mutex<Option<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(None);
+/// The threads of one process, with its id and their wanted number.
+struct Pool {
+    process: u32,
+    wanted: usize,
+    threads: Arc<ThreadPool>,
+}
+
+/// The threads in use. A forked child inherits the pool but none of its threads.
+static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 
 /// Sets the number of threads for all that is computed from now on. 0 stands for as many as there are
 /// processors, or as the environment variable `RAYON_NUM_THREADS` says. Results do not depend on it. What is
@@ -44,15 +50,15 @@ fn threads() -> Option<Arc<ThreadPool>> {
     // a fork may have copied the lock while it was held, so never wait for it
     let mut pool = POOL.try_lock().ok()?;
     let (process, wanted) = (std::process::id(), WANTED.load(Ordering::Relaxed));
-    if pool.as_ref().is_some_and(|(owner, ..)| *owner != process) {
+    if pool.as_ref().is_some_and(|pool| pool.process != process) {
         // the parent's threads do not exist here, so do not stop them
         std::mem::forget(pool.take());
     }
-    if pool.as_ref().is_none_or(|(_, count, _)| *count != wanted) {
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(wanted).build().ok()?;
-        *pool = Some((process, wanted, Arc::new(threads)));
+    if pool.as_ref().is_none_or(|pool| pool.wanted != wanted) {
+        let threads = Arc::new(rayon::ThreadPoolBuilder::new().num_threads(wanted).build().ok()?);
+        *pool = Some(Pool { process, wanted, threads });
     }
-    pool.as_ref().map(|(.., threads)| threads.clone())
+    pool.as_ref().map(|pool| pool.threads.clone())
 }
 
 /// Runs `work` on the threads of this process, so that [`join`] finds them; where there are none, on this one.

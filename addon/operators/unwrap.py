@@ -264,6 +264,7 @@ def _plain(value: float) -> float:
 
 def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
     """All options, in the redo panel."""
+    solving.draw_presets(layout.column(), properties)
     draw_main(layout, properties)
     if has_closed(properties):
         layout.label(text="Closed Meshes")
@@ -275,9 +276,8 @@ def draw_options(layout: bpy.types.UILayout, properties: Any) -> None:
 
 
 def draw_main(layout: bpy.types.UILayout, properties: Any) -> None:
-    """The options that are wanted most."""
+    """The options that are wanted most, below the presets."""
     column = layout.column()
-    solving.draw_presets(column, properties)
     column.prop(properties, "seams")
     if properties.seams != "GIVEN":
         box = column.box().column()

@@ -8,7 +8,7 @@ import bpy
 
 from ..blender.types import PanelMixin
 from ..jobs import reported
-from ..operators import mark_seams, sphere_shape_key, unwrap
+from ..operators import mark_seams, solving, sphere_shape_key, unwrap
 from . import spaces, text
 
 
@@ -34,6 +34,7 @@ class _UnwrapPanel(_Panel):
             _draw_reported(layout)
         layout.use_property_split = True
         layout.use_property_decorate = False
+        solving.draw_presets(layout.column(), _options(context))
         _draw_live(layout, context)
         unwrap.draw_main(layout, _options(context))
 

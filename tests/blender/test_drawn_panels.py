@@ -166,8 +166,11 @@ SECTIONS = {
 def test_the_unwrap_has_few_options_and_closed_panels_with_the_rest(space: str) -> None:
     meshes.add_grid()
     layout = drawing.draw_panel(f"AUTHALIC_PT_unwrap_{space}")
-    assert layout.labels[:5] == ["Authalic Unwrap", "Area ↔ Shape", "Even", "Balanced", "Soft"]
-    assert set(layout.properties) == {"angle_preset", "seams", "density_source", "keep_position"}
+    wanted = ["Authalic Unwrap", "Area ↔ Shape", "Even", "Balanced", "Soft", "Shape", "Live"]
+    assert layout.labels[: len(wanted)] == wanted
+    assert set(layout.properties) == {
+        *("angle_preset", "angle_weight", "authalic_live", "seams", "density_source", "keep_position")
+    }
     kinds: list[Any] = [getattr(bpy.types, name) for name in panels() if name.endswith(space)]
     inner = [kind for kind in kinds if getattr(kind, "bl_parent_id", "") == f"AUTHALIC_PT_unwrap_{space}"]
     assert {kind.bl_label for kind in inner} == SECTIONS.keys()

@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 
 import authalic
 
+from ..surfaces.arrays import Floats, Integers
+from .progress import Progress
+
 # The faces of all results that are kept: some hundred megabytes.
 _MOST_FACES = 2_000_000
 
@@ -106,7 +109,7 @@ def result(
     call: Callable[..., Result],
     surface: authalic.Surface | authalic.SphereMap,
     options: Mapping[str, Any],
-    progress: Callable[[float, str], bool | None],
+    progress: Progress,
 ) -> Result:
     """`call(surface, **options)`, or what it returned for the same surface and options before."""
     request = Request(call, surface, options)
@@ -114,6 +117,18 @@ def result(
     if value is None:
         value = call(surface, progress=progress, **options)
         request.keep(value)
+    return value
+
+
+def packing(
+    uv: Floats, faces: Integers, island_of: Integers, options: Mapping[str, Any], progress: Progress
+) -> authalic.Packing:
+    """`authalic.pack(uv, faces, island_of, **options)`, or what it returned for the same before."""
+    key = _digest(uv, faces, island_of), _name(authalic.pack, options), False
+    value: authalic.Packing | None = _results.get(key)
+    if value is None:
+        value = authalic.pack(uv, faces, island_of, progress=progress, **options)
+        _results.keep(key, len(faces), value)
     return value
 
 

@@ -7,14 +7,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-import authalic
-
 from .. import messages
 from ..surfaces import islands as shapes
 from ..surfaces.arrays import Floats, Integers, Singles
 from ..surfaces.suitability import Unsuitable
 from ..surfaces.surface import Surface
-from . import pinning
+from . import known, pinning
 from .figures import folding, measure, measure_islands
 from .progress import Progress, to_the_end
 from .results import Figures, Island, Mapping, Refusal
@@ -148,15 +146,18 @@ def _pack(islands: Sequence[Island], settings: PlacementSettings, progress: Prog
     """Packs islands outline by outline into the tile, or at a density of their own from its corner on."""
     starts = np.cumsum([0, *(len(island.uv) for island in islands)])
     numbered = zip(islands, starts[:-1], strict=True)
-    packing = authalic.pack(
+    options = {
+        # alone, an island would stand on its corner
+        "rotate": _ROTATIONS["AXIS_ALIGNED" if len(islands) == 1 else settings.rotation],
+        "aspect": settings.aspect,
+        **_margin(islands, settings),
+    }
+    packing = known.packing(
         np.concatenate([island.uv for island in islands]),
         np.concatenate([island.faces + start for island, start in numbered]),
         np.repeat(np.arange(len(islands)), [len(island.faces) for island in islands]),
-        # alone, an island would stand on its corner
-        rotate=_ROTATIONS["AXIS_ALIGNED" if len(islands) == 1 else settings.rotation],
-        **_margin(islands, settings),
-        aspect=settings.aspect,
-        progress=to_the_end(progress),
+        options,
+        to_the_end(progress),
     )
     scale = 1.0
     if settings.density > 0:

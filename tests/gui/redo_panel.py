@@ -31,7 +31,8 @@ RESPONSE = 1.5
 MARGIN, WEIGHT = "0.0123", "0.4321"
 """Values by which the fields are found in the panel."""
 
-pulse, seen = Pulse(), {}
+pulse = Pulse()
+seen: dict[str, Any] = {}
 fields: dict[str, Place] = {}
 
 

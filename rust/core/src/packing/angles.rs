@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The angles at which an island is tried.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::outline::Point;
 
@@ -61,8 +61,11 @@ pub(super) fn least_box_angle(hull: &[Point]) -> f64 {
 /// Between two angles at which an edge lies flush with the square, width and height are A cos θ + B sin θ and each has
 /// its least value at an end; their maximum may have its least value also where they are equal.
 pub(super) fn square_angle(hull: &[Point], aspect: f64) -> f64 {
-    let flush = flush_angles(hull);
-    let ends = flush.iter().skip(1).copied().chain([FRAC_PI_2 + flush[0]]);
+    // on a texture that is no square, a box that stands is another than one that lies
+    let quarter = flush_angles(hull);
+    let flush: Vec<f64> =
+        [0.0, FRAC_PI_2].iter().flat_map(|turn| quarter.iter().map(move |angle| angle + turn)).collect();
+    let ends = flush.iter().skip(1).copied().chain([PI + flush[0]]);
     let equal: Vec<f64> =
         flush.iter().zip(ends).filter_map(|(&from, to)| equal_sides(hull, aspect, from, to)).collect();
     least(&[flush, equal].concat(), |angle| {

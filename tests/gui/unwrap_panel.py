@@ -91,6 +91,7 @@ STEPS = [
     picture("circle"),
     choose("EVEN"),
     seek("AUTOMATIC"),
+    *[settled] * 5,  # the panels below move down
     picture("new_seams"),
     seek("GIVEN"),
     start("unwrap"),

@@ -122,6 +122,24 @@ def test_a_debian_system_that_cannot_be_made_is_left_out(monkeypatch, tmp_path):
     assert not [path for path in tmp_path.iterdir() if path.is_dir()]
 
 
+def test_scripts_that_fail_in_a_window_are_run_once_more(monkeypatch, tmp_path):
+    runs = [
+        ["ok one", "-- first: 1 s", "ok two", "FAILED late", "-- second: 1 s", "FAILED", "-- third: 1 s"],
+        ["ok two", "ok three", "-- second: 1 s", "ok four", "FAILED again", "-- third: 1 s", "END"],
+    ]
+    seen = []
+
+    def once(_system, _archive, names, _log):
+        seen.append(list(names))
+        return windows._by_script(runs[len(seen) - 1])
+
+    monkeypatch.setattr(windows, "_system", lambda log: tmp_path)
+    monkeypatch.setattr(windows, "_run_once", once)
+    names = ["first", "second", "third", "lost"]
+    assert windows.run_scripts(tmp_path / "authalic.zip", names, tmp_path / "log") == (4, 2)
+    assert seen == [names, ["second", "third", "lost"]]
+
+
 ALL = {step.name for step in steps.STEPS}
 IN_BLENDER = {"blender-4.2", "blender-5"}
 INSTALLED = IN_BLENDER | {"window"}

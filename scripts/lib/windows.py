@@ -20,6 +20,8 @@ FOLDER = ROOT / "tests" / "gui"
 PICTURES = OUT / "gui"
 SUITE = os.environ.get("AUTHALIC_GUI_SUITE") or "trixie"
 SECONDS = 400
+# What inside.sh ends with where Blender cannot open a window.
+_NO_WINDOW = 77
 _CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "authalic"
 _KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 _PACKAGES = (
@@ -38,19 +40,48 @@ def scripts() -> list[str]:
 def run_scripts(archive: Path, names: Sequence[str], log: Path) -> tuple[int, int]:
     """Runs scripts in a window, with the extension's zip; the numbers of checks that passed and failed.
 
-    The lines of the checks go to `log`, screenshots to out/gui. Raises Unavailable where there is no Debian
-    system.
+    The lines of the checks go to `log`, screenshots to out/gui. Scripts that fail are run once more, because
+    on a busy machine an event may come too late. Raises Unavailable where there is no Debian system, or no
+    window.
     """
     system = _system(log)
+    lines = _run_once(system, archive, names, log)
+    again = [name for name in names if not _is_passed(lines.get(name, []))]
+    if again:
+        with open(str(log), "a", encoding="utf-8") as sink:
+            sink.write(f"once more: {', '.join(again)}\n")
+        lines.update({name: ["FAILED"] for name in again})
+        lines.update(_run_once(system, archive, again, log))
+    every = [line for name in names for line in lines[name]]
+    return sum(line.startswith("ok ") for line in every), sum(line.startswith("FAILED") for line in every)
+
+
+def _is_passed(lines: Sequence[str]) -> bool:
+    return bool(lines) and not any(line.startswith("FAILED") for line in lines)
+
+
+def _run_once(system: Path, archive: Path, names: Sequence[str], log: Path) -> dict[str, list[str]]:
+    """The lines of the checks of each script that came to its end."""
     work = Path(tempfile.mkdtemp(prefix="authalic-gui-", dir=str(system / "tmp")))
     try:
         _prepare(work, archive)
         _start(system, work, names)
-        lines = _collect(work, log)
+        return _by_script(_collect(work, log))
     finally:
         shutil.rmtree(str(work), ignore_errors=True)
-    failed = sum(line.startswith("FAILED") for line in lines) + ("END" not in lines)
-    return sum(line.startswith("ok ") for line in lines), failed
+
+
+def _by_script(lines: Sequence[str]) -> dict[str, list[str]]:
+    """Lines by the scripts that are named after them."""
+    found: dict[str, list[str]] = {}
+    own: list[str] = []
+    for line in lines:
+        if line.startswith("-- "):
+            found[line[3:].split(":")[0]] = own
+            own = []
+        else:
+            own.append(line)
+    return found
 
 
 def _by_hand() -> None:
@@ -77,7 +108,12 @@ def _start(system: Path, work: Path, names: Sequence[str]) -> None:
     command = ["chroot", system, "bash", "-c", f"cd {inside} && exec bash inside.sh {SECONDS}"]
     env = {**os.environ, "AUTHALIC_GUI_SCRIPTS": " ".join(names)}
     with open(str(work / "blender.log"), "w") as output:
-        subprocess.run(list(map(str, command)), env=env, stdout=output, stderr=subprocess.STDOUT)
+        done = subprocess.run(
+            list(map(str, command)), env=env, stdout=output, stderr=subprocess.STDOUT, timeout=SECONDS + 400
+        )
+    if done.returncode == _NO_WINDOW:
+        text = (work / "blender.log").read_text(encoding="utf-8", errors="replace")
+        raise Unavailable(f"Blender cannot open a window in {system}:\n{tail(text, 5)}")
 
 
 def _collect(work: Path, log: Path) -> list[str]:

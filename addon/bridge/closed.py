@@ -38,6 +38,8 @@ _SPHERE = 0.9
 _POLES = 4
 # Islands of more triangles are cut open only if no layout of theirs is without folds: seams take their time.
 _SMALL = 5000
+# Low-poly shapes have at most so many triangles: they are cut open unless a layout has these figures.
+_LOW_POLY, _EVEN, _LITTLE_SHEARED = 200, 0.15, 3.0
 
 
 @dataclass
@@ -49,14 +51,23 @@ class LaidFlat:
 
     piece: SurfacePatch
     islands: dict[str, Island] = field(default_factory=dict)
+    figures: dict[str, tuple[float, float]] = field(default_factory=dict)
     problem: authalic.SolverError | None = None
     tried: list[str] = field(default_factory=list)
 
     @property
     def is_good(self) -> bool:
         """Whether one of the islands is good enough, or can be no better in reasonable time."""
-        is_large = len(self.piece.polygons) > _SMALL
-        return any(is_large or _is_good(island) for island in self.islands.values())
+        if len(self.piece.polygons) > _SMALL:
+            return bool(self.islands)
+        return any(_is_good(island) and self._is_as_by_seams(name) for name, island in self.islands.items())
+
+    def _is_as_by_seams(self, layout: str) -> bool:
+        """Whether seams would hardly do better, or the island is no low-poly shape."""
+        if len(self.piece.polygons) > _LOW_POLY:
+            return True
+        deviation, angle = self.figures[layout]
+        return deviation <= _EVEN and angle <= _LITTLE_SHEARED
 
     def island(self, notes: list[Note]) -> Island:
         """The best island, with a note if its layout is not the wanted one; without any, raises the error."""
@@ -105,14 +116,16 @@ def _lay_flat(result: LaidFlat, settings: UnwrapSettings, solver: Solver, progre
         if layout not in result.tried:
             result.tried.append(layout)
         try:
-            island = sphere.island(layout, settings, share_of(progress, _SPHERE + number * share, share))
+            island, figures = sphere.island(
+                layout, settings, share_of(progress, _SPHERE + number * share, share)
+            )
         except authalic.SolverError as problem:
             if problem.kind != "layout_fold":
                 raise
             result.problem = result.problem or problem
             continue
-        result.islands[layout] = island
-        if _is_good(island):
+        result.islands[layout], result.figures[layout] = island, figures
+        if result.is_good:
             return
 
 
@@ -139,8 +152,10 @@ class _Sphere:
             *sphere_map(checked(piece.patch, piece.points), solver, progress, piece.target_areas),
         )
 
-    def island(self, layout: str, settings: UnwrapSettings, progress: Progress) -> Island:
-        """The island in one layout."""
+    def island(
+        self, layout: str, settings: UnwrapSettings, progress: Progress
+    ) -> tuple[Island, tuple[float, float]]:
+        """The island in one layout, with the deviation of its area ratios and its mean angle distortion."""
         piece, faces = self.piece, np.asarray(self.piece.patch.faces)
         laid = self._layout(layout, settings, progress)
         # the map has turned some faces over: back to the order of the mesh
@@ -152,7 +167,7 @@ class _Sphere:
         figures = figures_of(authalic.distortion(native, island.uv, density=piece.target_areas), piece)
         remedy = remedies.of_layout(settings, piece.polygons)
         island.shortfall = shortfall(self.map.status, figures, self.solver, UNEVEN_SPHERE, remedy)
-        return island
+        return island, figures
 
     def _layout(self, layout: str, settings: UnwrapSettings, progress: Progress) -> authalic.Layout:
         """A layout by the settings; the pole and the seam lie on the island's own axes."""

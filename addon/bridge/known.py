@@ -21,6 +21,8 @@ from .progress import Progress
 
 # The faces of all results that are kept: some hundred megabytes.
 _MOST_FACES = 2_000_000
+# A mesh of fewer faces is computed sooner than it is looked up.
+_FEWEST_FACES = 64
 
 Result = TypeVar("Result")
 Key = tuple[bytes, str, bool]
@@ -82,12 +84,16 @@ class Request:
         options: Mapping[str, Any],
         from_last: bool = False,
     ) -> None:
-        self._mesh, self._name = _digest(*_arrays(surface)), _name(call, options)
         self._faces, self._from_last = len(surface.faces), from_last
+        self._mesh, self._name = b"", ""
+        if self._faces >= _FEWEST_FACES:
+            self._mesh, self._name = _digest(*_arrays(surface)), _name(call, options)
         self._is_free = options.get("boundary") == "free"
 
     def known(self) -> Any:
         """The result, if it is known."""
+        if not self._mesh:
+            return None
         for depends in (True, False) if self._from_last else (False,):
             value = _results.get((self._mesh, self._name, depends))
             if value is not None:
@@ -100,7 +106,9 @@ class Request:
         return None if last is None else last.uv
 
     def keep(self, value: Any, *, began_with_last: bool = False) -> None:
-        """Keeps a result."""
+        """Keeps a result, unless its mesh has few faces."""
+        if not self._mesh:
+            return
         depends = began_with_last or getattr(value, "status", None) == "cancelled"
         _results.keep((self._mesh, self._name, depends), self._faces, value)
 

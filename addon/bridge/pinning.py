@@ -13,9 +13,11 @@ from ..surfaces.arrays import Floats, Integers
 from ..surfaces.surface import Surface
 from .progress import Progress, to_the_end
 from .results import Island
+from .shortfall import UNEVEN_DISK, Shortfall
 
 FOLDS = "its faces would fold over between its pinned UVs; unpin some, or move them"
 """Why an island with pinned UVs is left as it was."""
+_MOVE_PINS = "unpin some UVs, or move them"
 
 
 def is_pinned(island: Island, surface: Surface) -> bool:
@@ -46,6 +48,17 @@ def _put(island: Island, surface: Surface, stretch: Floats, progress: Progress) 
         uv = _unfolded(island, uv, pins, progress)
     uv[pins] = places
     island.uv = uv
+    island.shortfall = _shortfall(island)
+
+
+def _shortfall(island: Island) -> Shortfall | None:
+    """What is bad about an island between its pins; None if nothing is."""
+    with suppress(authalic.MeshError):
+        found = authalic.distortion(island.native, island.uv)
+        deviation, angle = float(found.area_ratio_std), float(found.angle_distortion_mean)
+        if deviation > UNEVEN_DISK:
+            return Shortfall("converged", deviation, angle, True, False, (_MOVE_PINS, _MOVE_PINS))
+    return island.shortfall
 
 
 def _scale(island: Island, surface: Surface, stretch: Floats) -> float:

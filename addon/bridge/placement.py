@@ -111,11 +111,15 @@ def _put(
             groups[number] = pinning.not_pinned(groups[number], surface, stretch, progress)
         if settings.keep:
             groups[number] = _not_put_back(groups[number], surface, stretch)
+    packed = {id(island) for group in groups for island in group}
+    stays = [island for island in islands if id(island) not in packed]
+    # what is packed beside islands that stay is to be no finer than these
+    most = shapes.density(stays) * np.sqrt(settings.aspect) if stays else np.inf
     if not settings.each_by_itself:
         groups = [[island for group in groups for island in group]]
     for group in filter(None, groups):
         try:
-            _pack(group, settings, progress)
+            _pack(group, settings, most, progress)
         except ValueError as problem:  # of the library, which refuses margins only
             raise Unsuitable(_NO_ROOM) from problem
 
@@ -142,8 +146,11 @@ def _not_put_back(islands: Sequence[Island], surface: Surface, stretch: Floats) 
     return rest
 
 
-def _pack(islands: Sequence[Island], settings: PlacementSettings, progress: Progress) -> None:
-    """Packs islands outline by outline into the tile, or at a density of their own from its corner on."""
+def _pack(islands: Sequence[Island], settings: PlacementSettings, most: float, progress: Progress) -> None:
+    """Packs islands outline by outline into the tile, or at a density of their own from its corner on.
+
+    The density is at `most` the given one.
+    """
     starts = np.cumsum([0, *(len(island.uv) for island in islands)])
     numbered = zip(islands, starts[:-1], strict=True)
     options = {
@@ -159,9 +166,8 @@ def _pack(islands: Sequence[Island], settings: PlacementSettings, progress: Prog
         options,
         to_the_end(progress),
     )
-    scale = 1.0
-    if settings.density > 0:
-        scale = settings.density / (packing.scale * shapes.density(islands))
+    density = packing.scale * shapes.density(islands)
+    scale = settings.density / density if settings.density > 0 else min(1.0, most / density)
     for island, uv in zip(islands, np.split(np.asarray(packing.uv), starts[1:-1]), strict=True):
         island.uv = scale * uv + settings.tile
 

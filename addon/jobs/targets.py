@@ -32,13 +32,17 @@ def meshes(context: bpy.types.Context) -> list[MeshObject]:
     return [obj for obj in objects if is_mesh(obj) and obj in chosen.values()]
 
 
-def editable(context: bpy.types.Context) -> tuple[list[MeshObject], list[Refusal]]:
+def editable(
+    context: bpy.types.Context, only: MeshObject | None = None
+) -> tuple[list[MeshObject], list[Refusal]]:
     """The mesh objects of the context that can be written, and a refusal for each of the others.
+
+    Those of the context are replaced by the object `only`, if there is one.
 
     Raises `CannotWrite` where there are meshes, but none can be written.
     """
     objects, refusals = [], []
-    for obj in meshes(context):
+    for obj in meshes(context) if only is None else [only]:
         reason = editability.why_not_mesh(obj)
         if reason is None:
             objects.append(obj)

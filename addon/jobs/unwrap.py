@@ -74,6 +74,7 @@ class Report:
         if self.figures is not None:
             parts += [
                 f"area ratio SD {self.figures.deviation:.3g}",
+                f"shares {2**self.figures.log2_min:.2g} to {2**self.figures.log2_max:.2g}",
                 messages.count(self.figures.flips, "flip"),
                 self._shear(self.figures),
             ]
@@ -87,8 +88,12 @@ class Report:
         return found_seams.shear(figures.shear, self.seams)
 
 
-def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapping, bridge.Placed], Report]:
+def job(
+    context: bpy.types.Context, settings: Settings, only: MeshObject | None = None
+) -> Job[tuple[bridge.Mapping, bridge.Placed], Report]:
     """A `Job` that unwraps what is selected; its `apply` writes the UVs and returns a `Report`.
+
+    With `only` it is this object that is unwrapped, whatever is selected.
 
     Raises `targets.NothingToDo`, `CannotUnwrap`, `seam_groups.NoGroup` or `densities.NoDensity` before
     anything is computed.
@@ -97,7 +102,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[bridge.Mapp
     placement = settings.placement
     if placement.margin_method == "FRACTION" and placement.margin >= 0.5:
         raise CannotUnwrap(_NO_ROOM.format(placement.margin))
-    objects, refusals = targets.editable(context)
+    objects, refusals = targets.editable(context, only)
     layers = [_layer(obj, settings.uv_layer) for obj in objects]
     read = [
         (obj, layer, _read(context, obj, layer, settings)) for obj, layer in zip(objects, layers, strict=True)

@@ -4,7 +4,7 @@
 A timer compares the options with those of the last map. Each map begins with the one before.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -32,6 +32,8 @@ class _State:
 
 
 _state = _State()
+# The editor in which it was turned on: in the UV editor its selection and its image count.
+_place: dict[str, Any] = {}
 
 
 def tick(context: bpy.types.Context) -> bool:
@@ -43,7 +45,9 @@ def tick(context: bpy.types.Context) -> bool:
             _state.running.cancel()
         _state = _State()
         return False
-    wanted = None if modal.is_busy() else _wanted(context)
+    if modal.is_busy():  # with meshes that must not change meanwhile
+        return True
+    wanted = _wanted(context)
     if _state.running is not None:
         _collect(context, _state.running, wanted)
     elif wanted is not None and (_state.made is None or _state.made[:2] != wanted[:2]):
@@ -58,15 +62,15 @@ def _wanted(context: bpy.types.Context) -> Wanted | None:
     obj = context.view_layer.objects.active if context.view_layer else None
     if not is_mesh(obj) or context.mode not in {"OBJECT", "EDIT_MESH"}:
         return None
-    return obj.name, context.mode, unwrap.last_settings(context)
+    # seams are marked by the button: as they change, they would add up
+    return obj.name, context.mode, replace(unwrap.last_settings(context), mark_seams=False)
 
 
 def _start(context: bpy.types.Context, wanted: Wanted) -> None:
     obj: MeshObject = context.view_layer.objects[wanted[0]]  # type: ignore[assignment]
     _state.making = wanted
     try:
-        with context.temp_override(selected_objects=[obj]):
-            _state.running = unwrapping.job(bpy.context, wanted[2]).start()
+        _state.running = unwrapping.job(context, wanted[2], obj).start()
     except _REFUSED as problem:
         _end(context, str(problem))
 
@@ -105,11 +109,24 @@ def _beat() -> float | None:
     windows = context.window_manager.windows
     if not windows:
         return None
-    with context.temp_override(window=windows[0]):
+    with context.temp_override(**_override(windows)):
         return _INTERVAL if tick(bpy.context) else None
 
 
-def _toggled(_manager: bpy.types.WindowManager, _context: bpy.types.Context) -> None:
+def _override(windows: Any) -> dict[str, Any]:
+    """The editor in which it was turned on, if it is still there; else a window."""
+    for window in windows:
+        for area in window.screen.areas:
+            if area == _place.get("area") and area.ui_type == _place["kind"]:
+                region = next(region for region in area.regions if region.type == "WINDOW")
+                return {"window": window, "area": area, "region": region}
+    return {"window": windows[0]}
+
+
+def _toggled(_manager: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    _place.clear()
+    if context.area is not None:
+        _place.update(area=context.area, kind=context.area.ui_type)
     if not bpy.app.background and not bpy.app.timers.is_registered(_beat):
         bpy.app.timers.register(_beat, persistent=True)
 

@@ -9,6 +9,7 @@ import bpy
 import meshes
 import numpy as np
 import pytest
+from editors import uv_editor
 from installed import part
 
 
@@ -103,3 +104,52 @@ def test_what_cannot_be_unwrapped_is_said(manager: Any) -> None:
     settle()
     assert "has a handle" in manager.authalic_live_figures
     assert not obj.data.uv_layers or deviation(obj) >= 0
+
+
+def test_only_the_active_object_follows_in_edit_mode() -> None:
+    first, second = meshes.add_grid("First"), meshes.add_grid("Second")
+    meshes.select(first, second)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    settle()
+    options().angle_weight = 0.9
+    settle()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert first.data.uv_layers and not second.data.uv_layers
+
+
+def test_no_seams_are_marked() -> None:
+    obj = meshes.icosphere(2)
+    former = options().seams
+    try:
+        options().seams = "AUTOMATIC"
+        settle()
+        for shear in (1.6, 1.3):
+            options().shear = shear
+            settle()
+        assert obj.data.uv_layers and not any(edge.use_seam for edge in obj.data.edges)
+    finally:
+        options().seams, options().shear_preset = former, "AUTO"
+
+
+def test_nothing_is_written_while_an_operator_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    obj = meshes.add_grid()
+    settle()
+    options().angle_weight = 0.9
+    assert tick()
+    running = part("operators.live")._state.running
+    assert running is not None and running.wait(60)
+    monkeypatch.setattr(part("operators.modal"), "_in_window", ["Authalic Unwrap"])
+    assert tick() and not obj.data.uv_layers
+    monkeypatch.undo()
+    settle()
+    assert obj.data.uv_layers
+
+
+def test_it_keeps_to_the_editor_where_it_was_turned_on(manager: Any) -> None:
+    live, windows = part("operators.live"), bpy.context.window_manager.windows
+    assert live._override(windows) == {"window": windows[0]}
+    with uv_editor():
+        manager.authalic_live = True
+        assert live._override(windows)["area"] == bpy.context.area
+    assert live._override(windows) == {"window": windows[0]}

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where islands come to lie, and how much of the texture they get."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import bmesh
@@ -10,6 +8,7 @@ import bpy
 import meshes
 import numpy as np
 import pytest
+from editors import uv_editor
 
 
 def unwrap(**options: Any) -> Any:
@@ -63,7 +62,7 @@ def test_islands_without_uvs_are_packed() -> None:
     assert unwrap(keep_position=True) == {"FINISHED"}
     first, second = halves(obj)
     assert area(first) == pytest.approx(area(before[0]), rel=1e-5)
-    assert np.ptp(second.reshape(-1, 2), axis=0).max() > 0.9
+    assert area(second) == pytest.approx(area(first), rel=0.01)
 
 
 def test_a_new_uv_map_keeps_the_places_of_the_active_one() -> None:
@@ -98,7 +97,8 @@ def test_pinned_uvs_stay_and_the_rest_follows(vertices: list[int]) -> None:
     first, second = halves(obj)
     assert (meshes.uv_areas(first) > 0).all()
     assert 0.5 < area(first) / area(before[0]) < 2
-    assert np.ptp(second.reshape(-1, 2), axis=0).max() > 0.9  # not pinned, so packed
+    assert area(second) == pytest.approx(area(first), rel=0.01)  # packed, at the same density
+    assert second.min() < 0.01 and second.max() < 0.5
     assert obj.data.attributes[".pn.UVMap"].data[int(corners[0])].value
 
 
@@ -108,6 +108,21 @@ def test_an_island_that_is_pinned_throughout_stays_bit_for_bit() -> None:
     before = meshes.uv(obj)
     assert unwrap() == {"FINISHED"}
     assert (meshes.uv(obj)[:144] == before[:144]).all()
+
+
+def test_pins_that_make_areas_uneven_are_told(capfd: pytest.CaptureFixture[str]) -> None:
+    obj = two_grids()
+    corner_vertex = np.array([loop.vertex_index for loop in obj.data.loops])
+    values = meshes.uv(obj)
+    rim = [v for v in range(49) if v % 7 in (0, 6) or v // 7 in (0, 6)]
+    for vertex in rim:  # a narrow trapezoid
+        column, row = vertex % 7, vertex // 7
+        values[corner_vertex == vertex] = [0.3 + 0.05 * (column - 3) * (1 + row / 2) / 3, 0.2 + 0.05 * row]
+    obj.data.uv_layers[0].uv.foreach_set("vector", values.ravel())
+    pin(obj, np.flatnonzero(np.isin(corner_vertex, rim)))
+    assert unwrap() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "Warning" in said and "uneven" in said and "unpin some UVs" in said
 
 
 def test_pins_that_would_fold_faces_leave_the_island_as_it_was(capfd: pytest.CaptureFixture[str]) -> None:
@@ -266,20 +281,6 @@ def test_areas_are_those_of_the_subdivided_surface() -> None:
 
 
 # The selection in the UV editor
-
-
-@contextmanager
-def uv_editor() -> Iterator[None]:
-    """The UV editor in the place of an area of the window."""
-    window = bpy.context.window_manager.windows[0]
-    place = window.screen.areas[0]
-    former, place.ui_type = place.ui_type, "UV"
-    try:
-        region = next(region for region in place.regions if region.type == "WINDOW")
-        with bpy.context.temp_override(window=window, area=place, region=region):
-            yield
-    finally:
-        place.ui_type = former
 
 
 def select_uvs(obj: Any, faces: range) -> None:

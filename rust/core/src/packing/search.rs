@@ -26,10 +26,10 @@ struct Effort {
 }
 
 /// What finds a square in which all islands fit.
-const COARSE: Effort = Effort { cells: 128, cells_per_root: 8.0, max_plans: 20, max_words: 10_000_000 };
+const COARSE: Effort = Effort { cells: 128, cells_per_root: 8.0, max_plans: 6, max_words: 2_000_000 };
 
 /// What finds the smallest.
-const FINE: Effort = Effort { cells: 512, cells_per_root: 16.0, max_plans: 400, max_words: 100_000_000 };
+const FINE: Effort = Effort { cells: 512, cells_per_root: 16.0, max_plans: 60, max_words: 12_000_000 };
 
 impl Effort {
     /// The grid of a square.

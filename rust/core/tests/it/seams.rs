@@ -435,11 +435,7 @@ fn a_cancelled_run_ends_soon() {
             };
             let Some(cancelled) = cancelled else { continue };
             assert_eq!(error, Some(Error::CancelledEarly), "{patience} ms");
-            assert!(
-                cancelled.elapsed() < PATIENCE,
-                "{:?} after {patience} ms",
-                cancelled.elapsed()
-            );
+            assert!(cancelled.elapsed() < PATIENCE, "{:?} after {patience} ms", cancelled.elapsed());
         }
     }
 }

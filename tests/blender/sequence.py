@@ -37,6 +37,11 @@ class Sequence:
     def push(self) -> None:
         """Pushes a step of undo, which operators called from a script do not."""
         bpy.ops.ed.undo_push(message=self.log[-1])
+        self.pushed()
+
+    def pushed(self) -> None:
+        """Notes a step of undo that has been pushed, by an action itself instead of for it."""
+        self._has_gone = True
         del self._history[self._now + 1 :]
         self._history.append(states.read())
         self._now += 1

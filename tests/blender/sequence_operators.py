@@ -56,6 +56,40 @@ def heat_map(sequence: Sequence) -> None:
     assert not difference, f"the heat map changed {difference}"
 
 
+def live(sequence: Sequence) -> None:
+    """Moves the slider that the UVs follow: those of the active object, where it can be written."""
+    context, timer = bpy.context, part("operators.live")
+    weight = round(sequence.random.random(), 2)
+    sequence.say(f"  live, angle_weight={weight}")
+    before, around = states.read(), _surroundings()
+    active = context.view_layer.objects.active
+    mesh = active.data.name_full if active is not None and active.type == "MESH" else None
+    manager = context.window_manager
+    manager.authalic_live, manager.authalic_live_figures = True, ""
+    options = manager.operator_properties_last("authalic.unwrap")
+    former = options.angle_weight
+    timer.tick(context)
+    options.angle_weight = weight
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        timer.tick(context)
+        if timer._state.running is None:
+            break
+        time.sleep(0.002)
+    manager.authalic_live = False
+    timer.tick(context)
+    options.angle_weight = former
+    if manager.authalic_live_figures.startswith("Area"):
+        sequence.pushed()
+    after = states.read()
+    assert _surroundings() == around, f"{around} became {_surroundings()}"
+    for name in before:
+        changes = {*states.changed(before[name], after[name])}
+        permitted = _changed_by_unwrap(before[name], after[name]) - {"seams"} if name == mesh else set()
+        assert changes <= permitted, f"{name}: changed {sorted(changes - permitted)}"
+        _check_uv(before[name], after[name], in_edit_mode=around[0] == "EDIT_MESH")
+
+
 def landmark_curve(sequence: Sequence) -> None:
     """Adds the edges that are selected as a landmark curve."""
     _ours(sequence, "landmark_curve_add", {}, lambda *_: set())

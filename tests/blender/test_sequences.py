@@ -44,6 +44,7 @@ _ACTIONS: dict[Callable[[Sequence], None], int] = {
     operators.measure: 2,
     operators.set_texel_density: 2,
     operators.heat_map: 2,
+    operators.live: 2,
     operators.landmark_curve: 1,
     operators.sphere_shape_key: 2,
     operators.register: 4,

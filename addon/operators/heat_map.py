@@ -22,6 +22,7 @@ from ..overlay import heat_map as overlay
 from ..surfaces import heat_map
 from . import density, poll
 from .measure import Figures, figures_of
+from .timer import Timer
 
 _INTERVAL = 0.1
 # Reading meshes may take this part of the time at most, so that large ones can be edited meanwhile.
@@ -153,19 +154,11 @@ def _clear(context: bpy.types.Context) -> None:
     overlay.show(context, [], None)
 
 
-def _beat() -> float | None:
-    """The timer; it runs without a window in its context."""
-    context = bpy.context
-    windows = context.window_manager.windows
-    if not windows:
-        return None
-    with context.temp_override(window=windows[0]):
-        return _INTERVAL if tick(bpy.context) else None
+_timer = Timer(tick, _INTERVAL)
 
 
 def _toggled(_settings_: Any, _context: bpy.types.Context) -> None:
-    if not bpy.app.background and not bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.register(_beat, persistent=True)
+    _timer.start()
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -271,8 +264,7 @@ def register() -> None:
 def unregister() -> None:
     global _state
     bpy.app.handlers.load_post.remove(_loaded)
-    if bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.unregister(_beat)
+    _timer.stop()
     for running in (_state.measuring, _state.painting):
         if running is not None:
             running.cancel()

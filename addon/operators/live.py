@@ -15,6 +15,7 @@ from ..jobs import densities, seam_groups, targets
 from ..jobs import unwrap as unwrapping
 from ..jobs.job import Cancelled, Job
 from . import modal, unwrap
+from .timer import Timer
 
 _INTERVAL = 0.05
 
@@ -103,16 +104,6 @@ _REFUSED = (
 )
 
 
-def _beat() -> float | None:
-    """The timer; it runs without a window in its context."""
-    context = bpy.context
-    windows = context.window_manager.windows
-    if not windows:
-        return None
-    with context.temp_override(**_override(windows)):
-        return _INTERVAL if tick(bpy.context) else None
-
-
 def _override(windows: Any) -> dict[str, Any]:
     """The editor in which it was turned on, if it is still there; else a window."""
     for window in windows:
@@ -123,12 +114,14 @@ def _override(windows: Any) -> dict[str, Any]:
     return {"window": windows[0]}
 
 
+_timer = Timer(tick, _INTERVAL, _override)
+
+
 def _toggled(_manager: bpy.types.WindowManager, context: bpy.types.Context) -> None:
     _place.clear()
     if context.area is not None:
         _place.update(area=context.area, kind=context.area.ui_type)
-    if not bpy.app.background and not bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.register(_beat, persistent=True)
+    _timer.start()
 
 
 _PROPERTIES: Any = bpy.types.WindowManager
@@ -147,8 +140,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    if bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.unregister(_beat)
+    _timer.stop()
     if _state.running is not None:
         _state.running.cancel()
     del _PROPERTIES.authalic_live_figures

@@ -17,6 +17,7 @@ from ..jobs import seam_groups, targets
 from ..jobs.job import Job
 from ..overlay import seams as overlay
 from . import mark_seams
+from .timer import Timer
 
 _INTERVAL = 0.1
 
@@ -105,19 +106,11 @@ def _show(context: bpy.types.Context, lines: list[overlay.Lines], text: str) -> 
     overlay.show(context, lines)
 
 
-def _beat() -> float | None:
-    """The timer; it runs without a window in its context."""
-    context = bpy.context
-    windows = context.window_manager.windows
-    if not windows:
-        return None
-    with context.temp_override(window=windows[0]):
-        return _INTERVAL if tick(bpy.context) else None
+_timer = Timer(tick, _INTERVAL)
 
 
 def _toggled(_manager: bpy.types.WindowManager, _context: bpy.types.Context) -> None:
-    if not bpy.app.background and not bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.register(_beat, persistent=True)
+    _timer.start()
 
 
 _PROPERTIES: Any = bpy.types.WindowManager
@@ -136,8 +129,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    if bpy.app.timers.is_registered(_beat):
-        bpy.app.timers.unregister(_beat)
+    _timer.stop()
     if _state.running is not None:
         _state.running.cancel()
     del _PROPERTIES.authalic_seam_figures

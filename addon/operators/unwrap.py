@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from .. import bridge
 from ..blender import images, uv_maps
 from ..blender.types import is_mesh
-from ..jobs import densities, seam_groups, unwrap
+from ..jobs import densities, seam_groups, texel_density, unwrap
 from ..jobs.job import Job
 from . import poll, seaming, solving
 from .density import property_of_sources
@@ -244,7 +244,7 @@ def _settings(
 
 def _density(context: bpy.types.Context, properties: Any, image: bpy.types.Image | None) -> float:
     """The texel density in heights of the image per unit of length; 0 if the image is to be filled."""
-    height = images.size(image)[1] if image is not None else _HEIGHT
+    height = images.size(image)[1] if image is not None else texel_density.DEFAULT_SIZE
     meters = context.scene.unit_settings.scale_length if context.scene else 1.0
     return _plain(properties.texel_density) * meters / height
 
@@ -321,8 +321,6 @@ def draw_advanced(layout: bpy.types.UILayout, properties: Any) -> None:
 
 
 _PACKING = (*("pack_objects", "rotate_method", "margin_method", "margin", "texel_density", "correct_aspect"),)
-# The height in pixels of an image that is not there.
-_HEIGHT = 1024
 
 
 def register() -> None:

@@ -93,12 +93,6 @@ def laid_over(triangles: Floats, others: Floats) -> Callable[[Floats], Floats] |
     return lambda points: scale * _turned(points - center, angle) + other_center
 
 
-def box(uv: Floats) -> Floats:
-    """The corners (4, 2), counter-clockwise, of the bounding box of points (n, 2)."""
-    (left, low), (right, high) = uv.min(axis=0), uv.max(axis=0)
-    return np.array([[left, low], [right, low], [right, high], [left, high]])
-
-
 def upright(uv: Floats) -> Floats:
     """Points (n, 2) turned so that their bounding box is as small as possible, its long side horizontal."""
     return all_upright([uv])[0]

@@ -175,12 +175,6 @@ def test_island_that_falls_short_is_named(
     assert f"Grid at face 0: {text}" in said
 
 
-def test_boxes_enclose() -> None:
-    points = np.random.default_rng(3).normal(size=(500, 2)) * [3, 1]
-    box = part("surfaces.islands").box(points)
-    assert (box[0] == points.min(axis=0)).all() and (box[2] == points.max(axis=0)).all()
-
-
 def test_sentences_name_the_elements_of_the_mesh() -> None:
     polygons, vertices = np.array([70, 80, 90, 90]), np.array([5, 6, 7, -1])
     expected = {

@@ -108,6 +108,28 @@ def sidebar(editor: str = "VIEW_3D") -> list[Step]:
     return [show, choose, settled]
 
 
+def suzanne_with_seams() -> None:
+    """A step that adds Suzanne, subdivided twice, with seams between the islands of her UVs."""
+    call(bpy.ops.mesh.primitive_monkey_add)
+    call(bpy.ops.object.mode_set, mode="EDIT")
+    call(bpy.ops.mesh.select_all, action="SELECT")
+    call(bpy.ops.uv.select_all, action="SELECT")
+    call(bpy.ops.uv.seams_from_islands)
+    call(bpy.ops.object.mode_set, mode="OBJECT")
+    modifier = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = 2
+    call(bpy.ops.object.modifier_apply, modifier=modifier.name)
+    call(bpy.ops.ed.undo_push, message="Suzanne")
+
+
+def uvs_of_suzanne() -> Any:
+    """The UVs (2c,) of all corners of Suzanne."""
+    layer = bpy.data.objects["Suzanne"].data.uv_layers.active.uv
+    flat = np.empty(2 * len(layer), np.float32)
+    layer.foreach_get("vector", flat)
+    return flat
+
+
 def uvs_in_view() -> None:
     """A step that fits the view of the UV editor to the UVs."""
     with bpy.context.temp_override(window=window(), area=area("UV"), region=region("WINDOW", "UV")):

@@ -18,7 +18,9 @@ from driver import (
     settled,
     sidebar,
     start,
+    suzanne_with_seams,
     until_done,
+    uvs_of_suzanne,
 )
 
 RESPONSE = 1.5
@@ -26,26 +28,6 @@ RESPONSE = 1.5
 
 pulse = Pulse()
 seen: list[Any] = []
-
-
-def scene() -> None:
-    call(bpy.ops.mesh.primitive_monkey_add)
-    call(bpy.ops.object.mode_set, mode="EDIT")
-    call(bpy.ops.mesh.select_all, action="SELECT")
-    call(bpy.ops.uv.select_all, action="SELECT")
-    call(bpy.ops.uv.seams_from_islands)
-    call(bpy.ops.object.mode_set, mode="OBJECT")
-    modifier = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
-    modifier.levels = 2
-    call(bpy.ops.object.modifier_apply, modifier=modifier.name)
-    call(bpy.ops.ed.undo_push, message="Suzanne")
-
-
-def uv() -> Any:
-    layer = bpy.data.objects["Suzanne"].data.uv_layers.active.uv
-    flat = np.empty(2 * len(layer), np.float32)
-    layer.foreach_get("vector", flat)
-    return flat
 
 
 def live(is_on: bool) -> None:
@@ -64,13 +46,13 @@ def drag() -> Iterator[None]:
     for step in range(20):
         options.angle_weight = 0.4 + 0.01 * step
         area().tag_redraw()
-        if not seen or not np.array_equal(seen[-1], uv()):
-            seen.append(uv())
+        if not seen or not np.array_equal(seen[-1], uvs_of_suzanne()):
+            seen.append(uvs_of_suzanne())
         yield
 
 
 def is_new() -> bool:
-    return not np.array_equal(seen[-1], uv())
+    return not np.array_equal(seen[-1], uvs_of_suzanne())
 
 
 def steady() -> bool:
@@ -80,11 +62,11 @@ def steady() -> bool:
 
 STEPS = [
     only_panels("Authalic Unwrap"),
-    scene,
+    suzanne_with_seams,
     *sidebar(),
     start("unwrap"),
     until_done("the unwrap ends"),
-    lambda: seen.append(uv()),
+    lambda: seen.append(uvs_of_suzanne()),
     lambda: live(True),
     *[settled] * 4,
     check("nothing changes while no option does", is_new, False),
@@ -98,5 +80,5 @@ STEPS = [
     picture("live"),
     lambda: live(False),
     lambda: call(bpy.ops.ed.undo),
-    check("undo takes the drag back", lambda: np.array_equal(uv(), seen[0]), True),
+    check("undo takes the drag back", lambda: np.array_equal(uvs_of_suzanne(), seen[0]), True),
 ]

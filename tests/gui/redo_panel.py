@@ -10,7 +10,6 @@ from driver import (
     Place,
     Pulse,
     Until,
-    call,
     check,
     click,
     click_button,
@@ -22,7 +21,9 @@ from driver import (
     send,
     settled,
     sidebar,
+    suzanne_with_seams,
     until_done,
+    uvs_of_suzanne,
     window,
 )
 
@@ -34,19 +35,6 @@ MARGIN, WEIGHT = "0.0123", "0.4321"
 pulse = Pulse()
 seen: dict[str, Any] = {}
 fields: dict[str, Place] = {}
-
-
-def scene() -> None:
-    call(bpy.ops.mesh.primitive_monkey_add)
-    call(bpy.ops.object.mode_set, mode="EDIT")
-    call(bpy.ops.mesh.select_all, action="SELECT")
-    call(bpy.ops.uv.select_all, action="SELECT")
-    call(bpy.ops.uv.seams_from_islands)
-    call(bpy.ops.object.mode_set, mode="OBJECT")
-    modifier = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
-    modifier.levels = 2
-    call(bpy.ops.object.modifier_apply, modifier=modifier.name)
-    call(bpy.ops.ed.undo_push, message="Suzanne")
 
 
 def values() -> None:
@@ -99,16 +87,9 @@ def drag(value: str, pixels: int) -> Callable[[], Iterator[None]]:
     return act
 
 
-def uv() -> Any:
-    layer = bpy.data.objects["Suzanne"].data.uv_layers.active.uv
-    flat = np.empty(2 * len(layer), np.float32)
-    layer.foreach_get("vector", flat)
-    return flat
-
-
 def remember(name: str) -> Callable[[], None]:
     def act() -> None:
-        seen[name] = uv()
+        seen[name] = uvs_of_suzanne()
 
     return act
 
@@ -124,7 +105,7 @@ def steady() -> bool:
 
 STEPS = [
     only_panels("Authalic Unwrap"),
-    scene,
+    suzanne_with_seams,
     values,
     *sidebar(),
     *click_button("authalic.unwrap"),
@@ -141,7 +122,7 @@ STEPS = [
     drag(MARGIN, 60),
     settled,
     check("the drag changes the margin", lambda: last().margin > float(MARGIN), True),
-    Until("the UVs follow", lambda: not np.array_equal(uv(), seen["first"])),
+    Until("the UVs follow", lambda: not np.array_equal(uvs_of_suzanne(), seen["first"])),
     until_done("nothing runs any more"),
     check("the window stays alive while the margin changes", steady, True),
     picture("redo_margin"),
@@ -150,7 +131,7 @@ STEPS = [
     drag(WEIGHT, 40),
     settled,
     check("the drag changes the weight", lambda: last().angle_weight > float(WEIGHT), True),
-    Until("the UVs follow the weight", lambda: not np.array_equal(uv(), seen["margin"])),
+    Until("the UVs follow the weight", lambda: not np.array_equal(uvs_of_suzanne(), seen["margin"])),
     until_done("nothing runs any more"),
     check("the window stays alive while the weight changes", steady, True),
     pulse.stop,

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.jacobians import jacobians
+
 SLIVER = 1e-14
 """Triangles with a smaller share of the area have no figures."""
 
@@ -39,15 +41,3 @@ def measured(triangles, corners, island_of):
     largest = (squares + np.sqrt(np.maximum(squares**2 - 4 * determinant**2, 0))) / 2  # σ₁²
     shear = (largest[good] / determinant[good]).mean() if good.any() else np.inf
     return Figures(float(ratio.std()), float(shear), int(np.count_nonzero(~good)))
-
-
-def jacobians(triangles, corners):
-    """The Jacobians (m, 2, 2) of the maps from triangles in space to the plane, and the triangles' areas."""
-    a, b = (triangles[:, k] - triangles[:, 0] for k in (1, 2))
-    u, v = (corners[:, k] - corners[:, 0] for k in (1, 2))
-    side = np.maximum(np.linalg.norm(a, axis=1), 1e-300)
-    along = (a * b).sum(axis=1) / side
-    doubled = np.linalg.norm(np.cross(a, b), axis=1)
-    first = u / side[:, None]
-    second = (v - along[:, None] * first) / np.maximum(doubled / side, 1e-300)[:, None]
-    return np.stack([first, second], axis=2), doubled / 2

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.jacobians import jacobians, positive
 from bench.seams import raster, topology
 
 SAMPLES = 4_000_000
@@ -46,18 +47,6 @@ def measured(vertices, faces, corners):
         *distortion(jacobian, areas), flips(jacobian, areas, islands),
         own_overlap(corners, islands.of_face), uv_areas(corners).sum(),
     )  # fmt: skip
-
-
-def jacobians(triangles, corners):
-    """The Jacobians (m, 2, 2) of the maps from triangles in space to the plane, and the triangles' areas."""
-    a, b = (triangles[:, k] - triangles[:, 0] for k in (1, 2))
-    u, v = (corners[:, k] - corners[:, 0] for k in (1, 2))
-    side = positive(np.linalg.norm(a, axis=1))
-    along = np.einsum("ij,ij->i", a, b) / side
-    doubled = np.linalg.norm(np.cross(a, b), axis=1)
-    first = u / side[:, None]
-    second = (v - along[:, None] * first) / positive(doubled / side)[:, None]
-    return np.stack([first, second], axis=2), doubled / 2
 
 
 def distortion(jacobian, areas):
@@ -112,8 +101,3 @@ def own_overlap(corners, of_face):
 def uv_areas(corners):
     """The areas of the faces in the plane."""
     return np.abs(raster.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2
-
-
-def positive(values):
-    """Values that can be divided by."""
-    return np.maximum(values, 1e-300)

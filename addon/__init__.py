@@ -23,6 +23,7 @@ from .operators import sphere_shape_key as operator_sphere_shape_key
 from .operators import texel_density as operator_texel_density
 from .operators import transfer as operator_transfer
 from .operators import unwrap as operator_unwrap
+from .operators import wrap_options
 from .overlay import curves as overlay_curves
 from .overlay import heat_map as overlay_heat_map
 from .overlay import points as overlay_points
@@ -61,6 +62,7 @@ _MODULES = (
     operators_of_curves,
     operator_pick,
     operators_of_files,
+    wrap_options,
     operator_register,
     operator_transfer,
     ui_unwrap,

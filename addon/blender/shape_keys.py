@@ -43,21 +43,23 @@ def why_not(mesh: bpy.types.Mesh, name: str) -> str | None:
 
 
 def write(obj: MeshObject, name: str, positions: Reals) -> None:
-    """Writes coordinates (n, 3) into the shape key of a name, added if need be, with value 0.
+    """Writes coordinates (n, 3) into the shape key of a name, added with value 0 if need be.
 
     A mesh without shape keys also gets its first one. All other shape keys stay as they are, bit for bit, and
-    the active one stays active: edit mode shows and changes that.
+    the active one stays active: edit mode shows and changes that. So does the value of a key that is there.
     """
     active = obj.active_shape_key_index
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
     keys = obj.data.shape_keys
-    key = keys.key_blocks.get(name) or obj.shape_key_add(name=name, from_mix=False)
+    key: bpy.types.ShapeKey | None = keys.key_blocks.get(name)
+    if key is None:
+        key = obj.shape_key_add(name=name, from_mix=False)
+        key.value = 0.0  # Blender 5 starts with 1
     key.points.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
     key.relative_key = keys.reference_key
     key.slider_min, key.slider_max = min(key.slider_min, 0.0), max(key.slider_max, 1.0)
     key.mute, key.vertex_group = False, ""
-    key.value = 0.0  # Blender 5 starts with 1
     obj.active_shape_key_index = active
     obj.data.update()
 

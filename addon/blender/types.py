@@ -38,6 +38,11 @@ if TYPE_CHECKING:
 
         method: str
 
+    class Wrap(bpy.types.PropertyGroup):
+        """The options of the next registration as they are saved."""
+
+        method: str
+
     class MeshObject(bpy.types.Object):
         """An object of type "MESH"."""
 
@@ -49,6 +54,7 @@ if TYPE_CHECKING:
         authalic_landmark_curve_index: int
         authalic_curve_key: str
         authalic_registration: Registration
+        authalic_wrap: Wrap
 
     Status = set[OperatorReturnItems]
     OperatorMixin = bpy.types.Operator

@@ -113,7 +113,11 @@ class Modal(OperatorMixin):
             self.report({"WARNING"}, str(problem))
         return {"CANCELLED"}
 
+    def applied(self, report: Any) -> None:
+        """What is left to do once the job has written its result."""
+
     def _say(self, report: Any) -> Status:
+        self.applied(report)
         reported.remember(getattr(report, "places", ()), report.refusals)
         self.report({"WARNING"} if report.refusals or report.notes else {"INFO"}, self.line(report))
         return {"FINISHED"}

@@ -10,7 +10,8 @@ from ..jobs import transfer
 from ..jobs.couple import CannotRegister
 from ..jobs.job import Job
 from .modal import Modal
-from .register import Registering, has_target
+from .register import has_target
+from .wrap_options import Registering
 
 _OF_REGISTRATION = ("method", "domain", "angle_weight", "weight")
 _KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "shape_keys", "align")

@@ -7,8 +7,7 @@ from ..blender import shape_keys
 from ..blender.types import MeshObject
 from ..jobs.register import key_name
 from ..landmarks.objects import active_source
-from ..operators import register as operator_register
-from ..operators import transfer
+from ..operators import transfer, wrap_options
 from . import couple, curves
 
 
@@ -17,12 +16,11 @@ class AUTHALIC_PT_wrap(couple.Part, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, source = self.layout, active_source(context)
-        # The options that the button was last used with, and will use next.
-        options = context.window_manager.operator_properties_last("authalic.register")
+        options = source.authalic_wrap  # with which the button starts
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        operator_register.draw_options(column, options)
+        wrap_options.draw(column, options)
         if options.method == "CURVES":
             curves.draw_hint(layout, source, context)
         row = layout.row()

@@ -174,7 +174,7 @@ def test_again_replaces_the_key() -> None:
     bpy.context.view_layer.update()
     assert register() == {"FINISHED"}
     blocks = source.data.shape_keys.key_blocks
-    assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0
+    assert [block.name for block in blocks] == ["Basis", KEY] and blocks[KEY].value == 0.5
     assert pairs.positions(source, KEY)[:, 0].mean() > 4
 
 

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The options of a registration and of its morph: properties of the operators, and kept on each source."""
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from ..blender import editability
+from ..blender.types import MeshObject
+from ..registration.settings import Settings
+
+
+class Registering:
+    """The properties of operators that register."""
+
+    method: EnumProperty(
+        name="Method",
+        description="What is matched between the two meshes",
+        items=(
+            (
+                "POINTS",
+                "Landmark Points",
+                "Landmark points, as closely as faces can follow. Areas are preserved",
+            ),
+            (
+                "CURVES",
+                "Landmark Curves",
+                "Landmark curves and boundaries, exactly along their whole length. Shapes of faces are "
+                "preserved as well as possible",
+            ),
+        ),
+        default="POINTS",
+    )
+    domain: EnumProperty(
+        name="Domain",
+        description="The shape that both surfaces are mapped to",
+        items=(
+            ("AUTO", "Automatic", "A disk for surfaces with a boundary, a sphere for closed ones"),
+            ("DISK", "Disk", "Both surfaces must have one boundary, and normals on the same side"),
+            ("SPHERE", "Sphere", "Both surfaces must be closed"),
+        ),
+        default="AUTO",
+    )
+    angle_weight: FloatProperty(
+        name="Angle Weight",
+        description="Trade-off: 0 preserves areas, higher values shear less",
+        min=0.0,
+        max=1.0,
+        precision=3,
+        default=0.0,
+    )
+    weight: FloatProperty(
+        name="Landmark Weight",
+        description="Initial pull on the landmarks; it grows until they meet",
+        min=1e-6,
+        soft_max=100.0,
+        default=1.0,
+    )
+
+    def registration(self) -> Settings:
+        return Settings(self.domain, self.weight, self.angle_weight, self.method)
+
+
+class Wrapping(Registering):
+    """The properties of the operator that morphs the source, too."""
+
+    align: BoolProperty(
+        name="Align",
+        description="Move, rotate and scale the target onto the object, so that the shape does not travel "
+        "while it morphs. If off, the morph ends where the target is",
+        default=False,
+    )
+    target_uv: BoolProperty(
+        name="UV Map on Target",
+        description="For open meshes: write the map under which both coincide as a UV map of the target too",
+        default=False,
+    )
+    animate: BoolProperty(name="Animate", description="Key-frame the shape key from 0 to 1", default=False)
+    frame_start: IntProperty(
+        name="Start Frame", description="The frame at which the shape key is 0", default=1
+    )
+    frame_end: IntProperty(name="End Frame", description="The frame at which the shape key is 1", default=100)
+
+    @property
+    def frames(self) -> tuple[int, int] | None:
+        """The first and the last frame of the key-framed morph, or None."""
+        return (self.frame_start, self.frame_end) if self.animate else None
+
+
+class AUTHALIC_PG_wrap(Wrapping, bpy.types.PropertyGroup):
+    """The options that an object was wrapped with last, or that were chosen in the panel since."""
+
+
+def start_with_kept(operator: Any, source: MeshObject | None) -> None:
+    """Gives an operator the options that its source keeps, but for those that its caller has set."""
+    if source is not None:
+        for name in _names():
+            if not operator.properties.is_property_set(name):
+                setattr(operator, name, getattr(source.authalic_wrap, name))
+
+
+def keep(options: Any, source: MeshObject) -> None:
+    """Keeps options on the source, which start the next registration and are saved with the file."""
+    if editability.is_writable(source):
+        for name in _names():
+            setattr(source.authalic_wrap, name, getattr(options, name))
+
+
+def _names() -> list[str]:
+    return [*Registering.__annotations__, *Wrapping.__annotations__]
+
+
+def draw(layout: bpy.types.UILayout, properties: Any) -> None:
+    """The options, in the redo panel and in the sidebar."""
+    column = layout.column()
+    column.prop(properties, "method")
+    of_points = ("domain", "angle_weight", "weight")
+    for name in (*(of_points if properties.method == "POINTS" else ()), "align"):
+        column.prop(properties, name, slider=name == "angle_weight")
+    for name in (*(("target_uv",) if properties.method == "POINTS" else ()), "animate"):
+        column.prop(properties, name)
+    frames = column.column(align=True)
+    frames.active = properties.animate
+    frames.prop(properties, "frame_start")
+    frames.prop(properties, "frame_end", text="End")
+
+
+_PROPERTIES: Any = bpy.types.Object
+
+
+def register() -> None:
+    bpy.utils.register_class(AUTHALIC_PG_wrap)
+    _PROPERTIES.authalic_wrap = PointerProperty(type=AUTHALIC_PG_wrap, options={"HIDDEN"})
+
+
+def unregister() -> None:
+    del _PROPERTIES.authalic_wrap
+    bpy.utils.unregister_class(AUTHALIC_PG_wrap)

@@ -34,7 +34,7 @@ HYPERBOLIC_ROOMS = (
     {"moebius", "features", "metric"},
     {"options", "slice"},
     {"harmonic"},
-    {"warnings"},
+    {"between", "warnings"},
     {"assembly"},
     {"register", "structure"},
 )

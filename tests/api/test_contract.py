@@ -56,8 +56,14 @@ NAMES = {
 REGISTRATION = {
     "source_landmarks": inspect.Parameter.empty,
     "target_landmarks": inspect.Parameter.empty,
+    "energy": "area",
     "weight": 1.0,
-    "angle_weight": 0.0,
+    "area_weight": 1.0,
+    "angle_weight": None,
+    "weights": None,
+    "features": None,
+    "feature_weight": None,
+    "position_weight": 0.0,
     "progress": None,
 }
 SEAMS = {
@@ -120,10 +126,16 @@ KEYWORDS = {
     },
     "cut": {"seams": None},
     "register_disks": REGISTRATION,
-    "register_spheres": REGISTRATION,
+    "register_spheres": REGISTRATION | {"source_landmarks": None, "target_landmarks": None},
     "register_hyperbolic": {
         "source_curves": inspect.Parameter.empty,
         "target_curves": inspect.Parameter.empty,
+        "energy": "harmonic",
+        "area_weight": 1.0,
+        "angle_weight": 1.0,
+        "features": None,
+        "feature_weight": None,
+        "position_weight": 0.0,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

@@ -32,6 +32,12 @@ def test_all_but_the_surfaces_is_keyword_only():
     assert {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY} == {
         "source_curves": inspect.Parameter.empty,
         "target_curves": inspect.Parameter.empty,
+        "energy": "harmonic",
+        "area_weight": 1.0,
+        "angle_weight": 1.0,
+        "features": None,
+        "feature_weight": None,
+        "position_weight": 0.0,
         "metric": "newton",
         "solver": "newton",
         "max_iterations": None,

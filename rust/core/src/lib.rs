@@ -152,8 +152,8 @@ pub use error::{
 };
 pub use hyperbolic::{
     Certificates, Complex, CoverCopy, CurveMap, CurveRegistration, Descent, FlowOptions, HarmonicSolver,
-    HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants, RoughSphere,
-    Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
+    HyperbolicEnergy, HyperbolicOptions, HyperbolicStructure, LandmarkCurves, MetricMethod, Moebius, Pants,
+    RoughSphere, Warning, WarningKind, hyperbolic_structure, register_hyperbolic,
 };
 pub use layout::{Layout, LayoutKind, LayoutOptions, Precision, Seam, SphereFaces, layout};
 pub use mesh::{Corner, Face, Patch, Surface, Topology, Vertex};
@@ -161,8 +161,8 @@ pub use optimize::published::gradient_descent::LineSearch;
 pub use packing::{Island as PlanarIsland, Margin, PackOptions, Packing, Place, Rotation, pack};
 pub use parallel::set_threads;
 pub use registration::{
-    Correspondence, DiskRegistration, Landmarks, Registration, RegistrationOptions, SphereRegistration,
-    homotopy, register_disks, register_spheres,
+    Correspondence, DiskRegistration, Energy, Features, Landmarks, Registration, RegistrationOptions,
+    SphereRegistration, homotopy, register_disks, register_spheres,
 };
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};

@@ -3,6 +3,7 @@
 
 use ndarray::{Array1, Array2};
 
+use super::between::Between;
 use super::features::curves::LandmarkCurves;
 use super::features::piece::Piece;
 use super::features::placement::Placement;
@@ -13,7 +14,7 @@ use super::metric::Metric;
 use super::slice::sliced::SlicedPair;
 use super::warnings::{Warning, warnings};
 use crate::arrays::from_vectors;
-use crate::control::{History, Status};
+use crate::control::{History, Observer, Status};
 use crate::distortion::{Distortion, Image, distortion_in_space, measure};
 use crate::error::Error;
 use crate::location::{Location, Locator, points_on};
@@ -106,6 +107,8 @@ pub(super) struct Assembly {
     certificates: Vec<PieceCertificates>,
     metrics: Vec<[Metric; 2]>,
     descents: Vec<Descent>,
+    /// The status of the descent between the surfaces.
+    between: Option<Status>,
     is_sure: bool,
 }
 
@@ -119,6 +122,7 @@ impl Assembly {
             certificates: Vec::new(),
             metrics: Vec::new(),
             descents: Vec::new(),
+            between: None,
             is_sure: true,
         }
     }
@@ -161,6 +165,26 @@ impl Assembly {
         }
     }
 
+    /// Lowers the energy between the surfaces; a map that moves gives a new inverse.
+    pub(super) fn lower(
+        &mut self,
+        between: Between<'_, '_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) {
+        let start = self.given_locations();
+        let (locations, status) = between.lower(start.clone(), history, observer);
+        self.between = Some(status);
+        if locations != start {
+            self.locations = locations.into_iter().map(Some).collect();
+            self.inverse.fill(None);
+        }
+    }
+
+    fn given_locations(&self) -> Vec<Location> {
+        self.locations.iter().map(|location| location.unwrap_or_default()).collect()
+    }
+
     pub(super) fn finish(
         mut self,
         surfaces: [&Surface; 2],
@@ -172,8 +196,7 @@ impl Assembly {
         self.folded.sort_unstable();
         self.folded.dedup();
         // 1. There and back
-        let locations: Vec<Location> =
-            self.locations.iter().map(|location| location.unwrap_or_default()).collect();
+        let locations = self.given_locations();
         let registered = interpolated(&locations, meshes[1].faces(), &placement.target);
         let inverse = self.inverse_locations(meshes, &registered, placement);
         let back = interpolated(&inverse, meshes[0].faces(), &placement.source);
@@ -252,6 +275,9 @@ impl Assembly {
         match () {
             () if !missed.is_empty() => Status::LandmarksMissed,
             () if worst(Status::Cancelled) => Status::Cancelled,
+            () if self.folded.is_empty() && self.between.is_some() => {
+                self.between.unwrap_or(Status::Converged)
+            }
             () if worst(Status::Stalled) || !self.folded.is_empty() => Status::Stalled,
             () if worst(Status::MaxIterations) => Status::MaxIterations,
             () => Status::Converged,

@@ -22,6 +22,7 @@
 //! factorizations.
 
 mod assembly;
+mod between;
 mod features;
 mod harmonic;
 mod metric;
@@ -42,7 +43,7 @@ pub use harmonic::certificates::Certificates;
 pub use harmonic::newton::Descent;
 pub use metric::{FlowOptions, MetricMethod};
 pub use moebius::{Complex, Moebius};
-pub use options::{HarmonicSolver, HyperbolicOptions};
+pub use options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 pub use register::register_hyperbolic;
 pub use structure::fuchsian::CoverCopy;
 pub use structure::pants::Pants;

@@ -6,6 +6,8 @@ use ndarray::ArrayView2;
 use super::metric::MetricMethod;
 use crate::arrays::rows_of;
 use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use crate::registration::{Features, Signals, check_weight};
 use crate::vector::Vector3;
 
 /// The method that minimizes the harmonic energy.
@@ -18,9 +20,30 @@ pub enum HarmonicSolver {
     Heat,
 }
 
+/// What a registration by curves keeps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum HyperbolicEnergy {
+    /// The harmonic energy between the hyperbolic metrics, as in the paper.
+    #[default]
+    Harmonic,
+    /// Areas and angles, of the map from surface to surface in space; the descent starts from the harmonic map.
+    Surface,
+}
+
 /// Options of [`register_hyperbolic`](super::register_hyperbolic).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HyperbolicOptions<'a> {
+    /// What the map keeps.
+    pub energy: HyperbolicEnergy,
+    /// The exponent ≥ 0 of the area factor of [`HyperbolicEnergy::Surface`].
+    pub area_weight: f64,
+    /// The exponent ≥ 0 of the angle factor of [`HyperbolicEnergy::Surface`].
+    pub angle_weight: f64,
+    /// Signals of both surfaces that pull what agrees together, with [`HyperbolicEnergy::Surface`].
+    pub features: Option<Features<'a>>,
+    /// ≥ 0: how strongly each vertex is pulled to its own position, after the similarity that brings the source nearest
+    /// to its image, with [`HyperbolicEnergy::Surface`].
+    pub position_weight: f64,
     /// The method that computes the hyperbolic metrics.
     pub metric: MetricMethod,
     /// The method that minimizes the harmonic energy.
@@ -37,6 +60,11 @@ pub struct HyperbolicOptions<'a> {
 impl Default for HyperbolicOptions<'_> {
     fn default() -> Self {
         Self {
+            energy: HyperbolicEnergy::default(),
+            area_weight: 1.0,
+            angle_weight: 1.0,
+            features: None,
+            position_weight: 0.0,
             metric: MetricMethod::default(),
             solver: HarmonicSolver::default(),
             heat_steps: 2000,
@@ -64,6 +92,37 @@ impl HyperbolicOptions<'_> {
                 expected: "a finite number ≥ 0".into(),
             });
         }
-        Ok(())
+        check_weight("area_weight", self.area_weight)?;
+        check_weight("angle_weight", self.angle_weight)?;
+        check_weight("position_weight", self.position_weight)?;
+        if self.energy == HyperbolicEnergy::Harmonic { self.check_harmonic() } else { Ok(()) }
+    }
+
+    /// Refuses what only the energy between the surfaces weighs.
+    fn check_harmonic(&self) -> Result<(), Error> {
+        let weights = [
+            ("area_weight", self.area_weight, 1.0),
+            ("angle_weight", self.angle_weight, 1.0),
+            ("position_weight", self.position_weight, 0.0),
+        ];
+        for (name, found, neutral) in weights {
+            if found != neutral {
+                let expected = format!("{neutral} with energy \"harmonic\"; \"surface\" weighs it");
+                return Err(Error::InvalidOption { name, found: found.to_string(), expected });
+            }
+        }
+        match self.features {
+            None => Ok(()),
+            Some(_) => Err(Error::InvalidOption {
+                name: "energy",
+                found: "\"harmonic\"".into(),
+                expected: "\"surface\" for features to pull".into(),
+            }),
+        }
+    }
+
+    /// The features, scaled; none if none are given.
+    pub(super) fn signals(&self, meshes: [&TriangleMesh; 2]) -> Result<Signals, Error> {
+        self.features.map_or_else(|| Ok(Signals::default()), |features| Signals::new(&features, meshes))
     }
 }

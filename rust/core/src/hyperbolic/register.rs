@@ -2,13 +2,14 @@
 //! Registration by landmark curves, the whole pipeline (Shi et al. 2013, algorithm 1).
 
 use super::assembly::{Assembly, CurveRegistration};
+use super::between::Between;
 use super::features::curves::LandmarkCurves;
 use super::features::piece::Piece;
 use super::features::pieces::pieces;
 use super::features::placement::placed;
 use super::features::regions::divided;
 use super::harmonic::piece_map::map_piece;
-use super::options::{HarmonicSolver, HyperbolicOptions};
+use super::options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 use super::slice::isotopy::Isotopy;
 use super::slice::slice_pair;
 use crate::control::{History, Observer, Phase, Watch};
@@ -34,13 +35,14 @@ pub fn register_hyperbolic(
     options: &HyperbolicOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<CurveRegistration, Error> {
-    let history = History::start();
+    let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;
     options.check()?;
     let spheres = options.sphere_vectors()?;
     let spheres = spheres.as_ref().map(|[ours, theirs]| [&ours[..], &theirs[..]]);
     let pairs = curves.check(source, target)?;
+    let signals = options.signals([source, target])?;
     let same_side;
     let target = if is_closed(source) && is_closed(target) && inside_out(source, target) {
         same_side = target.turned_over();
@@ -77,7 +79,14 @@ pub fn register_hyperbolic(
     {
         return Err(Error::from(NumericsError::NoEmbedding { folded }).of_surface(Side::Source));
     }
-    // 5. Figures
+    // 5. The descent between the surfaces
+    if options.energy == HyperbolicEnergy::Surface {
+        let meshes = [source, target];
+        let between = Between { meshes, target_in_domain: &placement.target, curves, signals, options };
+        let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
+        assembly.lower(between, &mut history, &mut phase);
+    }
+    // 6. Figures
     let surfaces = [source_surface, target_surface];
     let result = assembly.finish(surfaces, [source, target], curves, &placement, &history)?;
     observer.progress(1.0, "Done");

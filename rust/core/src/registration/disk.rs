@@ -5,11 +5,11 @@
 //! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which preserves
 //! the areas of the faces next to it too.
 
-use super::Landmarks;
+use super::between::Between;
 use super::correspondence::{Correspondence, Registered, meshes};
 use super::landmark_descent::Carrying;
-use super::landmarks::best_turn;
-use super::options::RegistrationOptions;
+use super::landmarks::{Landmarks, best_turn, fewest};
+use super::options::{Energy, RegistrationOptions};
 use super::result::{DiskRegistration, Registration};
 use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows};
@@ -46,7 +46,7 @@ pub fn register_disks(
     source_surface: &Surface,
     target_surface: &Surface,
     landmarks: &Landmarks<'_>,
-    options: &RegistrationOptions,
+    options: &RegistrationOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<DiskRegistration, Error> {
     let mut history = History::start();
@@ -54,10 +54,11 @@ pub fn register_disks(
     let (source, target) = meshes(source_surface, target_surface)?;
     source.require_disk().map_err(|error| error.of_surface(Side::Source))?;
     target.require_disk().map_err(|error| error.of_surface(Side::Target))?;
-    landmarks.check(source, target, CanonicalDomain::Disk)?;
-    options.check()?;
+    landmarks.check(source, target, fewest(CanonicalDomain::Disk))?;
+    options.check(landmarks.source.len())?;
+    let signals = options.signals([source, target])?;
     // 2. Both surfaces to the disk
-    let alone = DiskMapOptions { angle_weight: options.angle_weight, ..Default::default() };
+    let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
         map_disk(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
@@ -68,15 +69,28 @@ pub fn register_disks(
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
     // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
     let images = [turned, lifted(rows(g.uv.view()))];
-    let met = meet([source, target], images, landmarks, options, &mut history, observer)?;
+    let mut met = meet([source, target], images, landmarks, options, &mut history, observer)?;
     // 5. g⁻¹: the locations on the target
     let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
     let locator = Locator::new(&met.target, target.faces());
-    let (locations, status) = located(&locator, &met.source, met.status, &mut phase)?;
-    // 6. Figures
+    let (mut locations, mut status) = located(&locator, &met.source, met.status, &mut phase)?;
+    // 6. The descent between the surfaces
+    if options.energy == Energy::Surface && status != Status::Cancelled {
+        let between = Between {
+            source,
+            target,
+            domain: CanonicalDomain::Disk,
+            target_in_domain: &met.target,
+            landmarks,
+            signals,
+            options,
+        };
+        (locations, met.source, status) = between.lower(locations, &mut history, observer);
+    }
+    // 7. Figures
     let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
-    let missed = missed(landmarks, &landmark_error, target, &locations);
+    let missed = missed(landmarks, options, &landmark_error, target, &locations);
     let registered = flat(&met.source);
     let target_registered = flat(&met.target);
     let figures = |mesh: &TriangleMesh, map: &[[f64; 2]]| {
@@ -87,7 +101,8 @@ pub fn register_disks(
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }
-    let status = verdict(status, [f.status, g.status], &missed, [&distortion, &target_distortion]);
+    let status =
+        verdict(options.energy, status, [f.status, g.status], &missed, [&distortion, &target_distortion]);
     let source = Registered::new(source_surface, source.faces(), met.source);
     let target = Registered::new(target_surface, target.faces(), met.target);
     Ok(Registration {
@@ -112,7 +127,7 @@ fn meet(
     [source, target]: [&TriangleMesh; 2],
     [source_image, target_image]: [Vec<Vector3>; 2],
     landmarks: &Landmarks<'_>,
-    options: &RegistrationOptions,
+    options: &RegistrationOptions<'_>,
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> Result<Meeting, Error> {
@@ -125,7 +140,8 @@ fn meet(
         domain: CanonicalDomain::Disk,
         landmarks,
         places,
-        options,
+        weight: options.weight,
+        angle_weight: options.angle_weight_in_domain(),
     };
     let there = disk(source, landmarks.source, &theirs);
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };

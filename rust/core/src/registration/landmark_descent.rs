@@ -12,7 +12,6 @@
 //! Cost: the flow, and about ten factorizations with two unknowns per vertex.
 
 use super::flow::flow;
-use super::options::RegistrationOptions;
 use crate::codomain::planar::{flat, lifted};
 use crate::codomain::{CanonicalDomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status, Watch};
@@ -95,7 +94,10 @@ pub(super) struct Carrying<'a> {
     pub landmarks: &'a [usize],
     /// The places to carry them to, (k,).
     pub places: &'a [Vector3],
-    pub options: &'a RegistrationOptions,
+    /// λ at the beginning.
+    pub weight: f64,
+    /// The weight of the angle distortion against that of the areas.
+    pub angle_weight: f64,
 }
 
 impl Carrying<'_> {
@@ -149,7 +151,7 @@ impl Carrying<'_> {
             .zip(Vertex::all(mesh.n_vertices()))
             .for_each(|(&given, new)| number_of[given] = new);
         let landmarks = self.landmarks.iter().map(|&vertex| number_of[vertex]).collect();
-        let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.options.weight);
+        let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.weight);
         let motions = Vertex::all(mesh.n_vertices())
             .map(|vertex| self.domain.motion(mesh.is_boundary(vertex)))
             .collect();
@@ -165,7 +167,7 @@ impl Carrying<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (SpatialMap, Goals) {
-        let given = Goals { weight: self.options.weight, angle_weight: self.options.angle_weight };
+        let given = Goals { weight: self.weight, angle_weight: self.angle_weight };
         let mut pulling = self.stiff();
         let mut map = mesh.points().to_vec();
         for round in 0..ROUNDS {
@@ -196,8 +198,7 @@ impl Carrying<'_> {
 
     /// Landmarks before areas.
     fn stiff(&self) -> Goals {
-        let RegistrationOptions { weight, angle_weight } = *self.options;
-        Goals { weight: STIFF * weight, angle_weight: angle_weight.max(BALANCED) }
+        Goals { weight: STIFF * self.weight, angle_weight: self.angle_weight.max(BALANCED) }
     }
 
     /// A map with the few faces unfolded that were too thin or too coarse to follow the flow; `None` if some stay so.

@@ -16,19 +16,19 @@ pub struct Landmarks<'a> {
 }
 
 impl Landmarks<'_> {
-    /// Refuses pairs that cannot be registered, before any work.
+    /// Refuses pairs that cannot be registered, before any work, and fewer than `needed`.
     pub(super) fn check(
         &self,
         source: &TriangleMesh,
         target: &TriangleMesh,
-        domain: CanonicalDomain,
+        needed: usize,
     ) -> Result<(), Error> {
         let (source_count, target_count) = (self.source.len(), self.target.len());
         if source_count != target_count {
             return Err(LandmarkError::Counts { source_count, target_count }.into());
         }
-        if source_count < fewest(domain) {
-            return Err(LandmarkError::TooFew { found: source_count, needed: fewest(domain) }.into());
+        if source_count < needed {
+            return Err(LandmarkError::TooFew { found: source_count, needed }.into());
         }
         check_side(Side::Source, self.source, source)?;
         check_side(Side::Target, self.target, target)?;
@@ -58,7 +58,7 @@ fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<()
 }
 
 /// The least number of pairs that determines a rotation.
-fn fewest(domain: CanonicalDomain) -> usize {
+pub(super) fn fewest(domain: CanonicalDomain) -> usize {
     match domain {
         CanonicalDomain::Disk => 1,
         CanonicalDomain::Sphere => 2,
@@ -93,7 +93,7 @@ mod tests {
         let mesh = square();
         let said = |source: &[usize], target: &[usize]| {
             let landmarks = Landmarks { source, target };
-            landmarks.check(&mesh, &mesh, CanonicalDomain::Disk).map_err(|error| error.to_string())
+            landmarks.check(&mesh, &mesh, fewest(CanonicalDomain::Disk)).map_err(|error| error.to_string())
         };
         assert_eq!(said(&[4, 5], &[5, 4]), Ok(()));
         assert!(said(&[4], &[4, 5]).unwrap_err().contains("1 source and 2 target"));
@@ -103,7 +103,7 @@ mod tests {
         assert!(said(&[4, 1], &[4, 5]).unwrap_err().contains("boundary"));
         let pair = Landmarks { source: &[4], target: &[5] };
         assert!(matches!(
-            pair.check(&mesh, &mesh, CanonicalDomain::Sphere),
+            pair.check(&mesh, &mesh, fewest(CanonicalDomain::Sphere)),
             Err(Error::Landmarks(LandmarkError::TooFew { found: 1, needed: 2 }))
         ));
     }

@@ -4,13 +4,16 @@
 //!
 //! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6)
 //! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
-//! locate each vertex of the source on the target. [`homotopy`] morphs along g.
+//! locate each vertex of the source on the target. [`Energy::Surface`] starts from there and descends on the energy
+//! of g itself, in space. [`homotopy`] morphs along g.
 //!
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
 //! Cost: the two maps, and about as much again for carrying the landmarks.
 
+mod between;
 pub(crate) mod correspondence;
 mod disk;
+mod features;
 mod figures;
 mod flow;
 mod given_faces;
@@ -20,14 +23,18 @@ mod morph;
 mod options;
 pub(super) mod result;
 mod sphere;
+pub(crate) mod surface;
 mod transfer;
 mod verdict;
 
 pub use correspondence::Correspondence;
 pub use disk::register_disks;
+pub use features::Features;
+pub(crate) use features::Signals;
 pub use landmarks::Landmarks;
 pub use morph::homotopy;
-pub use options::RegistrationOptions;
+pub(crate) use options::check_weight;
+pub use options::{Energy, RegistrationOptions};
 pub use result::{DiskRegistration, Registration, SphereRegistration};
 pub(crate) use sphere::inside_out;
 pub use sphere::register_spheres;

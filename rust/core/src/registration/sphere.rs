@@ -6,10 +6,11 @@
 
 use std::borrow::Cow;
 
-use super::Landmarks;
+use super::between::Between;
 use super::correspondence::{Correspondence, Registered, meshes};
 use super::landmark_descent::Carrying;
-use super::options::RegistrationOptions;
+use super::landmarks::{Landmarks, fewest};
+use super::options::{Energy, RegistrationOptions};
 use super::result::{Registration, SphereRegistration};
 use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
@@ -56,7 +57,7 @@ pub fn register_spheres(
     source_surface: &Surface,
     target_surface: &Surface,
     landmarks: &Landmarks<'_>,
-    options: &RegistrationOptions,
+    options: &RegistrationOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<SphereRegistration, Error> {
     let mut history = History::start();
@@ -64,11 +65,13 @@ pub fn register_spheres(
     let (source, target) = meshes(source_surface, target_surface)?;
     source.require_sphere().map_err(|error| error.of_surface(Side::Source))?;
     target.require_sphere().map_err(|error| error.of_surface(Side::Target))?;
-    landmarks.check(source, target, CanonicalDomain::Sphere)?;
-    options.check()?;
+    let needed = if options.features.is_some() { 0 } else { fewest(CanonicalDomain::Sphere) };
+    landmarks.check(source, target, needed)?;
+    options.check(landmarks.source.len())?;
+    let signals = options.signals([source, target])?;
     let target = &*not_inside_out(target, source);
     // 2. Both surfaces to the sphere
-    let alone = SphereMapOptions { angle_weight: options.angle_weight, ..Default::default() };
+    let alone = SphereMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
         map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
@@ -84,21 +87,36 @@ pub fn register_spheres(
         domain: CanonicalDomain::Sphere,
         landmarks,
         places: &places,
-        options,
+        weight: options.weight,
+        angle_weight: options.angle_weight_in_domain(),
     };
     let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
-    let (registered, first) = carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
+    let (mut registered, first) =
+        carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
     let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
     let (target_registered, second) =
         carrying(target, landmarks.target).carry(target_on_sphere, &mut history, &mut phase)?;
     // 5. h₁⁻¹: the locations of the source on the target
     let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
-    let (locations, status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
-    // 6. Figures
+    let (mut locations, mut status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
+    // 6. The descent between the surfaces
+    if options.energy == Energy::Surface && status != Status::Cancelled {
+        let between = Between {
+            source,
+            target,
+            domain: CanonicalDomain::Sphere,
+            target_in_domain: &target_registered,
+            landmarks,
+            signals,
+            options,
+        };
+        (locations, registered, status) = between.lower(locations, &mut history, observer);
+    }
+    // 7. Figures
     let landmark_pairs = pairs(landmarks, &registered, &target_registered);
     let landmark_error: Vec<f64> = landmark_pairs.iter().map(|[p, q]| p.distance(*q)).collect();
-    let missed = missed(landmarks, &landmark_error, target, &locations);
+    let missed = missed(landmarks, options, &landmark_error, target, &locations);
     let figures = |mesh: &TriangleMesh, map: &[Vector3]| {
         measure(mesh.points(), mesh.faces(), Image::Sphere(map), mesh.face_areas())
     };
@@ -107,7 +125,8 @@ pub fn register_spheres(
     if status != Status::Cancelled {
         observer.progress(1.0, "Done");
     }
-    let status = verdict(status, [f0.status, f1.status], &missed, [&distortion, &target_distortion]);
+    let status =
+        verdict(options.energy, status, [f0.status, f1.status], &missed, [&distortion, &target_distortion]);
     let maps = [&registered, &target_registered].map(|map| from_vectors(map.clone()));
     let [on_domain, target_on_domain] = maps;
     let source = Registered::new(source_surface, source.faces(), registered);

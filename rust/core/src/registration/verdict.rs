@@ -2,6 +2,7 @@
 //! The end of a registration by points: locations on the target, pairs that did not meet, and the status.
 
 use super::landmarks::Landmarks;
+use super::options::{Energy, RegistrationOptions};
 use crate::control::{Observer, Silent, Status, Watch};
 use crate::distortion::Distortion;
 use crate::error::Error;
@@ -33,9 +34,10 @@ pub(super) fn located(
     Ok((locations.ok_or(Error::CancelledEarly)?, Status::Cancelled))
 }
 
-/// The pairs that did not meet, in the parameter domain or on the target.
+/// The exact pairs that did not meet, in the parameter domain or on the target.
 pub(super) fn missed(
     landmarks: &Landmarks<'_>,
+    options: &RegistrationOptions<'_>,
     landmark_error: &[f64],
     target: &TriangleMesh,
     locations: &[Location],
@@ -44,7 +46,8 @@ pub(super) fn missed(
         let location = locations[landmarks.source[pair]];
         let place = location.point_on(target.points(), target.faces());
         let on_target = place.distance(target.points()[landmarks.target[pair]]);
-        landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET
+        let is_exact = options.pair_weight(pair).is_infinite();
+        is_exact && (landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET)
     };
     (0..landmark_error.len()).filter(is_missed).collect()
 }
@@ -52,20 +55,22 @@ pub(super) fn missed(
 /// Standard deviation of the area ratios below which the areas are even, whatever the descent reports.
 const EVEN_ENOUGH: f64 = 0.01;
 
-/// The status of a registration: converged if all landmarks met and the areas are even, else that of the descent; no
-/// better than the statuses of the two maps.
+/// The status of a registration. Areas alone: converged if all landmarks met and the areas are even, else that of the
+/// descent; no better than the statuses of the two maps. Between the surfaces: that of the descent.
 pub(super) fn verdict(
-    carried: Status,
+    energy: Energy,
+    descent: Status,
     maps: [Status; 2],
     missed: &[usize],
     figures: [&Distortion; 2],
 ) -> Status {
     let is_even = figures.iter().all(|figures| figures.area_ratio_std <= EVEN_ENOUGH);
-    match carried {
+    match descent {
         Status::Cancelled => Status::Cancelled,
         _ if !missed.is_empty() => Status::LandmarksMissed,
+        descent if energy == Energy::Surface => descent,
         _ if is_even => worst([Status::Converged, maps[0], maps[1]]),
-        carried => worst([carried, maps[0], maps[1]]),
+        descent => worst([descent, maps[0], maps[1]]),
     }
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the registration by curves.
 
-use authalic::{HarmonicSolver, HyperbolicOptions, LandmarkCurves, Side};
+use authalic::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions, LandmarkCurves, Side};
 use pyo3::prelude::*;
 
+use super::features::GivenFeatures;
 use super::finished::Finished;
 use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
@@ -33,6 +34,20 @@ use crate::surface::Given;
 ///     need not be given.
 /// target_curves : list of (k,) integer arrays
 ///     Their partners on the target, in the same order.
+/// energy : "harmonic" or "surface"
+///     What the map keeps: the harmonic energy, as in the paper, or areas and angles, measured in space between the two
+///     surfaces, from the harmonic map on, with the curves where they are.
+/// area_weight : float
+///     With "surface" the exponent ≥ 0 of the area factor of each face, as in `register_spheres`.
+/// angle_weight : float
+///     With "surface" the exponent ≥ 0 of the angle factor of each face.
+/// features : (source_values, target_values), optional
+///     (n,) or (n, k) and (n_t,) or (n_t, k) real arrays: signals that should agree through the map, as in
+///     `register_spheres`; only with "surface".
+/// feature_weight : float or (k,) real array, optional
+///     How strongly the features pull, ≥ 0, all alike or each its own. Default 1.
+/// position_weight : float
+///     How strongly every vertex is pulled to its own position, ≥ 0, as in `register_spheres`; only with "surface".
 /// metric : "newton" or "ricci_flow"
 ///     The method for the hyperbolic metrics: Newton's, or the paper's Ricci flow (slow, then finished by Newton's).
 /// solver : "newton" or "heat"
@@ -79,8 +94,10 @@ use crate::surface::Given;
 /// >>> len(result.certificates.folded), bool(abs(result.positions - rings).max() < 0.05)
 /// (0, True)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_curves, target_curves, metric="newton", solver="newton",
-                    max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None, progress=None))]
+#[pyo3(signature = (source, target, *, source_curves, target_curves, energy="harmonic", area_weight=1.0,
+                    angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0, metric="newton",
+                    solver="newton", max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_hyperbolic(
     py: Python<'_>,
@@ -88,6 +105,12 @@ pub fn register_hyperbolic(
     target: &Bound<'_, PyAny>,
     source_curves: &Bound<'_, PyAny>,
     target_curves: &Bound<'_, PyAny>,
+    energy: &str,
+    area_weight: f64,
+    angle_weight: f64,
+    features: Option<&Bound<'_, PyAny>>,
+    feature_weight: Option<&Bound<'_, PyAny>>,
+    position_weight: f64,
     metric: &str,
     solver: &str,
     max_iterations: Option<i64>,
@@ -97,6 +120,10 @@ pub fn register_hyperbolic(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let mut options = HyperbolicOptions {
+        energy: choice("energy", energy, &ENERGIES)?,
+        area_weight,
+        angle_weight,
+        position_weight,
         metric: choice("metric", metric, &metrics())?,
         solver: choice("solver", solver, &SOLVERS)?,
         ..Default::default()
@@ -118,16 +145,22 @@ pub fn register_hyperbolic(
             ));
         }
     };
+    let features = GivenFeatures::new(features, feature_weight)?;
     let finished = run(py, progress, move |observer| {
         let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
         let curves = LandmarkCurves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[source, target]| [source.view(), target.view()]);
-        let options = HyperbolicOptions { spheres, ..options };
+        let features = features.as_ref().map(GivenFeatures::view);
+        let options = HyperbolicOptions { spheres, features, ..options };
         let registration = authalic::register_hyperbolic(&source, &target, &curves, &options, observer)?;
         Ok(Finished::Curves(registration.into()))
     })?;
     Registration::new(py, finished)
 }
+
+/// The energies, by name.
+const ENERGIES: [(&str, HyperbolicEnergy); 2] =
+    [("harmonic", HyperbolicEnergy::Harmonic), ("surface", HyperbolicEnergy::Surface)];
 
 /// The methods for the harmonic map, by name.
 const SOLVERS: [(&str, HarmonicSolver); 2] =

@@ -3,6 +3,7 @@
 
 mod certificates;
 mod curves;
+mod features;
 mod finished;
 mod morph;
 mod points;

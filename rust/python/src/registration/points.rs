@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bindings of the registrations by points.
 
-use authalic::{Error, Landmarks, Observer, RegistrationOptions, Side, Surface};
+use authalic::{Energy, Error, Landmarks, Observer, RegistrationOptions, Side, Surface};
 use pyo3::prelude::*;
 
+use super::features::{GivenFeatures, numbers};
 use super::finished::Finished;
 use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked};
 use crate::indices::index_list;
+use crate::options::choice;
 use crate::run::run;
 use crate::surface::Given;
 
@@ -28,8 +30,28 @@ use crate::surface::Given;
 ///     Their partners on the target, in the same order.
 /// weight : float
 ///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
-/// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of the areas in all maps, as in `disk_map`.
+/// energy : "area" or "surface"
+///     What the map keeps: areas alone, as in the paper, or areas and angles, measured in space between the two
+///     surfaces. "surface" starts from a map that keeps angles.
+/// area_weight : float
+///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
+///     of the map of the face.
+/// angle_weight : float, optional
+///     With "surface" the exponent ≥ 0 of the angle factor (σ₁/σ₂ + σ₂/σ₁)/2 of each face, by default 1: with both 1 the
+///     product is the symmetric Dirichlet energy over 4. With "area" λ ≥ 0, the weight of the angle distortion against
+///     that of the areas in all maps, as in `disk_map`, by default 0.
+/// weights : (k,) real array, optional
+///     How strongly each pair pulls, > 0: times the squared distance on the target over the target's area, against the
+///     energy of a face averaged over the source. Infinite: exact. Default: all exact, as with "area" all must be.
+/// features : (source_values, target_values), optional
+///     (n,) or (n, k) and (n_t,) or (n_t, k) real arrays: any signals that should agree through the map, as curvature or
+///     painted weights; only with "surface". Each is centered, and scaled by the standard deviation common to both.
+/// feature_weight : float or (k,) real array, optional
+///     How strongly the features pull, ≥ 0, all alike or each its own: a squared difference of one standard deviation
+///     costs this much, against the energy of a face. Default 1.
+/// position_weight : float
+///     How strongly every vertex is pulled to its own position, ≥ 0, after the similarity that brings the source nearest
+///     to its image: for bodies in like poses; only with "surface".
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -42,7 +64,7 @@ use crate::surface::Given;
 /// ------
 /// MeshError
 ///     A surface is no disk, an array does not fit, or the landmarks are unequal in number, too few, repeated, out of
-///     range or on the boundary. Nothing is computed.
+///     range or on the boundary; weights or features do not fit. Nothing is computed.
 /// ValueError
 ///     An option is out of its range.
 /// SolverError
@@ -60,7 +82,8 @@ use crate::surface::Given;
 /// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, weight=1.0, angle_weight=0.0,
+#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="area", weight=1.0, area_weight=1.0,
+                    angle_weight=None, weights=None, features=None, feature_weight=None, position_weight=0.0,
                     progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_disks(
@@ -69,12 +92,31 @@ pub fn register_disks(
     target: &Bound<'_, PyAny>,
     source_landmarks: &Bound<'_, PyAny>,
     target_landmarks: &Bound<'_, PyAny>,
+    energy: &str,
     weight: f64,
-    angle_weight: f64,
+    area_weight: f64,
+    angle_weight: Option<f64>,
+    weights: Option<&Bound<'_, PyAny>>,
+    features: Option<&Bound<'_, PyAny>>,
+    feature_weight: Option<&Bound<'_, PyAny>>,
+    position_weight: f64,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
-    let options = RegistrationOptions { weight, angle_weight };
-    let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
+    let energy = choice("energy", energy, &ENERGIES)?;
+    let options = RegistrationOptions {
+        energy,
+        weight,
+        area_weight,
+        angle_weight,
+        position_weight,
+        ..Default::default()
+    };
+    let arguments = Arguments::new(
+        [source, target],
+        [Some(source_landmarks), Some(target_landmarks)],
+        [weights, features, feature_weight],
+        options,
+    )?;
     let finished = run(py, progress, move |observer| {
         arguments.register(authalic::register_disks, observer).map(Finished::Disk)
     })?;
@@ -93,14 +135,34 @@ pub fn register_disks(
 ///     (n, 3) real and (m, 3) integer array: a closed surface without handles.
 /// target : Surface, or (vertices, faces)
 ///     (n_t, 3) real and (m_t, 3) integer array: such a surface. If it is inside out beside the source, it is turned.
-/// source_landmarks : (k,) integer array
-///     Vertices of the source, at least 2.
-/// target_landmarks : (k,) integer array
+/// source_landmarks : (k,) integer array, optional
+///     Vertices of the source, at least 2; with `features` any number.
+/// target_landmarks : (k,) integer array, optional
 ///     Their partners on the target, in the same order.
 /// weight : float
 ///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
-/// angle_weight : float
-///     λ ≥ 0, the weight of the angle distortion against that of the areas in all maps, as in `sphere_map`.
+/// energy : "area" or "surface"
+///     What the map keeps: areas alone, as in the paper, or areas and angles, measured in space between the two
+///     surfaces. "surface" starts from a map that keeps angles.
+/// area_weight : float
+///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
+///     of the map of the face.
+/// angle_weight : float, optional
+///     With "surface" the exponent ≥ 0 of the angle factor (σ₁/σ₂ + σ₂/σ₁)/2 of each face, by default 1: with both 1 the
+///     product is the symmetric Dirichlet energy over 4. With "area" λ ≥ 0, the weight of the angle distortion against
+///     that of the areas in all maps, as in `sphere_map`, by default 0.
+/// weights : (k,) real array, optional
+///     How strongly each pair pulls, > 0: times the squared distance on the target over the target's area, against the
+///     energy of a face averaged over the source. Infinite: exact. Default: all exact, as with "area" all must be.
+/// features : (source_values, target_values), optional
+///     (n,) or (n, k) and (n_t,) or (n_t, k) real arrays: any signals that should agree through the map, as curvature or
+///     painted weights; only with "surface". Each is centered, and scaled by the standard deviation common to both.
+/// feature_weight : float or (k,) real array, optional
+///     How strongly the features pull, ≥ 0, all alike or each its own: a squared difference of one standard deviation
+///     costs this much, against the energy of a face. Default 1.
+/// position_weight : float
+///     How strongly every vertex is pulled to its own position, ≥ 0, after the similarity that brings the source nearest
+///     to its image: for bodies in like poses; only with "surface".
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -113,7 +175,7 @@ pub fn register_disks(
 /// ------
 /// MeshError
 ///     A surface is no sphere, an array does not fit, or the landmarks are unequal in number, too few, repeated or out
-///     of range. Nothing is computed.
+///     of range; weights or features do not fit. Nothing is computed.
 /// ValueError
 ///     An option is out of its range.
 /// SolverError
@@ -128,26 +190,49 @@ pub fn register_disks(
 /// >>> result.positions.round(6).tolist() == corners, len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, weight=1.0, angle_weight=0.0,
-                    progress=None))]
+#[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="area", weight=1.0,
+                    area_weight=1.0, angle_weight=None, weights=None, features=None, feature_weight=None,
+                    position_weight=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_spheres(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
     target: &Bound<'_, PyAny>,
-    source_landmarks: &Bound<'_, PyAny>,
-    target_landmarks: &Bound<'_, PyAny>,
+    source_landmarks: Option<&Bound<'_, PyAny>>,
+    target_landmarks: Option<&Bound<'_, PyAny>>,
+    energy: &str,
     weight: f64,
-    angle_weight: f64,
+    area_weight: f64,
+    angle_weight: Option<f64>,
+    weights: Option<&Bound<'_, PyAny>>,
+    features: Option<&Bound<'_, PyAny>>,
+    feature_weight: Option<&Bound<'_, PyAny>>,
+    position_weight: f64,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
-    let options = RegistrationOptions { weight, angle_weight };
-    let arguments = Arguments::new(source, target, source_landmarks, target_landmarks, options)?;
+    let energy = choice("energy", energy, &ENERGIES)?;
+    let options = RegistrationOptions {
+        energy,
+        weight,
+        area_weight,
+        angle_weight,
+        position_weight,
+        ..Default::default()
+    };
+    let arguments = Arguments::new(
+        [source, target],
+        [source_landmarks, target_landmarks],
+        [weights, features, feature_weight],
+        options,
+    )?;
     let finished = run(py, progress, move |observer| {
         arguments.register(authalic::register_spheres, observer).map(Finished::Sphere)
     })?;
     Registration::new(py, finished)
 }
+
+/// The energies, by name.
+const ENERGIES: [(&str, Energy); 2] = [("area", Energy::Area), ("surface", Energy::Surface)];
 
 /// The arguments of a registration as plain data.
 struct Arguments {
@@ -155,32 +240,44 @@ struct Arguments {
     target: Given,
     source_landmarks: Vec<usize>,
     target_landmarks: Vec<usize>,
-    options: RegistrationOptions,
+    weights: Option<Vec<f64>>,
+    features: Option<GivenFeatures>,
+    options: RegistrationOptions<'static>,
 }
 
 impl Arguments {
     fn new(
-        source: &Bound<'_, PyAny>,
-        target: &Bound<'_, PyAny>,
-        source_landmarks: &Bound<'_, PyAny>,
-        target_landmarks: &Bound<'_, PyAny>,
-        options: RegistrationOptions,
+        [source, target]: [&Bound<'_, PyAny>; 2],
+        [source_landmarks, target_landmarks]: [Option<&Bound<'_, PyAny>>; 2],
+        [weights, features, feature_weight]: [Option<&Bound<'_, PyAny>>; 3],
+        options: RegistrationOptions<'static>,
     ) -> PyResult<Self> {
         let source = Given::pair(source, SOURCE)?;
         let target = Given::pair(target, TARGET)?;
-        let source_landmarks = index_list(source_landmarks, "source_landmarks", "pair", source.n_vertices())?;
-        let target_landmarks = index_list(target_landmarks, "target_landmarks", "pair", target.n_vertices())?;
-        Ok(Self { source, target, source_landmarks, target_landmarks, options })
+        let list = |landmarks: Option<&Bound<'_, PyAny>>, name, n_vertices| {
+            landmarks
+                .map_or_else(|| Ok(Vec::new()), |landmarks| index_list(landmarks, name, "pair", n_vertices))
+        };
+        let source_landmarks = list(source_landmarks, "source_landmarks", source.n_vertices())?;
+        let target_landmarks = list(target_landmarks, "target_landmarks", target.n_vertices())?;
+        let weights = weights.map(|weights| numbers(weights, "weights")).transpose()?;
+        let features = GivenFeatures::new(features, feature_weight)?;
+        Ok(Self { source, target, source_landmarks, target_landmarks, weights, features, options })
     }
 
     /// Checks the surfaces and registers them.
     fn register<T>(self, register: Register<T>, observer: &mut dyn Observer) -> Result<T, Error> {
         let (source, target) = (checked(self.source, Side::Source)?, checked(self.target, Side::Target)?);
         let landmarks = Landmarks { source: &self.source_landmarks, target: &self.target_landmarks };
-        register(&source, &target, &landmarks, &self.options, observer)
+        let options = RegistrationOptions {
+            weights: self.weights.as_deref(),
+            features: self.features.as_ref().map(GivenFeatures::view),
+            ..self.options
+        };
+        register(&source, &target, &landmarks, &options, observer)
     }
 }
 
 /// A function of the core that registers by points.
 type Register<T> =
-    fn(&Surface, &Surface, &Landmarks<'_>, &RegistrationOptions, &mut dyn Observer) -> Result<T, Error>;
+    fn(&Surface, &Surface, &Landmarks<'_>, &RegistrationOptions<'_>, &mut dyn Observer) -> Result<T, Error>;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! From the harmonic map to one between the surfaces: the descent in space, with the curves where they are.
+
+use super::features::curves::LandmarkCurves;
+use super::options::HyperbolicOptions;
+use crate::control::{History, Observer, Status};
+use crate::location::{Location, points_on};
+use crate::mesh::{TriangleMesh, Vertex};
+use crate::registration::Signals;
+use crate::registration::surface::{FaceEnergy, SurfaceProblem, descend};
+use crate::vector::Vector3;
+
+/// Two surfaces with a map that takes curves to curves.
+pub(super) struct Between<'a, 'f> {
+    pub meshes: [&'a TriangleMesh; 2],
+    /// The target's vertices on its rough sphere.
+    pub target_in_domain: &'a [Vector3],
+    pub curves: &'a LandmarkCurves<'a>,
+    pub signals: Signals,
+    pub options: &'a HyperbolicOptions<'f>,
+}
+
+impl Between<'_, '_> {
+    /// The locations of the source on the target after the descent.
+    pub(super) fn lower(
+        self,
+        start: Vec<Location>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> (Vec<Location>, Status) {
+        let [source, target] = self.meshes;
+        let mut signals = self.signals;
+        if self.options.position_weight > 0.0 {
+            let images = points_on(&start, target.points(), target.faces());
+            signals.add_positions(self.meshes, &images, self.options.position_weight);
+        }
+        // vertices of curves and of the boundary stay
+        let mut held: Vec<bool> =
+            Vertex::all(source.n_vertices()).map(|vertex| source.is_boundary(vertex)).collect();
+        self.curves.source.iter().flatten().for_each(|&vertex| held[vertex] = true);
+        let HyperbolicOptions { area_weight, angle_weight, .. } = *self.options;
+        let problem = SurfaceProblem {
+            source,
+            target,
+            target_in_domain: self.target_in_domain,
+            held,
+            pulls: Vec::new(),
+            signals,
+            face_energy: FaceEnergy { area_weight, angle_weight },
+        };
+        descend(&problem, start, history, observer)
+    }
+}

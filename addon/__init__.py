@@ -3,7 +3,7 @@
 
 from .blender import scene_changes
 from .landmarks import curves as landmark_curves
-from .landmarks import last_registration
+from .landmarks import last_registration, mask
 from .landmarks import points as landmark_points
 from .operators import couples as operators_of_couples
 from .operators import fix_flips as operator_fix_flips
@@ -15,6 +15,7 @@ from .operators import landmark_points as operators_of_points
 from .operators import live as operator_live
 from .operators import mark_seams as operator_mark_seams
 from .operators import measure as operator_measure
+from .operators import merge_by_distance as operator_merge_by_distance
 from .operators import redo as operator_redo
 from .operators import register as operator_register
 from .operators import seam_preview as operator_seam_preview
@@ -42,6 +43,7 @@ _MODULES = (
     landmark_curves,
     landmark_points,
     last_registration,
+    mask,
     overlay_heat_map,  # under the others
     overlay_points,
     overlay_curves,
@@ -58,6 +60,7 @@ _MODULES = (
     operator_heat_map,
     operator_texel_density,
     operators_of_couples,
+    operator_merge_by_distance,
     operators_of_points,
     operators_of_curves,
     operator_pick,

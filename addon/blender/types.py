@@ -55,6 +55,7 @@ if TYPE_CHECKING:
         authalic_curve_key: str
         authalic_registration: Registration
         authalic_wrap: Wrap
+        authalic_mask: str
 
     Status = set[OperatorReturnItems]
     OperatorMixin = bpy.types.Operator

@@ -3,13 +3,14 @@
 
 from authalic import set_threads
 
+from ..registration.piece import UnjoinedSide
 from ..surfaces.suitability import Unsuitable
 from .figures import measure
 from .flips import fix_flips
 from .islands import unwrap
 from .known import forget
 from .placement import Placed, place
-from .registrations import kept, morphed, pull, register
+from .registrations import followed, kept, morphed, pull, register
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
 from .settings import PlacementSettings, SeamSettings, UnwrapSettings
@@ -31,10 +32,12 @@ __all__ = (
     "Solver",
     "SphereShape",
     "Unflipped",
+    "UnjoinedSide",
     "Unsuitable",
     "UnwrapSettings",
     "find_seams",
     "fix_flips",
+    "followed",
     "forget",
     "kept",
     "measure",

@@ -9,6 +9,7 @@ import numpy as np
 import authalic
 
 from ..messages import problems
+from ..registration import elements
 from ..registration.curves import check_curves, registered_by_curves
 from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
@@ -80,6 +81,23 @@ def morphed(registered: Registered, source: Side, target: Side, align: bool) -> 
         return moved(np.asarray(registered.native.positions), target.matrix)
     over = authalic.homotopy(source.points, registered.native, 1.0, align=True)
     return moved(np.asarray(over), source.matrix)
+
+
+def followed(registered: Registered, source: Side, target: Side, align: bool) -> Floats:
+    """The places in the world of what the source leaves out, (k, 3), which follows its surroundings.
+
+    As `morphed` has the places of the source's points.
+    """
+    rest = source.rest
+    if not len(rest.vertices):
+        return rest.points
+    places = np.asarray(registered.native.follow(rest.points, pieces=rest.pieces))
+    if not align:
+        return moved(places, target.matrix)
+    positions = np.asarray(registered.native.positions)
+    over = np.asarray(authalic.homotopy(source.points, registered.native, 1.0, align=True))
+    turn = elements.turn_and_scale(positions, over)
+    return moved((places - positions.mean(axis=0)) @ turn.T + over.mean(axis=0), source.matrix)
 
 
 def pull(registered: Registered, values: Reals, per: Literal["vertex", "corner"]) -> Floats:

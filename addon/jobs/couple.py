@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import messages
-from ..blender import editability, meshes, shape_keys
+from ..blender import editability, meshes, shape_keys, vertex_groups
 from ..blender.types import Landmark, LandmarkCurve, MeshObject, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import points as landmark_points
@@ -16,8 +16,11 @@ from ..landmarks.curves import Curve
 from ..landmarks.objects import active_source, target_problem
 from ..landmarks.points import Pair
 from ..registration.sides import CurvePair, PointPair, Side, side
-from ..surfaces.arrays import Floats
+from ..surfaces.arrays import Booleans, Floats, Path
 from ..surfaces.surface import Surface
+
+# The weight from which on vertices are masked.
+_MASKED = 0.5
 
 
 class CannotRegister(Exception):
@@ -64,11 +67,20 @@ def chosen(context: bpy.types.Context) -> Couple:
     surfaces = shape_keys.read(source), shape_keys.read(target)
     matrices = np.array(source.matrix_world), np.array(target.matrix_world)
     points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
+    on_source: list[Path] = [(pair.source_vertex,) for pair in points]
+    on_target: list[Path] = [(pair.target_vertex,) for pair in points]
+    on_source += [curve.source.vertices for curve in curves]
+    on_target += [curve.target.vertices for curve in curves]
+    sides = (
+        side(surfaces[0], matrices[0], _masked(source), on_source),
+        side(surfaces[1], matrices[1], _masked(target), on_target),
+    )
+    _check_rest(sides)
     return Couple(
         source=source,
         target=target,
         surfaces=surfaces,
-        sides=(side(surfaces[0], matrices[0]), side(surfaces[1], matrices[1])),
+        sides=sides,
         pairs=[pair[:3] for pair in points],
         curves=[(curve.name, curve.source.vertices, curve.target.vertices) for curve in curves],
         problems={"POINTS": _problems("Landmark", points), "CURVES": _problems("Curve", curves)},
@@ -90,6 +102,26 @@ def check_unchanged(couple: Couple) -> None:
 def pair_lists(source: MeshObject) -> tuple[list[Landmark], list[LandmarkCurve]]:
     """The lists of points and of curves."""
     return list(source.authalic_landmarks), list(source.authalic_landmark_curves)
+
+
+def _masked(obj: MeshObject) -> Booleans:
+    """Which vertices (n,) the mask of an object leaves out."""
+    name = obj.authalic_mask
+    if name and name not in vertex_groups.names(obj):
+        raise CannotRegister(f'{obj.name} has no vertex group "{name}"; choose its mask again')
+    return vertex_groups.weights(obj, name) >= _MASKED
+
+
+def _check_rest(sides: Sequence[Side]) -> None:
+    for each in sides:
+        if not len(each.faces):
+            raise CannotRegister(f"{each.name} has no faces without masked vertices; paint a smaller mask")
+    bad = sides[0].rest.vertices[~np.isfinite(sides[0].rest.points).all(axis=1)]
+    if len(bad):
+        raise CannotRegister(
+            f"{sides[0].name}: NaN or infinite coordinates at {'vertex' if len(bad) == 1 else 'vertices'} "
+            f"{messages.numbers(bad)}: repair or remove them"
+        )
 
 
 def _check(obj: MeshObject) -> None:

@@ -17,7 +17,7 @@ from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import Side, moved
 from ..surfaces.arrays import Floats
-from . import last_registration
+from . import last_registration, unjoined
 from .couple import CannotRegister, Couple, check_unchanged, chosen, pair_lists
 from .job import Job
 from .register_report import Report, warnings
@@ -78,6 +78,9 @@ def registration(couple: Couple, settings: RegistrationSettings, progress: Progr
     """The registration of a `Couple`; raises `CannotRegister`."""
     try:
         return bridge.register(*couple.sides, couple.landmarks(settings.method), settings, progress)
+    except bridge.UnjoinedSide as reason:
+        unjoined.remember(reason.name)
+        raise CannotRegister(str(reason)) from reason
     except bridge.Unsuitable as reason:
         raise CannotRegister(str(reason)) from reason
 
@@ -92,6 +95,8 @@ def _positions(couple: Couple, registered: Registered, align: bool) -> Floats:
     positions, vertices = couple.surfaces[0].positions.copy(), registered.source.vertices
     images = moved(bridge.morphed(registered, *couple.sides, align), couple.to_source)
     positions[vertices[vertices >= 0]] = images[vertices >= 0]
+    following = bridge.followed(registered, *couple.sides, align)
+    positions[couple.sides[0].rest.vertices] = moved(following, couple.to_source)
     if not np.isfinite(positions.astype(np.float32)).all():
         raise CannotRegister("The morph is not finite; nothing was changed")
     return positions
@@ -123,9 +128,14 @@ def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
 
 
 def _remarks(couple: Couple, key: str) -> list[str]:
-    """Which other objects are affected, and which modifiers and shape keys were ignored."""
+    """What was not matched, which other objects are affected, which modifiers and shape keys were ignored."""
     users = couple.source.data.users
-    notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
+    notes = [
+        *couple.sides[0].rest.in_words(couple.source.name, "followed"),
+        *couple.sides[1].rest.in_words(couple.target.name, "left out"),
+    ]
+    if users > 1:
+        notes.append(f"{couple.source.name} shares its mesh, all {users} users have the key")
     for obj in (couple.source, couple.target):
         if ignored := deformers(obj, but=key if obj == couple.source else None):
             verb, them = ("was", "it") if len(ignored) == 1 else ("were", "them")

@@ -14,7 +14,12 @@ ENDED_EARLY_BY_CURVES = "stopped early; a longer run preserves the shapes of fac
 ENDED_EARLY_SEEKING = "stopped early; a longer run finds shorter seams"
 ENDED_EARLY_FIXING = "stopped early; a longer run may fix more"
 _NAMED = 3
-_PLURALS = {"vertex": "vertices", "loose vertex": "loose vertices", "open boundary": "open boundaries"}
+_PLURALS = {
+    "vertex": "vertices",
+    "loose vertex": "loose vertices",
+    "masked vertex": "masked vertices",
+    "open boundary": "open boundaries",
+}
 
 
 class Note(Protocol):

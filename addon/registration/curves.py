@@ -69,6 +69,8 @@ def _points(side: Side, name: str, vertices: ArrayLike) -> Integers:
     if not len(vertices) or vertices.min() < 0 or vertices.max() >= side.count:
         raise Unsuitable(f'Curve "{name}" is not on vertices of {side.name}; add it again')
     points = side.points_of(vertices)
+    if np.isin(vertices, side.rest.vertices).any():
+        raise Unsuitable(f'Curve "{name}" {side.rest.why_not(side.name)}')
     if (points < 0).any():
         loose = messages.numbers(vertices[points < 0])
         raise Unsuitable(f'Curve "{name}" is on loose vertices of {side.name} ({loose}); add one with faces')

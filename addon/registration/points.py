@@ -8,7 +8,7 @@ import numpy as np
 from .. import messages
 from ..surfaces.arrays import Booleans, Integers
 from ..surfaces.suitability import Patch, Unsuitable
-from .piece import check_piece
+from .piece import check_joined, check_piece
 from .sides import PointPair, Side
 
 _FEWEST = {"DISK": 1, "SPHERE": 2}
@@ -24,6 +24,8 @@ def domain(sides: tuple[Side, Side], patches: Sequence[Sequence[Patch]], wanted:
         if wanted not in ("AUTO", shape):
             raise Unsuitable(f"{side.name}: {_NOT_WANTED[wanted]}")
     if shapes[0] != shapes[1]:
+        for side, pieces in zip(sides, patches, strict=True):
+            check_joined(side, pieces)
         opened, closed = (sides[shapes.index(shape)].name for shape in ("DISK", "SPHERE"))
         raise Unsuitable(
             f"{opened} is open and {closed} is closed; both must be open or both closed: fill the hole of "
@@ -55,22 +57,24 @@ def _holes(loops: Sequence[Integers]) -> str:
 
 
 def check_landmarks(
-    sides: tuple[Side, Side], pairs: Sequence[PointPair], shape: str, boundaries: Sequence[Integers]
+    sides: tuple[Side, Side], pairs: Sequence[PointPair], shape: str, borders: Sequence[Integers]
 ) -> Integers:
     """The landmarks of source and target as points (2, k) of the sides.
 
-    `pairs` are (name, source vertex, target vertex), `boundaries` the points of either boundary. Raises
+    `pairs` are (name, source vertex, target vertex), `borders` the points of either boundary. Raises
     `Unsuitable` with the names of the pairs that cannot be.
     """
     if len(pairs) < _FEWEST[shape]:
         few = "a landmark pair" if shape == "DISK" else "at least two landmark pairs, better four or more"
         raise Unsuitable(f"{sides[0].name} needs {few}; add vertices that belong together")
     landmarks = []
-    for number, (side, border) in enumerate(zip(sides, boundaries, strict=True), 1):
+    for number, (side, border) in enumerate(zip(sides, borders, strict=True), 1):
         vertices = np.array([pair[number] for pair in pairs])
         outside = (vertices < 0) | (vertices >= side.count)
         _refuse(pairs, outside, f"is on no vertex of {side.name}; pick it again")
         points = side.points_of(vertices)
+        is_other = np.isin(vertices, side.rest.vertices)
+        _refuse(pairs, is_other, side.rest.why_not(side.name))
         _refuse(pairs, points < 0, f"is on a loose vertex of {side.name}; pick one that has faces")
         first = np.unique(points, return_index=True)[1]
         again = ~np.isin(np.arange(len(points)), first)

@@ -2,14 +2,15 @@
 """A surface to be registered, in the shape that it has in the world. Plain numpy, no bpy."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..surfaces import triangulation
-from ..surfaces.arrays import Floats, Integers, Path
+from ..surfaces.arrays import Booleans, Floats, Integers, Path
 from ..surfaces.suitability import Patch
 from ..surfaces.surface import Surface
+from .rest import Rest, divided
 
 PointPair = tuple[str, int, int]
 """The name of a pair of landmarks, its vertices on the source and on the target."""
@@ -21,12 +22,13 @@ _UNIFORM = 1e-5  # matrices have single precision
 
 @dataclass
 class Side:
-    """The triangles of one of the two meshes, without its loose vertices.
+    """The triangles of one of the two meshes that are matched: one piece, without mask and loose vertices.
 
     They have the shape that they have in the world, but the place and the size of the mesh: whatever moves,
     turns or scales the object makes no difference. `matrix` (4, 4) leads from there into the world.
     `faces` (m, 3) are between `points` (u, 3); `vertices` (u,) and `corners` (m, 3) are those of the mesh,
-    -1 at the center of a divided polygon, `polygons` (m,) the polygons. The mesh has `count` vertices.
+    -1 at the center of a divided polygon, `polygons` (m,) the polygons. The mesh has `count` vertices, of
+    which `rest` are not matched.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Side:
     corners: Integers
     polygons: Integers
     count: int
+    rest: Rest
 
     @property
     def size(self) -> float:
@@ -51,17 +54,24 @@ class Side:
         return numbers[vertices]
 
 
-def side(surface: Surface, matrix: Floats) -> Side:
+def side(
+    surface: Surface, matrix: Floats, masked: Booleans | None = None, marked: Sequence[Path] = ()
+) -> Side:
     """The `Side` of a `Surface` in the mesh's own coordinates, with a matrix (4, 4) into the world.
 
-    A matrix that mirrors turns the faces over, as Blender does, so that fronts stay fronts.
+    A matrix that mirrors turns the faces over, as Blender does, so that fronts stay fronts. Vertices that are
+    `masked` (n,) are not matched. Of several pieces the one with most of the landmarks is, each of them given
+    by its vertices (k,) in `marked`, or else the largest.
     """
     shape = _shape_of(matrix[:3, :3])
     to_world = np.array(matrix, float)
     to_world[:3, :3] = matrix[:3, :3] @ np.linalg.inv(shape)
     mesh = triangulation.sound(surface)
-    used, faces = np.unique(mesh.triangles, return_inverse=True)
-    faces, corners = faces.reshape(-1, 3), mesh.corners
+    if masked is None:
+        masked = np.zeros(len(surface.positions), bool)
+    matched, rest = divided(surface, mesh, masked, marked)
+    used, faces = np.unique(mesh.triangles[matched], return_inverse=True)
+    faces, corners = faces.reshape(-1, 3), mesh.corners[matched]
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces, corners = faces[:, ::-1], corners[:, ::-1]
     count = len(surface.positions)
@@ -72,8 +82,9 @@ def side(surface: Surface, matrix: Floats) -> Side:
         faces=np.ascontiguousarray(faces),
         vertices=np.where(used < count, used, -1),
         corners=np.ascontiguousarray(corners),
-        polygons=mesh.polygons,
+        polygons=mesh.polygons[matched],
         count=count,
+        rest=replace(rest, points=rest.points @ shape.T),
     )
 
 

@@ -7,12 +7,11 @@ from typing import Protocol
 import numpy as np
 
 from .. import messages
+from . import coincident
 from .arrays import Floats, Integers
 
 # What cuts open whatever can be cut open.
 _AUTOMATIC = "set Seams to Automatic"
-# Vertices lie on each other within this part of the size of the mesh.
-_TOUCHING = 1e-5
 
 
 class Patch(Protocol):
@@ -30,6 +29,10 @@ class Patch(Protocol):
 
 class Unsuitable(Exception):
     """A surface has no map of the wanted kind; the message says why and what to do about it."""
+
+
+class Unjoined(Unsuitable):
+    """A surface has vertices that lie on each other; merging them joins its faces."""
 
 
 def choose(patch: Patch, domain: str, fill_holes: bool) -> str:
@@ -130,12 +133,10 @@ def check_joined(points: Floats, patches: Sequence[Patch]) -> None:
     """
     loops = [np.asarray(patch.vertex_of)[loop] for patch in patches for loop in patch.boundary_loops]
     border = np.unique(np.concatenate([np.empty(0, int), *loops]))
-    size = np.linalg.norm(np.ptp(points, axis=0))
-    places = np.round(points[border] / (_TOUCHING * size if size > 0 else 1.0))
-    _, counts = np.unique(places, axis=0, return_counts=True)
-    doubles = int(counts[counts > 1].sum())
+    first = coincident.stands_for(points[border], coincident.distance(points))
+    doubles = int((np.bincount(first, minlength=1)[first] > 1).sum())
     if doubles:
-        raise Unsuitable(
+        raise Unjoined(
             f"has {messages.count(doubles, 'vertex')} that lie on each other, but are not joined; join them "
             "(Mesh > Merge > By Distance)"
         )

@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..blender.types import PanelMixin, is_mesh
+from ..blender.types import MeshObject, PanelMixin, is_mesh
+from ..jobs import unjoined
 from ..landmarks.objects import active_source
 
 PARENT = "AUTHALIC_PT_registration_view3d"
@@ -48,10 +49,29 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         title.alignment = "RIGHT"
         title.label(text="Source")
         split.label(text=source.name, icon="OBJECT_DATA", translate=False)
+        _draw_mask(column, source)
         column.prop(source, "authalic_target")
+        if source.authalic_target is not None:
+            _draw_mask(column, source.authalic_target)
+        _draw_merge(self.layout, source)
         row = self.layout.row(align=True)
         row.operator("authalic.swap_target", text="Swap", icon="ARROW_LEFTRIGHT")
         row.operator("authalic.side_by_side", icon="SNAP_EDGE")
+
+
+def _draw_mask(layout: bpy.types.UILayout, obj: MeshObject) -> None:
+    """The vertex group of an object that is left out, where it has any."""
+    if obj.vertex_groups or obj.authalic_mask:
+        layout.prop_search(obj, "authalic_mask", obj, "vertex_groups")
+
+
+def _draw_merge(layout: bpy.types.UILayout, source: MeshObject) -> None:
+    """A button for each object whose vertices were found to lie on each other."""
+    for side, obj in (("SOURCE", source), ("TARGET", source.authalic_target)):
+        if obj is not None and unjoined.is_unjoined(obj):
+            row = layout.row()
+            row.label(text=obj.name, icon="ERROR", translate=False)
+            row.operator("authalic.merge_by_distance").side = side
 
 
 def register() -> None:

@@ -343,14 +343,6 @@ def test_handle() -> None:
     refusal("Torus: has a handle, like a torus; close it up or remesh it")
 
 
-def test_several_pieces_of_the_target() -> None:
-    first, second = spheres.icosphere(1), spheres.icosphere(1)
-    target = meshes.add(*meshes.together(first, (second[0] + [4, 0, 0], second[1])), "Couple")
-    source = meshes.add(*spheres.icosphere(1), "One")
-    pairs.pair(source, target, [0, 5])
-    refusal("Couple: consists of 2 pieces where one is allowed")
-
-
 def test_surfaces_that_meet() -> None:
     vertices, faces = meshes.tetrahedron()
     fin = meshes.add([*vertices, (3, 3, -3)], [*faces, [0, 1, 4]], "Fin")

@@ -152,6 +152,8 @@ _NAMES = {
     "Sphere": "Kugel",
     "Sphere Shape Key": "Shape-Key zur Kugel",
     "Start Frame": "Erstes Bild",
+    "Mask": "Maske",
+    "Merge by Distance": "Nach Abstand verschmelzen",
     "Swap": "Tauschen",
     "Swap Source and Target": "Quelle und Ziel tauschen",
     "Symmetry": "Symmetrie",
@@ -186,6 +188,14 @@ _NAMES = {
 }
 
 _TOOLTIPS = {
+    "Merge the vertices of open edges that lie on each other, so that faces are joined.\n\nUV maps, "
+    "landmarks and shape keys stay": (
+        "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
+        "sind.\n\nUV-Maps, Landmarken und Shape-Keys bleiben"
+    ),
+    "The object whose vertices are merged": "Das Objekt, dessen Vertices verschmolzen werden",
+    "The object that is wrapped": "Das Objekt, das verformt wird",
+    "The object that it is wrapped onto": "Das Objekt, in das es verformt wird",
     "A disk for islands with a boundary, a sphere for closed ones without handles": (
         "Eine Scheibe für Inseln mit Rand, eine Kugel für geschlossene ohne Henkel"
     ),
@@ -216,6 +226,11 @@ _TOOLTIPS = {
     "costs a quarter there": (
         "Eine Vertexgruppe, in der Nähte bevorzugt werden, etwa die Innenseite eines Ärmels: Beim "
         "Gewicht 1 kostet eine Naht dort ein Viertel"
+    ),
+    "A vertex group whose vertices, from a weight of 0.5 on, are not matched. On the object that is "
+    "wrapped they follow their surroundings": (
+        "Eine Vertexgruppe, deren Vertices ab einem Gewicht von 0,5 nicht zugeordnet werden. Auf dem "
+        "Objekt, das verformt wird, folgen sie ihrer Umgebung"
     ),
     "Add a shape key whose slider morphs the active object into its target, landmarks onto "
     "landmarks.\n\nPoints preserve areas, curves preserve the shapes of faces; no face folds over. The "

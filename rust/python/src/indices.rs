@@ -33,11 +33,12 @@ pub fn index_list(
 
 /// Labels of faces: integers of shape (m,).
 pub fn labels(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<i64>> {
-    Ok(integer_column(object, name, "of shape (m,), one number per face")?
-        .as_array()
-        .iter()
-        .copied()
-        .collect())
+    integer_list(object, name, "of shape (m,), one number per face")
+}
+
+/// Integers of shape (k,), as the words `expected` say.
+pub fn integer_list(object: &Bound<'_, PyAny>, name: &'static str, expected: &str) -> PyResult<Vec<i64>> {
+    Ok(integer_column(object, name, expected)?.as_array().iter().copied().collect())
 }
 
 /// The indices of vertices that are given as indices, or as one truth value per vertex.

@@ -14,10 +14,13 @@ use crate::vector::Vector3;
 /// minimizes Σ w_i |R x_i − y_i|².
 pub(crate) fn best_rotation(from: &[Vector3], to: &[Vector3], weights: &[f64]) -> [Vector3; 3] {
     let total = parallel::sum(weights.len(), |v| weights[v]);
-    // S_ab = Σ w x_a y_b
-    let s: [[f64; 3]; 3] = std::array::from_fn(|a| {
+    rotation_by_covariance(std::array::from_fn(|a| {
         std::array::from_fn(|b| parallel::sum(from.len(), |v| weights[v] / total * from[v][a] * to[v][b]))
-    });
+    }))
+}
+
+/// [`best_rotation`] by its covariance S_ab = Σ w x_a y_b, on any scale.
+pub(crate) fn rotation_by_covariance(s: [[f64; 3]; 3]) -> [Vector3; 3] {
     let trace = s[0][0] + s[1][1] + s[2][2];
     let [x, y, z] = [s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]];
     let [xy, yz, zx] = [s[0][1] + s[1][0], s[1][2] + s[2][1], s[2][0] + s[0][2]];

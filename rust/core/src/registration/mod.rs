@@ -5,7 +5,7 @@
 //! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6)
 //! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
 //! locate each vertex of the source on the target. [`Energy::Surface`] starts from there and descends on the energy
-//! of g itself, in space. [`homotopy`] morphs along g.
+//! of g itself, in space. [`homotopy`] morphs along g, [`follow`] takes points beside the source along.
 //!
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
 //! Cost: the two maps, and about as much again for carrying the landmarks.
@@ -16,6 +16,7 @@ mod disk;
 mod features;
 mod figures;
 mod flow;
+mod follow;
 mod given_faces;
 mod landmark_descent;
 mod landmarks;
@@ -31,6 +32,7 @@ pub use correspondence::Correspondence;
 pub use disk::register_disks;
 pub use features::Features;
 pub(crate) use features::Signals;
+pub use follow::follow;
 pub use landmarks::Landmarks;
 pub use morph::homotopy;
 pub(crate) use options::check_weight;

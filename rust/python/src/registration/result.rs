@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 
 use super::certificates::Certificates;
 use super::finished::{Finished, Per};
-use crate::arrays::{Reals, from_array};
+use crate::arrays::{Reals, from_array, real_table};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python, warning};
-use crate::indices::{from_index_list, from_indices};
+use crate::indices::{from_index_list, from_indices, integer_list};
 use crate::run::run;
 use crate::values::{Values, from_values};
 use crate::{disk, sphere};
@@ -292,6 +292,50 @@ impl Registration {
         let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
         let pulled = run(py, None, move |_| pulled(finished.correspondence(), numbers, width, per))?;
         from_values(py, pulled, out)
+    }
+
+    /// Where points beside the source go when it goes to its place on the target: eyes, teeth, clothes.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : (k, 3) real array
+    ///     In the source's coordinates.
+    /// pieces : (k,) integer array, optional
+    ///     Points with the same number, from 0, are a piece. A small piece moves by one similarity, the best one for
+    ///     the surface around it, so that it keeps its shape. Points of a large piece, points with negative numbers and
+    ///     without `pieces` all points bend with the surface; points on the surface go where it goes.
+    /// rigid_size : float
+    ///     The largest size of pieces that keep their shapes, as a fraction of the source's; 0 bends all, infinity none.
+    ///
+    /// Returns
+    /// -------
+    /// (k, 3) float64 array
+    ///     In the target's coordinates.
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     An array has another shape, or points are not finite.
+    /// ValueError
+    ///     `rigid_size` is negative or NaN.
+    #[pyo3(signature = (points, *, pieces=None, rigid_size=0.25))]
+    fn follow(
+        &self,
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        pieces: Option<&Bound<'_, PyAny>>,
+        rigid_size: f64,
+    ) -> PyResult<Reals> {
+        let points = real_table::<3>(points, "points")?;
+        let pieces = match pieces {
+            Some(pieces) => integer_list(pieces, "pieces", "of shape (k,), one number per point")?,
+            None => vec![-1; points.nrows()],
+        };
+        let finished = self.finished.clone();
+        let places = run(py, None, move |_| {
+            authalic::follow(finished.correspondence(), points.view(), aview1(&pieces), rigid_size)
+        })?;
+        Ok(from_array(py, places))
     }
 
     /// The registration of the target onto the source by the same maps. Its `pull` carries source data to the target.

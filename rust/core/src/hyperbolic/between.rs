@@ -3,6 +3,7 @@
 
 use super::features::curves::LandmarkCurves;
 use super::options::HyperbolicOptions;
+use crate::codomain::CanonicalDomain;
 use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
@@ -42,6 +43,7 @@ impl Between<'_, '_> {
         let problem = SurfaceProblem {
             source,
             target,
+            domain: CanonicalDomain::Sphere,
             target_in_domain: self.target_in_domain,
             held,
             pulls: Vec::new(),

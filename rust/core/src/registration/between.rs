@@ -41,7 +41,8 @@ impl Between<'_, '_> {
             signals.add_positions([source, target], &images, options.position_weight);
         }
         let face_energy = options.face_energy();
-        let problem = SurfaceProblem { source, target, target_in_domain, held, pulls, signals, face_energy };
+        let problem =
+            SurfaceProblem { source, target, domain, target_in_domain, held, pulls, signals, face_energy };
         let (locations, status) = descend(&problem, start, history, observer);
         let registered = in_domain(source, &locations, target.faces(), target_in_domain, domain);
         (locations, registered, status)

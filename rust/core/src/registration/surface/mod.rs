@@ -1,26 +1,63 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The descent on the energy between two surfaces: each face of the source against its image in space on the target.
+//!
+//! The unknowns are the places of the source's vertices on the target. Of a map of either surface to a common domain
+//! alone, a face cannot tell how it is distorted between the surfaces; here the symmetric Dirichlet energy of the map
+//! from surface to surface is lowered, from a registration in the domain, by Newton's method in turn with a search
+//! around single vertices. An energy in the domain keeps faces from folding there ([`energy`]). Its weight falls by
+//! stages: at first it smooths the way, at last it acts next to folds only.
+//!
+//! The map is stationary where neither betters it: target edges are kinks of the energy, at which vertices come to lie
+//! with a slope on either side.
+//!
+//! Cost: some fifty factorizations with two unknowns for each vertex of the source.
+
+mod density;
+mod energy;
+mod newton;
+mod sweep;
+mod target;
+mod walk;
+
+pub(crate) use density::FaceEnergy;
 
 use super::features::Signals;
-use crate::control::{History, Observer, Status};
+use crate::codomain::CanonicalDomain;
+use crate::control::{History, Observer, Status, Watch};
 use crate::location::Location;
 use crate::mesh::{TriangleMesh, Vertex};
+use crate::parallel;
+use crate::sparse::{Analysis, Factor, Failure, Order};
 use crate::vector::Vector3;
+use energy::{Guard, SurfaceEnergy};
+use newton::{Motion, Moving, Step};
+use sweep::Colors;
+use target::{Placed, boundary_edge};
 
-/// The energy of a face: (angle factor)^angle_weight × (area factor)^area_weight, with the singular values σ₁ ≥ σ₂ of the
-/// map of the face, d = σ₁ σ₂, the angle factor (σ₁/σ₂ + σ₂/σ₁)/2 and the area factor (d + 1/d)/2. With weights of 1 it
-/// is the symmetric Dirichlet energy over 4.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FaceEnergy {
-    /// The exponent of the area factor.
-    pub area_weight: f64,
-    /// The exponent of the angle factor.
-    pub angle_weight: f64,
-}
+/// The stages: the guard, and the most rounds of steps and a sweep.
+const STAGES: [(Guard, usize); 4] = [
+    (Guard { weight: 3.0, slack: 0.0 }, 1),
+    (Guard { weight: 1.0, slack: 0.0 }, 2),
+    (Guard { weight: 0.3, slack: 0.0 }, 1),
+    (Guard { weight: 0.1, slack: 3.0 }, 12),
+];
+
+/// Mean distortion of a start, beyond 1, from which it goes through all stages; a better one through the last alone.
+const NEAR_ISOMETRY: f64 = 1e-6;
+
+/// Most steps of a round.
+const STEPS: usize = 20;
+
+/// Relative decrease of the energy by a step below which it is small; two small ones in turn end the steps.
+const SMALL_STEP: f64 = 1e-4;
+
+/// Relative decrease of the energy by a round below which the map is stationary.
+const SMALL_ROUND: f64 = 1e-4;
+
+const MESSAGE: &str = "Keeping shapes";
 
 /// A vertex that is pulled to a place on the target: weight × |g(v) − place|² / the target's area.
 #[derive(Debug, Clone, Copy)]
-#[expect(dead_code, reason = "read by the descent")]
 pub(crate) struct Pull {
     /// The vertex of the source.
     pub vertex: Vertex,
@@ -31,13 +68,14 @@ pub(crate) struct Pull {
 }
 
 /// A map of one surface onto another whose energy is to be lowered.
-#[expect(dead_code, reason = "read by the descent")]
 pub(crate) struct SurfaceProblem<'a> {
     /// The surface that is mapped.
     pub source: &'a TriangleMesh,
     /// The surface that it is mapped onto.
     pub target: &'a TriangleMesh,
-    /// The target's vertices in the domain, the unit sphere or the disk in the plane z = 1, where no face may fold.
+    /// The domain in which no face may fold.
+    pub domain: CanonicalDomain,
+    /// The target's vertices in the domain, the unit sphere or the disk in the plane z = 1.
     pub target_in_domain: &'a [Vector3],
     /// The vertices of the source that do not move, as exact landmarks.
     pub held: Vec<bool>,
@@ -51,11 +89,107 @@ pub(crate) struct SurfaceProblem<'a> {
 }
 
 /// Lowers the energy from a map without folds.
+///
+/// The boundary of a disk slides along the target's. Faces that are folded in the domain at the start stay as they are.
 pub(crate) fn descend(
-    _problem: &SurfaceProblem<'_>,
+    problem: &SurfaceProblem<'_>,
     start: Vec<Location>,
-    _history: &mut History,
-    _observer: &mut dyn Observer,
+    history: &mut History,
+    observer: &mut dyn Observer,
 ) -> (Vec<Location>, Status) {
-    (start, Status::MaxIterations)
+    // 1. The energy, and which vertices may move
+    let mut energy = SurfaceEnergy::new(problem, STAGES[0].0);
+    let map: Vec<Placed> = parallel::map(start.len(), |vertex| energy.target.placed(start[vertex]));
+    let motions = motions(problem, &energy, &map);
+    let dofs: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
+    let faces = problem.source.faces();
+    let Ok(analysis) = Analysis::new(start.len(), faces, &dofs, Order::Sparse) else {
+        return (start, Status::Stalled);
+    };
+    let mut factor = Factor::new(&analysis);
+    let colors = Colors::new(problem.source, &motions);
+    // 2. Stages, from one that smooths the way to one that only keeps folds away
+    let is_good = energy.mean_distortion(&map) < 1.0 + NEAR_ISOMETRY;
+    let first = if is_good { STAGES.len() - 1 } else { 0 };
+    let mut descent =
+        Descent { history, observer, analysis: &analysis, factor: &mut factor, colors: &colors };
+    let (mut map, mut status) = (map, Status::MaxIterations);
+    for (stage, (guard, rounds)) in STAGES.into_iter().enumerate().skip(first) {
+        energy.guard = guard;
+        let mut moving = Moving { energy: &energy, motions: &motions, map };
+        status = descent.rounds(&mut moving, rounds, stage as f64 / STAGES.len() as f64);
+        map = moving.map;
+        if status == Status::Cancelled {
+            break;
+        }
+    }
+    (map.into_iter().map(|placed| placed.location).collect(), status)
+}
+
+/// How each vertex moves: not at all where it is held or belongs to a face folded at the start; along the boundary, if
+/// it lies there, on the boundary of the target.
+fn motions(problem: &SurfaceProblem<'_>, energy: &SurfaceEnergy<'_>, map: &[Placed]) -> Vec<Motion> {
+    let source = problem.source;
+    let mut motions: Vec<Motion> = Vertex::all(source.n_vertices())
+        .map(|vertex| match (problem.held[vertex], source.is_boundary(vertex)) {
+            (true, _) => Motion::Held,
+            (false, false) => Motion::Free,
+            (false, true) if boundary_edge(problem.target, &map[vertex].location).is_some() => Motion::Slides,
+            (false, true) => Motion::Held,
+        })
+        .collect();
+    for face in 0..source.n_faces() {
+        if SurfaceEnergy::is_folded(energy.corners(map, face)) {
+            source.faces()[face].into_iter().for_each(|vertex| motions[vertex] = Motion::Held);
+        }
+    }
+    motions
+}
+
+/// A descent with what it reports to.
+struct Descent<'a> {
+    history: &'a mut History,
+    observer: &'a mut dyn Observer,
+    analysis: &'a Analysis,
+    factor: &'a mut Factor<f64>,
+    colors: &'a Colors,
+}
+
+impl Descent<'_> {
+    /// Rounds of steps and a sweep, until the energy hardly falls.
+    fn rounds(&mut self, moving: &mut Moving<'_, '_>, most: usize, fraction: f64) -> Status {
+        for _ in 0..most {
+            let before = moving.energy.value(&moving.map);
+            if self.steps(moving, fraction).is_err() {
+                return Status::Cancelled;
+            }
+            moving.sweep(self.colors);
+            let after = moving.energy.value(&moving.map);
+            if before - after <= SMALL_ROUND * before {
+                return Status::Converged;
+            }
+        }
+        Status::MaxIterations
+    }
+
+    /// Newton's steps, until two in turn are small.
+    fn steps(&mut self, moving: &mut Moving<'_, '_>, fraction: f64) -> Result<(), Failure> {
+        let mut small = 0;
+        for _ in 0..STEPS {
+            let watch = Watch::new(self.observer, fraction, MESSAGE);
+            let step = match moving.step(self.analysis, self.factor, &watch) {
+                Ok(step) => step,
+                Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                Err(Failure::NotPositiveDefinite) => None,
+            };
+            let Some(Step { energies: [before, after], share, slope }) = step else { break };
+            self.history.push_start(before, slope.abs());
+            self.history.push(after, share, slope.abs());
+            small = if before - after < SMALL_STEP * before { small + 1 } else { 0 };
+            if small >= 2 {
+                break;
+            }
+        }
+        Ok(())
+    }
 }

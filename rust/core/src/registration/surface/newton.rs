@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Newton's method on the places of the source's vertices, by steps that fold no face.
+//!
+//! A step is a tangent vector at each vertex; the vertex walks along it straight over the target. Target edges are
+//! kinks of the energy, and a few faces near their limit would hold up a whole step: their vertices go a part of the
+//! way, their neighbors up to twice that part, and so on.
+//!
+//! Cost of a step: one factorization of two unknowns per vertex.
+
+use super::density::Expansion;
+use super::energy::SurfaceEnergy;
+use super::target::{Placed, boundary_edge};
+use crate::control::Watch;
+use crate::location::Location;
+use crate::mesh::{Face, Vertex};
+use crate::parallel;
+use crate::sparse::{Analysis, Factor, Failure};
+use crate::vector::Vector3;
+
+/// Shift of the Hessian's diagonal relative to itself, and to the area of a face.
+const SHIFTS: [f64; 2] = [1e-8, 1e-6];
+
+/// Longest step of a vertex; the target has an area of 1.
+const LONGEST: f64 = 0.2;
+
+/// Factor from one try of a step to the next, and the number of tries.
+const SHORTER: f64 = 0.4;
+const TRIES: usize = 12;
+
+/// Part of the predicted decrease that a step has to reach.
+const SUFFICIENT: f64 = 1e-4;
+
+/// Rise of a face's energy, in parts of itself and absolute, that is taken for a barrier.
+const BARRIER: [f64; 2] = [2.0, 1.0];
+
+/// Rounds of holding vertices back in one try.
+const ROUNDS: usize = 16;
+
+/// Part of its way that a vertex keeps in a round: in the first rounds, in later ones, and in the last.
+const KEPT: [(usize, f64); 3] = [(6, 0.3), (9, 0.02), (ROUNDS, 0.0)];
+
+/// Rounds in which faces are held back only because the energy does not fall enough, and the part of all faces that
+/// may be.
+const RELENTING: usize = 6;
+const FEW: f64 = 0.02;
+
+/// How the vertices move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    Held,
+    /// Along the boundary of the target.
+    Slides,
+    Free,
+}
+
+impl Motion {
+    pub(super) fn n_unknowns(self) -> u8 {
+        match self {
+            Self::Held => 0,
+            Self::Slides => 1,
+            Self::Free => 2,
+        }
+    }
+}
+
+/// The places of the vertices, and how they may move.
+pub(super) struct Moving<'a, 'p> {
+    pub energy: &'a SurfaceEnergy<'p>,
+    pub motions: &'a [Motion],
+    pub map: Vec<Placed>,
+}
+
+/// A direction with its slope.
+struct Direction {
+    /// The unknowns of each vertex.
+    unknowns: Vec<[f64; 2]>,
+    frames: Vec<[Vector3; 2]>,
+    expansions: Vec<Expansion>,
+    slope: f64,
+}
+
+/// What a step has done.
+pub(super) struct Step {
+    /// The energy before and after.
+    pub energies: [f64; 2],
+    /// The share of the whole step.
+    pub share: f64,
+    /// The slope of the energy along the whole step.
+    pub slope: f64,
+}
+
+/// Parts of a step.
+struct Trial {
+    map: Vec<Placed>,
+    value: f64,
+}
+
+impl Moving<'_, '_> {
+    /// One step; `None` where none lowers the energy.
+    pub(super) fn step(
+        &mut self,
+        analysis: &Analysis,
+        factor: &mut Factor<f64>,
+        watch: &Watch<'_>,
+    ) -> Result<Option<Step>, Failure> {
+        // 1. The direction
+        let direction = self.direction(analysis, factor, watch)?;
+        // 2. As much of it as lowers the energy
+        let values = parallel::map(self.energy.areas.len(), |face| {
+            self.energy.face_value(face, self.energy.corners(&self.map, face))
+        });
+        let of_vertices = parallel::map(self.map.len(), |vertex| {
+            self.energy.vertex_value(Vertex::new(vertex), &self.map[vertex])
+        });
+        let before = self.total(&values, &of_vertices);
+        let mut share = 1.0;
+        for _ in 0..TRIES {
+            if !watch.goes_on() {
+                return Err(Failure::Cancelled);
+            }
+            if let Some(trial) = self.trial(&direction, share, &values, &of_vertices) {
+                self.map = trial.map;
+                let energies = [before, trial.value];
+                return Ok(Some(Step { energies, share, slope: direction.slope }));
+            }
+            share *= SHORTER;
+        }
+        Ok(None)
+    }
+
+    fn total(&self, values: &[f64], of_vertices: &[f64]) -> f64 {
+        let areas = &self.energy.areas;
+        parallel::dot(areas, values) + parallel::sum(of_vertices.len(), |vertex| of_vertices[vertex])
+    }
+
+    /// Newton's direction.
+    fn direction(
+        &self,
+        analysis: &Analysis,
+        factor: &mut Factor<f64>,
+        watch: &Watch<'_>,
+    ) -> Result<Direction, Failure> {
+        let (energy, map) = (self.energy, &self.map);
+        let frames = parallel::map(map.len(), |vertex| self.frame(vertex));
+        // 1. The faces' parts, with a vertex's own in the first of its corners
+        let expansions = parallel::map(energy.areas.len(), |face| {
+            let vertices = energy.source.faces()[face];
+            let corners = vertices.map(|vertex| &map[vertex]);
+            let mut expansion = energy.face_expansion(face, corners, vertices.map(|vertex| &frames[vertex]));
+            for (k, vertex) in vertices.into_iter().enumerate() {
+                if energy.source.vertex_corners(vertex)[0] == Face::new(face).corner(k) {
+                    let own = energy.vertex_expansion(vertex, &map[vertex], &frames[vertex]);
+                    add_vertex(&mut expansion, k, &own.gradient, &own.hessian);
+                }
+            }
+            expansion
+        });
+        // 2. The system
+        let gradient = parallel::map(map.len(), |vertex| {
+            let corners = energy.source.vertex_corners(Vertex::new(vertex));
+            corners.iter().fold([0.0; 2], |sum, corner| {
+                let (of_face, k) = (&expansions[corner.face()].gradient, 2 * corner.place());
+                [sum[0] + of_face[k], sum[1] + of_face[k + 1]]
+            })
+        });
+        let element = |face: usize| shifted(&expansions[face].hessian, energy.areas[face]);
+        factor.refactor(analysis, &element, watch)?;
+        // 3. Its solution, in steps of bounded length
+        let mut rhs = vec![0.0; analysis.n_unknowns()];
+        for (vertex, slopes) in gradient.iter().enumerate() {
+            let first = analysis.first_unknown(vertex);
+            (0..self.n_unknowns(vertex)).for_each(|d| rhs[first + d] = -slopes[d]);
+        }
+        factor.solve(analysis, &mut rhs);
+        let unknowns = parallel::map(map.len(), |vertex| {
+            let first = analysis.first_unknown(vertex);
+            let mut along = [0.0; 2];
+            (0..self.n_unknowns(vertex)).for_each(|d| along[d] = rhs[first + d]);
+            let length = along[0].hypot(along[1]);
+            if length > LONGEST { along.map(|x| x * LONGEST / length) } else { along }
+        });
+        let slope =
+            parallel::sum(map.len(), |v| gradient[v][0] * unknowns[v][0] + gradient[v][1] * unknowns[v][1]);
+        Ok(Direction { unknowns, frames, expansions, slope })
+    }
+
+    fn n_unknowns(&self, vertex: usize) -> usize {
+        usize::from(self.motions[vertex].n_unknowns())
+    }
+
+    /// The directions in which a vertex may move.
+    pub(super) fn frame(&self, vertex: usize) -> [Vector3; 2] {
+        let (target, location) = (&self.energy.target, &self.map[vertex].location);
+        if self.motions[vertex] == Motion::Slides
+            && let Some(edge) = boundary_edge(target.mesh(), location)
+        {
+            let [from, to] = edge.half_edge(target.faces()).map(|v| target.points[v]);
+            return [(to - from).normalized(), Vector3::ZERO];
+        }
+        target.frame(location.triangle)
+    }
+
+    /// A vertex after a part of its step.
+    fn moved(&self, direction: &Direction, vertex: usize, share: f64) -> Placed {
+        let [a, b] = direction.unknowns[vertex].map(|x| share * x);
+        let [first, second] = direction.frames[vertex];
+        self.walked(vertex, first * a + second * b, a)
+    }
+
+    /// A vertex after a walk along a vector, or by a distance along the boundary.
+    pub(super) fn walked(&self, vertex: usize, along: Vector3, distance: f64) -> Placed {
+        let (target, placed) = (&self.energy.target, &self.map[vertex]);
+        let location: Location = match self.motions[vertex] {
+            Motion::Held => return *placed,
+            _ if along == Vector3::ZERO => return *placed,
+            Motion::Slides => target.walked_along_boundary(placed.location, distance),
+            Motion::Free => target.walked(placed.location, along),
+        };
+        target.placed(location)
+    }
+
+    /// The map after a share of the step, where vertices are held back as far as faces ask for it; `None` where the
+    /// energy does not fall.
+    fn trial(&self, direction: &Direction, share: f64, values: &[f64], of_vertices: &[f64]) -> Option<Trial> {
+        let (energy, n) = (self.energy, self.map.len());
+        let before = self.total(values, of_vertices);
+        let goal = SUFFICIENT * share * direction.slope;
+        let mut shares = vec![share; n];
+        let mut map = parallel::map(n, |vertex| self.moved(direction, vertex, share));
+        let mut relentings = 0;
+        for round in 0..ROUNDS {
+            // 1. Faces that fold or run into a barrier
+            let after =
+                parallel::map(values.len(), |face| energy.face_value(face, energy.corners(&map, face)));
+            let is_barred = |&face: &usize| after[face] > BARRIER[1] + (1.0 + BARRIER[0]) * values[face];
+            let mut obstacles: Vec<usize> = (0..values.len()).filter(is_barred).collect();
+            // 2. If there are none: enough, or held up by a few faces
+            if obstacles.is_empty() {
+                let vertices_after =
+                    parallel::map(n, |vertex| energy.vertex_value(Vertex::new(vertex), &map[vertex]));
+                let value = self.total(&after, &vertices_after);
+                if value - before < goal {
+                    return Some(Trial { map, value });
+                }
+                relentings += 1;
+                if relentings > RELENTING {
+                    return None;
+                }
+                let rise = value - before;
+                obstacles = self.held_up_by(direction, &shares, values, &after, rise, share)?;
+            }
+            // 3. These are held back
+            for vertex in self.held_back(&obstacles, &mut shares, kept(round)) {
+                map[vertex] = self.moved(direction, vertex, shares[vertex]);
+            }
+        }
+        None
+    }
+
+    /// The few faces that rise above what the slope promises, without which the energy would fall; `None` if there is
+    /// no such few.
+    fn held_up_by(
+        &self,
+        direction: &Direction,
+        shares: &[f64],
+        values: &[f64],
+        after: &[f64],
+        rise: f64,
+        share: f64,
+    ) -> Option<Vec<usize>> {
+        let energy = self.energy;
+        let excess = parallel::map(values.len(), |face| {
+            let vertices = energy.source.faces()[face];
+            let gradient = &direction.expansions[face].gradient;
+            let promised: f64 = (0..6)
+                .map(|i| {
+                    let vertex = vertices[i / 2];
+                    gradient[i] * shares[vertex] * direction.unknowns[vertex][i % 2]
+                })
+                .sum();
+            energy.areas[face] * (after[face] - values[face]) - promised
+        });
+        let mut order: Vec<usize> = (0..values.len()).filter(|&face| excess[face] > 0.0).collect();
+        order.sort_by(|&a, &b| excess[b].total_cmp(&excess[a]).then(a.cmp(&b)));
+        let promised = share * direction.slope;
+        let most = 5 + (FEW * values.len() as f64) as usize;
+        let (mut rest, mut few) = (rise, Vec::new());
+        for face in order.into_iter().take(most) {
+            if rest <= 0.2 * promised {
+                break;
+            }
+            rest -= excess[face];
+            few.push(face);
+        }
+        (rest <= 0.05 * promised).then_some(few)
+    }
+
+    /// Cuts the shares of the vertices of faces, and those of their neighbors to twice as much at most; returns the
+    /// vertices whose share has changed.
+    fn held_back(&self, faces: &[usize], shares: &mut [f64], kept: f64) -> Vec<usize> {
+        let source = self.energy.source;
+        let mut cut: Vec<Vertex> = faces.iter().flat_map(|&face| source.faces()[face]).collect();
+        cut.sort_unstable();
+        cut.dedup();
+        cut.retain(|&vertex| shares[vertex] > 0.0);
+        cut.iter().for_each(|&vertex| shares[vertex] *= kept);
+        let mut changed: Vec<usize> = cut.iter().map(|vertex| vertex.index()).collect();
+        if kept > 0.0 {
+            let bound: Vec<f64> = cut.iter().map(|&vertex| 2.0 * shares[vertex]).collect();
+            for (&vertex, bound) in cut.iter().zip(bound) {
+                let neighbors =
+                    source.vertex_corners(vertex).iter().flat_map(|corner| source.faces()[corner.face()]);
+                for neighbor in neighbors {
+                    if shares[neighbor] > bound && neighbor != vertex {
+                        shares[neighbor] = bound;
+                        changed.push(neighbor.index());
+                    }
+                }
+            }
+        }
+        changed.sort_unstable();
+        changed.dedup();
+        changed
+    }
+}
+
+/// Part of its way that a vertex keeps in a round.
+fn kept(round: usize) -> f64 {
+    KEPT.into_iter().find(|(until, _)| round < *until).map_or(0.0, |(_, kept)| kept)
+}
+
+/// Adds the derivatives of a vertex's own energy to those of one of its faces.
+fn add_vertex(expansion: &mut Expansion, k: usize, gradient: &[f64; 2], &[xx, xy, yy]: &[f64; 3]) {
+    let i = 2 * k;
+    expansion.gradient[i] += gradient[0];
+    expansion.gradient[i + 1] += gradient[1];
+    expansion.hessian[i][i] += xx;
+    expansion.hessian[i + 1][i + 1] += yy;
+    expansion.hessian[i][i + 1] += xy;
+    expansion.hessian[i + 1][i] += xy;
+}
+
+/// A face's Hessian with its diagonal shifted, by one value for both unknowns of a corner.
+fn shifted(hessian: &[[f64; 6]; 6], area: f64) -> [[f64; 6]; 6] {
+    let mut element = *hessian;
+    for k in 0..3 {
+        let shift = SHIFTS[0] * (element[2 * k][2 * k] + element[2 * k + 1][2 * k + 1]) + SHIFTS[1] * area;
+        element[2 * k][2 * k] += shift;
+        element[2 * k + 1][2 * k + 1] += shift;
+    }
+    element
+}

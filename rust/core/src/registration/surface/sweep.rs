@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A search around each vertex of faces that are badly distorted: it jumps to the best place nearby.
+//!
+//! Newton's steps end where single vertices lie at kinks of the energy, and at faces that lie turned over in space,
+//! which have to collapse before they can turn back. A search by single vertices gets past both: what is not smooth
+//! about the energy is a matter of each vertex by itself, so that vertices that none of them can better by itself, and
+//! that no common step betters, are at a stationary point.
+//!
+//! Vertices without a common face are searched side by side. Cost: 72 walks and as many energies of a star for each
+//! vertex that is searched.
+
+use std::f64::consts::TAU;
+
+use super::newton::{Motion, Moving};
+use super::target::Placed;
+use crate::mesh::{TriangleMesh, Vertex};
+use crate::parallel;
+
+/// Energy of a face above which its vertices are searched.
+const DISTORTED: f64 = 1.3;
+
+/// Directions and radii of the search, the factor from radius to radius, and the turn of the directions with it.
+const DIRECTIONS: usize = 12;
+const RADII: usize = 6;
+const SHRINKING: f64 = 0.4;
+const TURN: f64 = 0.37;
+
+/// First radius, in mean edge lengths of the image; at least this part of the mean distance of the source's vertices.
+const LEAST_RADIUS: f64 = 0.2;
+
+/// Vertices in groups of which no two have a common face.
+pub(super) struct Colors(Vec<Vec<Vertex>>);
+
+impl Colors {
+    /// Colors the vertices in their order, each with the first color that none of its neighbors has.
+    pub(super) fn new(mesh: &TriangleMesh, motions: &[Motion]) -> Self {
+        let mut color_of = vec![usize::MAX; mesh.n_vertices()];
+        let mut groups: Vec<Vec<Vertex>> = Vec::new();
+        for vertex in Vertex::all(mesh.n_vertices()) {
+            if motions[vertex] == Motion::Held {
+                continue;
+            }
+            let neighbors = mesh.vertex_corners(vertex).iter().flat_map(|corner| mesh.faces()[corner.face()]);
+            let taken: Vec<usize> = neighbors.map(|neighbor| color_of[neighbor]).collect();
+            let color = (0..).find(|color| !taken.contains(color)).expect("one more than all neighbors have");
+            color_of[vertex] = color;
+            if color == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[color].push(vertex);
+        }
+        Self(groups)
+    }
+}
+
+impl Moving<'_, '_> {
+    /// Searches around each vertex with a distorted face.
+    pub(super) fn sweep(&mut self, colors: &Colors) {
+        for group in &colors.0 {
+            let better = parallel::map(group.len(), |k| self.best_nearby(group[k]));
+            for (&vertex, better) in group.iter().zip(better) {
+                self.map[vertex] = better.unwrap_or(self.map[vertex]);
+            }
+        }
+    }
+
+    /// The best place around a vertex that is better than its own, if one of its faces is distorted.
+    fn best_nearby(&self, vertex: Vertex) -> Option<Placed> {
+        if !self.is_distorted(vertex) {
+            return None;
+        }
+        let (energy, placed) = (self.energy, &self.map[vertex]);
+        let frame = self.frame(vertex.index());
+        let mut least = energy.star_value(&self.map, vertex, placed, f64::INFINITY);
+        let mut best = None;
+        let mut radius = self.first_radius(vertex);
+        for ring in 0..RADII {
+            for k in 0..DIRECTIONS {
+                let angle = TAU * (k as f64 + TURN * ring as f64) / DIRECTIONS as f64;
+                let (sine, cosine) = angle.sin_cos();
+                let along = frame[0] * (radius * cosine) + frame[1] * (radius * sine);
+                let there = self.walked(vertex.index(), along, radius * cosine);
+                let value = energy.star_value(&self.map, vertex, &there, least);
+                if value < least {
+                    (least, best) = (value, Some(there));
+                }
+            }
+            radius *= SHRINKING;
+        }
+        best
+    }
+
+    fn is_distorted(&self, vertex: Vertex) -> bool {
+        let energy = self.energy;
+        let guard = energy.guard;
+        // a guard without slack counts isometric faces too
+        let limit = if guard.slack > 0.0 { DISTORTED } else { DISTORTED * (1.0 + guard.weight) };
+        energy.source.vertex_corners(vertex).iter().any(|corner| {
+            let face = corner.face().index();
+            energy.face_value(face, energy.corners(&self.map, face)) > limit
+        })
+    }
+
+    fn first_radius(&self, vertex: Vertex) -> f64 {
+        let source = self.energy.source;
+        let (mut sum, mut count) = (0.0, 0);
+        for corner in source.vertex_corners(vertex) {
+            let next = corner.next().vertex(source.faces());
+            sum += self.map[vertex].point.distance(self.map[next].point);
+            count += 1;
+        }
+        (sum / f64::from(count)).max(LEAST_RADIUS / (source.n_vertices() as f64).sqrt())
+    }
+}

@@ -79,6 +79,18 @@ def undeformed(obj: MeshObject, vertices: Sequence[int]) -> Floats:
     return np.array([elements[vertex].co[:] for vertex in vertices], float).reshape(-1, 3)
 
 
+def undeformed_surface(obj: MeshObject) -> tuple[Floats, Booleans]:
+    """All points (n, 3) of a mesh, without shape keys and modifiers, and a mask (n,) of those on a face."""
+    mesh = obj.data
+    if mesh.is_editmode:
+        edited = bmesh.from_edit_mesh(mesh).verts
+        points = np.array([vertex.co[:] for vertex in edited], float).reshape(-1, 3)
+        return points, np.array([bool(vertex.link_faces) for vertex in edited], bool)
+    values = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", values)
+    return values.reshape(-1, 3).astype(float), _on_faces(mesh)
+
+
 def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Booleans, Cast]:
     """The visible surface of an object, in its own coordinates, for finding vertices.
 
@@ -94,12 +106,17 @@ def surface(obj: MeshObject, depsgraph: bpy.types.Depsgraph) -> tuple[Floats, Bo
     values = np.empty(3 * len(shown.vertices), np.float32)
     shown.vertices.foreach_get("co", values)
     points = values.reshape(-1, 3)[: len(mesh.vertices)].astype(float)
+    same_faces = len(shown.polygons) == len(mesh.polygons)
+    return points, _on_faces(mesh), _cast_on_shown(obj) if same_faces else _cast_on_own(mesh, points)
+
+
+def _on_faces(mesh: bpy.types.Mesh) -> Booleans:
+    """Which vertices (n,) of a mesh that is not in edit mode have a face."""
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
-    used = np.zeros(len(points), bool)
+    used = np.zeros(len(mesh.vertices), bool)
     used[corners] = True
-    same_faces = len(shown.polygons) == len(mesh.polygons)
-    return points, used, _cast_on_shown(obj) if same_faces else _cast_on_own(mesh, points)
+    return used
 
 
 def keeps_topology(obj: MeshObject, shown: bpy.types.Mesh) -> bool:

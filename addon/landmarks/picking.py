@@ -114,6 +114,26 @@ def pick(
     return _beside(surfaces, view, pixel, radius)
 
 
+def grabbed(
+    surfaces: Sequence[Pickable],
+    marked: Sequence[tuple[int, int]],
+    view: View,
+    pixel: ArrayLike,
+    *,
+    radius: float,
+) -> int | None:
+    """The number of the marked vertex (number of a surface, vertex) that a marker shows at a pixel, or None.
+
+    It is the nearest visible one within the radius.
+    """
+    places = [surfaces[which].world([vertex])[0] for which, vertex in marked]
+    if not places:
+        return None
+    away = np.linalg.norm(view.project(np.array(places)) - np.asarray(pixel, float), axis=1)
+    near = [int(number) for number in np.argsort(away) if away[number] <= radius]
+    return next((number for number in near if _is_visible(surfaces, *marked[number], view)), None)
+
+
 def _corner(
     surfaces: Sequence[Pickable], which: int, face: Integers, view: View, pixel: Floats
 ) -> tuple[int, int] | None:

@@ -28,6 +28,17 @@ def put(mesh: bpy.types.Mesh, vertex: int) -> int:
     return mark
 
 
+def is_marked(mesh: bpy.types.Mesh, vertex: int) -> bool:
+    """Whether a vertex has a mark."""
+    return _MARKS.of(mesh, [vertex])[0] > 0
+
+
+def move(mesh: bpy.types.Mesh, mark: int, vertex: int) -> None:
+    """Takes a mark from all vertices that have it to one that has none."""
+    clear(mesh, mark)
+    _write(mesh, [vertex], mark)
+
+
 def clear(mesh: bpy.types.Mesh, mark: int) -> None:
     """Removes a mark from all vertices that have it."""
     _write(mesh, find(mesh).get(mark, ()), 0)

@@ -94,6 +94,29 @@ def add(source: MeshObject, source_vertex: int, target_vertex: int, name: str = 
     return landmark
 
 
+def move(source: MeshObject, index: int, side: str, vertex: int) -> None:
+    """Moves a pair to another vertex on one side. Raises `CannotPair` and then changes nothing."""
+    check_move(source, index, side, vertex)
+    obj, landmark = source if side == "source" else source.authalic_target, source.authalic_landmarks[index]
+    mark = getattr(landmark, f"{side}_mark")
+    # With the mark that it has, a step of undo in edit mode moves it back.
+    if mark > 0 and _users(mark) == 1 and not point_marks.is_marked(obj.data, vertex):
+        point_marks.move(obj.data, mark, vertex)
+    else:
+        setattr(landmark, f"{side}_vertex", vertex)
+        if mark != getattr(landmark, f"{side}_mark"):
+            _release(obj, mark)
+    landmark.error = -1.0
+
+
+def check_move(source: MeshObject, index: int, side: str, vertex: int) -> None:
+    """Raises `CannotPair` unless a pair can be moved to a vertex on one side."""
+    check_target(source)
+    obj = source if side == "source" else source.authalic_target
+    check_vertex(obj, vertex)
+    _check_free([pair for number, pair in enumerate(pairs(source)) if number != index], side, obj, vertex)
+
+
 def replace(source: MeshObject, wanted: Sequence[tuple[str, int, int]]) -> None:
     """Replaces all pairs by pairs (name, source vertex, target vertex), or none of them.
 
@@ -141,11 +164,19 @@ def clear(source: MeshObject) -> None:
 def _check_new(source: MeshObject, source_vertex: int, target_vertex: int) -> None:
     check_target(source)
     existing = pairs(source)
-    for vertex, side, obj in ((source_vertex, 1, source), (target_vertex, 2, source.authalic_target)):
+    for vertex, side, obj in (
+        (source_vertex, "source", source),
+        (target_vertex, "target", source.authalic_target),
+    ):
         check_vertex(obj, vertex)
-        taken = next((pair for pair in existing if pair[side] == vertex), None)
-        if taken is not None:
-            raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{taken.name}" already')
+        _check_free(existing, side, obj, vertex)
+
+
+def _check_free(existing: Sequence[Pair], side: str, obj: MeshObject, vertex: int) -> None:
+    """Raises `CannotPair` if a pair has a vertex."""
+    taken = next((pair for pair in existing if getattr(pair, f"{side}_vertex") == vertex), None)
+    if taken is not None:
+        raise CannotPair(f'vertex {vertex} of {obj.name} is in the pair "{taken.name}" already')
 
 
 def _free_name(source: MeshObject) -> str:
@@ -187,13 +218,17 @@ def _repeated(
 
 def _release(obj: MeshObject, mark: int) -> bool:
     """Removes a mark from a mesh if no pair of any object needs it; returns whether it did."""
-    for obj_with_pairs in mesh_objects():
-        for landmark in obj_with_pairs.authalic_landmarks:
-            if mark in (landmark.source_mark, landmark.target_mark):
-                return False
+    if _users(mark):
+        return False
     if obj.type == "MESH" and editability.is_writable(obj.data):
         point_marks.clear(obj.data, mark)
     return True
+
+
+def _users(mark: int) -> int:
+    """How many pairs of all objects need a mark."""
+    listed = [landmark for obj in mesh_objects() for landmark in obj.authalic_landmarks]
+    return sum(mark in (landmark.source_mark, landmark.target_mark) for landmark in listed)
 
 
 def _object(landmark: Landmark, side: str) -> MeshObject | None:

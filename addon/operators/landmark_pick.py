@@ -16,8 +16,10 @@ from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, CannotPair, active_source
 from ..overlay.drawing import redraw
 from ..overlay.points import Marker
+from ..overlay.points import dragged as shown_dragged
 from ..overlay.points import hints as shown_hints
 from . import poll
+from .landmark_steps import Added, Drag, Moved, Step, summary
 
 Seen = tuple[bpy.types.Area, bpy.types.Region, tuple[int, int]]
 """A 3D view, its region, and a pixel there."""
@@ -30,22 +32,26 @@ _NAVIGATION = {
 }
 _DONE = {"ESC", "RET", "NUMPAD_ENTER"}
 _SIDES = ("source", "target")
+_GRABBED = 8.0  # pixels from the middle of a marker, at the scale 1 of the interface
 _SKIPPED = 16  # wire objects in front of a surface that clicks go through, at most
 
 
 class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
-    """Pick pairs of landmarks: click a point on the object and its partner on the target, in either order"""
+    """Pick pairs of landmarks: click a point on the object and its partner on the target, in either order.
+
+    Drag a marker to move it over the surface"""
 
     bl_idname = "authalic.landmark_pick"
     bl_label = "Pick Landmarks"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a plain set)
     running = False
-    # While it runs: the names of both objects, the vertex chosen on either side, the pairs added, the pairs
-    # with a step of undo, the states from which the surfaces were read, and the surfaces.
+    # While it runs: the names of both objects, the vertex chosen on either side, the marker that is dragged,
+    # what was done, what of it has a step of undo, the states from which the surfaces were read, and those.
     _names: tuple[str, str]
     _chosen: dict[str, int]
-    _steps: list[tuple[str, int, int]]
-    _pushed: list[tuple[str, int, int]]
+    _drag: Drag | None
+    _steps: list[Step]
+    _pushed: list[Step]
     _states: list[tuple[object, ...]] | None
     _surfaces: list[picking.Pickable]
 
@@ -63,6 +69,13 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         default=NONE,
         options={"SKIP_SAVE"},
     )
+    index: IntProperty(
+        name="Index",
+        description="The pair in the list, from 0, that gets the two vertices. -1 for a new pair",
+        min=NONE,
+        default=NONE,
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -72,13 +85,18 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         return poll.can_pair(cls, context)
 
     def execute(self, context: bpy.types.Context) -> Status:
-        """Adds a pair by vertex numbers: for scripts, and for changes in the redo panel."""
+        """Adds or moves a pair by vertex numbers: for scripts, and for changes in the redo panel."""
         if NONE in (self.source_vertex, self.target_vertex):
             self.report({"ERROR"}, "Picking needs a window, or the numbers of two vertices")
             return {"CANCELLED"}
         source = active_source(context)
         try:
-            landmark_points.add(source, self.source_vertex, self.target_vertex)
+            if 0 <= self.index < len(source.authalic_landmarks):
+                for change in (landmark_points.check_move, landmark_points.move):
+                    change(source, self.index, "source", self.source_vertex)
+                    change(source, self.index, "target", self.target_vertex)
+            else:
+                landmark_points.add(source, self.source_vertex, self.target_vertex)
         except CannotPair as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
@@ -89,7 +107,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             return self.execute(context)
         source = active_source(context)
         self._names = source.name, source.authalic_target.name
-        self._chosen, self._steps, self._pushed, self._states = {}, [], [], None
+        self._chosen, self._drag, self._steps, self._pushed, self._states = {}, None, [], [], None
         AUTHALIC_OT_landmark_pick.running = True
         self._say(context, "")
         context.window.cursor_modal_set("CROSSHAIR")
@@ -104,6 +122,8 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         if event.type in _NAVIGATION or event.type.startswith(("TIMER", "NDOF")):
             return {"PASS_THROUGH"}
         view = _view_under(context, event)
+        if self._drag is not None and self._dragged(context, objects, event, view):
+            return {"RUNNING_MODAL"}
         if event.value == "PRESS" and (event.type in _DONE or (event.type == "RIGHTMOUSE" and view)):
             return self._end(context)
         if event.value == "PRESS" and _takes_back(event):
@@ -113,9 +133,14 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
             self._hover(context, None)
             return {"PASS_THROUGH"}
         if event.type == "MOUSEMOVE":
-            self._hover(context, self._under(context, objects, view))
+            is_over_marker = self._grabbed(context, objects, view) is not None
+            self._hover(context, None if is_over_marker else self._under(context, objects, view))
         elif event.type == "LEFTMOUSE" and event.value in {"PRESS", "DOUBLE_CLICK"}:
-            self._click(context, objects, self._under(context, objects, view))
+            self._drag = self._grabbed(context, objects, view)
+            if self._drag is None:
+                self._click(context, objects, self._under(context, objects, view))
+            else:
+                self._begin_drag(context, objects[0], self._drag)
         return {"PASS_THROUGH" if event.type == "MOUSEMOVE" else "RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -131,6 +156,16 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         self, context: bpy.types.Context, objects: Sequence[MeshObject], view: Seen
     ) -> tuple[str, int] | None:
         """(side, vertex) under the cursor, or None."""
+        shown, seen, pixel = self._seen(context, objects, view)
+        picked = picking.pick(
+            [self._surfaces[k] for k in shown], seen, pixel, blocked=_blocked(context, objects, seen, pixel)
+        )
+        return picked and (_SIDES[shown[picked[0]]], picked[1])
+
+    def _seen(
+        self, context: bpy.types.Context, objects: Sequence[MeshObject], view: Seen
+    ) -> tuple[list[int], picking.View, tuple[int, int]]:
+        """Which of the surfaces are shown in a view, the view, and the pixel in it."""
         area, region, pixel = view
         space: Any = area.spaces.active
         states = [_state(obj) for obj in objects]
@@ -140,11 +175,88 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         for k in shown:
             self._surfaces[k].place(objects[k].matrix_world)
         matrix = np.array(region.data.perspective_matrix)
-        seen = picking.View(matrix, region.width, region.height)
-        picked = picking.pick(
-            [self._surfaces[k] for k in shown], seen, pixel, blocked=_blocked(context, objects, seen, pixel)
-        )
-        return picked and (_SIDES[shown[picked[0]]], picked[1])
+        return shown, picking.View(matrix, region.width, region.height), pixel
+
+    def _grabbed(self, context: bpy.types.Context, objects: Sequence[MeshObject], view: Seen) -> Drag | None:
+        """The marker under the cursor, as it is before it is dragged."""
+        scene: Any = context.scene
+        if not scene.authalic_show_landmarks:
+            return None
+        shown, seen, pixel = self._seen(context, objects, view)
+        there = [
+            Drag(index, _SIDES[k], vertices[k], vertices[k])
+            for index, pair in enumerate(landmark_points.pairs(objects[0], drawing=True))
+            for k, vertices in ((k, (pair.source_vertex, pair.target_vertex)) for k in shown)
+            if vertices[k] != NONE
+        ]
+        marked = [(shown.index(_SIDES.index(drag.side)), drag.vertex) for drag in there]
+        radius = _GRABBED * max(1.0, bpy.context.preferences.system.ui_scale)
+        number = picking.grabbed([self._surfaces[k] for k in shown], marked, seen, pixel, radius=radius)
+        return None if number is None else there[number]
+
+    def _begin_drag(self, context: bpy.types.Context, source: MeshObject, drag: Drag) -> None:
+        source.authalic_landmark_index = drag.index
+        self._say(context, source.authalic_landmarks[drag.index].name)
+        self._hover(context, None)
+
+    def _dragged(
+        self,
+        context: bpy.types.Context,
+        objects: Sequence[MeshObject],
+        event: bpy.types.Event,
+        view: Seen | None,
+    ) -> bool:
+        """Takes an event while a marker is dragged; whether it needs nothing else."""
+        drag = self._drag
+        if drag is None or drag.index >= len(objects[0].authalic_landmarks):
+            self._drop(context)
+            return False
+        if event.type == "MOUSEMOVE":
+            picked = self._under(context, objects, view) if view is not None else None
+            if picked is not None and picked[0] == drag.side:
+                drag.vertex = picked[1]
+                shown_dragged[self._names[0], drag.index, drag.side] = drag.vertex
+                redraw(context)
+            return True
+        if event.value == "PRESS" and event.type in {"ESC", "RIGHTMOUSE"}:
+            self._drop(context)
+            self._say(context, "")
+            return True
+        if event.type == "LEFTMOUSE":
+            self._drop(context)
+            if event.value == "RELEASE":
+                self._move(context, objects[0], drag)
+                return True
+            return False  # a press: the release went to another window
+        return True
+
+    def _drop(self, context: bpy.types.Context) -> None:
+        """Ends the drag; the marker is drawn where its landmark is."""
+        self._drag = None
+        shown_dragged.clear()
+        redraw(context)
+
+    def _move(self, context: bpy.types.Context, source: MeshObject, drag: Drag) -> None:
+        """Moves a landmark to where its marker was dragged."""
+        if drag.vertex == drag.start:
+            return
+        name = source.authalic_landmarks[drag.index].name
+        try:
+            self._push_undo()
+            landmark_points.move(source, drag.index, drag.side, drag.vertex)
+        except CannotPair as problem:
+            self._say(context, str(problem)[:1].upper() + str(problem)[1:])
+            return
+        self._steps.append(Moved(name, drag.index, drag.side, drag.start, drag.vertex))
+        pair = landmark_points.pairs(source)[drag.index]
+        self.source_vertex, self.target_vertex, self.index = *pair[1:3], drag.index
+        self._say(context, f"Moved {name} to vertex {drag.vertex}")
+
+    def _push_undo(self) -> None:
+        """Makes what was done so far a step of undo; Blender makes the last itself."""
+        if self._steps != self._pushed:
+            bpy.ops.ed.undo_push(message=self.bl_label)
+            self._pushed = list(self._steps)
 
     def _hover(self, context: bpy.types.Context, picked: tuple[str, int] | None) -> None:
         source: Any = context.view_layer.objects.get(self._names[0])
@@ -177,27 +289,22 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         vertices = self._chosen["source"], self._chosen["target"]
         self._chosen.clear()
         try:
-            if self._steps != self._pushed:  # a step of undo for each pair; Blender makes the last itself
-                bpy.ops.ed.undo_push(message=self.bl_label)
-                self._pushed = list(self._steps)
+            self._push_undo()
             added = landmark_points.add(source, *vertices)
         except CannotPair as problem:
             self._say(context, str(problem)[:1].upper() + str(problem)[1:])
         else:
-            self._steps.append((added.name, *vertices))
-            self.source_vertex, self.target_vertex = vertices
+            self._steps.append(Added(added.name, *vertices))
+            self.source_vertex, self.target_vertex, self.index = *vertices, NONE
             self._say(context, f"Added {added.name}")
 
     def _take_back(self, context: bpy.types.Context, objects: Sequence[MeshObject]) -> None:
-        """Undoes the last click if it has not made a pair yet, else the last pair of this run."""
+        """Undoes the last click if it has not made a pair yet, else the last step of this run."""
         if self._chosen:
             self._chosen.popitem()
             self._say(context, "")
         elif self._steps:
-            (name, *_), listed = self._steps.pop(), objects[0].authalic_landmarks
-            if listed and listed[-1].name == name:
-                landmark_points.remove(objects[0], len(listed) - 1)
-            self._say(context, f"Removed {name}")
+            self._say(context, self._steps.pop().take_back(objects[0]))
         self._hover(context, None)
         redraw(context)
 
@@ -213,6 +320,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             layout = header.layout
             layout.label(text=wanted, icon="MOUSE_LMB", translate=False)
+            layout.label(text="Drag Marker", icon="MOUSE_LMB_DRAG")
             layout.label(text="Undo", icon=_backspace())
             layout.label(text="Done", icon="EVENT_ESC")
             layout.label(text=text, translate=False)
@@ -224,6 +332,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
     def _end(self, context: bpy.types.Context) -> Status:
         AUTHALIC_OT_landmark_pick.running = False
         shown_hints.clear()
+        shown_dragged.clear()
         if context.window is not None:
             context.window.cursor_modal_restore()
         if context.workspace is not None:
@@ -231,7 +340,7 @@ class AUTHALIC_OT_landmark_pick(bpy.types.Operator):
         redraw(context)
         if not self._steps and not self._pushed:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Picked {len(self._steps)} landmarks of {self._names[0]} and {self._names[1]}")
+        self.report({"INFO"}, f"{summary(self._steps)} of {self._names[0]} and {self._names[1]}")
         return {"FINISHED"}
 
 

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""authalic.landmark_add, _remove, _clear and _jump: the pairs of the source object."""
+"""authalic.landmark_add, _remove, _clear, _mirror and _jump: the pairs of the source object."""
 
 from typing import Any
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from .. import messages
 from ..blender import selection
 from ..blender.types import MeshObject, Status
+from ..landmarks import mirroring
 from ..landmarks import points as landmark_points
 from ..landmarks.objects import NONE, CannotPair, active_source
 from . import poll, views
@@ -91,6 +93,33 @@ class AUTHALIC_OT_landmark_clear(_PointOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class AUTHALIC_OT_landmark_mirror(_PointOperator, bpy.types.Operator):
+    """Pair the vertices that lie mirrored over X in both objects, for each pair beside the mirror plane.
+
+    Left and right in names are swapped. Pairs that have a mirrored pair already are left alone"""
+
+    bl_idname = "authalic.landmark_mirror"
+    bl_label = "Mirror Landmarks over X"
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="How far from the mirrored place a vertex may be, as a part of the size of its object",
+        min=0.0,
+        soft_max=0.1,
+        max=1.0,
+        precision=3,
+        default=0.02,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return poll.can_pair(cls, context) and poll.has_landmarks(cls, context)
+
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
+        mirrored = mirroring.mirror(source, self.tolerance)
+        self.report({"WARNING"} if mirrored.missing else {"INFO"}, _of_mirrored(mirrored, source))
+        return {"FINISHED"} if mirrored.added else {"CANCELLED"}
+
+
 class AUTHALIC_OT_landmark_jump(_PointOperator, bpy.types.Operator):
     """Select the vertex of a landmark and bring it into view"""
 
@@ -145,6 +174,21 @@ def _vertices(pair: landmark_points.Pair, source: MeshObject) -> str:
     return f"Vertex {pair.source_vertex} of {source.name}, vertex {pair.target_vertex} of {target.name}"
 
 
+def _of_mirrored(mirrored: mirroring.Mirrored, source: MeshObject) -> str:
+    """The report: how many landmarks were mirrored, and why others were not."""
+    target = source.authalic_target
+    left = [
+        (len(mirrored.on_plane), "on the mirror plane"),
+        (len(mirrored.there), "mirrored already"),
+    ]
+    said = [f"Mirrored {messages.count(len(mirrored.added), 'landmark')}"]
+    said += [f"{number} {why}" for number, why in left if number]
+    if mirrored.missing:
+        named = messages.named([f'"{name}"' for name in mirrored.missing])
+        said.append(f"no free vertex near the mirrored place of {named} on {source.name} or {target.name}")
+    return "; ".join(said)
+
+
 def _or_selected(vertex: int, obj: MeshObject) -> int:
     """The vertex, or for -1 the selected vertex of the object."""
     if vertex != NONE:
@@ -162,6 +206,7 @@ _CLASSES = (
     AUTHALIC_OT_landmark_add,
     AUTHALIC_OT_landmark_remove,
     AUTHALIC_OT_landmark_clear,
+    AUTHALIC_OT_landmark_mirror,
     AUTHALIC_OT_landmark_jump,
 )
 

@@ -34,6 +34,8 @@ class Marker(NamedTuple):
 
 # Markers that picking shows for vertices that are no landmarks yet.
 hints: list[Marker] = []
+# Where markers are drawn that are being dragged: (name of a source, number in its list, side) -> vertex.
+dragged: dict[tuple[str, int, str], int] = {}
 
 
 def shown(context: bpy.types.Context) -> list[Marker]:
@@ -49,10 +51,11 @@ def _of(source: MeshObject, context: bpy.types.Context) -> Iterator[Marker]:
     active, is_meant = source.authalic_landmark_index, source == active_source(context)
     for index, pair in enumerate(landmark_points.pairs(source, drawing=True)):
         looks = (is_meant and index == active, pair.problem is not None)
-        if pair.source_vertex != NONE:
-            yield Marker(source.name, pair.source_vertex, str(index + 1), "source", *looks)
-        if pair.target_vertex != NONE:
-            yield Marker(source.authalic_target.name, pair.target_vertex, str(index + 1), "target", *looks)
+        for side, vertex in (("source", pair.source_vertex), ("target", pair.target_vertex)):
+            if vertex != NONE:
+                name = source.name if side == "source" else source.authalic_target.name
+                shown_at = dragged.get((source.name, index, side), vertex)
+                yield Marker(name, shown_at, str(index + 1), side, *looks)
 
 
 def _draw() -> None:
@@ -117,4 +120,5 @@ def unregister() -> None:
     bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
     _handle = None
     hints.clear()
+    dragged.clear()
     del _PROPERTIES.authalic_show_landmarks

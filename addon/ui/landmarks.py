@@ -78,7 +78,9 @@ def _draw_landmarks(layout: bpy.types.UILayout, source: MeshObject, context: bpy
     column.operator("authalic.landmark_remove", text="", icon="REMOVE")
     column.separator()
     column.menu("AUTHALIC_MT_landmarks", text="", icon="DOWNARROW_HLT")
-    layout.operator("authalic.landmark_pick", icon="EYEDROPPER")
+    row = layout.row(align=True)
+    row.operator("authalic.landmark_pick", icon="EYEDROPPER")
+    row.operator("authalic.landmark_mirror", text="Mirror over X", icon="MOD_MIRROR")
     row = layout.row(align=True)
     row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
     row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"

@@ -24,6 +24,7 @@ class AUTHALIC_MT_object(bpy.types.Menu):
         layout.separator()
         layout.operator("authalic.landmark_pick", icon="EYEDROPPER")
         layout.operator("authalic.landmark_add", icon="ADD")
+        layout.operator("authalic.landmark_mirror", icon="MOD_MIRROR")
         layout.operator("authalic.landmark_curve_add", icon="ADD")
         layout.operator("authalic.landmark_import", icon="IMPORT")
         layout.operator("authalic.landmark_export", icon="EXPORT")

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 import meshes
 import numpy as np
+import pairing
 import pytest
 from installed import part
 from meshes import MeshObject
@@ -133,7 +134,7 @@ class Session:
         }
         self.operator = type("Plain", (), {**own, "bl_label": "Pick", "report": self._report})()
         self.operator._names = "Head A", "Head B"
-        self.operator._chosen, self.operator._states = {}, None
+        self.operator._chosen, self.operator._drag, self.operator._states = {}, None, None
         self.operator._steps, self.operator._pushed = [], []
         self.module, self.seen = module, module._view_under
         module._view_under = lambda context, event: self._under(event)
@@ -148,6 +149,7 @@ class Session:
     def close(self) -> None:
         self.module._view_under = self.seen
         part("overlay.points").hints.clear()
+        part("overlay.points").dragged.clear()
 
     def _report(self, kinds: set[str], text: str) -> None:
         self.said.append(text)
@@ -166,6 +168,11 @@ class Session:
 
     def at(self, obj: MeshObject, vertex: int) -> Any:
         return self.view.project(np.array([obj.matrix_world @ obj.data.vertices[vertex].co]))[0]
+
+    def context_with_selection(self) -> Any:
+        """The context in which the markers are drawn."""
+        names = ("scene", "object", "selected_objects", "view_layer")
+        return types.SimpleNamespace(**{name: getattr(bpy.context, name) for name in names})
 
     def click(self, obj: MeshObject, vertex: int) -> set[str]:
         return self.send("LEFTMOUSE", self.at(obj, vertex))
@@ -236,6 +243,126 @@ def test_navigation_and_panels_are_left_to_blender(session: Session) -> None:
     assert session.send("LEFTMOUSE", None) == {"PASS_THROUGH"}
     for kind in ("G", "X", "TAB", "Z"):
         assert session.send(kind, (400, 300)) == {"RUNNING_MODAL"}
+
+
+def drag(session: Session, obj: MeshObject, vertex: int, to: int, end: str = "RELEASE") -> None:
+    """Presses on the marker of a vertex, and moves the mouse to another vertex."""
+    session.send("LEFTMOUSE", session.at(obj, vertex) + 3)
+    session.send("MOUSEMOVE", session.at(obj, (vertex + to) // 2), "NOTHING")
+    session.send("MOUSEMOVE", session.at(obj, to), "NOTHING")
+    if end:
+        kind = "LEFTMOUSE" if end == "RELEASE" else end
+        session.send(kind, session.at(obj, to), "RELEASE" if end == "RELEASE" else "PRESS")
+
+
+def two_pairs(session: Session) -> None:
+    for source_vertex, target_vertex in ((10, 11), (30, 31)):
+        session.click(session.source, source_vertex)
+        session.click(session.target, target_vertex)
+    session.source.authalic_landmarks[0].error = 1.0
+
+
+@pytest.mark.parametrize("side", ["source", "target"])
+def test_a_marker_is_dragged(session: Session, side: str) -> None:
+    two_pairs(session)
+    obj, start = getattr(session, side), {"source": 10, "target": 11}[side]
+    drag(session, obj, start, 24, end="")
+    shown = {
+        (m.object_name, m.vertex) for m in part("overlay.points").shown(session.context_with_selection())
+    }
+    assert (obj.name, 24) in shown and (obj.name, start) not in shown
+    assert session.listed() == [(10, 11, None), (30, 31, None)], "it moves when the button is let go"
+    session.send("LEFTMOUSE", session.at(obj, 24), "RELEASE")
+    first = (24, 11, None) if side == "source" else (10, 24, None)
+    assert session.listed() == [first, (30, 31, None)]
+    landmark = session.source.authalic_landmarks[0]
+    assert landmark.error == -1 and session.source.authalic_landmark_index == 0
+    assert session.operator.index == 0
+    assert (session.operator.source_vertex, session.operator.target_vertex) == first[:2]
+    session.send("BACK_SPACE")
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+    assert session.send("ESC") == {"FINISHED"}
+
+
+@pytest.mark.parametrize("end", ["ESC", "RIGHTMOUSE"])
+def test_esc_puts_a_marker_back_and_picking_goes_on(session: Session, end: str) -> None:
+    two_pairs(session)
+    drag(session, session.source, 10, 24, end=end)
+    assert session.listed() == [(10, 11, None), (30, 31, None)] and not part("overlay.points").dragged
+    assert session.send("LEFTMOUSE", session.at(session.source, 24), "RELEASE") == {"RUNNING_MODAL"}
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+    drag(session, session.source, 30, 17)
+    assert session.send("ESC") == {"FINISHED"}
+    assert session.said == ["Picked 2 landmarks and moved 1 of Head A and Head B"]
+
+
+def test_a_marker_is_not_dragged_onto_another_nor_off_its_object(session: Session) -> None:
+    two_pairs(session)
+    drag(session, session.source, 10, 30)
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+    session.send("LEFTMOUSE", session.at(session.source, 10))
+    session.send("MOUSEMOVE", session.at(session.target, 20), "NOTHING")
+    session.send("LEFTMOUSE", session.at(session.target, 20), "RELEASE")
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+    assert not session.operator._chosen
+
+
+def test_a_click_on_a_marker_makes_its_pair_the_active_one(session: Session) -> None:
+    two_pairs(session)
+    session.click(session.target, 11)
+    session.send("LEFTMOUSE", session.at(session.target, 11), "RELEASE")
+    assert session.source.authalic_landmark_index == 0 and not session.operator._chosen
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+
+
+def test_hidden_markers_are_not_dragged(session: Session) -> None:
+    two_pairs(session)
+    bpy.context.scene.authalic_show_landmarks = False
+    drag(session, session.source, 10, 24)
+    assert session.listed() == [(10, 11, None), (30, 31, None)]
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_moving_keeps_marks_tidy(session: Session, mode: str) -> None:
+    two_pairs(session)
+    points, marks = part("landmarks.points"), part("landmarks.point_marks")
+    if mode == "EDIT":
+        meshes.edit(session.source, session.target)
+    mark = session.source.authalic_landmarks[0].source_mark
+    points.move(session.source, 0, "source", 24)
+    assert marks.find(session.source.data)[mark] == [24]
+    assert len(marks.find(session.source.data)) == 2
+    # another object has a landmark on this vertex of the same mesh
+    bpy.ops.object.mode_set(mode="OBJECT")
+    copy = session.source.copy()
+    bpy.context.collection.objects.link(copy)
+    points.move(session.source, 0, "source", 40)
+    assert [pair[1] for pair in points.pairs(copy)] == [24, 30]
+    assert [pair[1] for pair in points.pairs(session.source)] == [40, 30]
+
+
+def test_a_lost_vertex_is_found_again_by_a_move(session: Session) -> None:
+    two_pairs(session)
+    meshes.edit(session.source)
+    meshes.select_faces(session.source, lambda index: False)
+
+    pairing.select_vertices(session.source, 10)
+    bpy.ops.mesh.delete(type="VERT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert session.listed()[0][0] == -1
+    part("landmarks.points").move(session.source, 0, "source", 5)
+    assert session.listed()[0] == (5, 11, None)
+
+
+def test_scripts_and_the_redo_panel_move_a_pair(session: Session) -> None:
+    two_pairs(session)
+    bpy.ops.authalic.landmark_pick(index=1, source_vertex=40, target_vertex=31)
+    assert session.listed() == [(10, 11, None), (40, 31, None)]
+    with pytest.raises(RuntimeError, match='is in the pair "Landmark 1" already'):
+        bpy.ops.authalic.landmark_pick(index=1, source_vertex=10, target_vertex=31)
+    with pytest.raises(RuntimeError, match='is in the pair "Landmark 1" already'):
+        bpy.ops.authalic.landmark_pick(index=1, source_vertex=33, target_vertex=11)
+    assert session.listed() == [(10, 11, None), (40, 31, None)]
 
 
 @pytest.mark.parametrize("lost", ["source", "target"])

@@ -9,6 +9,7 @@ import bpy
 from bl_ext.user_default.authalic.landmarks import points as landmark_points
 from bl_ext.user_default.authalic.overlay import points as overlay_points
 from driver import (
+    Step,
     area,
     call,
     check,
@@ -48,6 +49,19 @@ def pick() -> None:
 
 def at(name: str, vertex: int) -> Callable[[], tuple[float, float]]:
     return lambda: pixel(name, vertex)
+
+
+def drag(name: str, vertex: int, to: int, end: str = "LEFTMOUSE") -> list[Step]:
+    """Steps that press on a marker, move the mouse to another vertex, and let go or strike a key."""
+    value = "RELEASE" if end == "LEFTMOUSE" else "PRESS"
+    return [
+        move(at(name, vertex)),
+        lambda: send("LEFTMOUSE", "PRESS", at(name, vertex)()),
+        move(at(name, 409)),
+        move(at(name, to)),
+        settled,
+        lambda: send(end, value, at(name, to)()),
+    ]
 
 
 def pairs() -> list[Any]:
@@ -100,10 +114,19 @@ STEPS = [
     *click(at(A, 198)),
     check("zoomed and picked", pairs, [(409, 409, None), (198, 198, None)]),
     picture("picked"),
+    *drag(A, 198, 150)[:-1],
+    picture("dragged"),
+    lambda: send("ESC", "PRESS", at(A, 150)()),
+    lambda: send("LEFTMOUSE", "RELEASE", at(A, 150)()),
+    check("Esc puts a marker back", pairs, [(409, 409, None), (198, 198, None)]),
+    *drag(A, 198, 150),
+    check("a marker dragged", pairs, [(409, 409, None), (150, 198, None)]),
     check("still picking", is_picking, True),
     *key("ESC"),
     check("no longer picking", is_picking, False),
     check("nothing is left over", hints, []),
+    lambda: call(bpy.ops.ed.undo),
+    check("undo puts the marker back", pairs, [(409, 409, None), (198, 198, None)]),
     lambda: call(bpy.ops.ed.undo),
     check("undo takes one pair back", pairs, [(409, 409, None)]),
     lambda: call(bpy.ops.ed.redo),

@@ -23,8 +23,12 @@ _NAMES = {
     "Area": "Fläche",
     "Area Tolerance": "Flächentoleranz",
     "Area ↔ Shape": "Fläche ↔ Form",
+    "Drag Marker": "Marke ziehen",
     "Live": "Live",
+    "Mirror Landmarks over X": "Landmarken über X spiegeln",
+    "Mirror over X": "Über X spiegeln",
     "Shape": "Form",
+    "Tolerance": "Toleranz",
     "Unwrap the active object again while options change": (
         "Das aktive Objekt erneut abwickeln, während sich Optionen ändern"
     ),
@@ -333,6 +337,9 @@ _TOOLTIPS = {
     "For open meshes: write the map under which both coincide as a UV map of the target too": (
         "Bei offenen Meshes: die Abbildung, unter der sich beide decken, auch als UV-Map des Ziels schreiben"
     ),
+    "How far from the mirrored place a vertex may be, as a part of the size of its object": (
+        "Wie weit ein Vertex vom gespiegelten Ort entfernt sein darf, als Anteil der Größe seines Objekts"
+    ),
     "How packing may turn islands": "Wie das Packen Inseln drehen darf",
     "Initial pull on the landmarks; it grows until they meet": (
         "Anfänglicher Zug an den Landmarken; er wächst, bis sie sich treffen"
@@ -443,13 +450,21 @@ _TOOLTIPS = {
         "Den ausgewählten Vertex dieses Objekts mit dem seines Ziels paaren.\n\nBeide Objekte müssen im "
         "Bearbeitungsmodus sein, mit je einem ausgewählten Vertex"
     ),
+    "Pair the vertices that lie mirrored over X in both objects, for each pair beside the mirror "
+    "plane.\n\nLeft and right in names are swapped. Pairs that have a mirrored pair already are left "
+    "alone": (
+        "Für jedes Paar neben der Spiegelebene die Vertices paaren, die in beiden Objekten über X "
+        "gespiegelt liegen.\n\nLinks und rechts in Namen werden vertauscht. Paare, die schon ein "
+        "gespiegeltes haben, bleiben, wie sie sind"
+    ),
     "Pairs of paths along edges, here and on the target": (
         "Paare von Wegen entlang Kanten, hier und auf dem Ziel"
     ),
     "Pairs of vertices, here and on the target": "Paare von Vertices, hier und auf dem Ziel",
-    "Pick pairs of landmarks: click a point on the object and its partner on the target, in either order": (
+    "Pick pairs of landmarks: click a point on the object and its partner on the target, in either "
+    "order.\n\nDrag a marker to move it over the surface": (
         "Landmarkenpaare anklicken: ein Punkt auf dem Objekt und sein Partner auf dem Ziel, in "
-        "beliebiger Folge"
+        "beliebiger Folge.\n\nEine Marke ziehen, um sie über die Oberfläche zu bewegen"
     ),
     "Pixels per meter on the active image, or on one of 1024 pixels. 0 fills the image": (
         "Pixel je Meter auf dem aktiven Bild oder auf einem von 1024 Pixeln. 0 füllt das Bild"

@@ -162,7 +162,7 @@ pub use packing::{Island as PlanarIsland, Margin, PackOptions, Packing, Place, R
 pub use parallel::set_threads;
 pub use registration::{
     Correspondence, DiskRegistration, Energy, Features, Landmarks, Registration, RegistrationOptions,
-    SphereRegistration, follow, homotopy, register_disks, register_spheres,
+    SphereRegistration, Strain, follow, homotopy, register_disks, register_spheres,
 };
 pub use seams::{SeamMethod, SeamOptions, Seams, Symmetry, seams};
 pub use sphere::{Refinement, SphereMap, SphereMapOptions, SphereMethod, sphere_map};

@@ -34,6 +34,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<sphere::Refinement>()?;
     module.add_class::<layout::Layout>()?;
     module.add_class::<registration::Registration>()?;
+    module.add_class::<registration::Strain>()?;
     module.add_class::<registration::Certificates>()?;
     module.add_class::<structure::HyperbolicStructure>()?;
     module.add_class::<structure::Pants>()?;

@@ -20,6 +20,7 @@ use crate::error::Error;
 use crate::location::{Location, Locator, points_on};
 use crate::mesh::{Surface, TriangleMesh, Vertex};
 use crate::parallel;
+use crate::registration::Strain;
 use crate::registration::correspondence::{Correspondence, Registered};
 use crate::vector::Vector3;
 
@@ -33,6 +34,8 @@ pub struct CurveRegistration {
     pub map: CurveMap,
     /// The inverse of the map.
     pub inverse: CurveMap,
+    /// The vertex paths of the curves of source and target, as given.
+    pub curves: [Vec<Vec<usize>>; 2],
     /// The rough spheres by which source and target were laid over each other.
     pub spheres: [RoughSphere; 2],
     /// The proof that the map is one-to-one.
@@ -84,7 +87,13 @@ impl CurveRegistration {
         let mut inverted = self.clone();
         std::mem::swap(&mut inverted.map, &mut inverted.inverse);
         inverted.spheres.reverse();
+        inverted.curves.reverse();
         inverted
+    }
+
+    /// How far the map stretches and shrinks each face of the source.
+    pub fn strain(&self) -> Strain {
+        self.map.correspondence.strain(&self.curves[0])
     }
 }
 
@@ -227,6 +236,7 @@ impl Assembly {
         Ok(CurveRegistration {
             map: self.map(there, registered, there_error, there_figures),
             inverse: self.map(way_back, back, back_error, back_figures),
+            curves: [curves.source.to_vec(), curves.target.to_vec()],
             spheres: [
                 RoughSphere::new(meshes[0], &placement.source)?,
                 RoughSphere::new(meshes[1], &placement.target)?,

@@ -11,11 +11,13 @@ use ndarray::{Array1, Array2, Array3, ArrayView1, ArrayView2, ArrayView3};
 
 use super::figures::{area_ratios, compare, vertex_areas};
 use super::given_faces::{GivenFaces, nearest_given_corners, pull_given_corners};
-use super::transfer::{nearest_vertices, pull_vertices};
+use super::strain::{Strain, strain};
+use super::transfer::{local_similarities, nearest_vertices, pull_vertices, pull_vertices_smoothly};
 use crate::arrays::{from_rows, from_vectors, rows, vectors};
 use crate::control::{Observer, Watch};
 use crate::error::{Error, Side};
 use crate::location::{Location, Locator, points_on};
+use crate::mesh::geometry::{face_areas, normalized};
 use crate::mesh::{Corner, Surface, TriangleMesh, Vertex, index_array};
 use crate::vector::Vector3;
 
@@ -114,6 +116,27 @@ impl Correspondence {
     /// # Errors
     /// [`Error::InvalidArray`] where there is not one row per vertex of the target.
     pub fn pull_vertices(&self, values: ArrayView2<'_, f64>) -> Result<Array2<f64>, Error> {
+        self.pulled(values, |values, width| pull_vertices(values, width, &self.target.faces, &self.locations))
+    }
+
+    /// [`Self::pull_vertices`] by cubics with estimated gradients, in place of linear functions: without the facets of
+    /// a target that is coarser than the source.
+    ///
+    /// # Errors
+    /// As [`Self::pull_vertices`].
+    pub fn pull_vertices_smoothly(&self, values: ArrayView2<'_, f64>) -> Result<Array2<f64>, Error> {
+        let (points, _) = normalized(self.target.surface.vertex_rows());
+        self.pulled(values, |values, width| {
+            pull_vertices_smoothly(values, width, &points, &self.target.faces, &self.locations)
+        })
+    }
+
+    /// Data of the target's vertices, carried by `pull(values, width)`.
+    fn pulled(
+        &self,
+        values: ArrayView2<'_, f64>,
+        pull: impl Fn(&[f64], usize) -> Vec<f64>,
+    ) -> Result<Array2<f64>, Error> {
         let (n, width) = values.dim();
         if n != self.target().n_vertices() {
             return Err(misfit(
@@ -122,9 +145,27 @@ impl Correspondence {
             ));
         }
         let values = values.as_standard_layout();
-        let flat = values.as_slice().expect("in standard layout");
-        let pulled = pull_vertices(flat, width, &self.target.faces, &self.locations);
+        let pulled = pull(values.as_slice().expect("in standard layout"), width);
         Ok(Array2::from_shape_vec((self.locations.len(), width), pulled).expect("one row per vertex"))
+    }
+
+    /// How vectors on the target are turned and scaled on their way to the source, (n, 3, 3): for each vertex v of the
+    /// source the linear part of the similarity that takes the target's surroundings of g(v) to those of v.
+    ///
+    /// # Errors
+    /// Errors of the factorization.
+    pub fn local_similarities(&self) -> Result<Array3<f64>, Error> {
+        let matrices = local_similarities(self.source.surface.mesh()?, &self.positions)?;
+        let flat: Vec<f64> = matrices.iter().flatten().flat_map(|row| row.0).collect();
+        Ok(Array3::from_shape_vec((matrices.len(), 3, 3), flat).expect("nine numbers per vertex"))
+    }
+
+    /// The strain of g, with the vertices of the source at each of its landmarks or curves.
+    pub(crate) fn strain(&self, landmarks: &[Vec<usize>]) -> Strain {
+        let (target, diagonal) = normalized(self.target.surface.vertex_rows());
+        let target_area = face_areas(&target, &self.target.faces).iter().sum();
+        let positions: Vec<Vector3> = self.positions.iter().map(|&x| x * (1.0 / diagonal)).collect();
+        strain(self.source.surface.vertex_rows(), &self.source.faces, &positions, target_area, landmarks)
     }
 
     /// Data of the corners of the target's faces, (m_t, 3, k), at those of the source, (m, 3, k), both in the order of

@@ -111,6 +111,7 @@ pub fn register_disks(
         target_registered: from_rows(target_registered),
         source_map: f,
         target_map: g,
+        landmarks: [landmarks.source.to_vec(), landmarks.target.to_vec()],
         landmark_error: landmark_error.into(),
         status,
         missed,

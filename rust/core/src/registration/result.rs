@@ -4,6 +4,7 @@
 use ndarray::{Array1, Array2};
 
 use super::correspondence::Correspondence;
+use super::strain::Strain;
 use crate::control::{Observer, Status};
 use crate::disk::DiskMap;
 use crate::distortion::Distortion;
@@ -31,6 +32,8 @@ pub struct Registration<Map> {
     pub source_map: Map,
     /// The map of the target alone.
     pub target_map: Map,
+    /// The landmarks of source and target, as given.
+    pub landmarks: [Vec<usize>; 2],
     /// (k,): the final distance of each landmark from its partner, in the parameter domain of radius 1.
     pub landmark_error: Array1<f64>,
     /// The pairs that did not meet: farther apart than 10⁻³ in the domain, or than .5 % of the
@@ -64,9 +67,16 @@ impl<Map: Clone> Registration<Map> {
             target_map: self.source_map.clone(),
             distortion: self.target_distortion.clone(),
             target_distortion: self.distortion.clone(),
+            landmarks: [self.landmarks[1].clone(), self.landmarks[0].clone()],
             landmark_error: self.landmark_error.clone(),
             missed: self.missed.clone(),
             ..*self
         })
+    }
+
+    /// How far g stretches and shrinks each face of the source.
+    pub fn strain(&self) -> Strain {
+        let landmarks: Vec<Vec<usize>> = self.landmarks[0].iter().map(|&vertex| vec![vertex]).collect();
+        self.correspondence.strain(&landmarks)
     }
 }

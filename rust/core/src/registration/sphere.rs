@@ -137,6 +137,7 @@ pub fn register_spheres(
         target_registered: target_on_domain,
         source_map: f0,
         target_map: f1,
+        landmarks: [landmarks.source.to_vec(), landmarks.target.to_vec()],
         landmark_error: landmark_error.into(),
         status,
         missed,

@@ -85,6 +85,15 @@ impl Laplacian {
         last.iter().for_each(|&k| values[k] += shift);
     }
 
+    /// Adds one value per free vertex to the diagonal of the assembled matrix.
+    pub fn add_to_diagonal(&mut self, terms: &[f64]) {
+        for (column, term) in terms.iter().enumerate() {
+            // the diagonal is the last entry of each column
+            let last = self.matrix.indptr().outer_inds_sz(column).end - 1;
+            self.matrix.data_mut()[last] += term;
+        }
+    }
+
     /// (L f)_I for a planar map f of all vertices: the first coordinates of the free vertices, then the
     /// second.
     pub fn residual(&self, mesh: &TriangleMesh, weights: &[f64], map: &[[f64; 2]]) -> Vec<f64> {

@@ -19,6 +19,15 @@ impl Finished {
         }
     }
 
+    /// How far the source's faces are stretched and shrunk.
+    pub fn strain(&self) -> authalic::Strain {
+        match self {
+            Self::Disk(registration) => registration.strain(),
+            Self::Sphere(registration) => registration.strain(),
+            Self::Curves(registration) => registration.strain(),
+        }
+    }
+
     pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
         match self {
             Self::Disk(registration) => registration.inverse(observer).map(Self::Disk),

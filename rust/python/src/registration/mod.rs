@@ -8,6 +8,7 @@ mod finished;
 mod morph;
 mod points;
 mod result;
+mod strain;
 mod surfaces;
 
 pub use certificates::Certificates;
@@ -15,4 +16,5 @@ pub use curves::register_hyperbolic;
 pub use morph::homotopy;
 pub use points::{register_disks, register_spheres};
 pub use result::Registration;
+pub use strain::Strain;
 pub(crate) use surfaces::vertex_paths;

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use authalic::{Corner, Correspondence, DiskMap, Error, History, RoughSphere, SphereMap, Status, Vertex};
 use numpy::ndarray::{Array1, Array2, Array3, ArrayView2, aview1};
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
 use super::certificates::Certificates;
 use super::finished::{Finished, Per};
+use super::strain::Strain;
 use crate::arrays::{Reals, from_array, real_table};
 use crate::distortion::Distortion;
 use crate::errors::{bad_array, bad_option, to_python, warning};
@@ -78,6 +79,9 @@ pub struct Registration {
     /// (m,) float64: max(J, 1/J) of `area_ratio` J, at least 1; infinite where the image has no area.
     #[pyo3(get)]
     area_distortion: Py<PyArray1<f64>>,
+    /// Strain: how far g stretches and shrinks each source face, both surfaces scaled to one area.
+    #[pyo3(get)]
+    strain: Py<Strain>,
     /// Certificates or None: the proof that a map by curves is one-to-one; None for a map by points.
     #[pyo3(get)]
     certificates: Option<Py<Certificates>>,
@@ -134,6 +138,7 @@ impl Registration {
             distortion: Py::new(py, Distortion::new(py, figures.distortion.clone()))?,
             area_distortion: from_array(py, area_ratio.mapv(|ratio| ratio.max(1.0 / ratio))),
             area_ratio: from_array(py, area_ratio),
+            strain: Py::new(py, Strain::new(py, finished.strain()))?,
             target_distortion: Py::new(py, Distortion::new(py, figures.target_distortion.clone()))?,
             certificates,
             warnings,
@@ -246,6 +251,9 @@ impl Registration {
     ///     The elements that `values` has a row for. Default: as its shape says, vertices if both fit.
     /// nearest : bool
     ///     Take the value of the nearest target vertex or corner, of any dtype, instead of interpolating: for labels.
+    /// smooth : bool
+    ///     Interpolate values per vertex by cubics with estimated gradients instead of linear functions: without the
+    ///     facets of a target that is coarser than the source. Between vertices they may exceed the range of the values.
     ///
     /// Returns
     /// -------
@@ -256,13 +264,16 @@ impl Registration {
     /// ------
     /// MeshError
     ///     The values have another shape, or without `nearest` are no real numbers.
-    #[pyo3(signature = (values, *, per=None, nearest=false))]
+    /// ValueError
+    ///     `smooth` goes with values per corner or with `nearest`.
+    #[pyo3(signature = (values, *, per=None, nearest=false, smooth=false))]
     fn pull(
         &self,
         py: Python<'_>,
         values: &Bound<'_, PyAny>,
         per: Option<&str>,
         nearest: bool,
+        smooth: bool,
     ) -> PyResult<Py<PyAny>> {
         let asked = match per {
             None => None,
@@ -282,6 +293,12 @@ impl Registration {
             let expected = format!("of shape ({n}, …) per vertex or ({m}, 3, …) per corner of the target");
             return Err(bad_array(py, "values", values.shape_words(), expected));
         };
+        if smooth && (nearest || per == Per::Corner) {
+            let with = if nearest { "nearest=True" } else { "values per corner" };
+            return Err(bad_option(format!(
+                "smooth=True takes values per vertex; it does not go with {with}"
+            )));
+        }
         let out: Vec<usize> = per.axes(source).into_iter().chain(shape[axes..].iter().copied()).collect();
         let finished = self.finished.clone();
         if nearest {
@@ -290,7 +307,7 @@ impl Registration {
         }
         let width = shape[axes..].iter().product();
         let numbers = values.reals("real numbers; nearest=True takes labels of any kind")?;
-        let pulled = run(py, None, move |_| pulled(finished.correspondence(), numbers, width, per))?;
+        let pulled = run(py, None, move |_| pulled(finished.correspondence(), numbers, width, per, smooth))?;
         from_values(py, pulled, out)
     }
 
@@ -336,6 +353,19 @@ impl Registration {
             authalic::follow(finished.correspondence(), points.view(), aview1(&pieces), rigid_size)
         })?;
         Ok(from_array(py, places))
+    /// How vectors on the target are turned and scaled on their way to the source.
+    ///
+    /// For each source vertex v the linear part of the similarity that takes the target's surroundings of g(v), within
+    /// a twentieth of the square root of the area, nearest to those of v. `np.einsum("nij,nj->ni", matrices,
+    /// registration.pull(vectors))` carries vectors, such as offsets of a shape key.
+    ///
+    /// Returns
+    /// -------
+    /// (n, 3, 3) float64 array
+    ///     A rotation times a scale for each source vertex.
+    fn local_similarities(&self, py: Python<'_>) -> PyResult<Py<PyArray3<f64>>> {
+        let finished = self.finished.clone();
+        Ok(from_array(py, run(py, None, move |_| finished.correspondence().local_similarities())?))
     }
 
     /// The registration of the target onto the source by the same maps. Its `pull` carries source data to the target.
@@ -403,13 +433,24 @@ fn nearest_rows(map: &Correspondence, per: Per) -> Vec<usize> {
 }
 
 /// Rows of `width` numbers of the target, interpolated at the vertices or corners of the source.
-fn pulled(map: &Correspondence, numbers: Vec<f64>, width: usize, per: Per) -> Result<Vec<f64>, Error> {
+fn pulled(
+    map: &Correspondence,
+    numbers: Vec<f64>,
+    width: usize,
+    per: Per,
+    smooth: bool,
+) -> Result<Vec<f64>, Error> {
     let shaped = "the shape was checked";
     let pulled = match per {
         Per::Vertex => {
             let rows = (map.target().n_vertices(), width);
-            map.pull_vertices(Array2::from_shape_vec(rows, numbers).expect(shaped).view())?
-                .into_raw_vec_and_offset()
+            let values = Array2::from_shape_vec(rows, numbers).expect(shaped);
+            let pulled = if smooth {
+                map.pull_vertices_smoothly(values.view())
+            } else {
+                map.pull_vertices(values.view())
+            };
+            pulled?.into_raw_vec_and_offset()
         }
         Per::Corner => {
             let rows = (map.target().n_faces(), 3, width);

@@ -8,6 +8,8 @@
 //! the vertex a little into the face determines the side.
 
 mod corners;
+mod frames;
+mod smooth;
 
 use crate::location::{Location, Locator};
 use crate::mesh::geometry::triangle;
@@ -16,6 +18,8 @@ use crate::parallel;
 use crate::vector::Vector3;
 
 pub use corners::pull_corners;
+pub use frames::local_similarities;
+pub use smooth::pull_vertices_smoothly;
 
 /// Move of a corner into its face that determines its side, relative to the way to the face's centroid or, if shorter,
 /// to the longest edge of the target's triangle there.

@@ -13,32 +13,45 @@ from .types import MeshObject
 _OF_KEY = re.compile(r'key_blocks\["((?:[^"\\]|\\.)*)"\]')
 
 
-def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> str:
+def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> tuple[str, list[str]]:
     """Copies the drivers of some shape keys to an object's keys of these names, in place of theirs.
 
-    Variables that look at the keys of origin look at the new ones then; all others look where they did.
-    Returns a phrase that names the driven keys and what drives them; "" without drivers.
+    Variables that look at origin, its mesh or its keys look at those of the object then, if it has what they
+    look at; all others look where they did. Returns a phrase that names the driven keys and what drives them,
+    "" without drivers, and a line for each driver that is not copied or that follows nothing.
     """
-    if not names:
-        return ""
     of_origin, keys = origin.data.shape_keys, obj.data.shape_keys
     wanted = [driver for driver in _drivers(of_origin) if _key_of(driver.data_path) in names]
     if not wanted:
-        return ""
+        return "", []
     animation: Any = keys.animation_data_create()
+    copied, problems = [], []
     for driver in wanted:
         for old in [old for old in animation.drivers if old.data_path == driver.data_path]:
             animation.drivers.remove(old)
-        _retarget(animation.drivers.from_existing(src_driver=driver), of_origin, keys)
-    driven = dict.fromkeys(_key_of(driver.data_path) for driver in wanted)
-    used = dict.fromkeys(target.id.name for driver in wanted for target in _targets(driver) if target.id)
-    used.pop(of_origin.name, None)
-    by = f", which follow {messages.named(list(used))}" if used else ""
-    return f"drivers of {messages.named([str(name) for name in driven])}{by}"
+        try:
+            copied.append(animation.drivers.from_existing(src_driver=driver))
+        except (RuntimeError, TypeError) as problem:
+            problems.append(f"driver of shape key {_key_of(driver.data_path)}: {problem}")
+    for driver in copied:
+        _retarget(driver, origin, obj)
+        if any(target.id is None for target in _targets(driver)):
+            problems.append(f"driver of shape key {_key_of(driver.data_path)}: a variable has no target")
+    return _phrase(copied, {obj, obj.data, keys}), problems
 
 
-def _drivers(keys: bpy.types.Key) -> list[Any]:
-    return list(keys.animation_data.drivers) if keys.animation_data else []
+def _phrase(drivers: list[Any], own: Collection[bpy.types.ID]) -> str:
+    """The driven keys and what drives them besides the `own` data of their object."""
+    if not drivers:
+        return ""
+    driven = dict.fromkeys(str(_key_of(driver.data_path)) for driver in drivers)
+    used = {target.id for driver in drivers for target in _targets(driver)} - {None, *own}
+    by = f", which follow {messages.named(sorted(each.name for each in used))}" if used else ""
+    return f"drivers of {messages.named(list(driven))}{by}"
+
+
+def _drivers(keys: bpy.types.Key | None) -> list[Any]:
+    return list(keys.animation_data.drivers) if keys and keys.animation_data else []
 
 
 def _key_of(path: str) -> str | None:
@@ -48,11 +61,29 @@ def _key_of(path: str) -> str | None:
 
 
 def _targets(driver: Any) -> list[Any]:
-    return [target for variable in driver.driver.variables for target in variable.targets]
+    """The targets of all variables; those of properties of the scene have no data block of their own."""
+    variables = [variable for variable in driver.driver.variables if variable.type != "CONTEXT_PROP"]
+    return [target for variable in variables for target in variable.targets]
 
 
-def _retarget(driver: Any, origin: bpy.types.Key, keys: bpy.types.Key) -> None:
-    for target in _targets(driver):
-        name = _key_of(target.data_path)
-        if target.id == origin and (name is None or name in keys.key_blocks):
-            target.id = keys
+def _retarget(driver: Any, origin: MeshObject, obj: MeshObject) -> None:
+    """Lets a driver look at an object where it looked at origin, if the object has what it looks at."""
+    pairs = {
+        origin: obj,
+        origin.data: obj.data,
+        origin.data.shape_keys: obj.data.shape_keys,
+    }
+    for variable in driver.driver.variables:
+        for target in variable.targets if variable.type != "CONTEXT_PROP" else ():
+            own = pairs.get(target.id)
+            if own is not None and (variable.type != "SINGLE_PROP" or _has(own, target.data_path)):
+                target.id = own
+
+
+def _has(data: bpy.types.ID, path: str) -> bool:
+    """Whether a data block has a property."""
+    try:
+        data.path_resolve(path)
+    except ValueError:
+        return False
+    return True

@@ -41,11 +41,14 @@ def read_uv_maps(obj: MeshObject, active_only: bool) -> list[Layer]:
 
 @dataclass
 class KeyDetail:
-    """What a shape key has besides its displacements: its slider's range, whether it is muted, the vertex
-    group that masks it ("" for none), and the key it is relative to ("" for the first)."""
+    """What a shape key has besides its displacements: its slider's range and value, whether it is muted, the
+    interpolation to the next key, the vertex group that masks it ("" for none), and the key it is relative to
+    ("" for the first)."""
 
     slider: tuple[float, float]
+    value: float
     is_muted: bool
+    interpolation: Any
     mask: str
     relative_to: str
 
@@ -93,7 +96,22 @@ def read_shape_keys(obj: MeshObject, but: Collection[str]) -> list[Layer]:
 
 def _detail(key: bpy.types.ShapeKey, first: bpy.types.ShapeKey) -> KeyDetail:
     relative = "" if key.relative_key == first else key.relative_key.name
-    return KeyDetail((key.slider_min, key.slider_max), key.mute, key.vertex_group, relative)
+    return KeyDetail(
+        slider=(key.slider_min, key.slider_max),
+        value=key.value,
+        is_muted=key.mute,
+        interpolation=key.interpolation,
+        mask=key.vertex_group,
+        relative_to=relative,
+    )
+
+
+def why_no_shape_keys(obj: MeshObject) -> str | None:
+    """Why the shape keys that an object has cannot be read as displacements, or None."""
+    keys = obj.data.shape_keys
+    if keys is None or keys.use_relative:
+        return None
+    return f"shape keys: those of {obj.name} are absolute; turn on Relative in its shape keys"
 
 
 def writable(obj: MeshObject, layers: Sequence[Layer]) -> tuple[list[Layer], list[str]]:
@@ -239,7 +257,8 @@ def _write_key(obj: MeshObject, layer: Layer, vertices: Integers, displacements:
     shape_keys.write(obj, layer.name, positions)
     key = obj.data.shape_keys.key_blocks[layer.name]
     key.slider_min, key.slider_max = detail.slider
-    key.mute, key.vertex_group = detail.is_muted, detail.mask
+    key.value, key.mute, key.vertex_group = detail.value, detail.is_muted, detail.mask
+    key.interpolation = detail.interpolation
     return True
 
 

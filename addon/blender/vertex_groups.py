@@ -10,10 +10,28 @@ import numpy as np
 from ..surfaces.arrays import Singles
 from .types import MeshObject
 
+_ROUNDING = 1e-3  # of sums of weights in single precision
+
 
 def names(obj: MeshObject) -> list[str]:
     """The names of the vertex groups of an object."""
     return [group.name for group in obj.vertex_groups]
+
+
+def sharing(obj: MeshObject) -> set[str]:
+    """The groups whose weights share out each vertex, so that they add up to one.
+
+    Those of the bones that deform the object; without bones all, if the weights of each vertex that is in a
+    group add up to one.
+    """
+    modifiers: list[Any] = [modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    armatures = [modifier.object for modifier in modifiers if modifier.object]
+    bones = [bone for armature in armatures for bone in armature.data.bones]
+    deforming = {bone.name for bone in bones if bone.use_deform}
+    if deforming:
+        return deforming & {*names(obj)}
+    sums = [sum(entry.weight for entry in vertex.groups) for vertex in obj.data.vertices if vertex.groups]
+    return {*names(obj)} if all(abs(total - 1) < _ROUNDING for total in sums) else set()
 
 
 def weights(obj: MeshObject, name: str, shown: bpy.types.Mesh | None = None) -> Singles:

@@ -10,7 +10,7 @@ from .flips import fix_flips
 from .islands import unwrap
 from .known import forget
 from .placement import Placed, place
-from .registrations import followed, kept, morphed, pull, register
+from .registrations import followed, kept, local_similarities, morphed, pull, register
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
 from .settings import PlacementSettings, SeamSettings, UnwrapSettings
@@ -40,6 +40,7 @@ __all__ = (
     "followed",
     "forget",
     "kept",
+    "local_similarities",
     "measure",
     "morphed",
     "place",

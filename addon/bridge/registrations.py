@@ -100,9 +100,20 @@ def followed(registered: Registered, source: Side, target: Side, align: bool) ->
     return moved((places - positions.mean(axis=0)) @ turn.T + over.mean(axis=0), source.matrix)
 
 
-def pull(registered: Registered, values: Reals, per: Literal["vertex", "corner"]) -> Floats:
-    """The target's values at the source, `per` "vertex" (u, ...) or "corner" (m, 3, ...)."""
-    return np.asarray(registered.native.pull(np.ascontiguousarray(values, float), per=per))
+def pull(
+    registered: Registered, values: Reals, per: Literal["vertex", "corner"], smooth: bool = False
+) -> Floats:
+    """The target's values at the source, `per` "vertex" (u, ...) or "corner" (m, 3, ...).
+
+    With `smooth`, those of vertices without the facets of a target that is coarser than the source.
+    """
+    values = np.ascontiguousarray(values, float)
+    return np.asarray(registered.native.pull(values, per=per, smooth=smooth))
+
+
+def local_similarities(registered: Registered) -> Floats:
+    """How vectors on the target are turned and scaled on their way to the source's points, (u, 3, 3)."""
+    return np.asarray(registered.native.local_similarities())
 
 
 def _registered_by_curves(

@@ -53,7 +53,11 @@ class Couple:
 
 def chosen(context: bpy.types.Context) -> Couple:
     """The `Couple` of the active object and its target; raises `CannotRegister` where there is none."""
-    source = active_source(context)
+    return of_source(active_source(context))
+
+
+def of_source(source: MeshObject | None) -> Couple:
+    """The `Couple` of an object and its target; raises `CannotRegister` where there is none."""
     if not is_mesh(source):
         raise CannotRegister("The active object is no mesh")
     target = source.authalic_target

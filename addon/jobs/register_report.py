@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from .. import messages
 from ..registration.registered import Registered
 
+_SOME = 0.005  # of the surface is not 0 %
 _MIRRORED = 3  # so many landmarks on a disk tell front from back
 
 
@@ -37,7 +38,22 @@ def warnings(registered: Registered) -> list[str]:
         notes.append(f"pairs that do not meet without a fold: {messages.listed(registered.missed)}")
         if registered.domain == "DISK" and len(registered.names) >= _MIRRORED:
             notes.append("if most do not, the normals of the two may face opposite ways: flip those of one")
+    if registered.strain.is_high:
+        share = f"{100 * registered.strain.stretched:.0f} % of the surface is stretched or shrunk over 2×"
+        remedy = "check that pair, or add pairs" if registered.strain.worst else "add landmarks"
+        notes.append(f"the strain is high: {share}{_most_near(registered)}; {remedy}")
     return [*notes, *registered.remarks]
+
+
+def _strain(registered: Registered) -> str:
+    strain = registered.strain
+    share = f"{100 * strain.stretched:.0f} % of the surface stretched over 2×{_most_near(registered)}"
+    return f"strain {strain.median:.2f} ({share})"
+
+
+def _most_near(registered: Registered) -> str:
+    strain = registered.strain
+    return f', most near "{strain.worst}"' if strain.worst and strain.stretched >= _SOME else ""
 
 
 def _figures_of_points(registered: Registered) -> list[str]:
@@ -47,6 +63,7 @@ def _figures_of_points(registered: Registered) -> list[str]:
         messages.count(len(registered.names), "landmark pair"),
         f"{error}{_worst(registered)}",
         messages.count(registered.folds, "fold"),
+        _strain(registered),
         f"authalic energy {registered.energy:.3g}",
     ]
 
@@ -58,6 +75,7 @@ def _figures_of_curves(registered: Registered) -> list[str]:
         messages.count(len(registered.names), "landmark curve") if registered.names else "boundaries alone",
         *([error] if registered.names else []),
         messages.count(registered.folds, "fold"),
+        _strain(registered),
     ]
 
 

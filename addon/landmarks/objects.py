@@ -25,6 +25,22 @@ def active_source(context: bpy.types.Context) -> MeshObject | None:
     return aiming[0] if len(aiming) == 1 else active
 
 
+def sources(context: bpy.types.Context) -> list[MeshObject]:
+    """The object whose landmarks are meant first, then all selected objects with the same target.
+
+    Or, where the active object has no target, those whose target it is. Of objects that share a mesh, one.
+    """
+    source = active_source(context)
+    if source is None or not is_mesh(source):
+        return []
+    target = source.authalic_target or source
+    aiming = [obj for obj in context.selected_objects if is_mesh(obj) and obj.authalic_target == target]
+    if source.authalic_target is None and not aiming:
+        return [source]
+    found = [*([source] if source.authalic_target else []), *aiming]
+    return list({obj.data: obj for obj in reversed(found)}.values())[::-1]
+
+
 def target_problem(source: MeshObject) -> str | None:
     """Why a source object has no target to work with, or None."""
     target = source.authalic_target

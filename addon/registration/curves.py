@@ -11,7 +11,7 @@ from .. import messages
 from ..surfaces.arrays import Integers
 from ..surfaces.suitability import Unsuitable
 from .problems import remarks
-from .registered import Registered
+from .registered import Registered, strain
 from .sides import CurvePair, Side
 
 
@@ -59,6 +59,7 @@ def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence
         folds=len(native.certificates.folded),
         status=native.status,
         seconds=float(native.seconds),
+        strain=strain(native, names),
         remarks=remarks(native.warnings, sides, curves),
     )
 

@@ -11,6 +11,26 @@ from .sides import Side
 
 _WORST, _NEXT_WORST = 3, 0.5  # so many pairs are named, of those with so much of the largest error
 _SEEN = 5e-6  # errors above this are not 0.000 %
+# With right landmarks, bodies of one kind have up to 0.3 of their area stretched by maps that shear little,
+# most below 0.2; one wrong pair makes it 0.34 to 0.83.
+_HIGH = 0.3
+
+
+@dataclass
+class Strain:
+    """How far a registration stretches and shrinks the source.
+
+    `median` is that of the symmetric Dirichlet energy over 4, by area: 1 for an isometry. `stretched` is the
+    share of the area that is stretched or shrunk over 2×, most near the pair named `worst`, "" for none.
+    """
+
+    median: float
+    stretched: float
+    worst: str
+
+    @property
+    def is_high(self) -> bool:
+        return self.stretched > _HIGH
 
 
 @dataclass
@@ -37,6 +57,7 @@ class Registered:
     folds: int
     status: str
     seconds: float
+    strain: Strain = field(default_factory=lambda: Strain(1.0, 0.0, ""))
     remarks: list[str] = field(default_factory=list)
 
     @property
@@ -82,7 +103,15 @@ def registered_by_points(
         folds=sum(len(figure.folded) for figure in figures),
         status=native.status,
         seconds=float(native.seconds),
+        strain=strain(native, names),
     )
+
+
+def strain(native: Any, names: list[str]) -> Strain:
+    """The strain of a registration (`authalic.Registration`) by pairs of these names."""
+    figures = native.strain
+    worst = figures.worst_landmark
+    return Strain(float(figures.median), float(figures.stretched), "" if worst is None else names[worst])
 
 
 def _in_space(points: Floats) -> Floats:

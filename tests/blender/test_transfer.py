@@ -214,23 +214,58 @@ def test_shape_keys_turn_with_the_spaces() -> None:
     smile = np.outer(pairs.positions(target)[:, 0], [0, 0.1, 0.5])
     key = add_key(target, "Smile", smile)
     key.slider_min, key.slider_max, key.value = -0.5, 2.0, 0.7
-    assert only("shape_keys") == {"FINISHED"}
+    key.interpolation = "KEY_BSPLINE"
+    assert only("shape_keys", offsets="WORLD") == {"FINISHED"}
     blocks = source.data.shape_keys.key_blocks
     assert [block.name for block in blocks] == ["Basis", "Smile"]
     displacements = pairs.positions(source, "Smile") - pairs.positions(source)
     linear = np.array(source.matrix_world.inverted() @ target.matrix_world)[:3, :3]
     np.testing.assert_allclose(displacements, smile @ linear.T, atol=0.05)
-    assert (
-        blocks["Smile"].value == 0 and blocks["Smile"].slider_max == 2 and blocks["Smile"].slider_min == -0.5
-    )
+    assert (blocks["Smile"].slider_min, blocks["Smile"].slider_max) == (-0.5, 2)
+    assert blocks["Smile"].value == pytest.approx(0.7)
+    assert blocks["Smile"].interpolation == "KEY_BSPLINE"
 
 
-def test_aligned_shape_keys_keep_their_direction_on_the_surface() -> None:
+@pytest.mark.parametrize("offsets", ["ALIGN", "SURFACE"])
+def test_shape_keys_keep_their_direction_on_a_surface_that_is_turned(offsets: str) -> None:
     source, target = copies(TILTED)
     smile = np.outer(pairs.positions(target)[:, 0], [0, 0.1, 0.5])
     add_key(target, "Smile", smile)
-    only("shape_keys", align=True)
+    only("shape_keys", offsets=offsets)
     np.testing.assert_allclose(pairs.positions(source, "Smile") - pairs.positions(source), smile, atol=0.03)
+
+
+@pytest.mark.parametrize("matrix", [None, TILTED])
+def test_shape_keys_turn_with_the_part_of_the_surface(matrix: Matrix | None) -> None:
+    """Half of the target stands upright: what rises from it rises from the flat sheet too."""
+    source = meshes.add_grid("Sheet", n=24)
+    flat = pairs.positions(source) * [1, 1, 0]
+    source.data.vertices.foreach_set("co", flat.astype(np.float32).ravel())
+    target = pairs.twin(source, matrix)
+    x, y, z = pairs.positions(source).T
+    right = np.maximum(x, 0)
+    bent = np.column_stack([np.minimum(x, 0), y, z + right])
+    target.data.vertices.foreach_set("co", bent.astype(np.float32).ravel())
+    spots = [(a, b, 0) for a in (-0.8, -0.4, 0, 0.4, 0.8) for b in (-0.8, 0, 0.8)]
+    pairs.pair(source, target, pairs.nearest(source, spots))
+    normal = np.where((x > 0)[:, None], [-1.0, 0, 0], [0, 0, 1.0])
+    add_key(target, "Rise", 0.1 * normal)
+    only("shape_keys")
+    rise = pairs.positions(source, "Rise") - pairs.positions(source)
+    away = np.abs(x) > 0.45
+    np.testing.assert_allclose(rise[away], np.tile([0, 0, 0.1], (away.sum(), 1)), atol=0.02)
+    only("shape_keys", offsets="ALIGN")
+    rise = pairs.positions(source, "Rise") - pairs.positions(source)
+    assert np.abs(rise[away] - [0, 0, 0.1]).max() > 0.05
+
+
+def test_absolute_shape_keys_are_named(capfd: pytest.CaptureFixture[str]) -> None:
+    _, target = copies()
+    add_key(target, "Later", np.ones(3))
+    target.data.shape_keys.use_relative = False
+    add_group(target, "Group", [1.0])
+    assert transfer() == {"FINISHED"}
+    assert "shape keys: those of Twin are absolute; turn on Relative" in capfd.readouterr().out
 
 
 def test_keys_relative_to_other_keys_and_other_keys_stay() -> None:
@@ -332,6 +367,74 @@ def test_drivers_are_copied_and_named(capfd: pytest.CaptureFixture[str]) -> None
     copied = source.data.shape_keys.key_blocks
     assert copied['Smile "a"'].value == pytest.approx(0.75)
     assert copied["Fix"].value == pytest.approx(0.75), "it follows the key of its own mesh"
+
+
+def test_all_of_a_driver_is_copied_and_looks_at_its_own_object() -> None:
+    source, target = copies()
+    add_key(target, "Smile", np.ones(3))
+    armature = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(armature)
+    for obj in (source, target):
+        obj["strength"] = 1.0
+    target["only here"] = 2.0
+    curve = target.data.shape_keys.key_blocks["Smile"].driver_add("value")
+    for modifier in list(curve.modifiers):
+        curve.modifiers.remove(modifier)
+    for frame, value in ((0.0, 0.0), (1.0, 0.25), (2.0, 1.0)):
+        curve.keyframe_points.insert(frame, value).interpolation = "LINEAR"
+    curve.extrapolation = "LINEAR"
+    limits = curve.modifiers.new("LIMITS")
+    limits.use_max_y, limits.max_y = True, 0.75
+    driver = curve.driver
+    driver.type = "SCRIPTED"
+    for name, kind, of, path in (
+        ("own", "SINGLE_PROP", target, '["strength"]'),
+        ("other", "SINGLE_PROP", target, '["only here"]'),
+        ("place", "TRANSFORMS", target, ""),
+        ("rig", "TRANSFORMS", armature, ""),
+    ):
+        variable = driver.variables.new()
+        variable.name, variable.type = name, kind
+        variable.targets[0].id = of
+        if path:
+            variable.targets[0].data_path = path
+        else:
+            variable.targets[0].transform_type = "LOC_Z"
+            variable.targets[0].transform_space = "LOCAL_SPACE"
+    driver.expression = "own + other + place + rig - 2"
+    target.data.shape_keys.key_blocks["Smile"].driver_add("mute").driver.expression = "0"
+    only("shape_keys")
+    copied = {each.data_path: each for each in source.data.shape_keys.animation_data.drivers}
+    assert set(copied) == {'key_blocks["Smile"].value', 'key_blocks["Smile"].mute'}
+    curve = copied['key_blocks["Smile"].value']
+    assert [tuple(point.co) for point in curve.keyframe_points] == [(0, 0), (1, 0.25), (2, 1)]
+    assert curve.extrapolation == "LINEAR" and curve.modifiers[0].max_y == 0.75
+    assert curve.driver.expression == "own + other + place + rig - 2"
+    looks = {variable.name: variable.targets[0] for variable in curve.driver.variables}
+    assert [looks[name].id.name for name in ("own", "other", "place", "rig")] == [
+        "Sheet",
+        "Twin",
+        "Sheet",
+        "Rig",
+    ]
+    assert looks["rig"].transform_type == "LOC_Z" and looks["rig"].transform_space == "LOCAL_SPACE"
+    source["strength"], armature.location.z = 0.5, 0.5
+    source.update_tag()
+    bpy.context.view_layer.update()
+    assert source.data.shape_keys.key_blocks["Smile"].value == pytest.approx(0.25)
+    armature.location.z = 9
+    bpy.context.view_layer.update()
+    assert source.data.shape_keys.key_blocks["Smile"].value == pytest.approx(0.75)
+
+
+def test_a_driver_without_a_target_is_named(capfd: pytest.CaptureFixture[str]) -> None:
+    _, target = copies()
+    add_key(target, "Smile", np.ones(3))
+    driver = target.data.shape_keys.key_blocks["Smile"].driver_add("value").driver
+    driver.variables.new()
+    only("shape_keys")
+    said = capfd.readouterr().out
+    assert "Warning: " in said and "driver of shape key Smile: a variable has no target" in said
 
 
 def driven(key: Any, by: Any, path: str) -> None:
@@ -547,6 +650,148 @@ def test_cancelled_writes_nothing() -> None:
     with pytest.raises(part("jobs.job").Cancelled):
         job.apply()
     assert not source.data.uv_layers
+
+
+# Smooth
+
+
+def fine_and_coarse() -> tuple[MeshObject, MeshObject]:
+    """A fine sphere and a coarse one as its target."""
+    source, target = (meshes.bumpy(meshes.cube_sphere(level), 0) for level in (5, 3))
+    source.name, target.name = "Fine", "Coarse"
+    spots = [(1, 1, 1), (-1, 1, 0), (0, -1, 0), (1, 0, -1), (-1, -1, 1), (0, 0.3, 1)]
+    ends = zip(pairs.nearest(source, spots), pairs.nearest(target, spots), strict=True)
+    return pairs.pair(source, target, {f"Spot {number}": both for number, both in enumerate(ends)})
+
+
+def roughness(obj: MeshObject, values: Array) -> float:
+    """The mean square of the differences to the mean of the neighbors, over the variance."""
+    ends = np.array([edge.vertices[:] for edge in obj.data.edges])
+    count = np.bincount(ends.ravel(), minlength=len(values))
+    around = np.zeros(len(values))
+    np.add.at(around, ends[:, 0], values[ends[:, 1]])
+    np.add.at(around, ends[:, 1], values[ends[:, 0]])
+    return float(np.mean((values - around / count) ** 2) / values.var())
+
+
+def test_weights_of_a_coarse_mesh_have_no_facets(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = fine_and_coarse()
+    z = pairs.positions(target)[:, 2]
+    share = np.clip(0.5 + 0.8 * z, 0, 1)
+    for name, values in (("Upper", share), ("Lower", 1 - share)):
+        add_group(target, name, values)
+    rough = {}
+    for smooth in ("OFF", "ON", "AUTO"):
+        only("vertex_groups", smooth=smooth)
+        upper, lower = (np.nan_to_num(weights(source, name)) for name in ("Upper", "Lower"))
+        for values in (upper, lower):
+            assert values.min() >= 0 and values.max() <= 1
+        np.testing.assert_allclose(upper + lower, 1, atol=1e-5)
+        rough[smooth] = roughness(source, upper)
+    assert rough["ON"] < 0.7 * rough["OFF"]
+    assert rough["AUTO"] == rough["ON"]
+    assert capfd.readouterr().out.count("by landmark points, smoothly") == 2
+
+
+def test_bones_share_out_weights_beside_other_groups() -> None:
+    """The sums of the groups of bones stay, whatever a mask does."""
+    source, target = fine_and_coarse()
+    data = bpy.data.armatures.new("Rig")
+    rig = bpy.data.objects.new("Rig", data)
+    bpy.context.collection.objects.link(rig)
+    meshes.select(rig)
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name in ("Upper", "Lower"):
+        data.edit_bones.new(name).tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    target.modifiers.new("Rig", "ARMATURE").object = rig
+    meshes.select(source)
+    z = pairs.positions(target)[:, 2]
+    share = np.clip(0.5 + 2 * z, 0, 1)
+    for name, values in (("Upper", share), ("Lower", 1 - share), ("Mask", (z > 0.2).astype(float))):
+        add_group(target, name, values)
+    only("vertex_groups")
+    upper, lower, mask = (np.nan_to_num(weights(source, name)) for name in ("Upper", "Lower", "Mask"))
+    np.testing.assert_allclose(upper + lower, 1, atol=1e-5)
+    assert mask.min() >= 0 and mask.max() == pytest.approx(1)
+
+
+def test_a_mesh_that_is_as_fine_is_taken_as_it_is(capfd: pytest.CaptureFixture[str]) -> None:
+    _, target = copies()
+    add_group(target, "Group", [0.5])
+    only("vertex_groups")
+    assert "smoothly" not in capfd.readouterr().out
+
+
+# Several objects
+
+
+def flock() -> tuple[list[MeshObject], MeshObject]:
+    """Three sheets with the same target, all selected, the first one active."""
+    first, target = copies()
+    others = [pairs.twin(first, Matrix.Translation((4 * n, 0, 0)), f"Sheet {n}") for n in (2, 3)]
+    marks = pairs.nearest(first, [(0.4, 0.4, 0), (-0.4, 0, 0), (0.1, -0.6, 0)])
+    for obj in others:
+        pairs.pair(obj, target, marks)
+    meshes.select(first)
+    for obj in others:
+        obj.select_set(True)
+    return [first, *others], target
+
+
+@pytest.mark.parametrize("target_is_active", [False, True])
+def test_all_selected_objects_with_the_target_get_its_layers(
+    target_is_active: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    sources, target = flock()
+    bystander = meshes.add_grid("Bystander", n=3)
+    first = target if target_is_active else sources[0]
+    meshes.select(first, *sources, target, bystander)
+    wanted = random_uv(target, "Map")
+    add_key(target, "Smile", np.full(3, 0.25))
+    assert transfer() == {"FINISHED"}
+    for obj in sources:
+        np.testing.assert_allclose(meshes.uv(obj, "Map"), wanted, atol=1e-4)
+        rise = pairs.positions(obj, "Smile") - pairs.positions(obj)
+        np.testing.assert_allclose(rise, 0.25, atol=0.02)
+    assert bystander.data.shape_keys is None
+    said = capfd.readouterr().out
+    for obj in sources:
+        assert f"(Smile) from Twin to {obj.name} by landmark points" in said
+
+
+def test_one_object_that_cannot_does_not_stop_the_others(capfd: pytest.CaptureFixture[str]) -> None:
+    sources, target = flock()
+    part("landmarks.points").clear(sources[1])
+    random_uv(target, "Map")
+    assert transfer(method="POINTS") == {"FINISHED"}
+    assert [bool(obj.data.uv_layers) for obj in sources] == [True, False, True]
+    said = capfd.readouterr().out
+    assert "Warning: Transfer from Target: Sheet 2 needs a landmark pair" in said
+    for obj in (sources[0], sources[2]):
+        part("landmarks.points").clear(obj)
+    with pytest.raises(RuntimeError, match=r"Sheet needs a landmark pair.*; Sheet 2 needs"):
+        transfer(method="POINTS")
+
+
+def test_several_objects_are_one_step_of_undo() -> None:
+    _, target = flock()
+    random_uv(target, "Map")
+    bpy.ops.ed.undo_push(message="Start")
+    bpy.ops.authalic.transfer("EXEC_DEFAULT", True)
+    names = ("Sheet", "Sheet 2", "Sheet 3")
+    assert all(bpy.data.objects[name].data.uv_layers for name in names)
+    bpy.ops.ed.undo()
+    assert not any(bpy.data.objects[name].data.uv_layers for name in names)
+
+
+def test_objects_that_share_a_mesh_get_layers_once(capfd: pytest.CaptureFixture[str]) -> None:
+    sources, target = flock()
+    sources[1].data = sources[0].data
+    random_uv(target, "Map")
+    transfer()
+    said = capfd.readouterr().out
+    assert said.count("Transferred") == 2 and "to Sheet 2" not in said
 
 
 def test_undo() -> None:

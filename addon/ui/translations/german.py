@@ -14,7 +14,7 @@ _NAMES = {
     "Add Landmark Curve": "Landmarkenkurve hinzufügen",
     "Advanced": "Erweitert",
     "Align": "Ausrichten",
-    "Align Shape Keys": "Shape-Keys ausrichten",
+    "Aligned": "Ausgerichtet",
     "All": "Alle",
     "Allow Overlap": "Überlappung erlauben",
     "Angle Weight": "Winkelgewicht",
@@ -27,7 +27,10 @@ _NAMES = {
     "Live": "Live",
     "Mirror Landmarks over X": "Landmarken über X spiegeln",
     "Mirror over X": "Über X spiegeln",
+    "Offsets": "Verschiebungen",
+    "On": "Ein",
     "Shape": "Form",
+    "Smooth": "Glatt",
     "Tolerance": "Toleranz",
     "Unwrap the active object again while options change": (
         "Das aktive Objekt erneut abwickeln, während sich Optionen ändern"
@@ -182,6 +185,8 @@ _NAMES = {
     "Use Subdivision Surface": "Unterteilungsoberfläche verwenden",
     "Vertex Groups": "Vertexgruppen",
     "Which": "Welche",
+    "With the Surface": "Mit der Oberfläche",
+    "World": "Welt",
     "Worst": "Schlechteste",
     "Wrap": "Umhüllen",
     "Wrap and Morph": "Umhüllen und Verformen",
@@ -251,6 +256,9 @@ _TOOLTIPS = {
         "gleicher Oberfläche verformt.\n\nJede Fläche nimmt auf der Kugel so viel Platz ein, wie ihr auf "
         "dem Mesh zukommt; keine klappt um"
     ),
+    "All alike, as the target must be to lie over the object": (
+        "Alle gleich, wie das Ziel auf das Objekt zu legen ist"
+    ),
     "All islands get it together, and keep their sizes beside each other": (
         "Alle Inseln bekommen sie gemeinsam und behalten ihre Größen im Vergleich"
     ),
@@ -272,10 +280,6 @@ _TOOLTIPS = {
     "Areas even to about a percent, shapes as good as that allows": (
         "Flächeninhalte auf etwa ein Prozent genau, Formen so gut, wie das erlaubt"
     ),
-    "As displacements from the keys they are relative to. Morphs between both are left out": (
-        "Als Verschiebungen gegen die Keys, auf die sie sich beziehen. Verformungen zwischen beiden "
-        "bleiben weg"
-    ),
     "As in Blender's back view": "Wie in Blenders Ansicht von hinten",
     "As in Blender's bottom view": "Wie in Blenders Ansicht von unten",
     "As in Blender's front view": "Wie in Blenders Ansicht von vorn",
@@ -286,6 +290,14 @@ _TOOLTIPS = {
     "As in the papers: conjugate gradients on disks, gradient descent on spheres. Less even": (
         "Wie in den Veröffentlichungen: konjugierte Gradienten auf Scheiben, Gradientenabstieg auf "
         "Kugeln. Weniger gleichmäßig"
+    ),
+    "As offsets from the keys they are relative to, with their masks, values and drivers. Morphs between "
+    "both are left out": (
+        "Als Verschiebungen gegen die Keys, auf die sie sich beziehen, mit Masken, Werten und Treibern. "
+        "Verformungen zwischen beiden bleiben weg"
+    ),
+    "As the surface around each vertex is turned and scaled": (
+        "Wie die Oberfläche um jeden Vertex gedreht und skaliert ist"
     ),
     "Better shapes, areas nearly as even": "Bessere Formen, Flächeninhalte fast so gleichmäßig",
     "Both surfaces must be closed": "Beide Oberflächen müssen geschlossen sein",
@@ -301,12 +313,14 @@ _TOOLTIPS = {
         "Die Flächen der ausgewählten Meshes danach färben, wie ihre UV-Map sie behandelt, in der "
         "3D-Ansicht und im UV-Editor. Umgeklappte Flächen haben Streifen"
     ),
-    "Copy UV maps, vertex groups, colors and shape keys from the target to the active object.\n\nThe "
-    "registration of both meshes says where they go. Layers of the same names are replaced": (
-        "UV-Maps, Vertexgruppen, Farben und Shape-Keys vom Ziel auf das aktive Objekt übertragen.\n\nDie "
-        "Zuordnung beider Meshes sagt, wohin. Ebenen gleichen Namens werden ersetzt"
-    ),
     "Copy only the active UV map of the target": "Nur die aktive UV-Map des Ziels übertragen",
+    "Copy UV maps, vertex groups, colors and shape keys from the target to the active object.\n\nSelected "
+    "objects with the same target get them too. The registration of both meshes says where they go.\n"
+    "Layers of the same names are replaced": (
+        "UV-Maps, Vertexgruppen, Farben und Shape-Keys vom Ziel auf das aktive Objekt übertragen.\n\n"
+        "Ausgewählte Objekte mit demselben Ziel erhalten sie auch. Die Zuordnung beider Meshes sagt, wohin. "
+        "Ebenen gleichen Namens werden ersetzt"
+    ),
     "Draw quick seams over the 3D view while the options change. Nothing is marked": (
         "Schnelle Nähte über die 3D-Ansicht zeichnen, während sich die Optionen ändern. Nichts wird markiert"
     ),
@@ -341,8 +355,14 @@ _TOOLTIPS = {
         "Wie weit ein Vertex vom gespiegelten Ort entfernt sein darf, als Anteil der Größe seines Objekts"
     ),
     "How packing may turn islands": "Wie das Packen Inseln drehen darf",
+    "How the offsets of shape keys are turned and scaled": (
+        "Wie die Verschiebungen der Shape-Keys gedreht und skaliert werden"
+    ),
     "Initial pull on the landmarks; it grows until they meet": (
         "Anfänglicher Zug an den Landmarken; er wächst, bis sie sich treffen"
+    ),
+    "Interpolate weights, colors of vertices and shape keys without the facets of the target": (
+        "Gewichte, Vertexfarben und Shape-Keys ohne die Facetten des Ziels interpolieren"
     ),
     "Islands are not turned to be packed": "Inseln werden beim Packen nicht gedreht",
     "Islands lie level or upright in their minimal rectangle": (
@@ -384,6 +404,7 @@ _TOOLTIPS = {
         "Den Umriss einer Insel sich überlappen lassen, wo das bessere Formen gibt. Keine Fläche klappt "
         "um, aber Teile einer Insel können übereinander liegen"
     ),
+    "Linear on each face of the target": "Linear auf jedem Face des Ziels",
     "Low Shear, but Few Seams for scans: meshes whose edges are below 0.8 % of their size, or that would "
     "need more than 20 slits": (
         "Wenig Scherung, aber wenige Nähte bei Scans: Meshes, deren Kanten unter 0,8 % ihrer Größe "
@@ -488,11 +509,6 @@ _TOOLTIPS = {
         "Landmarken und Landmarkenkurven durch die einer JSON-Datei ersetzen.\n\nEine Datei ohne Kurven "
         "lässt die Kurven in Ruhe. Gibt es noch kein Ziel, wird es das Mesh-Objekt, das die Datei nennt"
     ),
-    "Rotate and scale displacements as the target must be to lie over the object. If off, they keep "
-    "their directions and lengths in the world": (
-        "Verschiebungen so drehen und skalieren, wie das Ziel auf das Objekt zu legen ist. Wenn aus, "
-        "behalten sie Richtung und Länge in der Welt"
-    ),
     "Scale UV islands so that a meter of their surface gets a given number of pixels.\n\nIn Edit Mode "
     "the islands of the selected faces, in Object Mode all islands of the selected objects": (
         "UV-Inseln so skalieren, dass ein Meter ihrer Oberfläche eine gegebene Zahl von Pixeln "
@@ -518,6 +534,7 @@ _TOOLTIPS = {
     "Show or hide the heat map of UV areas or shear": (
         "Die Heatmap der UV-Flächen oder der Scherung anzeigen oder ausblenden"
     ),
+    "Smooth between the vertices of the target": "Glatt zwischen den Vertices des Ziels",
     "Space between islands": "Abstand zwischen Inseln",
     "Specify a precise fraction of final UV output": "Einen genauen Bruchteil des fertigen UV-Raums angeben",
     "Symmetric seams where the mesh is symmetric, if they are about as short": (
@@ -645,6 +662,7 @@ _TOOLTIPS = {
     "The vertices on this object from start to end; a loop repeats the first one at the end": (
         "Die Vertices auf diesem Objekt von Anfang bis Ende; eine Schleife wiederholt den ersten am Ende"
     ),
+    "They keep their directions and lengths in the world": "Sie behalten Richtung und Länge in der Welt",
     "Trade-off between areas and shapes": "Abwägung zwischen Flächeninhalten und Formen",
     "Trade-off between shear and the length of seams": "Abwägung zwischen Scherung und Länge der Nähte",
     "Trade-off: 0 preserves areas, 1 preserves angles": "Abwägung: 0 erhält Flächeninhalte, 1 erhält Winkel",
@@ -677,6 +695,7 @@ _TOOLTIPS = {
     "What gets the density": "Was die Dichte bekommt",
     "What is matched between the two meshes": "Was zwischen den beiden Meshes aufeinander gelegt wird",
     "What the colors stand for": "Wofür die Farben stehen",
+    "Where the target has at most half as many faces": "Wo das Ziel höchstens halb so viele Faces hat",
     "Whether seams mirror each other": "Ob Nähte einander spiegeln",
     "Whether several objects share the texture": "Ob mehrere Objekte sich die Textur teilen",
     "Width and height of the texture in pixels, where there is no image": (

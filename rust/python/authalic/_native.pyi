@@ -26,6 +26,7 @@ __all__ = [
     "Seams",
     "SolverError",
     "SphereMap",
+    "Strain",
     "Surface",
     "Untangled",
     "Unwrap",

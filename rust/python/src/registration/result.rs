@@ -353,6 +353,8 @@ impl Registration {
             authalic::follow(finished.correspondence(), points.view(), aview1(&pieces), rigid_size)
         })?;
         Ok(from_array(py, places))
+    }
+
     /// How vectors on the target are turned and scaled on their way to the source.
     ///
     /// For each source vertex v the linear part of the similarity that takes the target's surroundings of g(v), within

@@ -120,7 +120,9 @@ def carried(task: Task, progress: Progress) -> Carried:
     fewer = _COARSER * len(registered.target.faces) <= len(registered.source.faces)
     is_smooth = task.settings.smooth == "ON" or (task.settings.smooth == "AUTO" and fewer)
     by_vertex = iter(_by_vertex(task, registered, is_smooth))
-    values = [_by_corner(registered, item) if item.of_corners else next(by_vertex) for item in task.items]
+    values = [
+        _by_corner(registered, item, is_smooth) if item.of_corners else next(by_vertex) for item in task.items
+    ]
     return Carried(registered, is_new, is_smooth, values)
 
 
@@ -272,9 +274,17 @@ def _offsets(task: Task, registered: Registered) -> offsets.Turn:
     return offsets.everywhere(couple.to_source[:3, :3] @ turn @ task.to_world[:3, :3])
 
 
-def _by_corner(registered: Registered, item: layers.Layer) -> tuple[Integers, Floats]:
-    """The corners of the source's mesh (k,) and their values (k, d)."""
-    values = bridge.pull(registered, elements.by_corners(registered.target, item.values), "corner")
+def _by_corner(registered: Registered, item: layers.Layer, is_smooth: bool) -> tuple[Integers, Floats]:
+    """The corners of the source's mesh (k,) and their values (k, d).
+
+    UV maps stay linear, as textures are on the target; so do colors that differ around a vertex.
+    """
+    given = elements.by_corners(registered.target, item.values)
+    points = elements.joined(registered.target, given) if is_smooth and item.kind == layers.COLOR else None
+    if points is not None:
+        smooth = weights.within(bridge.pull(registered, points, "vertex", smooth=True), item.values)
+        return elements.from_corners(registered.source, smooth[registered.source.faces])
+    values = bridge.pull(registered, given, "corner")
     if item.kind == layers.UV_MAP:
         values = seams.on_one_side(registered.source, registered.places, values)
     return elements.from_corners(registered.source, values)

@@ -57,7 +57,7 @@ class AUTHALIC_OT_transfer(Modal, Registering, bpy.types.Operator):
     )
     smooth: EnumProperty(
         name="Smooth",
-        description="Interpolate weights, colors of vertices and shape keys without the facets of the target",
+        description="Interpolate weights, colors and shape keys without the facets of the target",
         items=(
             ("AUTO", "Automatic", "Where the target has at most half as many faces"),
             ("ON", "On", "Smooth between the vertices of the target"),

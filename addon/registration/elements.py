@@ -6,6 +6,8 @@ import numpy as np
 from ..surfaces.arrays import Floats, Integers, Reals
 from .sides import Side
 
+_ROUNDING = 1e-5  # of colors in single precision
+
 
 def by_points(side: Side, values: Reals) -> Floats:
     """Values (n, d) of a mesh's vertices as those of a side's points (u, d).
@@ -28,6 +30,14 @@ def by_corners(side: Side, values: Reals) -> Floats:
     if not real.all():
         result[~real] = _means(side, result)[side.faces[~real]]
     return result
+
+
+def joined(side: Side, values: Floats) -> Floats | None:
+    """Values (m, 3, d) of a side's corners as those of its points (u, d); None if some differ at a point."""
+    corners, points = values.reshape(-1, values.shape[-1]), side.faces.ravel()
+    result = np.empty((len(side.points), values.shape[-1]))
+    result[points] = corners
+    return result if np.abs(result[points] - corners).max(initial=0.0) <= _ROUNDING else None
 
 
 def from_points(side: Side, values: Floats) -> tuple[Integers, Floats]:

@@ -14,7 +14,7 @@ from .registered import Registered
 from .settings import Settings
 from .sides import CurvePair, PointPair, Side
 
-_KEPT = 4
+_KEPT = 8
 
 
 def fingerprint(source: Side, target: Side, pairs: Sequence[PointPair] | Sequence[CurvePair]) -> bytes:

@@ -666,7 +666,8 @@ def fine_and_coarse() -> tuple[MeshObject, MeshObject]:
 
 def roughness(obj: MeshObject, values: Array) -> float:
     """The mean square of the differences to the mean of the neighbors, over the variance."""
-    ends = np.array([edge.vertices[:] for edge in obj.data.edges])
+    ends = np.empty((len(obj.data.edges), 2), np.int32)
+    obj.data.edges.foreach_get("vertices", ends.ravel())
     count = np.bincount(ends.ravel(), minlength=len(values))
     around = np.zeros(len(values))
     np.add.at(around, ends[:, 0], values[ends[:, 1]])
@@ -691,6 +692,31 @@ def test_weights_of_a_coarse_mesh_have_no_facets(capfd: pytest.CaptureFixture[st
     assert rough["ON"] < 0.7 * rough["OFF"]
     assert rough["AUTO"] == rough["ON"]
     assert capfd.readouterr().out.count("by landmark points, smoothly") == 2
+
+
+@pytest.mark.parametrize("domain", ["POINT", "CORNER"])
+def test_colors_of_a_coarse_mesh_have_no_facets(domain: str) -> None:
+    source, target = fine_and_coarse()
+    attribute = target.data.color_attributes.new("Paint", "FLOAT_COLOR", domain)
+    shade = 0.5 + 0.4 * np.sin(3 * pairs.positions(target))
+    if domain == "CORNER":
+        shade = shade[[loop.vertex_index for loop in target.data.loops]]
+    values = np.column_stack([shade, np.ones(len(shade))]).astype(np.float32)
+    attribute.data.foreach_set("color", values.ravel())
+    rough = []
+    for smooth in ("OFF", "ON"):
+        only("colour_attributes", smooth=smooth)
+        painted = colors(source, "Paint")
+        assert (painted.min(axis=0) >= values.min(axis=0) - 1e-6).all()
+        assert (painted.max(axis=0) <= values.max(axis=0) + 1e-6).all()
+        if domain == "CORNER":
+            vertex = [loop.vertex_index for loop in source.data.loops]
+            by_vertex = np.empty((len(source.data.vertices), 4))
+            by_vertex[vertex] = painted
+            np.testing.assert_allclose(by_vertex[vertex], painted, atol=1e-5)
+            painted = by_vertex
+        rough.append(roughness(source, painted[:, 2].astype(float)))
+    assert rough[1] < 0.7 * rough[0]
 
 
 def test_bones_share_out_weights_beside_other_groups() -> None:

@@ -361,8 +361,8 @@ _TOOLTIPS = {
     "Initial pull on the landmarks; it grows until they meet": (
         "Anfänglicher Zug an den Landmarken; er wächst, bis sie sich treffen"
     ),
-    "Interpolate weights, colors of vertices and shape keys without the facets of the target": (
-        "Gewichte, Vertexfarben und Shape-Keys ohne die Facetten des Ziels interpolieren"
+    "Interpolate weights, colors and shape keys without the facets of the target": (
+        "Gewichte, Farben und Shape-Keys ohne die Facetten des Ziels interpolieren"
     ),
     "Islands are not turned to be packed": "Inseln werden beim Packen nicht gedreht",
     "Islands lie level or upright in their minimal rectangle": (

@@ -150,9 +150,18 @@ def written(task: Task, carried_: Carried) -> Report:
         written=[(item.kind, item.name) for item in done],
         driven=driven,
         refusals=left + loose,
-        notes=[*warnings(registered), *notes],
+        notes=[*warnings(registered), *notes, *_rests(couple)],
         seconds=time.perf_counter() - task.started,
     )
+
+
+def _rests(couple: Couple) -> list[str]:
+    """What is not matched on either side."""
+    source, target = couple.sides
+    return [
+        *source.rest.in_words(source.name, "got nothing"),
+        *target.rest.in_words(target.name, "gave nothing"),
+    ]
 
 
 def _read(couple: Couple, settings: Settings) -> list[layers.Layer]:

@@ -462,6 +462,29 @@ def test_worst_pairs_are_named() -> None:
     assert part("jobs.register_report")._worst(registration) == ""
 
 
+def test_a_high_strain_is_warned_of(capfd: pytest.CaptureFixture[str]) -> None:
+    source, _ = balls()
+    register(angle_weight=0.7)
+    said = capfd.readouterr().out
+    assert re.search(r"strain 1\.\d\d \(\d+ % of the surface stretched over 2×", said)
+    assert "the strain is high" not in said
+    points = part("landmarks.points")
+    swapped = [pair.target_vertex for pair in source.authalic_landmarks]
+    names = [pair.name for pair in source.authalic_landmarks]
+    ends = [pair.source_vertex for pair in source.authalic_landmarks]
+    points.clear(source)
+    swapped[0], swapped[1] = swapped[1], swapped[0]
+    for name, first, second in zip(names, ends, swapped, strict=True):
+        points.add(source, first, second, name)
+    register(angle_weight=0.7)
+    said = capfd.readouterr().out
+    assert "Warning: " in said
+    assert re.search(
+        r"the strain is high: \d+ % of the surface is stretched or shrunk over 2×, most near", said
+    )
+    assert "check that pair, or add pairs" in said
+
+
 def test_the_larger_energy_is_reported() -> None:
     class Figures:
         def __init__(self, energy: float, folded: Any) -> None:

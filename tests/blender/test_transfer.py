@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import bases
 import bpy
 import meshes
 import numpy as np
@@ -747,6 +748,22 @@ def test_a_mesh_that_is_as_fine_is_taken_as_it_is(capfd: pytest.CaptureFixture[s
     add_group(target, "Group", [0.5])
     only("vertex_groups")
     assert "smoothly" not in capfd.readouterr().out
+
+
+def test_pieces_that_are_not_matched_are_named(capfd: pytest.CaptureFixture[str]) -> None:
+    target = bases.scan()
+    body, pieces = bases.base()
+    pairs.pair(body, target, bases.landmarks(body, target, pieces[0]))
+    add_group(target, "Front", (pairs.positions(target)[:, 0] > 0).astype(float))
+    add_key(target, "Taller", pairs.positions(target) * 0.1)
+    add_group(body, "Front", np.full(len(body.data.vertices), 0.25))
+    assert transfer() == {"FINISHED"}
+    assert "3 other pieces of Body got nothing" in capfd.readouterr().out
+    for piece in pieces[1:]:
+        np.testing.assert_array_equal(weights(body, "Front")[piece], 0.25)
+        np.testing.assert_array_equal(pairs.positions(body, "Taller")[piece], pairs.positions(body)[piece])
+    moved = np.linalg.norm(pairs.positions(body, "Taller") - pairs.positions(body), axis=1)
+    assert moved[pieces[0]].min() > 0.01
 
 
 # Several objects

@@ -6,7 +6,7 @@ import bpy
 from ..blender import shape_keys
 from ..blender.types import MeshObject
 from ..jobs.register import key_name
-from ..landmarks.objects import active_source
+from ..landmarks.objects import active_source, sources
 from ..operators import transfer, wrap_options
 from . import couple, curves
 
@@ -45,6 +45,9 @@ class AUTHALIC_PT_transfer(couple.Part, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator("authalic.transfer", icon="IMPORT")
+        receivers = sources(context)
+        if len(receivers) > 1:
+            layout.label(text=f"To {len(receivers)} selected objects", translate=False)
         layout.use_property_split = True
         layout.use_property_decorate = False
         transfer.draw_options(layout, context.window_manager.operator_properties_last("authalic.transfer"))

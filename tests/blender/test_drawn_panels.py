@@ -52,6 +52,15 @@ def test_parts_of_wrap_and_morph() -> None:
     assert closed == {"Landmark Curves", "Transfer"}
 
 
+def test_the_panel_says_how_many_objects_a_transfer_reaches() -> None:
+    source, target = couple()
+    assert not any("selected objects" in label for label in drawing.draw_panel("AUTHALIC_PT_transfer").labels)
+    other = pairs.twin(source, name="Other")
+    other.authalic_target = target
+    meshes.select(source, other, target)
+    assert "To 2 selected objects" in drawing.draw_panel("AUTHALIC_PT_transfer").labels
+
+
 def test_the_slider_of_the_morph_is_in_the_panel() -> None:
     source, target = pairing.heads()
     for vertex in (16, 18, 32):

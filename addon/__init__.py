@@ -28,6 +28,7 @@ from .operators import wrap_options
 from .overlay import curves as overlay_curves
 from .overlay import heat_map as overlay_heat_map
 from .overlay import points as overlay_points
+from .overlay import preview as overlay_preview
 from .overlay import seams as overlay_seams
 from .ui import couple as ui_couple
 from .ui import curves as ui_curves
@@ -48,6 +49,7 @@ _MODULES = (
     overlay_points,
     overlay_curves,
     overlay_seams,
+    overlay_preview,
     operator_redo,
     operator_unwrap,
     operator_live,

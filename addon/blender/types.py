@@ -25,6 +25,8 @@ if TYPE_CHECKING:
         source_mark: int
         target_mark: int
         waiting: int
+        is_soft: bool
+        weight: float
         error: float
 
     class LandmarkCurve(bpy.types.PropertyGroup):
@@ -37,11 +39,13 @@ if TYPE_CHECKING:
         """The settings of the last registration as they are saved; `method` is "" if there was none."""
 
         method: str
+        feature: str
 
     class Wrap(bpy.types.PropertyGroup):
         """The options of the next registration as they are saved."""
 
         method: str
+        energy: str
 
     class MeshObject(bpy.types.Object):
         """An object of type "MESH"."""

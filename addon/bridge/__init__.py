@@ -10,7 +10,7 @@ from .flips import fix_flips
 from .islands import unwrap
 from .known import forget
 from .placement import Placed, place
-from .registrations import followed, kept, local_similarities, morphed, pull, register
+from .registrations import Preview, followed, kept, local_similarities, morphed, pull, register
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
 from .settings import PlacementSettings, SeamSettings, UnwrapSettings
@@ -26,6 +26,7 @@ __all__ = (
     "Measurement",
     "Placed",
     "PlacementSettings",
+    "Preview",
     "Refusal",
     "SeamSettings",
     "Shortfall",

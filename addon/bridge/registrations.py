@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Registrations of two surfaces by landmark points or by landmark curves, with morphs and transfers."""
 
+import inspect
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
@@ -15,6 +16,7 @@ from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
 from ..registration.points import check_landmarks, domain
 from ..registration.problems import in_words
+from ..registration.pulls import Pulls
 from ..registration.registered import Registered, registered_by_points
 from ..registration.settings import Settings
 from ..registration.sides import CurvePair, PointPair, Side, boundaries, moved
@@ -23,6 +25,9 @@ from ..surfaces.suitability import Unsuitable
 from .patches import cut
 from .progress import Progress, keep_going
 from .solver import weight
+
+Preview = Callable[[Floats], None]
+"""Takes positions of the source's points (u, 3) on the target, in its coordinates, on the way there."""
 
 _registrations = Kept()
 
@@ -33,25 +38,30 @@ def register(
     pairs: Sequence[Any],
     settings: Settings,
     progress: Progress = keep_going,
+    *,
+    pulls: Pulls | None = None,
+    preview: Preview | None = None,
 ) -> Registered:
     """The `Registered` of two `Side`s by pairs (name, source vertex, target vertex).
 
     By curves the pairs are (name, source vertices, target vertices). A registration that is kept is not
-    computed again. When `progress` returns False, the result is the best so far. Raises `Unsuitable`, in the
-    words of an artist, if there is none.
+    computed again. `preview` is called on the way, where the library can. When `progress` returns False, the
+    result is the best so far. Raises `Unsuitable`, in the words of an artist, if there is none.
     """
     key, settings = fingerprint(source, target, pairs), settings.that_count
-    registered = _registrations.get(key, settings)
+    pulls = pulls or Pulls()
+    pulled = pulls.fingerprint(settings)
+    registered = _registrations.get(key, settings, pulled)
     if registered is None:
         make: Callable[..., Registered] = (
             _registered_by_points if settings.method == "POINTS" else _registered_by_curves
         )
         try:
-            registered = make(source, target, pairs, settings, progress)
+            registered = make((source, target), pairs, settings, pulls, _Watch(progress, preview))
         except (authalic.MeshError, authalic.SolverError) as error:
             raise Unsuitable(in_words(error, (source, target), pairs)) from error
-        _registrations.put(key, settings, registered)
-    _registrations.touch(key, settings)
+        _registrations.put(key, settings, pulled, registered)
+    _registrations.touch(key, settings, pulled)
     return registered
 
 
@@ -116,19 +126,44 @@ def local_similarities(registered: Registered) -> Floats:
     return np.asarray(registered.native.local_similarities())
 
 
+class _Watch:
+    """Who is told about a computation on its way."""
+
+    def __init__(self, progress: Progress, preview: Preview | None) -> None:
+        self._progress, self._preview = progress, preview
+
+    def of(self, function: Callable[..., Any]) -> dict[str, Any]:
+        """The arguments for a function of the library."""
+        watching: dict[str, Any] = {"progress": self._progress}
+        if self._preview is not None and "preview" in inspect.signature(function).parameters:
+            watching["preview"] = self._preview
+        return watching
+
+
+def _pulled(settings: Settings, pulls: Pulls) -> dict[str, Any]:
+    """Arguments of the library for what pulls the energy between the surfaces."""
+    options: dict[str, Any] = {"energy": "surface", "position_weight": settings.position_weight}
+    if settings.feature:
+        options["features"] = tuple(signal[:, None] for signal in pulls.features[settings.feature])
+        options["feature_weight"] = settings.feature_weight
+    return options
+
+
 def _registered_by_curves(
-    source: Side, target: Side, curves: Sequence[CurvePair], _settings: Settings, progress: Progress
+    sides: tuple[Side, Side], curves: Sequence[CurvePair], settings: Settings, pulls: Pulls, watch: _Watch
 ) -> Registered:
-    sides = source, target
     surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
+    options = _pulled(settings, pulls) if settings.is_pulled else {"energy": "harmonic"}
+    make: Any = authalic.register_hyperbolic
     for side, pieces in zip(sides, patches, strict=True):
         check_piece(side, pieces)
     paths = check_curves(sides, curves, [boundaries(pieces) for pieces in patches])
-    native = authalic.register_hyperbolic(
+    native = make(
         *surfaces,
         source_curves=paths[0],
         target_curves=paths[1],
-        progress=progress,
+        **options,
+        **watch.of(make),
     )
     return registered_by_curves(native, sides, curves)
 
@@ -146,20 +181,28 @@ def _in_library(side: Side) -> tuple[Any, list[authalic.Patch]]:
 
 
 def _registered_by_points(
-    source: Side, target: Side, pairs: Sequence[PointPair], settings: Settings, progress: Progress
+    sides: tuple[Side, Side], pairs: Sequence[PointPair], settings: Settings, pulls: Pulls, watch: _Watch
 ) -> Registered:
-    sides = source, target
     surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
     shape = domain(sides, patches, settings.domain)
     borders = [np.concatenate([np.empty(0, int), *boundaries(pieces)]) for pieces in patches]
     landmarks = check_landmarks(sides, pairs, shape, borders)
-    make = authalic.register_disks if shape == "DISK" else authalic.register_spheres
+    make: Any = authalic.register_disks if shape == "DISK" else authalic.register_spheres
     native = make(
         *surfaces,
         source_landmarks=landmarks[0],
         target_landmarks=landmarks[1],
         weight=settings.weight,
-        angle_weight=weight(settings.angle_weight),
-        progress=progress,
+        **(_of_shapes(settings, pulls) if settings.is_pulled else _of_areas(settings)),
+        **watch.of(make),
     )
     return registered_by_points(native, sides, shape, landmarks, [name for name, _, _ in pairs])
+
+
+def _of_areas(settings: Settings) -> dict[str, Any]:
+    return {"energy": "area", "angle_weight": weight(settings.angle_weight)}
+
+
+def _of_shapes(settings: Settings, pulls: Pulls) -> dict[str, Any]:
+    soft = {"weights": pulls.weights} if pulls.is_soft else {}
+    return {**_pulled(settings, pulls), **soft}

@@ -2,19 +2,22 @@
 """The two objects of a registration, read and checked."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
 
 from .. import messages
-from ..blender import editability, meshes, shape_keys, vertex_groups
+from ..blender import editability, meshes, shape_keys, signals, vertex_groups
 from ..blender.types import Landmark, LandmarkCurve, MeshObject, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import points as landmark_points
 from ..landmarks.curves import Curve
 from ..landmarks.objects import active_source, target_problem
 from ..landmarks.points import Pair
+from ..registration import elements
+from ..registration.pulls import Pulls
+from ..registration.settings import Settings
 from ..registration.sides import CurvePair, PointPair, Side, side
 from ..surfaces.arrays import Booleans, Floats, Path
 from ..surfaces.surface import Surface
@@ -32,7 +35,8 @@ class Couple:
     """The two objects, both surfaces as they were read and as sides of a registration, and the landmarks.
 
     `pairs` are those of points, `curves` those of curves, `problems` for either method what is wrong with its
-    pairs. `to_source` is the matrix (4, 4) from the world into the source's space.
+    pairs. `to_source` is the matrix (4, 4) from the world into the source's space, `pulls` what counts beside
+    exact landmarks.
     """
 
     source: MeshObject
@@ -43,6 +47,7 @@ class Couple:
     curves: list[CurvePair]
     problems: dict[str, list[str]]
     to_source: Floats
+    pulls: Pulls = field(default_factory=Pulls)
 
     def landmarks(self, method: str) -> list[PointPair] | list[CurvePair]:
         """The pairs that a method goes by. Raises `CannotRegister` where they are not sound."""
@@ -50,14 +55,29 @@ class Couple:
             raise CannotRegister(messages.listed(self.problems[method]))
         return self.pairs if method == "POINTS" else self.curves
 
+    def check_feature(self, settings: Settings) -> None:
+        """Raises `CannotRegister` unless both objects have the feature of some settings, and it varies."""
+        name = settings.that_count.feature
+        if not name:
+            return
+        if name not in self.pulls.features:
+            both = f"{self.source.name} and {self.target.name}"
+            raise CannotRegister(f'{both} do not both have the vertex group or attribute "{name}"')
+        for obj, signal in zip((self.source, self.target), self.pulls.features[name], strict=True):
+            if not np.isfinite(signal).all() or not np.ptp(signal) > 0:
+                raise CannotRegister(f'"{name}" is the same all over {obj.name}, and so tells nothing')
 
-def chosen(context: bpy.types.Context) -> Couple:
+
+def chosen(context: bpy.types.Context, feature: str = "") -> Couple:
     """The `Couple` of the active object and its target; raises `CannotRegister` where there is none."""
-    return of_source(active_source(context))
+    return of_source(active_source(context), feature)
 
 
-def of_source(source: MeshObject | None) -> Couple:
-    """The `Couple` of an object and its target; raises `CannotRegister` where there is none."""
+def of_source(source: MeshObject | None, feature: str = "") -> Couple:
+    """The `Couple` of an object and its target; raises `CannotRegister` where there is none.
+
+    It has the signal of a feature, and that of the last registration.
+    """
     if not is_mesh(source):
         raise CannotRegister("The active object is no mesh")
     target = source.authalic_target
@@ -80,6 +100,10 @@ def of_source(source: MeshObject | None) -> Couple:
         side(surfaces[1], matrices[1], _masked(target), on_target),
     )
     _check_rest(sides)
+    pulls = Pulls(
+        weights=[landmark.weight if landmark.is_soft else np.inf for landmark in source.authalic_landmarks],
+        features=_features((source, target), sides, {feature, source.authalic_registration.feature}),
+    )
     return Couple(
         source=source,
         target=target,
@@ -89,6 +113,7 @@ def of_source(source: MeshObject | None) -> Couple:
         curves=[(curve.name, curve.source.vertices, curve.target.vertices) for curve in curves],
         problems={"POINTS": _problems("Landmark", points), "CURVES": _problems("Curve", curves)},
         to_source=np.linalg.inv(matrices[0]),
+        pulls=pulls,
     )
 
 
@@ -106,6 +131,21 @@ def check_unchanged(couple: Couple) -> None:
 def pair_lists(source: MeshObject) -> tuple[list[Landmark], list[LandmarkCurve]]:
     """The lists of points and of curves."""
     return list(source.authalic_landmarks), list(source.authalic_landmark_curves)
+
+
+def _features(
+    objects: tuple[MeshObject, MeshObject], sides: tuple[Side, Side], names: set[str]
+) -> dict[str, tuple[Floats, Floats]]:
+    """The named signals at the points of both sides; those that both objects have."""
+    found = {}
+    for name in names - {""}:
+        on_source, on_target = (signals.read(obj, name) for obj in objects)
+        if on_source is not None and on_target is not None:
+            found[name] = (
+                elements.by_points(sides[0], on_source[:, None])[:, 0],
+                elements.by_points(sides[1], on_target[:, None])[:, 0],
+            )
+    return found
 
 
 def _masked(obj: MeshObject) -> Booleans:

@@ -2,6 +2,7 @@
 """A computation on a thread of its own, so that a window stays alive, and its end on the main thread."""
 
 import threading
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Generic, Self, TypeVar
 
@@ -12,25 +13,48 @@ Result = TypeVar("Result")
 
 
 _AS_IT_IS: Any = lambda computed: computed  # noqa: E731
+_NOTHING: Any = lambda: None  # noqa: E731
 
 
 class Cancelled(Exception):
     """The job was cancelled; nothing was written."""
 
 
+Item = TypeVar("Item")
+
+
+class Latest(Generic[Item]):
+    """What one thread puts and another takes: the newest alone, and each once."""
+
+    def __init__(self) -> None:
+        self._items: deque[Item] = deque(maxlen=1)
+
+    def put(self, item: Item) -> None:
+        self._items.append(item)
+
+    def take(self) -> Item | None:
+        """The newest item, or None where none has come since the last."""
+        try:
+            return self._items.pop()
+        except IndexError:
+            return None
+
+
 class Job(Generic[Computed, Result]):
     """Runs `work(progress)` on a thread, then `finish(result)` on the thread that calls `apply`.
 
     `work` must not touch bpy; `progress(fraction, message)` is False once the job is to end early, when what
-    `work` returns counts. It raises `Cancelled` once the job is cancelled.
+    `work` returns counts. It raises `Cancelled` once the job is cancelled. The main thread calls `preview()`:
+    what there is to show of the result by now, or None where there is nothing new.
     """
 
     def __init__(
         self,
         work: Callable[[Progress], Computed],
         finish: Callable[[Computed], Result] = _AS_IT_IS,
+        preview: Callable[[], Any] = _NOTHING,
     ) -> None:
-        self._work, self._finish = work, finish
+        self._work, self._finish, self.preview = work, finish, preview
         self._thread = threading.Thread(target=self._run, name="authalic", daemon=True)
         self._cancel, self._end = threading.Event(), threading.Event()
         self._state = (0.0, "Reading")

@@ -13,13 +13,15 @@ from ..blender import animation, editability, shape_keys, uv_maps
 from ..blender.appearance import deformers
 from ..blender.types import Landmark, LandmarkCurve, MeshObject
 from ..bridge.progress import Progress
+from ..overlay.preview import Preview
+from ..registration import elements, wires
 from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import Side, moved
-from ..surfaces.arrays import Floats
+from ..surfaces.arrays import Floats, Integers
 from . import last_registration, unjoined
 from .couple import CannotRegister, Couple, check_unchanged, chosen, pair_lists
-from .job import Job
+from .job import Job, Latest
 from .register_report import Report, warnings
 
 UV_MAP = "Authalic Registered"
@@ -45,15 +47,23 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
     started = time.perf_counter()
     if settings.frames is not None and settings.frames[0] >= settings.frames[1]:
         raise CannotRegister(f"The morph has to end after frame {settings.frames[0]}, where it starts")
-    couple = chosen(context)
+    couple = chosen(context, settings.registration.feature)
     couple.landmarks(settings.registration.method)
+    couple.check_feature(settings.registration)
     key = key_name(couple.target)
     reason = shape_keys.why_not(couple.source.data, key)
     if reason is not None:
         raise CannotRegister(f"{couple.source.name}: {reason}")
 
+    shown: Latest[Floats] = Latest()
+    edges = wires.between_polygons(couple.sides[0])
+
+    def preview() -> Preview | None:
+        images = shown.take()
+        return None if images is None else _preview(couple, images, edges, settings.align)
+
     def work(progress: Progress) -> tuple[Registered, Floats]:
-        registered = registration(couple, settings.registration, progress)
+        registered = registration(couple, settings.registration, progress, shown.put)
         return registered, _positions(couple, registered, settings.align)
 
     def finish(computed: tuple[Registered, Floats]) -> Report:
@@ -71,13 +81,26 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
         notes = [*warnings(registered), *notes, *_remarks(couple, key)]
         return Report(key, registered, notes, time.perf_counter() - started)
 
-    return Job(work, finish)
+    return Job(work, finish, preview=preview)
 
 
-def registration(couple: Couple, settings: RegistrationSettings, progress: Progress) -> Registered:
+def registration(
+    couple: Couple,
+    settings: RegistrationSettings,
+    progress: Progress,
+    preview: bridge.Preview | None = None,
+) -> Registered:
     """The registration of a `Couple`; raises `CannotRegister`."""
+    couple.check_feature(settings)
     try:
-        return bridge.register(*couple.sides, couple.landmarks(settings.method), settings, progress)
+        return bridge.register(
+            *couple.sides,
+            couple.landmarks(settings.method),
+            settings,
+            progress,
+            pulls=couple.pulls,
+            preview=preview,
+        )
     except bridge.UnjoinedSide as reason:
         unjoined.remember(reason.name)
         raise CannotRegister(str(reason)) from reason
@@ -88,6 +111,16 @@ def registration(couple: Couple, settings: RegistrationSettings, progress: Progr
 def key_name(target: MeshObject) -> str:
     """The name of the shape key that morphs into a target."""
     return (_PREFIX + target.name).encode()[:_NAME_BYTES].decode(errors="ignore")
+
+
+def _preview(couple: Couple, images: Floats, edges: Integers, align: bool) -> Preview:
+    """The source's points (u, 3) as they lie on the target by now, where the morph would end."""
+    source, target = couple.sides
+    if align:
+        turn = elements.turn_and_scale(images, source.points)
+        images = (images - images.mean(axis=0)) @ turn.T + source.points.mean(axis=0)
+    points = moved(images, source.matrix if align else target.matrix)
+    return Preview(couple.source.name, points, edges)
 
 
 def _positions(couple: Couple, registered: Registered, align: bool) -> Floats:

@@ -44,9 +44,10 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[Computed, Reports
     tasks: list[Task] = []
     failures: list[Exception] = []
     sources: list[MeshObject | None] = [*objects.sources(context)]
+    feature = settings.registration.feature if settings.registration is not None else ""
     for source in sources or [None]:
         try:
-            tasks.append(prepared(couple.of_source(source), settings))
+            tasks.append(prepared(couple.of_source(source, feature), settings))
         except (CannotRegister, targets.NothingToDo) as problem:
             failures.append(problem)
     if not tasks:

@@ -14,6 +14,11 @@ class AUTHALIC_PG_registration(bpy.types.PropertyGroup):
     domain: StringProperty(options={"HIDDEN"})
     weight: FloatProperty(options={"HIDDEN"})
     angle_weight: FloatProperty(options={"HIDDEN"})
+    # Files of earlier versions were registered by areas.
+    energy: StringProperty(options={"HIDDEN"}, default="AREA")
+    feature: StringProperty(options={"HIDDEN"})
+    feature_weight: FloatProperty(options={"HIDDEN"}, default=1.0)
+    position_weight: FloatProperty(options={"HIDDEN"})
 
 
 _PROPERTIES: Any = bpy.types.Object

@@ -65,7 +65,9 @@ def mirror(source: MeshObject, tolerance: float) -> Mirrored:
     The tolerance is a part of the size of each object. Raises `CannotPair` and then changes nothing.
     """
     check_target(source)
-    pairs = [pair for pair in landmark_points.pairs(source) if pair.problem is None]
+    listed = zip(source.authalic_landmarks, landmark_points.pairs(source), strict=True)
+    sound = [((landmark.is_soft, landmark.weight), pair) for landmark, pair in listed if pair.problem is None]
+    weights, pairs = [weight for weight, _ in sound], [pair for _, pair in sound]
     halves = (
         _Half(source, [pair.source_vertex for pair in pairs], tolerance),
         _Half(source.authalic_target, [pair.target_vertex for pair in pairs], tolerance),
@@ -81,17 +83,24 @@ def mirror(source: MeshObject, tolerance: float) -> Mirrored:
             result.there.append(pair.name)
         else:
             partners = [half.partners[number] for half in halves]
-            added = _add(source, partners, flipped if is_sided else "")
+            added = _add(source, partners, flipped if is_sided else "", weights[number])
             (result.added if added else result.missing).append(added or pair.name)
     return result
 
 
-def _add(source: MeshObject, vertices: Sequence[int | None], name: str) -> str | None:
-    """Adds a pair and returns its name, or None where a vertex is missing or has a landmark already."""
+def _add(
+    source: MeshObject, vertices: Sequence[int | None], name: str, weight: tuple[bool, float]
+) -> str | None:
+    """Adds a pair, soft or not and with a weight, and returns its name.
+
+    None where a vertex is missing or has a landmark already.
+    """
     source_vertex, target_vertex = vertices
     if source_vertex is None or target_vertex is None:
         return None
     try:
-        return landmark_points.add(source, source_vertex, target_vertex, name).name
+        added = landmark_points.add(source, source_vertex, target_vertex, name)
     except CannotPair:  # one of the two vertices is in a pair
         return None
+    added.is_soft, added.weight = weight
+    return added.name

@@ -10,7 +10,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import bpy
-from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from ..blender import editability
 from ..blender.types import Landmark, MeshObject, mesh_objects, owner_of
@@ -35,6 +42,10 @@ def _setter(side: str) -> Callable[[Landmark, int], None]:
     return lambda landmark, vertex: _bind(landmark, side, vertex)
 
 
+def _weighed_anew(landmark: Landmark, _context: bpy.types.Context) -> None:
+    landmark.error = -1.0
+
+
 class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
     """One pair. Its vertices have their current numbers, whatever was edited."""
 
@@ -55,6 +66,22 @@ class AUTHALIC_PG_landmark(bpy.types.PropertyGroup):
     target_mark: IntProperty(options={"HIDDEN"})
     # A vertex that was set before there was a target to find it on.
     waiting: IntProperty(default=NONE, options={"HIDDEN"})
+    is_soft: BoolProperty(
+        name="Soft",
+        description="The pair pulls by a weight, instead of meeting exactly. For shapes that are kept",
+        default=False,
+        options=set(),
+        update=_weighed_anew,
+    )
+    weight: FloatProperty(
+        name="Weight",
+        description="How strongly a soft pair pulls",
+        min=1e-3,
+        soft_max=1000.0,
+        default=10.0,
+        options=set(),
+        update=_weighed_anew,
+    )
     error: FloatProperty(
         name="Error",
         description="Error of the last registration at this pair, in percent of the target's size. "

@@ -21,11 +21,14 @@ def swap(source: MeshObject) -> MeshObject:
     _check_free(source, target)
     points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
     _check_sound([*points, *curves])
+    weights = [(landmark.is_soft, landmark.weight) for landmark in source.authalic_landmarks]
     landmark_points.clear(source)
     landmark_curves.clear(source)
     source.authalic_target = None
     target.authalic_target = source
     landmark_points.replace(target, [(pair.name, pair.target_vertex, pair.source_vertex) for pair in points])
+    for landmark, given in zip(target.authalic_landmarks, weights, strict=True):
+        landmark.is_soft, landmark.weight = given
     reversed_curves = [(curve.name, curve.target.vertices, curve.source.vertices) for curve in curves]
     landmark_curves.replace(target, reversed_curves)
     return target

@@ -28,7 +28,9 @@ class Listed(NamedTuple):
 
 
 POINTS = Listed(
-    "authalic_landmarks", "source_mark", ("name", "source_mark", "target_mark", "waiting", "error")
+    "authalic_landmarks",
+    "source_mark",
+    ("name", "source_mark", "target_mark", "waiting", "is_soft", "weight", "error"),
 )
 CURVES = Listed("authalic_landmark_curves", "mark", ("name", "mark", "error"))
 # All pairs seen of late: (list, session id of the source, mark) -> (place in the list, the pair's values).

@@ -58,6 +58,9 @@ class Modal(OperatorMixin):
                 self._leave(context)
                 return self._attempt(lambda: self._say(self._running.apply()))
             self._show(context, fraction, message)
+            preview = self._running.preview()
+            if preview is not None:
+                self.show_preview(context, preview)
         elif event.value == "PRESS" and event.type == "ESC":
             self._running.cancel()
         elif event.value == "PRESS" and event.type in {"RET", "NUMPAD_ENTER"}:
@@ -99,6 +102,7 @@ class Modal(OperatorMixin):
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         status_bar.clear(context)
+        self.show_preview(context, None)
 
     def _attempt(self, step: Callable[[], Status]) -> Status:
         """Runs a step; if the job is refused, reports the reason. Nothing has changed then."""
@@ -112,6 +116,9 @@ class Modal(OperatorMixin):
         except targets.NothingToDo as problem:
             self.report({"WARNING"}, str(problem))
         return {"CANCELLED"}
+
+    def show_preview(self, context: bpy.types.Context, preview: Any) -> None:
+        """Shows what there is of the result by now, or with None nothing any more."""
 
     def applied(self, report: Any) -> None:
         """What is left to do once the job has written its result."""

@@ -12,6 +12,8 @@ from ..jobs.couple import CannotRegister
 from ..jobs.job import Job
 from ..jobs.register_report import Report
 from ..landmarks.objects import active_source, target_problem
+from ..overlay import preview as overlay_preview
+from ..overlay.preview import Preview
 from . import wrap_options
 from .modal import Modal
 from .wrap_options import Wrapping
@@ -20,7 +22,7 @@ from .wrap_options import Wrapping
 class AUTHALIC_OT_register(Modal, Wrapping, bpy.types.Operator):
     """Add a shape key whose slider morphs the active object into its target, landmarks onto landmarks.
 
-    Points preserve areas, curves preserve the shapes of faces; no face folds over. The normals of both meshes
+    Shapes or areas are kept; no face folds over. The normals of both meshes
     must face the same way (with curves only if the meshes are open), or the map is mirrored: recalculate or
     flip the normals of one mesh"""
 
@@ -42,6 +44,9 @@ class AUTHALIC_OT_register(Modal, Wrapping, bpy.types.Operator):
         self._source = active_source(context)
         settings = registration.Settings(self.registration(), self.align, self.target_uv, self.frames)
         return registration.job(context, settings)
+
+    def show_preview(self, context: bpy.types.Context, preview: Preview | None) -> None:
+        overlay_preview.show(context, preview)
 
     def applied(self, _report: Report) -> None:
         wrap_options.keep(self, self._source)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """authalic.transfer: UV maps, vertex groups, colors and shape keys from the target to the active object."""
 
+from dataclasses import fields
 from typing import Any
 
 import bpy
@@ -12,10 +13,11 @@ from ..jobs import transfer
 from ..jobs.couple import CannotRegister
 from ..jobs.job import Job
 from ..landmarks.objects import sources, target_problem
+from ..registration.settings import Settings
 from .modal import Modal
 from .wrap_options import Registering
 
-_OF_REGISTRATION = ("method", "domain", "angle_weight", "weight")
+_OF_REGISTRATION = tuple(each.name for each in fields(Settings))
 _KINDS = ("uv_maps", "active_uv_only", "vertex_groups", "colour_attributes", "shape_keys")
 _WAYS = ("offsets", "smooth")
 

@@ -1,14 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The options of a registration and of its morph: properties of the operators, and kept on each source."""
 
+from dataclasses import fields
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from ..blender import editability
+from ..blender import editability, signals
 from ..blender.types import MeshObject
+from ..landmarks.objects import active_source
 from ..registration.settings import Settings
+
+
+def _common_signals(_owner: Any, context: bpy.types.Context, _text: str) -> list[str]:
+    """The names of signals that the active object and its target have."""
+    source = active_source(context)
+    target = source.authalic_target if source is not None else None
+    if source is None or target is None:
+        return []
+    there = set(signals.names(target))
+    return [name for name in signals.names(source) if name in there]
 
 
 class Registering:
@@ -21,13 +33,12 @@ class Registering:
             (
                 "POINTS",
                 "Landmark Points",
-                "Landmark points, as closely as faces can follow. Areas are preserved",
+                "Landmark points, as closely as faces can follow",
             ),
             (
                 "CURVES",
                 "Landmark Curves",
-                "Landmark curves and boundaries, exactly along their whole length. Shapes of faces are "
-                "preserved as well as possible",
+                "Landmark curves and boundaries, exactly along their whole length",
             ),
         ),
         default="POINTS",
@@ -41,6 +52,45 @@ class Registering:
             ("SPHERE", "Sphere", "Both surfaces must be closed"),
         ),
         default="AUTO",
+    )
+    energy: EnumProperty(
+        name="Energy",
+        description="What the map from surface to surface keeps",
+        items=(
+            (
+                "SURFACE",
+                "Keep Shapes",
+                "Areas and angles, measured between the two meshes: knees stay knees",
+            ),
+            (
+                "AREA",
+                "Keep Areas",
+                "Areas alone, as in the papers. By curves: the paper's harmonic map, which keeps angles",
+            ),
+        ),
+        default="SURFACE",
+    )
+    feature: StringProperty(
+        name="Feature",
+        description="A vertex group or attribute of both meshes that should agree: painted weights, "
+        "curvature, a depth. Empty for none",
+        default="",
+        search=_common_signals,
+    )
+    feature_weight: FloatProperty(
+        name="Feature Weight",
+        description="How strongly the feature pulls what agrees together",
+        min=0.0,
+        soft_max=10.0,
+        default=1.0,
+    )
+    position_weight: FloatProperty(
+        name="Like Poses",
+        description="For bodies in like poses: how strongly each vertex is pulled to its own position, after "
+        "the two are aligned. 0 for other poses",
+        min=0.0,
+        soft_max=10.0,
+        default=0.0,
     )
     angle_weight: FloatProperty(
         name="Angle Weight",
@@ -59,7 +109,7 @@ class Registering:
     )
 
     def registration(self) -> Settings:
-        return Settings(self.domain, self.weight, self.angle_weight, self.method)
+        return Settings(**{each.name: getattr(self, each.name) for each in fields(Settings)})
 
 
 class Wrapping(Registering):
@@ -115,10 +165,19 @@ def draw(layout: bpy.types.UILayout, properties: Any) -> None:
     """The options, in the redo panel and in the sidebar."""
     column = layout.column()
     column.prop(properties, "method")
-    of_points = ("domain", "angle_weight", "weight")
-    for name in (*(of_points if properties.method == "POINTS" else ()), "align"):
-        column.prop(properties, name, slider=name == "angle_weight")
-    for name in (*(("target_uv",) if properties.method == "POINTS" else ()), "animate"):
+    column.prop(properties, "energy")
+    is_by_points = properties.method == "POINTS"
+    if properties.energy == "SURFACE":
+        column.prop(properties, "feature")
+        if properties.feature:
+            column.prop(properties, "feature_weight")
+        column.prop(properties, "position_weight")
+    elif is_by_points:
+        column.prop(properties, "angle_weight", slider=True)
+        column.prop(properties, "weight")
+    for name in (*(("domain",) if is_by_points else ()), "align"):
+        column.prop(properties, name)
+    for name in (*(("target_uv",) if is_by_points else ()), "animate"):
         column.prop(properties, name)
     frames = column.column(align=True)
     frames.active = properties.animate

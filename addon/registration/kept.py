@@ -37,26 +37,29 @@ class Kept:
     """The last few registrations of the session."""
 
     def __init__(self) -> None:
-        self._found: OrderedDict[tuple[bytes, tuple[Any, ...]], Registered] = OrderedDict()
+        self._found: OrderedDict[tuple[bytes, tuple[Any, ...], bytes], Registered] = OrderedDict()
 
-    def get(self, key_: bytes, settings: Settings) -> Registered | None:
-        """The registration of these meshes with these settings, if it ran to its end, or None."""
-        registered = self._found.get((key_, astuple(settings)))
+    def get(self, key_: bytes, settings: Settings, pulls: bytes) -> Registered | None:
+        """The registration of these meshes with these settings, if it ran to its end, or None.
+
+        The hash `pulls` is that of what pulled it beside the landmarks.
+        """
+        registered = self._found.get((key_, astuple(settings), pulls))
         return registered if registered is not None and not registered.ended_early else None
 
     def latest(self, keys: Sequence[tuple[bytes, str]]) -> Registered | None:
         """The latest registration with one of these keys and methods, or None."""
-        for (key_, used), registered in reversed(self._found.items()):
+        for (key_, used, _), registered in reversed(self._found.items()):
             if (key_, Settings(*used).method) in keys:
                 return registered
         return None
 
-    def put(self, key_: bytes, settings: Settings, registered: Registered) -> None:
-        self._found.pop((key_, astuple(settings)), None)
-        self._found[key_, astuple(settings)] = registered
+    def put(self, key_: bytes, settings: Settings, pulls: bytes, registered: Registered) -> None:
+        self._found.pop((key_, astuple(settings), pulls), None)
+        self._found[key_, astuple(settings), pulls] = registered
         while len(self._found) > _KEPT:
             self._found.popitem(last=False)
 
-    def touch(self, key_: bytes, settings: Settings) -> None:
+    def touch(self, key_: bytes, settings: Settings, pulls: bytes) -> None:
         """Makes a registration the latest."""
-        self._found.move_to_end((key_, astuple(settings)))
+        self._found.move_to_end((key_, astuple(settings), pulls))

@@ -1,23 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a registration. Plain data, no bpy."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass
 class Settings:
-    """`method` is "POINTS" or "CURVES", and the others are of points alone.
+    """`method` is "POINTS" or "CURVES", `energy` is "SURFACE", which keeps shapes, or "AREA", the papers'.
 
     `domain` is "AUTO", "DISK" or "SPHERE", `weight` that of the landmarks at first, `angle_weight` the slider
-    from areas, 0, to angles, 1.
+    from areas, 0, to angles, 1, for "AREA": these three are of points alone. For "SURFACE" the signal named
+    `feature` and the positions pull, each by its weight.
     """
 
     domain: str = "AUTO"
     weight: float = 1.0
     angle_weight: float = 0.0
     method: str = "POINTS"
+    energy: str = "SURFACE"
+    feature: str = ""
+    feature_weight: float = 1.0
+    position_weight: float = 0.0
+
+    @property
+    def is_pulled(self) -> bool:
+        """Whether soft landmarks, features and positions count."""
+        return self.energy == "SURFACE"
 
     @property
     def that_count(self) -> "Settings":
         """These settings without the options that make no difference."""
-        return self if self.method == "POINTS" else Settings(method=self.method)
+        default = Settings()
+        settings = self
+        if self.method == "CURVES":
+            settings = replace(settings, domain=default.domain, weight=default.weight)
+        if self.method == "CURVES" or self.is_pulled:
+            settings = replace(settings, angle_weight=default.angle_weight)
+        if not self.is_pulled:
+            settings = replace(settings, feature="", position_weight=0.0)
+        return settings if settings.feature else replace(settings, feature_weight=default.feature_weight)

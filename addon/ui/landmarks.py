@@ -84,8 +84,21 @@ def _draw_landmarks(layout: bpy.types.UILayout, source: MeshObject, context: bpy
     row = layout.row(align=True)
     row.operator("authalic.landmark_jump", text="To Source", icon="VIEWZOOM").side = "SOURCE"
     row.operator("authalic.landmark_jump", text="To Target", icon="VIEWZOOM").side = "TARGET"
+    _draw_weight(layout, source)
     text.draw_error(layout, source.authalic_landmarks, source.authalic_landmark_index)
     text.draw_problems(layout, _lines(source), context)
+
+
+def _draw_weight(layout: bpy.types.UILayout, source: MeshObject) -> None:
+    """Whether the active pair meets exactly or only pulls; only where shapes are kept it may pull."""
+    wrap, index = source.authalic_wrap, source.authalic_landmark_index
+    if index < len(source.authalic_landmarks) and (wrap.method, wrap.energy) == ("POINTS", "SURFACE"):
+        landmark = source.authalic_landmarks[index]
+        row = layout.row()
+        row.prop(landmark, "is_soft")
+        weight = row.row()
+        weight.active = landmark.is_soft
+        weight.prop(landmark, "weight")
 
 
 def _lines(source: MeshObject) -> list[str]:

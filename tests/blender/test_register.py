@@ -603,5 +603,5 @@ def test_options_reach_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
     library = types.SimpleNamespace(**vars(registrations.authalic))
     library.register_spheres = stop
     monkeypatch.setattr(registrations, "authalic", library)
-    refusal("seen", weight=3.0, angle_weight=1.0)
+    refusal("seen", energy="AREA", weight=3.0, angle_weight=1.0)
     assert given["weight"] == 3.0 and given["angle_weight"] == pytest.approx(10**0.5)

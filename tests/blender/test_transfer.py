@@ -616,15 +616,15 @@ def test_nothing_to_transfer(capfd: pytest.CaptureFixture[str]) -> None:
 def test_the_registration_is_used_again(monkeypatch: pytest.MonkeyPatch) -> None:
     source, target = copies()
     random_uv(target, "Map")
-    bpy.ops.authalic.register(angle_weight=0.8)
+    bpy.ops.authalic.register(energy="AREA", angle_weight=0.8)
     registrations, made = part("bridge.registrations"), []
     register = registrations._registered_by_points
-    noted = lambda *given: made.append(given[3]) or register(*given)  # noqa: E731
+    noted = lambda *given: made.append(given[2]) or register(*given)  # noqa: E731
     monkeypatch.setattr(registrations, "_registered_by_points", noted)
     only("uv_maps")
-    only("uv_maps", angle_weight=0.8)
+    only("uv_maps", energy="AREA", angle_weight=0.8)
     assert not made
-    only("uv_maps", angle_weight=0.4)
+    only("uv_maps", energy="AREA", angle_weight=0.4)
     assert [settings.angle_weight for settings in made] == [pytest.approx(0.4)]
     part("landmarks.points").remove(source, 0)
     only("uv_maps")

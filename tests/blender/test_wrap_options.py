@@ -63,7 +63,7 @@ def test_the_panel_shows_and_changes_what_the_source_keeps() -> None:
     source, _ = couple()
     source.authalic_wrap.method = "CURVES"
     assert "angle_weight" not in drawing.draw_panel("AUTHALIC_PT_wrap").properties
-    source.authalic_wrap.method = "POINTS"
+    source.authalic_wrap.method, source.authalic_wrap.energy = "POINTS", "AREA"
     source.authalic_wrap.angle_weight = 0.5
     assert "angle_weight" in drawing.draw_panel("AUTHALIC_PT_wrap").properties
     assert started(source).angle_weight == 0.5

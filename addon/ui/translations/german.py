@@ -24,6 +24,12 @@ _NAMES = {
     "Area Tolerance": "Flächentoleranz",
     "Area ↔ Shape": "Fläche ↔ Form",
     "Drag Marker": "Marke ziehen",
+    "Energy": "Energie",
+    "Feature": "Merkmal",
+    "Feature Weight": "Gewicht des Merkmals",
+    "Keep Areas": "Flächeninhalte erhalten",
+    "Keep Shapes": "Formen erhalten",
+    "Like Poses": "Gleiche Posen",
     "Live": "Live",
     "Mirror Landmarks over X": "Landmarken über X spiegeln",
     "Mirror over X": "Über X spiegeln",
@@ -184,6 +190,7 @@ _NAMES = {
     "Update Last Operation": "Letzte Operation aktualisieren",
     "Use Subdivision Surface": "Unterteilungsoberfläche verwenden",
     "Vertex Groups": "Vertexgruppen",
+    "Weight": "Gewicht",
     "Which": "Welche",
     "With the Surface": "Mit der Oberfläche",
     "World": "Welt",
@@ -197,6 +204,31 @@ _NAMES = {
 }
 
 _TOOLTIPS = {
+    "A vertex group or attribute of both meshes that should agree: painted weights, curvature, a "
+    "depth. Empty for none": (
+        "Eine Vertexgruppe oder ein Attribut beider Meshes, das übereinstimmen soll: gemalte Gewichte, "
+        "Krümmung, eine Tiefe. Leer für keines"
+    ),
+    "Areas alone, as in the papers. By curves: the paper's harmonic map, which keeps angles": (
+        "Flächeninhalte allein, wie in den Veröffentlichungen. Bei Kurven: die harmonische Abbildung, "
+        "die Winkel erhält"
+    ),
+    "Areas and angles, measured between the two meshes: knees stay knees": (
+        "Flächeninhalte und Winkel, zwischen den beiden Meshes gemessen: Knie bleiben Knie"
+    ),
+    "For bodies in like poses: how strongly each vertex is pulled to its own position, after the two "
+    "are aligned. 0 for other poses": (
+        "Für Körper in gleichen Posen: wie stark jeder Vertex zu seiner eigenen Position gezogen wird, "
+        "nachdem beide ausgerichtet sind. 0 für andere Posen"
+    ),
+    "How strongly a soft pair pulls": "Wie stark ein weiches Paar zieht",
+    "How strongly the feature pulls what agrees together": (
+        "Wie stark das Merkmal zusammenzieht, was übereinstimmt"
+    ),
+    "Landmark curves and boundaries, exactly along their whole length": (
+        "Landmarkenkurven und Ränder, genau und auf ganzer Länge"
+    ),
+    "Landmark points, as closely as faces can follow": "Landmarken, so genau die Flächen folgen können",
     "Merge the vertices of open edges that lie on each other, so that faces are joined.\n\nUV maps, "
     "landmarks and shape keys stay": (
         "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
@@ -242,13 +274,13 @@ _TOOLTIPS = {
         "Objekt, das verformt wird, folgen sie ihrer Umgebung"
     ),
     "Add a shape key whose slider morphs the active object into its target, landmarks onto "
-    "landmarks.\n\nPoints preserve areas, curves preserve the shapes of faces; no face folds over. The "
-    "normals of both meshes\nmust face the same way (with curves only if the meshes are open), or the "
-    "map is mirrored: recalculate or\nflip the normals of one mesh": (
+    "landmarks.\n\nShapes or areas are kept; no face folds over. The normals of both meshes\nmust face "
+    "the same way (with curves only if the meshes are open), or the map is mirrored: recalculate or\nflip "
+    "the normals of one mesh": (
         "Einen Shape-Key hinzufügen, dessen Regler das aktive Objekt in sein Ziel verformt, Landmarken "
-        "auf Landmarken.\n\nPunkte erhalten Flächeninhalte, Kurven die Form der Flächen; keine klappt "
-        "um. Die Normalen beider Meshes müssen zur selben Seite zeigen (bei Kurven nur, wenn die Meshes "
-        "offen sind), sonst wird gespiegelt: Die Normalen eines Meshes neu berechnen oder umdrehen"
+        "auf Landmarken.\n\nFormen oder Flächeninhalte bleiben erhalten; keine Fläche klappt um. Die "
+        "Normalen beider Meshes müssen zur selben Seite zeigen (bei Kurven nur, wenn die Meshes offen "
+        "sind), sonst wird gespiegelt: Die Normalen eines Meshes neu berechnen oder umdrehen"
     ),
     'Add the shape key "Authalic Sphere", whose slider morphs a closed mesh into a sphere of the same '
     "area.\n\nEach face's area on the sphere is proportional to its area on the mesh; no face folds over": (
@@ -378,14 +410,6 @@ _TOOLTIPS = {
         "Formen auf dem aktiven Bild erhalten, wo es nicht quadratisch ist"
     ),
     "Key-frame the shape key from 0 to 1": "Den Shape-Key von 0 bis 1 mit Keyframes versehen",
-    "Landmark curves and boundaries, exactly along their whole length. Shapes of faces are preserved as "
-    "well as possible": (
-        "Landmarkenkurven und Ränder, genau und auf ganzer Länge. Formen der Flächen bleiben so gut wie "
-        "möglich erhalten"
-    ),
-    "Landmark points, as closely as faces can follow. Areas are preserved": (
-        "Landmarken, so genau die Flächen folgen können. Flächeninhalte bleiben erhalten"
-    ),
     "Leave empty to keep the name, or to use a number": "Leer, um den Namen zu behalten oder für eine Nummer",
     "Leave islands where their UVs are, at their size. Islands without UVs are packed": (
         "Inseln lassen, wo ihre UVs sind, in ihrer Größe. Inseln ohne UVs werden gepackt"
@@ -626,6 +650,9 @@ _TOOLTIPS = {
     "The pair of landmarks that is selected in the list": (
         "Das Landmarkenpaar, das in der Liste ausgewählt ist"
     ),
+    "The pair pulls by a weight, instead of meeting exactly. For shapes that are kept": (
+        "Das Paar zieht mit einem Gewicht, statt sich genau zu treffen. Für Formen, die erhalten bleiben"
+    ),
     "The path on the target": "Der Weg auf dem Ziel",
     "The path on this object": "Der Weg auf diesem Objekt",
     "The seams along which meshes are cut": "Die Nähte, entlang derer Meshes zerschnitten werden",
@@ -695,6 +722,7 @@ _TOOLTIPS = {
     "What gets the density": "Was die Dichte bekommt",
     "What is matched between the two meshes": "Was zwischen den beiden Meshes aufeinander gelegt wird",
     "What the colors stand for": "Wofür die Farben stehen",
+    "What the map from surface to surface keeps": "Was die Abbildung von Oberfläche zu Oberfläche erhält",
     "Where the target has at most half as many faces": "Wo das Ziel höchstens halb so viele Faces hat",
     "Whether seams mirror each other": "Ob Nähte einander spiegeln",
     "Whether several objects share the texture": "Ob mehrere Objekte sich die Textur teilen",

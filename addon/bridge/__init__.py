@@ -10,7 +10,7 @@ from .flips import fix_flips
 from .islands import unwrap
 from .known import forget
 from .placement import Placed, place
-from .registrations import Preview, followed, kept, local_similarities, morphed, pull, register
+from .registrations import Preview, followed, kept, local_similarities, morphed, pull, register, strain
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
 from .settings import PlacementSettings, SeamSettings, UnwrapSettings
@@ -49,5 +49,6 @@ __all__ = (
     "register",
     "set_threads",
     "sphere_shape",
+    "strain",
     "unwrap",
 )

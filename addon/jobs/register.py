@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import animation, editability, shape_keys, uv_maps
+from ..blender import animation, editability, meshes, shape_keys, uv_maps
 from ..blender.appearance import deformers
 from ..blender.types import Landmark, LandmarkCurve, MeshObject
 from ..bridge.progress import Progress
@@ -25,6 +25,7 @@ from .job import Job, Latest
 from .register_report import Report, warnings
 
 UV_MAP = "Authalic Registered"
+STRAIN = "authalic_strain"
 _PREFIX = "Morph → "
 _NAME_BYTES = 63
 
@@ -36,6 +37,7 @@ class Settings:
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
     align: bool = False
     target_uv: bool = False
+    strain_attribute: bool = False
     frames: tuple[int, int] | None = None
 
 
@@ -71,6 +73,9 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
         check_unchanged(couple)
         shape_keys.write(couple.source, key, positions)
         notes = _write_uv_maps(couple, registered, settings.target_uv)
+        if settings.strain_attribute:
+            strain = elements.by_polygons(registered.source, bridge.strain(registered))
+            meshes.write_face_attribute(couple.source.data, STRAIN, strain, registered.source.polygons)
         points, curves = pair_lists(couple.source)
         listed: Sequence[Landmark | LandmarkCurve] = curves if registered.by_curves else points
         for landmark, error in zip(listed, registered.errors.tolist(), strict=True):

@@ -42,7 +42,9 @@ class AUTHALIC_OT_register(Modal, Wrapping, bpy.types.Operator):
 
     def job(self, context: bpy.types.Context) -> Job[Any, Report]:
         self._source = active_source(context)
-        settings = registration.Settings(self.registration(), self.align, self.target_uv, self.frames)
+        settings = registration.Settings(
+            self.registration(), self.align, self.target_uv, self.strain_attribute, self.frames
+        )
         return registration.job(context, settings)
 
     def show_preview(self, context: bpy.types.Context, preview: Preview | None) -> None:

@@ -126,6 +126,12 @@ class Wrapping(Registering):
         description="For open meshes: write the map under which both coincide as a UV map of the target too",
         default=False,
     )
+    strain_attribute: BoolProperty(
+        name="Strain Attribute",
+        description="Store how far each face is stretched or shrunk, 1 for not at all, as the face attribute "
+        "authalic_strain",
+        default=False,
+    )
     animate: BoolProperty(name="Animate", description="Key-frame the shape key from 0 to 1", default=False)
     frame_start: IntProperty(
         name="Start Frame", description="The frame at which the shape key is 0", default=1
@@ -177,7 +183,7 @@ def draw(layout: bpy.types.UILayout, properties: Any) -> None:
         column.prop(properties, "weight")
     for name in (*(("domain",) if is_by_points else ()), "align"):
         column.prop(properties, name)
-    for name in (*(("target_uv",) if is_by_points else ()), "animate"):
+    for name in (*(("target_uv",) if is_by_points else ()), "strain_attribute", "animate"):
         column.prop(properties, name)
     frames = column.column(align=True)
     frames.active = properties.animate

@@ -56,6 +56,15 @@ def from_corners(side: Side, values: Floats) -> tuple[Integers, Floats]:
     return corners[real], values.reshape(-1, values.shape[-1])[first[real]]
 
 
+def by_polygons(side: Side, values: Floats) -> Floats:
+    """The means by area (p,) of values of a side's triangles (m,) on each polygon; 0 on others."""
+    a, b, c = np.moveaxis(side.points[side.faces], 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    sums = np.bincount(side.polygons, areas * values)
+    totals = np.bincount(side.polygons, areas)
+    return np.divide(sums, totals, out=np.zeros_like(sums), where=totals > 0)
+
+
 def turn_and_scale(points: Floats, images: Floats) -> Floats:
     """The linear part (3, 3) of the similarity that takes points (n, 3) to their images (n, 3)."""
     points, images = points - points.mean(axis=0), images - images.mean(axis=0)

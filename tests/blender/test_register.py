@@ -134,7 +134,7 @@ def test_another_surface(capfd: pytest.CaptureFixture[str]) -> None:
     assert re.search(
         rf"Info: {KEY} on Cube: 5 landmark pairs, landmark error mean 0\.\d+ % and max 0\.\d+ %", said
     )
-    assert re.search(r"of the size of Twin, 0 folds, strain 1\.\d\d \(.*\), .*\w+, \d+\.\d+ s", said)
+    assert re.search(r"of the size of Twin, 0 folds, strain 1\.\d\d \(.*\), .*[\w ]+, \d+\.\d+ s", said)
     assert not source.data.uv_layers.get(UV_MAP)
 
 
@@ -483,6 +483,36 @@ def test_a_high_strain_is_warned_of(capfd: pytest.CaptureFixture[str]) -> None:
         r"the strain is high: \d+ % of the surface is stretched or shrunk over 2×, most near", said
     )
     assert "check that pair, or add pairs" in said
+
+
+def test_the_strain_of_faces_is_stored_where_wanted() -> None:
+
+    source, target = onto_another_sphere()
+    register()
+    assert "authalic_strain" not in source.data.attributes
+    register(strain_attribute=True)
+    attribute: Any = source.data.attributes["authalic_strain"]
+    assert (attribute.domain, attribute.data_type) == ("FACE", "FLOAT")
+    strain = np.empty(len(source.data.polygons), np.float32)
+    attribute.data.foreach_get("value", strain)
+    assert strain.min() >= 1 - 1e-5
+    # by perimeters: a quad whose edges keep their lengths, both objects of one area, is little strained
+    corners = np.array([face.vertices[:] for face in source.data.polygons])
+    images = pairs.moved(pairs.positions(source, KEY), np.linalg.inv(target.matrix_world))
+    lengths = [edges(points[corners]) for points in (pairs.positions(source), images)]
+    scale = np.sqrt(area_of(source) / area_of(target))
+    ratios = scale * lengths[1] / lengths[0]
+    least = np.maximum(ratios.max(axis=1), 1 / ratios.min(axis=1))
+    assert (strain >= 0.25 * (least**2 + least**-2) - 1e-3).mean() > 0.95
+    assert np.corrcoef(np.log(strain), np.log(least))[0, 1] > 0.7
+
+
+def edges(quads: Any) -> Any:
+    return np.linalg.norm(quads - np.roll(quads, 1, axis=1), axis=2)
+
+
+def area_of(obj: MeshObject) -> float:
+    return sum(face.area for face in obj.data.polygons)
 
 
 def test_the_larger_energy_is_reported() -> None:

@@ -37,6 +37,7 @@ _NAMES = {
     "On": "Ein",
     "Shape": "Form",
     "Smooth": "Glatt",
+    "Strain Attribute": "Dehnung als Attribut",
     "Tolerance": "Toleranz",
     "Unwrap the active object again while options change": (
         "Das aktive Objekt erneut abwickeln, während sich Optionen ändern"
@@ -233,6 +234,11 @@ _TOOLTIPS = {
     "landmarks and shape keys stay": (
         "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
         "sind.\n\nUV-Maps, Landmarken und Shape-Keys bleiben"
+    ),
+    "Store how far each face is stretched or shrunk, 1 for not at all, as the face attribute "
+    "authalic_strain": (
+        "Wie stark jedes Face gedehnt oder gestaucht wird, 1 für gar nicht, als Face-Attribut "
+        "authalic_strain speichern"
     ),
     "The object whose vertices are merged": "Das Objekt, dessen Vertices verschmolzen werden",
     "The object that is wrapped": "Das Objekt, das verformt wird",

@@ -32,6 +32,9 @@ Preview = Callable[[Floats], None]
 _registrations = Kept()
 _MOST_STRAIN = 1e6  # in place of infinite ones
 
+# The largest size of pieces that keep their shapes, as parts of that of the source.
+_RIGID_SIZE = {"AUTO": 0.25, "RIGID": np.inf, "BEND": 0.0}
+
 
 def register(
     source: Side,
@@ -94,15 +97,17 @@ def morphed(registered: Registered, source: Side, target: Side, align: bool) -> 
     return moved(np.asarray(over), source.matrix)
 
 
-def followed(registered: Registered, source: Side, target: Side, align: bool) -> Floats:
+def followed(registered: Registered, source: Side, target: Side, align: bool, how: str) -> Floats:
     """The places in the world of what the source leaves out, (k, 3), which follows its surroundings.
 
-    As `morphed` has the places of the source's points.
+    As `morphed` has the places of the source's points. Pieces keep their shapes or bend, as `how` says.
     """
     rest = source.rest
     if not len(rest.vertices):
         return rest.points
-    places = np.asarray(registered.native.follow(rest.points, pieces=rest.pieces))
+    places = np.asarray(
+        registered.native.follow(rest.points, pieces=rest.pieces, rigid_size=_RIGID_SIZE[how])
+    )
     if not align:
         return moved(places, target.matrix)
     positions = np.asarray(registered.native.positions)

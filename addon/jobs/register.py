@@ -32,13 +32,17 @@ _NAME_BYTES = 63
 
 @dataclass
 class Settings:
-    """All options; `frames` (first, last) of the key-framed morph, or None."""
+    """All options; `frames` (first, last) of the key-framed morph, or None.
+
+    `followers` says how pieces that are not matched follow: "RIGID", "BEND", or by their size, "AUTO".
+    """
 
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
     align: bool = False
     target_uv: bool = False
     strain_attribute: bool = False
     frames: tuple[int, int] | None = None
+    followers: str = "AUTO"
 
 
 def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered, Floats], Report]:
@@ -66,7 +70,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
 
     def work(progress: Progress) -> tuple[Registered, Floats]:
         registered = registration(couple, settings.registration, progress, shown.put)
-        return registered, _positions(couple, registered, settings.align)
+        return registered, _positions(couple, registered, settings)
 
     def finish(computed: tuple[Registered, Floats]) -> Report:
         registered, positions = computed
@@ -84,7 +88,7 @@ def job(context: bpy.types.Context, settings: Settings) -> Job[tuple[Registered,
         if settings.frames is not None:
             animation.rise(couple.source, key, *settings.frames)
         notes = [*warnings(registered), *notes, *_remarks(couple, key)]
-        return Report(key, registered, notes, time.perf_counter() - started)
+        return Report(key, registered, notes, time.perf_counter() - started, _facts(couple, registered))
 
     return Job(work, finish, preview=preview)
 
@@ -128,12 +132,12 @@ def _preview(couple: Couple, images: Floats, edges: Integers, align: bool) -> Pr
     return Preview(couple.source.name, points, edges)
 
 
-def _positions(couple: Couple, registered: Registered, align: bool) -> Floats:
+def _positions(couple: Couple, registered: Registered, settings: Settings) -> Floats:
     """All vertices (n, 3) of the source's mesh where the morph ends; loose ones stay."""
     positions, vertices = couple.surfaces[0].positions.copy(), registered.source.vertices
-    images = moved(bridge.morphed(registered, *couple.sides, align), couple.to_source)
+    images = moved(bridge.morphed(registered, *couple.sides, settings.align), couple.to_source)
     positions[vertices[vertices >= 0]] = images[vertices >= 0]
-    following = bridge.followed(registered, *couple.sides, align)
+    following = bridge.followed(registered, *couple.sides, settings.align, settings.followers)
     positions[couple.sides[0].rest.vertices] = moved(following, couple.to_source)
     if not np.isfinite(positions.astype(np.float32)).all():
         raise CannotRegister("The morph is not finite; nothing was changed")
@@ -165,15 +169,20 @@ def _write_uv_map(obj: MeshObject, side: Side, plane: Floats) -> str | None:
     return None
 
 
+def _facts(couple: Couple, registered: Registered) -> list[str]:
+    """What came of other pieces, masks and holes."""
+    source, target = couple.sides
+    followed, left = (
+        source.rest.in_words(source.name, "followed"),
+        target.rest.in_words(target.name, "left out"),
+    )
+    return [*registered.filled, *followed, *left]
+
+
 def _remarks(couple: Couple, key: str) -> list[str]:
-    """What was not matched, which other objects are affected, which modifiers and shape keys were ignored."""
+    """Which other objects are affected, and which modifiers and shape keys were ignored."""
     users = couple.source.data.users
-    notes = [
-        *couple.sides[0].rest.in_words(couple.source.name, "followed"),
-        *couple.sides[1].rest.in_words(couple.target.name, "left out"),
-    ]
-    if users > 1:
-        notes.append(f"{couple.source.name} shares its mesh, all {users} users have the key")
+    notes = [f"{couple.source.name} shares its mesh, all {users} users have the key"] if users > 1 else []
     for obj in (couple.source, couple.target):
         if ignored := deformers(obj, but=key if obj == couple.source else None):
             verb, them = ("was", "it") if len(ignored) == 1 else ("were", "them")

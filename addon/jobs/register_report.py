@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The report of a registration."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .. import messages
 from ..registration.registered import Registered
@@ -12,12 +12,16 @@ _MIRRORED = 3  # so many landmarks on a disk tell front from back
 
 @dataclass
 class Report:
-    """The name of the shape key that was written, and figures of the registration."""
+    """The name of the shape key that was written, and figures of the registration.
+
+    `facts` say what came of other pieces, masks and holes; `notes` what should be looked at.
+    """
 
     key: str
     registered: Registered
     notes: list[str]
     seconds: float
+    facts: list[str] = field(default_factory=list)
     refusals: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -25,7 +29,7 @@ class Report:
         figures = _figures_of_curves(registered) if registered.by_curves else _figures_of_points(registered)
         ending = [registered.status.replace("_", " "), f"{self.seconds:.2f} s"]
         line = ", ".join([*figures, *ending])
-        return "; ".join([f"{self.key} on {registered.source.name}: {line}", *self.notes])
+        return "; ".join([f"{self.key} on {registered.source.name}: {line}", *self.facts, *self.notes])
 
 
 def warnings(registered: Registered) -> list[str]:

@@ -27,6 +27,11 @@ def forget(obj: MeshObject) -> None:
     _names.discard(obj.name)
 
 
+def forget_all() -> None:
+    """Forgets all, as where another file is opened."""
+    _names.clear()
+
+
 def merge(obj: MeshObject) -> int:
     """Merges the vertices of open edges that lie on each other; returns how many are gone.
 

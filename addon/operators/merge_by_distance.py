@@ -2,6 +2,7 @@
 """authalic.merge_by_distance: joins faces of the object or its target where vertices lie on each other."""
 
 import bpy
+from bpy.app.handlers import persistent
 from bpy.props import EnumProperty
 
 from .. import messages
@@ -51,9 +52,16 @@ class AUTHALIC_OT_merge_by_distance(bpy.types.Operator):
         return {"FINISHED"}
 
 
+@persistent  # type: ignore[untyped-decorator]
+def _loaded(*_: object) -> None:
+    unjoined.forget_all()
+
+
 def register() -> None:
     bpy.utils.register_class(AUTHALIC_OT_merge_by_distance)
+    bpy.app.handlers.load_post.append(_loaded)
 
 
 def unregister() -> None:
+    bpy.app.handlers.load_post.remove(_loaded)
     bpy.utils.unregister_class(AUTHALIC_OT_merge_by_distance)

@@ -43,7 +43,12 @@ class AUTHALIC_OT_register(Modal, Wrapping, bpy.types.Operator):
     def job(self, context: bpy.types.Context) -> Job[Any, Report]:
         self._source = active_source(context)
         settings = registration.Settings(
-            self.registration(), self.align, self.target_uv, self.strain_attribute, self.frames
+            registration=self.registration(),
+            align=self.align,
+            target_uv=self.target_uv,
+            strain_attribute=self.strain_attribute,
+            frames=self.frames,
+            followers=self.followers,
         )
         return registration.job(context, settings)
 

@@ -121,6 +121,16 @@ class Wrapping(Registering):
         "while it morphs. If off, the morph ends where the target is",
         default=False,
     )
+    followers: EnumProperty(
+        name="Other Pieces",
+        description="How pieces that are not matched, such as eyes, follow the surface around them",
+        items=(
+            ("AUTO", "Automatic", "Small pieces keep their shapes, large ones bend"),
+            ("RIGID", "Keep Shapes", "Pieces are moved, rotated and scaled as a whole"),
+            ("BEND", "Bend", "Pieces bend with the surface, as shoes and gloves should"),
+        ),
+        default="AUTO",
+    )
     target_uv: BoolProperty(
         name="UV Map on Target",
         description="For open meshes: write the map under which both coincide as a UV map of the target too",
@@ -181,7 +191,7 @@ def draw(layout: bpy.types.UILayout, properties: Any) -> None:
     elif is_by_points:
         column.prop(properties, "angle_weight", slider=True)
         column.prop(properties, "weight")
-    for name in (*(("domain",) if is_by_points else ()), "align"):
+    for name in (*(("domain",) if is_by_points else ()), "align", "followers"):
         column.prop(properties, name)
     for name in (*(("target_uv",) if is_by_points else ()), "strain_attribute", "animate"):
         column.prop(properties, name)

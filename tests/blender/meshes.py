@@ -115,6 +115,16 @@ def closed_suzanne(levels: int = 1) -> MeshObject:
     return subdivided(obj, levels)
 
 
+def remove(obj: MeshObject, vertices: Sequence[int]) -> None:
+    """Deletes some vertices of an object, with their faces."""
+    mesh = bmesh.new()
+    mesh.from_mesh(obj.data)
+    mesh.verts.ensure_lookup_table()
+    bmesh.ops.delete(mesh, geom=[mesh.verts[vertex] for vertex in vertices], context="VERTS")
+    mesh.to_mesh(obj.data)
+    mesh.free()
+
+
 def bumpy(obj: MeshObject, size: float = 0.3) -> MeshObject:
     """The object with smooth bumps all over."""
     position = np.array([vertex.co for vertex in obj.data.vertices])

@@ -57,6 +57,33 @@ def test_unjoined_faces_are_told_and_merged(side: str) -> None:
     np.testing.assert_allclose(after, pairs.positions(source), atol=1e-4)
 
 
+def test_a_slit_in_a_closed_mesh_is_told() -> None:
+    """It is no hole to be filled."""
+    source = meshes.seam_sphere()
+    source.name = "Ball"
+    target = pairs.twin(source)
+    edit = bmesh.new()
+    edit.from_mesh(source.data)
+    bmesh.ops.split_edges(edit, edges=[edge for edge in edit.edges if edge.seam])
+    edit.to_mesh(source.data)
+    edit.free()
+    ends = zip(pairs.nearest(source, CORNERS), pairs.nearest(target, CORNERS), strict=True)
+    pairs.pair(source, target, {str(k): both for k, both in enumerate(ends)})
+    with pytest.raises(RuntimeError, match="Ball has 22 vertices that lie on each other, but are not joined"):
+        AUTHALIC.register()
+    assert AUTHALIC.merge_by_distance() == {"FINISHED"} and AUTHALIC.register() == {"FINISHED"}
+
+
+def test_another_file_has_no_button() -> None:
+    balls("SOURCE")
+    with pytest.raises(RuntimeError, match="lie on each other"):
+        AUTHALIC.register()
+    assert buttons()
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    meshes.icosphere(1)
+    assert bpy.context.object.name == "Icosphere" and not buttons()
+
+
 def test_uvs_and_shape_keys_stay_and_undo_works() -> None:
     source, _ = balls("SOURCE")
     uv = np.random.default_rng(1).random((len(source.data.loops), 2)).astype(np.float32)

@@ -62,7 +62,7 @@ def test_a_base_mesh_of_four_pieces_is_wrapped_onto_a_scan(
     assert register() == {"FINISHED"}
     followers = len(before) - pieces[0].stop
     said = capfd.readouterr().out
-    assert f"3 other pieces of Body followed ({followers} vertices)" in said
+    assert f"3 other pieces of Body followed ({followers} vertices)" in said and said.startswith("Info: ")
     assert ("4 holes of Body were filled for the map" in said) == holes
     after = pairs.positions(body, ONTO_SCAN)
     assert np.isfinite(after).all() and (pairs.positions(body) == before).all()
@@ -148,6 +148,19 @@ def test_large_pieces_bend_with_the_body() -> None:
     assert (bases.windings(dress, target) < 0.1).all()
 
 
+@pytest.mark.parametrize(("followers", "is_round"), [("AUTO", True), ("RIGID", True), ("BEND", False)])
+def test_pieces_bend_or_keep_their_shapes(followers: str, is_round: bool) -> None:
+    """A small ball in one that becomes an ellipsoid."""
+    ball = spheres.icosphere(3)
+    small = spheres.icosphere(1)
+    source = meshes.add(*meshes.together(ball, (small[0] * 0.2, small[1])), "Two")
+    target = meshes.add(ball[0] * [1, 1, 1.5], ball[1], "Twin")
+    pairs.pair(source, target, pairs.nearest(target, np.concatenate([np.eye(3), -np.eye(3)]) * [1, 1, 1.5]))
+    assert register(followers=followers) == {"FINISHED"}
+    apart = bases.best_ball(pairs.positions(source, KEY)[len(ball[0]) :])[2]
+    assert (apart < 1e-5) == is_round
+
+
 def masked(obj: MeshObject, vertices: Any, name: str = "Mask", weight: float = 1.0) -> None:
     group = obj.vertex_groups.new(name=name)
     group.add([int(vertex) for vertex in vertices], weight, "REPLACE")
@@ -205,3 +218,22 @@ def test_a_mask_whose_group_is_gone_is_refused() -> None:
     masked(target, [0])
     target.vertex_groups.clear()
     refusal('Twin has no vertex group "Mask"; choose its mask again')
+
+
+def test_a_transfer_goes_to_the_matched_piece_alone() -> None:
+    source, target = moons()
+    count = len(source.data.vertices)
+    group = target.vertex_groups.new(name="Height")
+    heights = pairs.positions(target)[:, 2]
+    for vertex, height in enumerate(heights.tolist()):
+        group.add([vertex], 0.5 + 0.2 * height, "REPLACE")
+    vertices = np.array([loop.vertex_index for loop in target.data.loops])
+    uv = pairs.positions(target)[vertices, :2]
+    target.data.uv_layers.new(name="Map")
+    meshes.set_uv(target, uv, "Map")
+    assert bpy.ops.authalic.transfer() == {"FINISHED"}
+    weights = part("blender.vertex_groups").weights(source, "Height")
+    np.testing.assert_allclose(weights[:-84], 0.5 + 0.2 * heights[:-84], atol=1e-3)
+    assert (weights[-84:] == 0).all() and len(weights) == count
+    corners = vertices < count - 84
+    np.testing.assert_allclose(meshes.uv(source, "Map")[corners], uv[corners], atol=1e-3)

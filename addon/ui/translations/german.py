@@ -168,6 +168,8 @@ _NAMES = {
     "Start Frame": "Erstes Bild",
     "Mask": "Maske",
     "Merge by Distance": "Nach Abstand verschmelzen",
+    "Bend": "Biegen",
+    "Other Pieces": "Andere Teile",
     "Swap": "Tauschen",
     "Swap Source and Target": "Quelle und Ziel tauschen",
     "Symmetry": "Symmetrie",
@@ -230,6 +232,14 @@ _TOOLTIPS = {
         "Landmarkenkurven und Ränder, genau und auf ganzer Länge"
     ),
     "Landmark points, as closely as faces can follow": "Landmarken, so genau die Flächen folgen können",
+    "How pieces that are not matched, such as eyes, follow the surface around them": (
+        "Wie Teile, die nicht zugeordnet werden, etwa Augen und Kleidung, der Oberfläche um sie folgen"
+    ),
+    "Pieces are moved, rotated and scaled as a whole": "Teile werden als Ganzes bewegt, gedreht und skaliert",
+    "Pieces bend with the surface, as shoes and gloves should": (
+        "Teile biegen sich mit der Oberfläche, wie es Schuhe und Handschuhe sollen"
+    ),
+    "Small pieces keep their shapes, large ones bend": "Kleine Teile behalten ihre Form, große biegen sich",
     "Merge the vertices of open edges that lie on each other, so that faces are joined.\n\nUV maps, "
     "landmarks and shape keys stay": (
         "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
@@ -248,6 +258,10 @@ _TOOLTIPS = {
     ),
     "A disk for surfaces with a boundary, a sphere for closed ones": (
         "Eine Scheibe für Oberflächen mit Rand, eine Kugel für geschlossene"
+    ),
+    "Both surfaces must be closed": "Beide Oberflächen müssen geschlossen sein",
+    "Both surfaces must have one boundary, and normals on the same side": (
+        "Beide Oberflächen müssen einen Rand haben und Normalen auf derselben Seite"
     ),
     "A rectangle as long as the equator. The poles are its upper and lower sides; faces at the seam "
     "extend beyond the right side": (
@@ -338,10 +352,6 @@ _TOOLTIPS = {
         "Wie die Oberfläche um jeden Vertex gedreht und skaliert ist"
     ),
     "Better shapes, areas nearly as even": "Bessere Formen, Flächeninhalte fast so gleichmäßig",
-    "Both surfaces must be closed": "Beide Oberflächen müssen geschlossen sein",
-    "Both surfaces must have one boundary, and normals on the same side": (
-        "Beide Oberflächen müssen einen Rand haben und Normalen auf derselben Seite"
-    ),
     "By face corner; seams stay seams": "Je Flächenecke; Nähte bleiben Nähte",
     "Clear the seams that are marked, and find all of them anew": (
         "Die markierten Nähte löschen und alle neu suchen"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Authalic: UVs that preserve areas, and morphs between meshes."""
 
-from .blender import scene_changes
+from .blender import places, scene_changes
 from .landmarks import curves as landmark_curves
 from .landmarks import last_registration, mask
 from .landmarks import points as landmark_points
@@ -41,6 +41,7 @@ from .ui import unwrap as ui_unwrap
 # All modules that register something with Blender, in this order; they unregister in reverse.
 _MODULES = (
     scene_changes,
+    places,
     landmark_curves,
     landmark_points,
     last_registration,

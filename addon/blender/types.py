@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Types of Blender's data with the properties that the extension adds; the type checker alone knows these."""
 
-from typing import TYPE_CHECKING, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 import bpy
 
@@ -59,6 +59,8 @@ if TYPE_CHECKING:
         authalic_curve_key: str
         authalic_registration: Registration
         authalic_wrap: Wrap
+        authalic_home: Any
+        authalic_beside: Any
         authalic_mask: str
 
     Status = set[OperatorReturnItems]

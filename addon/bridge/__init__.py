@@ -10,7 +10,17 @@ from .flips import fix_flips
 from .islands import unwrap
 from .known import forget
 from .placement import Placed, place
-from .registrations import Preview, followed, kept, local_similarities, morphed, pull, register, strain
+from .registrations import (
+    MirroredCurves,
+    Preview,
+    followed,
+    kept,
+    local_similarities,
+    morphed,
+    pull,
+    register,
+    strain,
+)
 from .results import Figures, FoundSeams, Island, Mapping, Measurement, Refusal, SphereShape, Unflipped
 from .seams import find_seams
 from .settings import PlacementSettings, SeamSettings, UnwrapSettings
@@ -24,6 +34,7 @@ __all__ = (
     "Island",
     "Mapping",
     "Measurement",
+    "MirroredCurves",
     "Placed",
     "PlacementSettings",
     "Preview",

@@ -36,6 +36,10 @@ _MOST_STRAIN = 1e6  # in place of infinite ones
 _RIGID_SIZE = {"AUTO": 0.25, "RIGID": np.inf, "BEND": 0.0}
 
 
+class MirroredCurves(Unsuitable):
+    """The curves fit far better when one surface is mirrored, or when all open ones are reversed."""
+
+
 def register(
     source: Side,
     target: Side,
@@ -63,7 +67,8 @@ def register(
         try:
             registered = make((source, target), pairs, settings, pulls, _Watch(progress, preview))
         except (authalic.MeshError, authalic.SolverError) as error:
-            raise Unsuitable(in_words(error, (source, target), pairs)) from error
+            kind = MirroredCurves if error.kind == "mirrored" else Unsuitable
+            raise kind(in_words(error, (source, target), pairs)) from error
         _registrations.put(key, settings, pulled, registered)
     _registrations.touch(key, settings, pulled)
     return registered

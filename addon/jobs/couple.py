@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import messages
-from ..blender import editability, meshes, shape_keys, signals, vertex_groups
+from ..blender import editability, meshes, places, shape_keys, signals, vertex_groups
 from ..blender.types import Landmark, LandmarkCurve, MeshObject, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import points as landmark_points
@@ -89,7 +89,7 @@ def of_source(source: MeshObject | None, feature: str = "") -> Couple:
     if reason := editability.why_not_mesh(source):
         raise CannotRegister(f"{source.name}: {reason}")
     surfaces = shape_keys.read(source), shape_keys.read(target)
-    matrices = np.array(source.matrix_world), np.array(target.matrix_world)
+    matrices = np.array(source.matrix_world), np.array(places.home(target))
     points, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
     on_source: list[Path] = [(pair.source_vertex,) for pair in points]
     on_target: list[Path] = [(pair.target_vertex,) for pair in points]

@@ -19,7 +19,7 @@ from ..registration.registered import Registered
 from ..registration.settings import Settings as RegistrationSettings
 from ..registration.sides import Side, moved
 from ..surfaces.arrays import Floats, Integers
-from . import last_registration, unjoined
+from . import last_registration, reversed_curves, unjoined
 from .couple import CannotRegister, Couple, check_unchanged, chosen, pair_lists
 from .job import Job, Latest
 from .register_report import Report, warnings
@@ -102,7 +102,7 @@ def registration(
     """The registration of a `Couple`; raises `CannotRegister`."""
     couple.check_feature(settings)
     try:
-        return bridge.register(
+        registered = bridge.register(
             *couple.sides,
             couple.landmarks(settings.method),
             settings,
@@ -110,11 +110,17 @@ def registration(
             pulls=couple.pulls,
             preview=preview,
         )
+    except bridge.MirroredCurves as reason:
+        reversed_curves.remember(couple.sides[0].name, couple.curves)
+        raise CannotRegister(str(reason)) from reason
     except bridge.UnjoinedSide as reason:
         unjoined.remember(reason.name)
         raise CannotRegister(str(reason)) from reason
     except bridge.Unsuitable as reason:
         raise CannotRegister(str(reason)) from reason
+    if registered.by_curves:
+        reversed_curves.remember(couple.sides[0].name, [couple.curves[k] for k in registered.backward])
+    return registered
 
 
 def key_name(target: MeshObject) -> str:

@@ -7,7 +7,7 @@ from ..blender import places
 from ..blender.types import MeshObject, Status
 from ..landmarks import swapping
 from ..landmarks.objects import active_source, target_problem
-from . import poll
+from . import poll, views
 from .landmark_base import LandmarkOperator
 
 
@@ -33,7 +33,9 @@ class AUTHALIC_OT_swap_target(LandmarkOperator, bpy.types.Operator):
 
 
 class AUTHALIC_OT_side_by_side(bpy.types.Operator):
-    """Move the target beside the object, so that both can be seen and picked"""
+    """Move the target beside the object, so that both can be seen and picked, or back to where it stood.
+
+    Morphs and transfers go by where it stood"""
 
     bl_idname = "authalic.side_by_side"
     bl_label = "Side by Side"
@@ -53,7 +55,13 @@ class AUTHALIC_OT_side_by_side(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> Status:
         source = active_source(context)
-        places.put_beside(source.authalic_target, source)
+        target = source.authalic_target
+        if places.is_beside(target):
+            places.put_back(target)
+        else:
+            places.put_beside(target, source)
+            context.view_layer.update()
+            views.frame(context, *places.box_of([source, target]))
         return {"FINISHED"}
 
 

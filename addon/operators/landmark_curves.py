@@ -10,6 +10,7 @@ from bpy.props import EnumProperty, StringProperty
 from .. import messages
 from ..blender import selection
 from ..blender.types import MeshObject, Status
+from ..jobs import reversed_curves
 from ..landmarks import curve_marks, curve_pairing, curve_selection
 from ..landmarks import curves as landmark_curves
 from ..landmarks.objects import NONE, SIDES, CannotPair, active_source, side_object
@@ -177,6 +178,20 @@ class AUTHALIC_OT_landmark_curve_reverse(_CurveOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class AUTHALIC_OT_landmark_curve_reverse_these(_CurveOperator, bpy.types.Operator):
+    """Reverse the target's paths of the curves that fitted far better in reverse in the last registration"""
+
+    bl_idname = "authalic.landmark_curve_reverse_these"
+    bl_label = "Reverse These"
+
+    def run(self, _context: bpy.types.Context, source: MeshObject) -> Status:
+        numbers = reversed_curves.reverse(source)
+        if not numbers:
+            raise CannotPair("no curve looked reversed in the last registration")
+        self.report({"INFO"}, f"Reversed {', '.join(f'C{number + 1}' for number in numbers)}; wrap again")
+        return {"FINISHED"}
+
+
 def _numbers(text: str) -> Path:
     """The vertex indices in a text."""
     words = [word for word in re.split(r"[\s,]+", text) if word]
@@ -228,6 +243,7 @@ _CLASSES = (
     AUTHALIC_OT_landmark_curve_clear,
     AUTHALIC_OT_landmark_curve_select,
     AUTHALIC_OT_landmark_curve_reverse,
+    AUTHALIC_OT_landmark_curve_reverse_these,
 )
 
 

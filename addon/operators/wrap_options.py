@@ -178,23 +178,37 @@ def _names() -> list[str]:
 
 
 def draw(layout: bpy.types.UILayout, properties: Any) -> None:
-    """The options, in the redo panel and in the sidebar."""
+    """All options, in the redo panel."""
+    draw_main(layout, properties)
+    draw_more(layout, properties)
+
+
+def draw_main(layout: bpy.types.UILayout, properties: Any) -> None:
+    """The options that are wanted most."""
     column = layout.column()
     column.prop(properties, "method")
     column.prop(properties, "energy")
-    is_by_points = properties.method == "POINTS"
     if properties.energy == "SURFACE":
         column.prop(properties, "feature")
         if properties.feature:
             column.prop(properties, "feature_weight")
         column.prop(properties, "position_weight")
-    elif is_by_points:
+    elif properties.method == "POINTS":
         column.prop(properties, "angle_weight", slider=True)
-        column.prop(properties, "weight")
-    for name in (*(("domain",) if is_by_points else ()), "align", "followers"):
-        column.prop(properties, name)
-    for name in (*(("target_uv",) if is_by_points else ()), "strain_attribute", "animate"):
-        column.prop(properties, name)
+    column.prop(properties, "align")
+
+
+def draw_more(layout: bpy.types.UILayout, properties: Any) -> None:
+    """The other options."""
+    column = layout.column()
+    if properties.method == "POINTS":
+        column.prop(properties, "domain")
+        if properties.energy == "AREA":
+            column.prop(properties, "weight")
+        column.prop(properties, "target_uv")
+    column.prop(properties, "followers")
+    column.prop(properties, "strain_attribute")
+    column.prop(properties, "animate")
     frames = column.column(align=True)
     frames.active = properties.animate
     frames.prop(properties, "frame_start")

@@ -61,6 +61,7 @@ def registered_by_curves(native: Any, sides: tuple[Side, Side], curves: Sequence
         seconds=float(native.seconds),
         strain=strain(native, names),
         remarks=remarks(native.warnings, sides, curves),
+        backward=[each.curve for each in native.warnings if each.kind == "backward_curve"],
     )
 
 

@@ -42,7 +42,8 @@ class Registered:
     unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
     `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain,
     `folds` counts those of both. By curves the `domain` is "CURVES", the common domain a sphere, and
-    `remarks` say what should be looked at. `filled` says which holes were filled.
+    `remarks` say what should be looked at. `filled` says which holes were filled, `backward` which curves, by
+    number, fit better in reverse.
     """
 
     native: Any
@@ -61,6 +62,7 @@ class Registered:
     strain: Strain = field(default_factory=lambda: Strain(1.0, 0.0, ""))
     remarks: list[str] = field(default_factory=list)
     filled: list[str] = field(default_factory=list)
+    backward: list[int] = field(default_factory=list)
 
     @property
     def by_curves(self) -> bool:

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..blender import places
 from ..blender.types import MeshObject, PanelMixin, is_mesh
 from ..jobs import unjoined
 from ..landmarks.objects import active_source
@@ -56,7 +57,9 @@ class AUTHALIC_PT_registration_view3d(bpy.types.Panel):
         _draw_merge(self.layout, source)
         row = self.layout.row(align=True)
         row.operator("authalic.swap_target", text="Swap", icon="ARROW_LEFTRIGHT")
-        row.operator("authalic.side_by_side", icon="SNAP_EDGE")
+        target = source.authalic_target
+        is_beside = target is not None and places.is_beside(target)
+        row.operator("authalic.side_by_side", icon="SNAP_EDGE", depress=is_beside)
 
 
 def _draw_mask(layout: bpy.types.UILayout, obj: MeshObject) -> None:

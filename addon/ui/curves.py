@@ -6,6 +6,7 @@ from typing import Any
 import bpy
 
 from ..blender.types import LandmarkCurve, MeshObject
+from ..jobs import reversed_curves
 from ..landmarks import curves as landmark_curves
 from ..landmarks.objects import active_source, target_problem
 from ..overlay.curves import icon
@@ -95,8 +96,18 @@ def _draw_curves(body: bpy.types.UILayout, source: MeshObject, context: bpy.type
         "authalic.landmark_curve_reverse", text="Reverse Target", icon="ARROW_LEFTRIGHT"
     )
     reverse.side = "TARGET"
+    draw_reversed(body, source, context)
     text.draw_error(body, source.authalic_landmark_curves, source.authalic_landmark_curve_index)
     text.draw_problems(body, _problems(source), context)
+
+
+def draw_reversed(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
+    """The curves that looked reversed in the last registration, and a button that reverses them."""
+    names = [f"C{number + 1}" for number in reversed_curves.of(source)]
+    if names:
+        verb = "fits" if len(names) == 1 else "fit"
+        text.draw_problems(layout, [f"{', '.join(names)} {verb} far better in reverse"], context)
+        layout.operator("authalic.landmark_curve_reverse_these", icon="ARROW_LEFTRIGHT")
 
 
 def draw_hint(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types.Context) -> None:
@@ -109,6 +120,8 @@ def draw_hint(layout: bpy.types.UILayout, source: MeshObject, context: bpy.types
         )
     elif bad:
         text.draw_problems(layout, [f"{bad} of {len(pairs)} curves cannot be used"], context)
+    else:
+        draw_reversed(layout, source, context)
 
 
 def _problems(source: MeshObject) -> list[str]:

@@ -20,7 +20,7 @@ class AUTHALIC_PT_wrap(couple.Part, bpy.types.Panel):
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        wrap_options.draw(column, options)
+        wrap_options.draw_main(column, options)
         if options.method == "CURVES":
             curves.draw_hint(layout, source, context)
         row = layout.row()
@@ -38,6 +38,18 @@ def _draw_slider(layout: bpy.types.UILayout, source: MeshObject) -> None:
         row.prop(key, "value", text="Morph", slider=True)
 
 
+class AUTHALIC_PT_wrap_advanced(couple.Part, bpy.types.Panel):
+    bl_label = "Advanced"
+    bl_parent_id = "AUTHALIC_PT_wrap"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        wrap_options.draw_more(layout, active_source(context).authalic_wrap)
+
+
 class AUTHALIC_PT_transfer(couple.Part, bpy.types.Panel):
     bl_label = "Transfer"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 (Blender reads a plain set)
@@ -53,7 +65,7 @@ class AUTHALIC_PT_transfer(couple.Part, bpy.types.Panel):
         transfer.draw_options(layout, context.window_manager.operator_properties_last("authalic.transfer"))
 
 
-_CLASSES = (AUTHALIC_PT_wrap, AUTHALIC_PT_transfer)
+_CLASSES = (AUTHALIC_PT_wrap, AUTHALIC_PT_wrap_advanced, AUTHALIC_PT_transfer)
 
 
 def register() -> None:

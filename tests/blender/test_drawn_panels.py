@@ -148,6 +148,74 @@ def test_side_by_side(has_parent: bool) -> None:
     np.testing.assert_allclose(np.array(target.matrix_world)[:3, :3], before[:3, :3], atol=1e-5)
 
 
+def apart(has_parent: bool = False) -> tuple[MeshObject, MeshObject]:
+    """Two heads with landmarks; the target is turned by more than one turn, and may have a parent."""
+    source, target = couple()
+    target.rotation_euler = (0.3, 7.0, -9.0)
+    target.location = (0.1, 0.2, 0.3)
+    if has_parent:
+        parent = bpy.data.objects.new("Parent", None)
+        bpy.context.collection.objects.link(parent)
+        parent.matrix_world = pairs.SQUEEZED
+        target.parent = parent
+    bpy.context.view_layer.update()
+    return source, target
+
+
+@pytest.mark.parametrize("has_parent", [False, True])
+def test_side_by_side_toggles_back(has_parent: bool) -> None:
+    _, target = apart(has_parent)
+    before: Any = [tuple(value) for value in (target.location, target.rotation_euler, target.scale)]
+    world = np.array(target.matrix_world)
+    places = part("blender.places")
+    AUTHALIC.side_by_side()
+    bpy.context.view_layer.update()
+    assert places.is_beside(target) and tuple(target.location) != before[0]
+    assert [tuple(value) for value in (target.rotation_euler, target.scale)] == before[1:]
+    np.testing.assert_allclose(np.array(places.home(target)), world, atol=1e-5)
+    AUTHALIC.side_by_side()
+    bpy.context.view_layer.update()
+    assert not places.is_beside(target)
+    assert [tuple(value) for value in (target.location, target.rotation_euler, target.scale)] == before
+    np.testing.assert_array_equal(np.array(target.matrix_world), world)
+    assert np.array(places.home(target)).tolist() == world.tolist()
+
+
+def test_a_target_that_is_moved_by_hand_stands_where_it_is() -> None:
+    _, target = apart()
+    AUTHALIC.side_by_side()
+    target.location.z += 1
+    bpy.context.view_layer.update()
+    places = part("blender.places")
+    assert not places.is_beside(target)
+    np.testing.assert_array_equal(np.array(places.home(target)), np.array(target.matrix_world))
+    moved: Any = tuple(target.location)
+    AUTHALIC.side_by_side()
+    AUTHALIC.side_by_side()
+    assert tuple(target.location) == moved
+
+
+@pytest.mark.parametrize("has_parent", [False, True])
+def test_the_morph_ends_where_the_target_stood_before_it_was_put_aside(has_parent: bool) -> None:
+    source, _ = apart(has_parent)
+    AUTHALIC.register()
+    before = pairs.positions(source, "Morph → Head B")
+    AUTHALIC.side_by_side()
+    bpy.context.view_layer.update()
+    AUTHALIC.register()
+    np.testing.assert_allclose(pairs.positions(source, "Morph → Head B"), before, atol=1e-4)
+
+
+def test_side_by_side_is_one_step_of_undo() -> None:
+    _, target = apart()
+    before: Any = tuple(target.location)
+    bpy.ops.ed.undo_push(message="before")
+    AUTHALIC.side_by_side("EXEC_DEFAULT", True)
+    bpy.ops.ed.undo()
+    target = bpy.data.objects["Head B"]
+    assert tuple(target.location) == before and not part("blender.places").is_beside(target)
+
+
 def test_side_by_side_needs_a_target_that_can_move() -> None:
     meshes.add_grid("Alone")
     with pytest.raises(RuntimeError, match="There is no target object"):

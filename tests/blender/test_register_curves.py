@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 import curving
+import drawing
 import meshes
 import numpy as np
 import pairs
@@ -321,6 +322,82 @@ def test_a_curve_that_runs_the_other_way_is_told(capfd: pytest.CaptureFixture[st
     bpy.ops.authalic.landmark_curve_reverse(index=1)
     assert register() == {"FINISHED"}
     assert 'curve "Curve 2" fits far better in reverse' in capfd.readouterr().out
+
+
+def directions(source: MeshObject) -> list[tuple[int, ...]]:
+    return [curve.target.vertices for curve in part("landmarks.curves").pairs(source)]
+
+
+def shown_buttons(panel: str) -> tuple[list[str], list[str]]:
+    """The labels of a panel, and its operators."""
+    layout = drawing.draw_panel(panel)
+    return layout.labels, [name for name, _ in layout.operators]
+
+
+def test_the_curves_that_look_reversed_are_reversed_by_a_button(capfd: pytest.CaptureFixture[str]) -> None:
+    part("jobs.reversed_curves")._reversed.clear()
+    source, _ = balls()
+    right = directions(source)
+    for index in (1, 3):
+        bpy.ops.authalic.landmark_curve_reverse(index=index)
+    with pytest.raises(RuntimeError, match="No curve looked reversed"):
+        bpy.ops.authalic.landmark_curve_reverse_these()
+    assert register() == {"FINISHED"}
+    for panel in ("AUTHALIC_PT_landmark_curves", "AUTHALIC_PT_wrap"):
+        labels, buttons = shown_buttons(panel)
+        assert "C2, C4 fit far better in reverse" in " ".join(labels).replace("  ", " ")
+        assert "authalic.landmark_curve_reverse_these" in buttons
+    assert bpy.ops.authalic.landmark_curve_reverse_these() == {"FINISHED"}
+    assert directions(source) == right
+    assert "Reversed C2, C4; wrap again" in capfd.readouterr().out
+    for panel in ("AUTHALIC_PT_landmark_curves", "AUTHALIC_PT_wrap"):
+        assert "authalic.landmark_curve_reverse_these" not in shown_buttons(panel)[1]
+    register()
+    assert "far better in reverse" not in capfd.readouterr().out
+
+
+def test_a_curve_that_was_changed_since_is_not_reversed() -> None:
+    source, _ = balls()
+    for index in (1, 3):
+        bpy.ops.authalic.landmark_curve_reverse(index=index)
+    register()
+    bpy.ops.authalic.landmark_curve_reverse(index=1)
+    assert part("jobs.reversed_curves").of(source) == [3]
+    bpy.ops.authalic.landmark_curve_remove(index=0)
+    assert part("jobs.reversed_curves").of(source) == [2]
+
+
+def test_reversing_these_is_one_step_of_undo() -> None:
+    source, _ = balls()
+    bpy.ops.authalic.landmark_curve_reverse(index=2)
+    register()
+    before, name = directions(source), source.name
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.authalic.landmark_curve_reverse_these("EXEC_DEFAULT", True)
+    assert directions(bpy.data.objects[name]) != before
+    bpy.ops.ed.undo()
+    source = bpy.data.objects[name]
+    assert directions(source) == before and part("jobs.reversed_curves").of(source) == [2]
+
+
+def test_where_curves_fit_mirrored_all_open_ones_can_be_reversed() -> None:
+    source, _ = balls()
+    register_module = part("jobs.register")
+    bridge = part("bridge")
+    couple_ = part("jobs.couple").chosen(bpy.context)
+
+    def refuse(*_: Any, **__: Any) -> None:
+        raise bridge.MirroredCurves("mirrored")
+
+    before, bridge.register = bridge.register, refuse
+    try:
+        with pytest.raises(register_module.CannotRegister, match="mirrored"):
+            register_module.registration(
+                couple_, part("registration.settings").Settings(method="CURVES"), None
+            )
+    finally:
+        bridge.register = before
+    assert part("jobs.reversed_curves").of(source) == [0, 1, 2, 3]
 
 
 def test_undo_and_redo() -> None:

@@ -35,6 +35,7 @@ _NAMES = {
     "Mirror over X": "Über X spiegeln",
     "Offsets": "Verschiebungen",
     "On": "Ein",
+    "Reverse These": "Diese umkehren",
     "Shape": "Form",
     "Smooth": "Glatt",
     "Strain Attribute": "Dehnung als Attribut",
@@ -244,6 +245,15 @@ _TOOLTIPS = {
     "landmarks and shape keys stay": (
         "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
         "sind.\n\nUV-Maps, Landmarken und Shape-Keys bleiben"
+    ),
+    "Move the target beside the object, so that both can be seen and picked, or back to where it "
+    "stood.\n\nMorphs and transfers go by where it stood": (
+        "Das Ziel neben das Objekt stellen, damit beide zu sehen und anzuklicken sind, oder zurück an "
+        "seinen Platz.\n\nFormänderungen und Übertragungen gelten für seinen Platz davor"
+    ),
+    "Reverse the target's paths of the curves that fitted far better in reverse in the last registration": (
+        "Die Wege auf dem Ziel umkehren, deren Kurven in der letzten Registrierung umgekehrt viel "
+        "besser passten"
     ),
     "Store how far each face is stretched or shrunk, 1 for not at all, as the face attribute "
     "authalic_strain": (
@@ -493,9 +503,6 @@ _TOOLTIPS = {
         "umgeklappten Fläche"
     ),
     "Missed by {error:.3f} % of the target's size": "Um {error:.3f} % der Größe des Ziels verfehlt",
-    "Move the target beside the object, so that both can be seen and picked": (
-        "Das Ziel neben das Objekt rücken, damit beide zu sehen und anzuklicken sind"
-    ),
     "Move, rotate and scale the target onto the object, so that the shape does not travel while it "
     "morphs. If off, the morph ends where the target is": (
         "Das Ziel auf das Objekt verschieben, drehen und skalieren, damit die Form beim Verformen nicht "

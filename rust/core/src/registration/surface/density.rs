@@ -80,10 +80,19 @@ pub(super) fn jacobian(hats: &Hats, images: [Vector3; 3]) -> Jacobian {
 impl FaceEnergy {
     /// φ of a map with this JᵀJ.
     pub(super) fn value(&self, [xx, xy, yy]: [f64; 3]) -> f64 {
-        let ratio = (xx * yy - xy * xy).max(LEAST_SQUARED_AREA).sqrt();
+        let square = (xx * yy - xy * xy).max(LEAST_SQUARED_AREA);
+        if self.is_dirichlet() {
+            return 0.25 * (xx + yy) * (1.0 + 1.0 / square);
+        }
+        let ratio = square.sqrt();
         let area = 0.5 * (ratio + 1.0 / ratio);
         let angle = (0.5 * (xx + yy) / ratio).max(1.0);
         raised(area, self.area_weight) * raised(angle, self.angle_weight)
+    }
+
+    /// Whether φ is the symmetric Dirichlet energy over 4, whose values take no powers.
+    fn is_dirichlet(&self) -> bool {
+        self.area_weight == 1.0 && self.angle_weight == 1.0
     }
 
     /// φ with its derivatives, and the derivatives of φ by the entries (xx, xy, yy) of JᵀJ.
@@ -124,6 +133,9 @@ impl FaceEnergy {
 
     /// φ and its derivatives by the singular values.
     fn slopes(&self, [s, t]: [f64; 2]) -> Slopes {
+        if self.is_dirichlet() {
+            return dirichlet_slopes([s, t]);
+        }
         let (area, angle) = (self.area_weight, self.angle_weight);
         let (sum, difference) = ((s * t).ln(), (s / t).ln());
         let value = raised(sum.cosh(), area) * raised(difference.cosh(), angle);
@@ -142,9 +154,30 @@ impl FaceEnergy {
     }
 }
 
+fn dirichlet_slopes(values: [f64; 2]) -> Slopes {
+    let inverse = values.map(|s| 1.0 / (s * s));
+    Slopes {
+        value: 0.25 * (0..2).map(|k| values[k] * values[k] + inverse[k]).sum::<f64>(),
+        first: [0, 1].map(|k| 0.5 * (values[k] - inverse[k] / values[k])),
+        second: inverse.map(|x| 0.5 + 1.5 * x * x),
+        mixed: 0.0,
+    }
+}
+
 /// A power; exponents 0 and 1 without rounding.
 fn raised(base: f64, exponent: f64) -> f64 {
     if exponent == 1.0 { base } else { base.powf(exponent) }
+}
+
+/// The cosine and the sine of half the angle of the vector (x, y), between −π/2 and π/2.
+fn half_angle(x: f64, y: f64) -> [f64; 2] {
+    let length = (x * x + y * y).sqrt();
+    if length == 0.0 {
+        return [1.0, 0.0];
+    }
+    let larger = (0.5 * (1.0 + x.abs() / length)).sqrt();
+    let smaller = 0.5 * y / (length * larger);
+    if x >= 0.0 { [larger, smaller] } else { [smaller.abs(), larger.copysign(y)] }
 }
 
 /// φ and its derivatives by σ₁ and σ₂.
@@ -162,8 +195,8 @@ impl Slopes {
         let [p, q] = self.first;
         let [along, across] = self.second;
         let (mean, half) = (0.5 * (along + across), 0.5 * (along - across));
-        let radius = half.hypot(self.mixed);
-        let (sine, cosine) = (0.5 * self.mixed.atan2(half)).sin_cos();
+        let radius = (half * half + self.mixed * self.mixed).sqrt();
+        let [cosine, sine] = half_angle(half, self.mixed);
         let stretched = |a: f64, b: f64| std::array::from_fn(|i| a * rows[0][i] + b * rows[1][i]);
         let mirrored = if s - t > EQUAL * s { (p - q) / (s - t) } else { along - self.mixed };
         [
@@ -204,9 +237,9 @@ impl Decomposition {
 fn decomposed(jacobian: &Jacobian) -> Decomposition {
     let [xx, xy, yy] = gram(jacobian);
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let s = (mean + half.hypot(xy)).sqrt();
+    let s = (mean + (half * half + xy * xy).sqrt()).sqrt();
     let t = (xx * yy - xy * xy).max(LEAST_SQUARED_AREA).sqrt() / s;
-    let (sine, cosine) = (0.5 * xy.atan2(half)).sin_cos();
+    let [cosine, sine] = half_angle(half, xy);
     let right = [[cosine, sine], [-sine, cosine]];
     let [first, second] = right.map(|v| jacobian[0] * v[0] + jacobian[1] * v[1]);
     let first = first.normalized();
@@ -298,6 +331,29 @@ mod tests {
                 };
                 let second = (step(h, h) - step(h, -h) - step(-h, h) + step(-h, -h)) / (4.0 * h * h);
                 assert!((second - expansion.hessian[i][j]).abs() < 1e-5 * expansion.value);
+            }
+        }
+    }
+
+    #[test]
+    fn half_angles_are_those_of_the_textbook() {
+        for k in -31..=31 {
+            let angle = 0.1 * f64::from(k);
+            let [cosine, sine] = half_angle(3.0 * angle.cos(), 3.0 * angle.sin());
+            assert!(
+                (cosine - (0.5 * angle).cos()).abs() < 1e-15 && (sine - (0.5 * angle).sin()).abs() < 1e-15
+            );
+        }
+    }
+
+    #[test]
+    fn the_symmetric_dirichlet_energy_is_the_limit_of_other_weights() {
+        let near = FaceEnergy { area_weight: 1.0 + 1e-9, angle_weight: 1.0 - 1e-9 };
+        let (exact, general) = (expansion(KINDS[0]), expansion(near));
+        for i in 0..6 {
+            assert!((exact.gradient[i] - general.gradient[i]).abs() < 1e-6 * exact.value);
+            for j in 0..6 {
+                assert!((exact.hessian[i][j] - general.hessian[i][j]).abs() < 1e-6 * exact.value);
             }
         }
     }

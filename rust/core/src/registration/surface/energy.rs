@@ -99,9 +99,10 @@ impl<'a> SurfaceEnergy<'a> {
         }
         let hats = &self.hats[face];
         let in_space = self.kind.value(gram(&jacobian(hats, corners.map(|placed| placed.point))));
-        let root = Root::new(&self.target.mean_metric(corners));
-        let in_domain = root.jacobian(&jacobian(hats, corners.map(|placed| placed.in_domain)));
-        in_space + self.guard.value(self.kind.value(gram(&in_domain)))
+        let metric = self.target.mean_metric(corners);
+        let [x, y] = jacobian(hats, corners.map(|placed| placed.in_domain));
+        let in_domain = [product(&metric, x, x), product(&metric, x, y), product(&metric, y, y)];
+        in_space + self.guard.value(self.kind.value(in_domain))
     }
 
     /// The energy of a face with its derivatives.

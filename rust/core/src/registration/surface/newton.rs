@@ -227,11 +227,11 @@ impl Moving<'_, '_> {
         let goal = SUFFICIENT * share * direction.slope;
         let mut shares = vec![share; n];
         let mut map = parallel::map(n, |vertex| self.moved(direction, vertex, share));
+        let value_of = |map: &[Placed], face: usize| energy.face_value(face, energy.corners(map, face));
+        let mut after = parallel::map(values.len(), |face| value_of(&map, face));
         let mut relentings = 0;
         for round in 0..ROUNDS {
             // 1. Faces that fold or run into a barrier
-            let after =
-                parallel::map(values.len(), |face| energy.face_value(face, energy.corners(&map, face)));
             let is_barred = |&face: &usize| after[face] > BARRIER[1] + (1.0 + BARRIER[0]) * values[face];
             let mut obstacles: Vec<usize> = (0..values.len()).filter(is_barred).collect();
             // 2. If there are none: enough, or held up by a few faces
@@ -250,8 +250,12 @@ impl Moving<'_, '_> {
                 obstacles = self.held_up_by(direction, &shares, values, &after, rise, share)?;
             }
             // 3. These are held back
-            for vertex in self.held_back(&obstacles, &mut shares, kept(round)) {
+            let changed = self.held_back(&obstacles, &mut shares, kept(round));
+            for &vertex in &changed {
                 map[vertex] = self.moved(direction, vertex, shares[vertex]);
+            }
+            for corner in changed.iter().flat_map(|&v| energy.source.vertex_corners(Vertex::new(v))) {
+                after[corner.face()] = value_of(&map, corner.face().index());
             }
         }
         None

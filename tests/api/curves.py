@@ -23,12 +23,14 @@ class CurvePair(NamedTuple):
     target_curves: list
 
 
-def register(pair, **options):
+def register(pair, *, energy="harmonic", **options):
+    """Registers a pair, by default as the paper does."""
     return authalic.register_hyperbolic(
         pair.source,
         pair.target,
         source_curves=pair.source_curves,
         target_curves=pair.target_curves,
+        energy=energy,
         **options,
     )
 

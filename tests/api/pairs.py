@@ -22,13 +22,14 @@ class Pair(NamedTuple):
     target_landmarks: np.ndarray
 
 
-def register(pair, **options):
-    """Registers a pair of disks or of spheres."""
+def register(pair, *, energy="area", **options):
+    """Registers a pair of disks or of spheres, by default as the papers do."""
     return register_function(pair)(
         pair.source,
         pair.target,
         source_landmarks=pair.source_landmarks,
         target_landmarks=pair.target_landmarks,
+        energy=energy,
         **options,
     )
 

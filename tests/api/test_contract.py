@@ -57,7 +57,7 @@ NAMES = {
 REGISTRATION = {
     "source_landmarks": inspect.Parameter.empty,
     "target_landmarks": inspect.Parameter.empty,
-    "energy": "area",
+    "energy": "surface",
     "weight": 1.0,
     "area_weight": 1.0,
     "angle_weight": None,
@@ -131,7 +131,7 @@ KEYWORDS = {
     "register_hyperbolic": {
         "source_curves": inspect.Parameter.empty,
         "target_curves": inspect.Parameter.empty,
-        "energy": "harmonic",
+        "energy": "surface",
         "area_weight": 1.0,
         "angle_weight": 1.0,
         "features": None,

@@ -15,7 +15,7 @@ BOTH = {"disk": CAPS, "sphere": BALLS}
 CURVES = curves.balls(4, target=meshes.radial(lambda x, y, z: 1 + 0.3 * x * y + 0.2 * z, 4))
 both = pytest.mark.parametrize("pair", BOTH.values(), ids=BOTH)
 OPTIONS = {
-    **{"energy": "area", "weight": 1.0, "area_weight": 1.0, "angle_weight": None, "weights": None},
+    **{"energy": "surface", "weight": 1.0, "area_weight": 1.0, "angle_weight": None, "weights": None},
     **{"features": None, "feature_weight": None, "position_weight": 0.0},
 }
 
@@ -43,12 +43,12 @@ def test_the_options_have_the_defaults_of_the_contract(call):
     parameters = inspect.signature(call).parameters
     assert {name: parameters[name].default for name in OPTIONS} == OPTIONS
     of_curves = inspect.signature(authalic.register_hyperbolic).parameters
-    assert of_curves["energy"].default == "harmonic"
+    assert of_curves["energy"].default == "surface"
     assert set(OPTIONS) - set(of_curves) == {"weight", "weights"}
 
 
 @both
-def test_the_papers_energy_by_its_name_is_the_default(pair):
+def test_areas_alone_weigh_no_angles(pair):
     plain, named = pairs.register(pair), pairs.register(pair, energy="area", angle_weight=0.0)
     assert np.array_equal(plain.positions, named.positions)
 

@@ -24,9 +24,9 @@ pub enum HarmonicSolver {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HyperbolicEnergy {
     /// The harmonic energy between the hyperbolic metrics, as in the paper.
-    #[default]
     Harmonic,
     /// Areas and angles, of the map from surface to surface in space; the descent starts from the harmonic map.
+    #[default]
     Surface,
 }
 

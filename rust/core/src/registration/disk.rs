@@ -57,25 +57,27 @@ pub fn register_disks(
     landmarks.check(source, target, fewest(CanonicalDomain::Disk))?;
     options.check(landmarks.source.len())?;
     let signals = options.signals([source, target])?;
+    let mut in_domain = Phase { whole: observer, from: 0.0, to: options.share_of_domain() };
     // 2. Both surfaces to the disk
     let alone = DiskMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
         map_disk(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
-    let f = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
-    let g = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    let f = map(source, Side::Source, &mut Phase { whole: &mut in_domain, from: 0.0, to: 0.3 })?;
+    let g = map(target, Side::Target, &mut Phase { whole: &mut in_domain, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks
     let places = picked(&g, landmarks.target);
     let turned = turned(source, &f, best_turn(&picked(&f, landmarks.source), &places));
     // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
     let images = [turned, lifted(rows(g.uv.view()))];
-    let mut met = meet([source, target], images, landmarks, options, &mut history, observer)?;
+    let mut met = meet([source, target], images, landmarks, options, &mut history, &mut in_domain)?;
     // 5. g⁻¹: the locations on the target
-    let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
+    let mut phase = Phase { whole: &mut in_domain, from: 0.95, to: 1.0 };
     let locator = Locator::new(&met.target, target.faces());
     let (mut locations, mut status) = located(&locator, &met.source, met.status, &mut phase)?;
     // 6. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
+        let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
         let between = Between {
             source,
             target,
@@ -85,7 +87,7 @@ pub fn register_disks(
             signals,
             options,
         };
-        (locations, met.source, status) = between.lower(locations, &mut history, observer);
+        (locations, met.source, status) = between.lower(locations, &mut history, &mut phase);
     }
     // 7. Figures
     let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);

@@ -11,13 +11,16 @@ use crate::options::check_angle_weight;
 /// that hardly change on the way to the domain leave it the least to mend.
 const START_ANGLE_WEIGHT: f64 = 100.0;
 
+/// The share of the maps to the domain in the progress of a run whose descent between the surfaces follows.
+const SHARE_OF_DOMAIN: f64 = 0.4;
+
 /// What a registration by points keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Energy {
     /// Areas (Liu & Yueh 2023, Sutti & Yueh 2024): the stretch of either surface's map to the domain.
-    #[default]
     Area,
     /// Areas and angles, of the map from surface to surface in space.
+    #[default]
     Surface,
 }
 
@@ -122,6 +125,14 @@ impl RegistrationOptions<'_> {
         match self.energy {
             Energy::Area => self.angle_weight.unwrap_or(0.0),
             Energy::Surface => START_ANGLE_WEIGHT,
+        }
+    }
+
+    /// The share of the maps to the domain in the progress of a run.
+    pub(super) fn share_of_domain(&self) -> f64 {
+        match self.energy {
+            Energy::Area => 1.0,
+            Energy::Surface => SHARE_OF_DOMAIN,
         }
     }
 

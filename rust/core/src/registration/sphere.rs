@@ -70,13 +70,14 @@ pub fn register_spheres(
     options.check(landmarks.source.len())?;
     let signals = options.signals([source, target])?;
     let target = &*not_inside_out(target, source);
+    let mut in_domain = Phase { whole: observer, from: 0.0, to: options.share_of_domain() };
     // 2. Both surfaces to the sphere
     let alone = SphereMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
         map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
-    let f0 = map(source, Side::Source, &mut Phase { whole: observer, from: 0.0, to: 0.3 })?;
-    let f1 = map(target, Side::Target, &mut Phase { whole: observer, from: 0.3, to: 0.6 })?;
+    let f0 = map(source, Side::Source, &mut Phase { whole: &mut in_domain, from: 0.0, to: 0.3 })?;
+    let f1 = map(target, Side::Target, &mut Phase { whole: &mut in_domain, from: 0.3, to: 0.6 })?;
     // 3. The best rotation of the landmarks, and the middle of each pair
     let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
     let turned = turned(source, on_sphere, landmarks, &target_on_sphere);
@@ -90,18 +91,19 @@ pub fn register_spheres(
         weight: options.weight,
         angle_weight: options.angle_weight_in_domain(),
     };
-    let mut phase = Phase { whole: observer, from: 0.6, to: 0.75 };
+    let mut phase = Phase { whole: &mut in_domain, from: 0.6, to: 0.75 };
     let (mut registered, first) =
         carrying(source, landmarks.source).carry(turned, &mut history, &mut phase)?;
-    let mut phase = Phase { whole: observer, from: 0.75, to: 0.9 };
+    let mut phase = Phase { whole: &mut in_domain, from: 0.75, to: 0.9 };
     let (target_registered, second) =
         carrying(target, landmarks.target).carry(target_on_sphere, &mut history, &mut phase)?;
     // 5. h₁⁻¹: the locations of the source on the target
-    let mut phase = Phase { whole: observer, from: 0.9, to: 1.0 };
+    let mut phase = Phase { whole: &mut in_domain, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
     let (mut locations, mut status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
     // 6. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
+        let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
         let between = Between {
             source,
             target,
@@ -111,7 +113,7 @@ pub fn register_spheres(
             signals,
             options,
         };
-        (locations, registered, status) = between.lower(locations, &mut history, observer);
+        (locations, registered, status) = between.lower(locations, &mut history, &mut phase);
     }
     // 7. Figures
     let landmark_pairs = pairs(landmarks, &registered, &target_registered);

@@ -7,15 +7,21 @@ use crate::common::random::Random;
 use crate::common::{TestMesh, distance, icosphere};
 use authalic::testing::TriangleMesh;
 use authalic::{
-    CurveError, CurveRegistration, Error, HyperbolicOptions, LandmarkCurves, Side, Silent, Status,
+    CurveError, CurveRegistration, Error, HyperbolicEnergy, HyperbolicOptions, LandmarkCurves, Side, Silent,
+    Status,
 };
 use proptest::prelude::*;
 
 type Point = [f64; 3];
 
+/// The paper's energy.
+fn harmonic() -> HyperbolicOptions<'static> {
+    HyperbolicOptions { energy: HyperbolicEnergy::Harmonic, ..Default::default() }
+}
+
 fn register(meshes: [&TriangleMesh; 2], paths: [&[Vec<usize>]; 2]) -> Result<CurveRegistration, Error> {
     let curves = LandmarkCurves { source: paths[0], target: paths[1] };
-    register_hyperbolic(meshes[0], meshes[1], &curves, &HyperbolicOptions::default(), &mut Silent)
+    register_hyperbolic(meshes[0], meshes[1], &curves, &harmonic(), &mut Silent)
 }
 
 /// A sphere with bumps of any direction and frequency, turned somehow.
@@ -130,7 +136,7 @@ fn curves_that_cannot_be_cut_along_are_refused_before_any_work() {
     let good = paths(2, &mut Random::new(3), 2);
     let refused = |source: &[Vec<usize>], target: &[Vec<usize>]| {
         let mut observer = |_: f64, _: &str| panic!("something was computed");
-        let (curves, options) = (LandmarkCurves { source, target }, HyperbolicOptions::default());
+        let (curves, options) = (LandmarkCurves { source, target }, harmonic());
         register_hyperbolic(&mesh, &mesh, &curves, &options, &mut observer).unwrap_err()
     };
     assert!(matches!(
@@ -192,7 +198,7 @@ proptest! {
             calls += 1;
             calls <= last
         };
-        let (curves, options) = (LandmarkCurves { source: &ours, target: &ours }, HyperbolicOptions::default());
+        let (curves, options) = (LandmarkCurves { source: &ours, target: &ours }, harmonic());
         match register_hyperbolic(&source, &target, &curves, &options, &mut observer) {
             Ok(found) => prop_assert!(found.certificates.folded.is_empty()),
             Err(error) => prop_assert_eq!(error, Error::CancelledEarly),

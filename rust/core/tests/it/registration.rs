@@ -8,19 +8,24 @@ use crate::common::random::Random;
 use crate::common::{self, bumpy_disk, cap, distance, ellipsoid, faces_of_indices};
 use authalic::testing::{TriangleMesh, Vector3, folded_in_plane, folded_on_sphere};
 use authalic::{
-    DiskRegistration, Error, LandmarkError, Landmarks, RegistrationOptions, Silent, SphereRegistration,
-    Status, Vertex,
+    DiskRegistration, Energy, Error, LandmarkError, Landmarks, RegistrationOptions, Silent,
+    SphereRegistration, Status, Vertex,
 };
 use proptest::prelude::*;
 
+/// The papers' energy.
+fn areas() -> RegistrationOptions<'static> {
+    RegistrationOptions { energy: Energy::Area, ..Default::default() }
+}
+
 fn disks(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> DiskRegistration {
     let landmarks = Landmarks { source: pairs[0], target: pairs[1] };
-    register_disks(source, target, &landmarks, &RegistrationOptions::default(), &mut Silent).unwrap()
+    register_disks(source, target, &landmarks, &areas(), &mut Silent).unwrap()
 }
 
 fn closed(source: &TriangleMesh, target: &TriangleMesh, pairs: [&[usize]; 2]) -> SphereRegistration {
     let landmarks = Landmarks { source: pairs[0], target: pairs[1] };
-    register_spheres(source, target, &landmarks, &RegistrationOptions::default(), &mut Silent).unwrap()
+    register_spheres(source, target, &landmarks, &areas(), &mut Silent).unwrap()
 }
 
 /// `count` different vertices inside a mesh.
@@ -127,7 +132,7 @@ fn bad_landmarks_are_refused_before_any_work() {
     let refused = |source: &[usize], target: &[usize]| {
         let mut observer = |_: f64, _: &str| panic!("something was computed");
         let landmarks = Landmarks { source, target };
-        register_disks(&mesh, &mesh, &landmarks, &RegistrationOptions::default(), &mut observer).unwrap_err()
+        register_disks(&mesh, &mesh, &landmarks, &areas(), &mut observer).unwrap_err()
     };
     assert!(matches!(
         refused(&[1, 2], &[1]),
@@ -147,7 +152,7 @@ fn bad_landmarks_are_refused_before_any_work() {
     );
     let sphere = bumpy();
     let landmarks = Landmarks { source: &[1], target: &[1] };
-    let error = register_disks(&mesh, &sphere, &landmarks, &RegistrationOptions::default(), &mut Silent);
+    let error = register_disks(&mesh, &sphere, &landmarks, &areas(), &mut Silent);
     assert!(error.unwrap_err().to_string().starts_with("the target: "));
 }
 
@@ -174,7 +179,7 @@ proptest! {
             calls <= last
         };
         let landmarks = Landmarks { source: &ours, target: &theirs };
-        let options = RegistrationOptions::default();
+        let options = areas();
         match register_disks(&source, &target, &landmarks, &options, &mut observer) {
             Ok(found) => {
                 prop_assert!(folded_in_plane(source.faces(), planar(&found.registered)).is_empty());

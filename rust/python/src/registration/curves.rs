@@ -34,9 +34,9 @@ use crate::surface::Given;
 ///     need not be given.
 /// target_curves : list of (k,) integer arrays
 ///     Their partners on the target, in the same order.
-/// energy : "harmonic" or "surface"
-///     What the map keeps: the harmonic energy, as in the paper, or areas and angles, measured in space between the two
-///     surfaces, from the harmonic map on, with the curves where they are.
+/// energy : "surface" or "harmonic"
+///     What the map keeps: areas and angles, measured in space between the two surfaces, from the harmonic map on, with
+///     the curves where they are; or the harmonic energy alone, as in the paper. Default "surface".
 /// area_weight : float
 ///     With "surface" the exponent ≥ 0 of the area factor of each face, as in `register_spheres`.
 /// angle_weight : float
@@ -94,7 +94,7 @@ use crate::surface::Given;
 /// >>> len(result.certificates.folded), bool(abs(result.positions - rings).max() < 0.05)
 /// (0, True)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_curves, target_curves, energy="harmonic", area_weight=1.0,
+#[pyo3(signature = (source, target, *, source_curves, target_curves, energy="surface", area_weight=1.0,
                     angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0, metric="newton",
                     solver="newton", max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None,
                     progress=None))]

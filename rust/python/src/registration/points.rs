@@ -30,9 +30,10 @@ use crate::surface::Given;
 ///     Their partners on the target, in the same order.
 /// weight : float
 ///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
-/// energy : "area" or "surface"
-///     What the map keeps: areas alone, as in the paper, or areas and angles, measured in space between the two
-///     surfaces. "surface" starts from a map that keeps angles.
+/// energy : "surface" or "area"
+///     What the map keeps: areas and angles, measured in space between the two surfaces, from a map that keeps angles
+///     on; or areas alone, as in the paper. Default "surface": areas alone do not say where what lies between landmarks
+///     goes.
 /// area_weight : float
 ///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
 ///     of the map of the face.
@@ -82,7 +83,7 @@ use crate::surface::Given;
 /// >>> bool(abs(result.positions).min() < 1e-9), len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="area", weight=1.0, area_weight=1.0,
+#[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="surface", weight=1.0, area_weight=1.0,
                     angle_weight=None, weights=None, features=None, feature_weight=None, position_weight=0.0,
                     progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
@@ -141,9 +142,10 @@ pub fn register_disks(
 ///     Their partners on the target, in the same order.
 /// weight : float
 ///     λ > 0, the initial weight of the landmark penalty; it grows tenfold until the landmarks meet.
-/// energy : "area" or "surface"
-///     What the map keeps: areas alone, as in the paper, or areas and angles, measured in space between the two
-///     surfaces. "surface" starts from a map that keeps angles.
+/// energy : "surface" or "area"
+///     What the map keeps: areas and angles, measured in space between the two surfaces, from a map that keeps angles
+///     on; or areas alone, as in the paper. Default "surface": areas alone do not say where what lies between landmarks
+///     goes.
 /// area_weight : float
 ///     With "surface" the exponent ≥ 0 of the area factor (d + 1/d)/2 of each face, d = σ₁ σ₂ with the singular values
 ///     of the map of the face.
@@ -190,7 +192,7 @@ pub fn register_disks(
 /// >>> result.positions.round(6).tolist() == corners, len(result.distortion.folded)
 /// (True, 0)
 #[pyfunction]
-#[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="area", weight=1.0,
+#[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="surface", weight=1.0,
                     area_weight=1.0, angle_weight=None, weights=None, features=None, feature_weight=None,
                     position_weight=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function

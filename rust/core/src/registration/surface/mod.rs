@@ -42,8 +42,8 @@ const STAGES: [(Guard, usize); 4] = [
     (Guard { weight: 0.1, slack: 3.0 }, 12),
 ];
 
-/// Mean distortion of a start, beyond 1, from which it goes through all stages; a better one through the last alone.
-const NEAR_ISOMETRY: f64 = 1e-6;
+/// Mean distortion beyond 1 below which a map is an isometry.
+const ISOMETRY: f64 = 1e-6;
 
 /// Most steps of a round.
 const STEPS: usize = 20;
@@ -97,9 +97,14 @@ pub(crate) fn descend(
     history: &mut History,
     observer: &mut dyn Observer,
 ) -> (Vec<Location>, Status) {
-    // 1. The energy, and which vertices may move
+    // 1. An isometry is the minimum
     let mut energy = SurfaceEnergy::new(problem, STAGES[0].0);
     let map: Vec<Placed> = parallel::map(start.len(), |vertex| energy.target.placed(start[vertex]));
+    let is_pulled = !problem.pulls.is_empty() || problem.signals.width > 0;
+    if !is_pulled && energy.mean_distortion(&map) < 1.0 + ISOMETRY {
+        return (start, Status::Converged);
+    }
+    // 2. Which vertices may move, and the pattern of their system
     let motions = motions(problem, &energy, &map);
     let dofs: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
     let faces = problem.source.faces();
@@ -108,16 +113,15 @@ pub(crate) fn descend(
     };
     let mut factor = Factor::new(&analysis);
     let colors = Colors::new(problem.source, &motions);
-    // 2. Stages, from one that smooths the way to one that only keeps folds away
-    let is_good = energy.mean_distortion(&map) < 1.0 + NEAR_ISOMETRY;
-    let first = if is_good { STAGES.len() - 1 } else { 0 };
+    // 3. Stages, from one that smooths the way to one that only keeps folds away
     let mut descent =
-        Descent { history, observer, analysis: &analysis, factor: &mut factor, colors: &colors };
+        Descent { history, observer, analysis: &analysis, factor: &mut factor, colors: &colors, done: 0 };
     let (mut map, mut status) = (map, Status::MaxIterations);
-    for (stage, (guard, rounds)) in STAGES.into_iter().enumerate().skip(first) {
+    for (stage, (guard, rounds)) in STAGES.into_iter().enumerate() {
         energy.guard = guard;
         let mut moving = Moving { energy: &energy, motions: &motions, map };
-        status = descent.rounds(&mut moving, rounds, stage as f64 / STAGES.len() as f64);
+        descent.done = STAGES[..stage].iter().map(|(_, rounds)| rounds).sum();
+        status = descent.rounds(&mut moving, rounds);
         map = moving.map;
         if status == Status::Cancelled {
             break;
@@ -153,17 +157,20 @@ struct Descent<'a> {
     analysis: &'a Analysis,
     factor: &'a mut Factor<f64>,
     colors: &'a Colors,
+    /// Rounds done, or skipped.
+    done: usize,
 }
 
 impl Descent<'_> {
     /// Rounds of steps and a sweep, until the energy hardly falls.
-    fn rounds(&mut self, moving: &mut Moving<'_, '_>, most: usize, fraction: f64) -> Status {
+    fn rounds(&mut self, moving: &mut Moving<'_, '_>, most: usize) -> Status {
         for _ in 0..most {
             let before = moving.energy.value(&moving.map);
-            if self.steps(moving, fraction).is_err() {
+            if self.steps(moving).is_err() {
                 return Status::Cancelled;
             }
             moving.sweep(self.colors);
+            self.done += 1;
             let after = moving.energy.value(&moving.map);
             if before - after <= SMALL_ROUND * before {
                 return Status::Converged;
@@ -172,10 +179,20 @@ impl Descent<'_> {
         Status::MaxIterations
     }
 
+    /// The fraction of the descent that is done at a step of the present round.
+    fn fraction(&self, step: usize) -> f64 {
+        let all: usize = STAGES.iter().map(|(_, rounds)| rounds).sum();
+        (self.done as f64 + step as f64 / STEPS as f64) / all as f64
+    }
+
     /// Newton's steps, until two in turn are small.
-    fn steps(&mut self, moving: &mut Moving<'_, '_>, fraction: f64) -> Result<(), Failure> {
+    fn steps(&mut self, moving: &mut Moving<'_, '_>) -> Result<(), Failure> {
         let mut small = 0;
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
+            let fraction = self.fraction(step);
+            if !self.observer.progress(fraction, MESSAGE) {
+                return Err(Failure::Cancelled);
+            }
             let watch = Watch::new(self.observer, fraction, MESSAGE);
             let step = match moving.step(self.analysis, self.factor, &watch) {
                 Ok(step) => step,

@@ -32,7 +32,7 @@ def test_all_but_the_surfaces_is_keyword_only():
     assert {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY} == {
         "source_curves": inspect.Parameter.empty,
         "target_curves": inspect.Parameter.empty,
-        "energy": "harmonic",
+        "energy": "surface",
         "area_weight": 1.0,
         "angle_weight": 1.0,
         "features": None,

@@ -19,7 +19,7 @@ ATTRIBUTES = {
     *("positions", "triangles", "barycentric", "registered", "target_registered", "faces", "target_faces"),
     *("source_map", "target_map", "landmark_error", "missed", "status", "distortion", "area_ratio"),
     *("area_distortion", "target_distortion", "iterations", "seconds", "pull", "inverse", "compare"),
-    *("certificates", "warnings", "energies"),
+    *("certificates", "warnings", "energies", "strain", "follow", "local_similarities"),
 }
 STATUSES = {"converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"}
 
@@ -138,7 +138,7 @@ def test_any_memory_layout(pair, layout):
     source, target = ((layout(mesh.vertices), layout(mesh.faces)) for mesh in pair[:2])
     landmarks = [np.asarray(layout(marks[:, None]))[:, 0] for marks in pair[2:]]
     laid_out = pairs.register_function(pair)(
-        source, target, source_landmarks=landmarks[0], target_landmarks=landmarks[1]
+        source, target, source_landmarks=landmarks[0], target_landmarks=landmarks[1], energy="area"
     )
     assert np.array_equal(laid_out.positions, pairs.register(pair).positions)
 
@@ -153,7 +153,10 @@ def test_landmarks_as_lists_and_tuples():
 def test_surfaces_as_lists():
     given = CAPS._replace(source=[array.tolist() for array in CAPS.source], target=list(CAPS.target))
     call = authalic.register_disks(
-        *given[:2], source_landmarks=CAPS.source_landmarks, target_landmarks=CAPS.target_landmarks
+        *given[:2],
+        source_landmarks=CAPS.source_landmarks,
+        target_landmarks=CAPS.target_landmarks,
+        energy="area",
     )
     assert np.array_equal(call.positions, pairs.register(CAPS).positions)
 

@@ -212,7 +212,10 @@ def _registered_by_points(
         **(_of_shapes(settings, pulls) if settings.is_pulled else _of_areas(settings)),
         **watch.of(make),
     )
-    return registered_by_points(native, sides, shape, landmarks, [name for name, _, _ in pairs])
+    registered = registered_by_points(native, sides, shape, landmarks, [name for name, _, _ in pairs])
+    if settings.is_pulled:
+        registered.energy = float("nan")
+    return registered
 
 
 def _of_areas(settings: Settings) -> dict[str, Any]:

@@ -34,7 +34,7 @@ class Report:
 
 def warnings(registered: Registered) -> list[str]:
     """Notes on a registration that is not as requested."""
-    early = messages.ENDED_EARLY_BY_CURVES if registered.by_curves else messages.ENDED_EARLY
+    early = messages.ENDED_EARLY_BY_CURVES if registered.keeps_shapes else messages.ENDED_EARLY
     notes = [early] if registered.ended_early else []
     if registered.missed and registered.by_curves and not registered.ended_early:
         notes.append(f"curves that do not meet: {messages.listed(registered.missed)}")
@@ -68,7 +68,7 @@ def _figures_of_points(registered: Registered) -> list[str]:
         f"{error}{_worst(registered)}",
         messages.count(registered.folds, "fold"),
         _strain(registered),
-        f"authalic energy {registered.energy:.3g}",
+        *([] if registered.keeps_shapes else [f"authalic energy {registered.energy:.3g}"]),
     ]
 
 

@@ -40,10 +40,10 @@ class Registered:
 
     `places` (u, 3) and `target_places` are the points of either in the common domain, the unit sphere or the
     unit disk at height 1. `errors` (k,) are the distances of the landmarks, as parts of the target's size,
-    `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain,
-    `folds` counts those of both. By curves the `domain` is "CURVES", the common domain a sphere, and
-    `remarks` say what should be looked at. `filled` says which holes were filled, `backward` which curves, by
-    number, fit better in reverse.
+    `missed` the names of pairs that do not meet. `energy` is the larger of the two maps into the domain, not
+    a number where other things than areas count, `folds` counts those of both. By curves the `domain` is
+    "CURVES", the common domain a sphere, and `remarks` say what should be looked at. `filled` says which
+    holes were filled, `backward` which curves, by number, fit better in reverse.
     """
 
     native: Any
@@ -63,6 +63,11 @@ class Registered:
     remarks: list[str] = field(default_factory=list)
     filled: list[str] = field(default_factory=list)
     backward: list[int] = field(default_factory=list)
+
+    @property
+    def keeps_shapes(self) -> bool:
+        """Whether areas were not what counted."""
+        return self.by_curves or not np.isfinite(self.energy)
 
     @property
     def by_curves(self) -> bool:

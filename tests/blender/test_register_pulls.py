@@ -169,6 +169,13 @@ def test_the_registration_is_kept_as_long_as_nothing_pulls_otherwise(library: An
         assert len(made) == count
 
 
+def test_the_report_names_the_energy_of_areas_only_where_it_counts(capfd: pytest.CaptureFixture[str]) -> None:
+    balls()
+    for energy, is_named in (("SURFACE", False), ("AREA", True)):
+        register(energy=energy)
+        assert ("authalic energy" in capfd.readouterr().out) == is_named
+
+
 def test_swap_and_mirror_keep_the_weights() -> None:
     source, target = balls()
     landmark = source.authalic_landmarks[0]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """The parts of scripts/ that could go wrong unnoticed."""
 
+import json
 import re
 import subprocess
 import sys
@@ -37,6 +38,11 @@ import bench.seams.meshes
 import bench.seams.topology
 import bench.tables.main
 import bench.tables.stability
+import bench.wrap.geodesics
+import bench.wrap.main
+import bench.wrap.measures
+import bench.wrap.methods
+import bench.wrap.pairs
 import changes
 import demo.figures
 import demo.measure
@@ -347,6 +353,61 @@ def test_an_island_that_is_closed_is_not_a_disk(tetrahedron):
     assert len(islands.seams) == 3 and list(islands.euler) == [1]
     islands = bench.seams.topology.islands(faces, np.zeros((4, 3, 2)))  # all corners at one place
     assert len(islands.seams) == 0 and list(islands.euler) == [2]
+
+
+def test_strain_between_surfaces_is_measured_at_equal_area():
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    image = 7 * (square * [2, 0.5, 0]) @ np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))[0]
+    strain = bench.wrap.measures.strain(square, faces, image, 49.0)
+    assert np.allclose(strain, (4 + 0.25 + 0.25 + 4) / 4)
+    image[2] = image[0]  # both faces become lines
+    assert np.isinf(bench.wrap.measures.strain(square, faces, image, 49.0)).all()
+    assert bench.wrap.measures.quantiles(np.array([3.0, 1, 2]), np.array([1, 1, 8]), (0.05, 0.5)) == [1, 2]
+
+
+def test_distances_on_a_ball_are_arcs():
+    vertices, faces = bench.meshes.icosphere(4)
+    ball = bench.wrap.geodesics.Geodesics(vertices, faces, exact=False)
+    arcs = np.arccos((vertices @ vertices[0]).clip(-1, 1)) / ball.root
+    ratio = ball.from_vertex(0)[1:] / arcs[1:]
+    assert ratio.min() > 0.99 and ratio.max() < 1.09  # lines along edges and midlines are longer
+    place = ball.to_place(0, 1000, np.full(3, 1 / 3))
+    assert 0.99 < place / arcs[faces[1000]].mean() < 1.09
+    beside = int(np.flatnonzero((faces == 0).any(axis=1))[0])
+    corner = (faces[beside] == 0).astype(float)
+    assert ball.to_place(0, beside, corner) == 0
+    chosen = bench.wrap.geodesics.farthest(ball, np.arange(len(vertices)), 2)
+    assert vertices[chosen[0]] @ vertices[chosen[1]] < -0.9
+
+
+def test_maps_between_surfaces_have_rows_figures_and_pictures(monkeypatch, tmp_path):
+    vertices, faces = bench.meshes.icosphere(2)
+    ball = bench.wrap.pairs.Surface("ball", vertices, faces)
+    egg = bench.wrap.pairs.Surface("egg", vertices * [1.2, 1, 1], faces)
+    given, known = np.arange(0, 12, 3), np.arange(1, 160, 5)
+    pair = bench.wrap.pairs.Pair(ball, egg, np.stack([given] * 2, 1), np.stack([known] * 2, 1))
+    collection = bench.wrap.pairs.Collection("balls", "Balls", "", (), lambda: [pair] * 3)
+    monkeypatch.setattr(bench.wrap.pairs, "COLLECTIONS", (collection,))
+    target = tmp_path / "wrap.md"
+    words = ["--pairs", "2", "--methods", "surface", "zoom", "--absent", "pyfmaps=no wheel"]
+    bench.wrap.main.main([str(target), *words])
+    text = target.read_text(encoding="utf-8")
+    assert len(re.findall(r"(?m)^\| ball → egg .*\| 0 \| \d+\.\d \| converged \|$", text)) == 2, text
+    assert len(re.findall(r"(?m)\| not installed: no wheel \|$", text)) == 2, text
+    assert text.count("**mean of 2**") == 1
+    rows = json.loads(target.with_suffix(".json").read_text(encoding="utf-8"))
+    measures = rows[0]["measures"]
+    assert measures["error"] < 0.05 and 1 <= measures["median"] < 1.05 and measures["landmarks"] < 1e-9
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", text):
+        assert (tmp_path / picture).stat().st_size > 0, picture
+
+
+def test_a_map_of_vertices_to_vertices_lies_at_vertices():
+    vertices, faces = bench.meshes.icosphere(1)
+    images = np.random.default_rng(3).integers(0, len(vertices), 20)
+    triangles, barycentric = bench.wrap.methods.at_vertices(images, faces)
+    assert np.allclose(np.einsum("ik,ikx->ix", barycentric, vertices[faces[triangles]]), vertices[images])
 
 
 def test_the_comparison_of_seams_has_rows_and_a_sheet(tetrahedron, monkeypatch, tmp_path):

@@ -8,6 +8,8 @@ from environment import Environment
 from shell import CommandFailed, Unavailable, say, tail, warn
 
 PACKAGES = ("libigl", "xatlas", "lapy")
+WRAPPERS = ("pyfmaps", "pygeodesic")
+"""Maps between surfaces, and distances to measure them by."""
 
 
 def packages(dev: Environment, wanted: tuple[str, ...] = PACKAGES) -> dict[str, str]:

@@ -183,7 +183,7 @@ def morph(source, target, options):
     bpy.ops.authalic.register(
         method=options.method.upper(),
         align=options.align,
-        angle_weight=options.angle_weight,
+        energy=options.energy.upper(),
         animate=True,
         frame_start=1,
         frame_end=options.frames,
@@ -268,7 +268,7 @@ def chosen_options():
     parser.add_argument("--size", type=int, default=480, help="pixels along a side (%(default)s)")
     parser.add_argument("--engine", choices=("cycles", "workbench"), default="cycles", help="%(default)s")
     parser.add_argument(
-        "--angle-weight", type=float, default=0.632, help="0 to 1, shapes against areas (%(default)s)"
+        "--energy", choices=("surface", "area"), default="surface", help="keep shapes or areas (%(default)s)"
     )
     parser.add_argument("--method", choices=("points", "curves"), default="points", help="%(default)s")
     parser.add_argument("--no-align", dest="align", action="store_false", help="end where the target is")

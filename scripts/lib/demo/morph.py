@@ -151,7 +151,7 @@ def _register(source, target, landmarks):
         for name, (first, second) in landmarks.items():
             bpy.ops.authalic.landmark_add(name=name, source_vertex=first, target_vertex=second)
         began = time.perf_counter()
-        bpy.ops.authalic.register(angle_weight=ANGLE_WEIGHT)
+        bpy.ops.authalic.register()
     except RuntimeError as error:  # bpy passes on an error report so
         return time.perf_counter() - began, str(error).strip()
     return time.perf_counter() - began, None

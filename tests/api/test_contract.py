@@ -65,6 +65,7 @@ REGISTRATION = {
     "features": None,
     "feature_weight": None,
     "position_weight": 0.0,
+    "fill_holes": False,
     "progress": None,
 }
 SEAMS = {

@@ -16,7 +16,7 @@ CURVES = curves.balls(4, target=meshes.radial(lambda x, y, z: 1 + 0.3 * x * y + 
 both = pytest.mark.parametrize("pair", BOTH.values(), ids=BOTH)
 OPTIONS = {
     **{"energy": "surface", "weight": 1.0, "area_weight": 1.0, "angle_weight": None, "weights": None},
-    **{"features": None, "feature_weight": None, "position_weight": 0.0},
+    **{"features": None, "feature_weight": None, "position_weight": 0.0, "fill_holes": False},
 }
 
 
@@ -44,7 +44,7 @@ def test_the_options_have_the_defaults_of_the_contract(call):
     assert {name: parameters[name].default for name in OPTIONS} == OPTIONS
     of_curves = inspect.signature(authalic.register_hyperbolic).parameters
     assert of_curves["energy"].default == "surface"
-    assert set(OPTIONS) - set(of_curves) == {"weight", "weights"}
+    assert set(OPTIONS) - set(of_curves) == {"weight", "weights", "fill_holes"}
 
 
 @both

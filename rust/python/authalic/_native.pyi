@@ -323,6 +323,10 @@ class Registration:
     @property
     def missed(self) -> _Indices: ...
     @property
+    def off_boundary(self) -> _Indices: ...
+    @property
+    def in_holes(self) -> _Indices: ...
+    @property
     def status(
         self,
     ) -> Literal["converged", "landmarks_missed", "max_iterations", "stalled", "cancelled"]: ...
@@ -586,6 +590,7 @@ def register_disks(
     features: tuple[ArrayLike, ArrayLike] | None = None,
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
+    fill_holes: bool = False,
     progress: _Progress | None = None,
 ) -> Registration: ...
 def register_spheres(
@@ -602,6 +607,7 @@ def register_spheres(
     features: tuple[ArrayLike, ArrayLike] | None = None,
     feature_weight: ArrayLike | None = None,
     position_weight: float = 0.0,
+    fill_holes: bool = False,
     progress: _Progress | None = None,
 ) -> Registration: ...
 def register_hyperbolic(

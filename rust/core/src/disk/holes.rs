@@ -72,7 +72,7 @@ fn loop_normal(corners: &[Vector3]) -> Vector3 {
 
 /// A point beside the centroid that lies on the line of no edge: the candidate whose thinnest fan triangle
 /// is fattest.
-fn apex_of(corners: &[Vector3]) -> Vector3 {
+pub(crate) fn apex_of(corners: &[Vector3]) -> Vector3 {
     let (center, normal) = (centroid(corners), loop_normal(corners));
     let length: f64 = edges(corners).map(|(from, to)| (to - from).norm()).sum();
     let mut directions = vec![Vector3::ZERO];

@@ -56,18 +56,36 @@ pub(crate) fn correct(
     free: &[Vertex],
     weights: Weights,
 ) -> Option<()> {
+    let one_rings = free.iter().map(|&vertex| match weights {
+        Weights::MeanValue => mean_value_weights(mesh, map, vertex),
+        Weights::Uniform => uniform_weights(mesh, vertex),
+    });
+    let one_rings = one_rings.collect();
+    solve(map, free, one_rings)
+}
+
+/// Carries the free vertices of a planar `map` along with the others, which have moved from where they lie in `before`:
+/// each keeps the weights (6.3b) that it has there. `None` where the system is singular.
+pub(crate) fn carry(
+    mesh: &TriangleMesh,
+    before: &[[f64; 2]],
+    map: &mut [[f64; 2]],
+    free: &[Vertex],
+) -> Option<()> {
+    let one_rings = free.iter().map(|&vertex| mean_value_weights(mesh, before, vertex)).collect();
+    solve(map, free, one_rings)
+}
+
+/// Makes each free vertex of a `map` the combination of its neighbors by given weights.
+fn solve(map: &mut [[f64; 2]], free: &[Vertex], one_rings: Vec<Vec<(Vertex, f64)>>) -> Option<()> {
     let n = free.len();
-    let mut unknown = vec![usize::MAX; mesh.n_vertices()];
+    let mut unknown = vec![usize::MAX; map.len()];
     for (i, &vertex) in free.iter().enumerate() {
         unknown[vertex] = i;
     }
     let mut matrix = TriMat::new((n, n));
     let mut rhs = vec![0.0; 2 * n];
-    for (i, &vertex) in free.iter().enumerate() {
-        let one_ring = match weights {
-            Weights::MeanValue => mean_value_weights(mesh, map, vertex),
-            Weights::Uniform => uniform_weights(mesh, vertex),
-        };
+    for (i, one_ring) in one_rings.into_iter().enumerate() {
         for (neighbor, weight) in one_ring {
             matrix.add_triplet(i, i, weight);
             match unknown[neighbor] {

@@ -6,7 +6,6 @@ use super::features::Signals;
 use super::options::RegistrationOptions;
 use super::surface::{Pull, SurfaceProblem, descend};
 use crate::codomain::CanonicalDomain;
-use crate::codomain::motion::rotated;
 use crate::control::{History, Observer, Status};
 use crate::location::{Location, points_on};
 use crate::mesh::{TriangleMesh, Vertex};
@@ -44,7 +43,7 @@ impl Between<'_, '_> {
         let problem =
             SurfaceProblem { source, target, domain, target_in_domain, held, pulls, signals, face_energy };
         let (locations, status) = descend(&problem, start, history, observer);
-        let registered = in_domain(source, &locations, target.faces(), target_in_domain, domain);
+        let registered = in_domain(&locations, target.faces(), target_in_domain, domain);
         (locations, registered, status)
     }
 
@@ -64,9 +63,8 @@ impl Between<'_, '_> {
     }
 }
 
-/// Locations on the target as points of the domain; the boundary of a disk lies on the circle.
+/// Locations on the target as points of the domain.
 fn in_domain(
-    source: &TriangleMesh,
     locations: &[Location],
     target_faces: &[[Vertex; 3]],
     target_in_domain: &[Vector3],
@@ -76,7 +74,6 @@ fn in_domain(
         let place = locations[vertex].point_on(target_in_domain, target_faces);
         match domain {
             CanonicalDomain::Sphere => place.normalized(),
-            CanonicalDomain::Disk if source.is_boundary(Vertex::new(vertex)) => rotated(place, 0.0),
             CanonicalDomain::Disk => Vector3([place[0], place[1], 1.0]),
         }
     })

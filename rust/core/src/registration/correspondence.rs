@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use ndarray::{Array1, Array2, Array3, ArrayView1, ArrayView2, ArrayView3};
 
+use super::boundary::Carried;
 use super::figures::{area_ratios, compare, vertex_areas};
 use super::given_faces::{GivenFaces, nearest_given_corners, pull_given_corners};
 use super::strain::{Strain, strain};
@@ -19,6 +20,7 @@ use crate::error::{Error, Side};
 use crate::location::{Location, Locator, points_on};
 use crate::mesh::geometry::{face_areas, normalized};
 use crate::mesh::{Corner, Surface, TriangleMesh, Vertex, index_array};
+use crate::parallel;
 use crate::vector::Vector3;
 
 /// A one-to-one map g of a source surface onto a target.
@@ -29,6 +31,7 @@ pub struct Correspondence {
     locations: Vec<Location>,
     positions: Vec<Vector3>,
     area_ratio: Vec<f64>,
+    in_holes: Vec<usize>,
 }
 
 /// A surface and its place in the domain.
@@ -46,6 +49,14 @@ impl Registered {
         Arc::new(Self { surface: surface.clone(), faces: faces.to_vec(), in_domain })
     }
 
+    /// The part of a filled surface that was given: its first vertices and faces.
+    fn of_given(self: &Arc<Self>, given: &Surface) -> Arc<Self> {
+        if given.n_faces() == self.faces.len() {
+            return self.clone();
+        }
+        Self::new(given, &self.faces[..given.n_faces()], self.in_domain[..given.n_vertices()].to_vec())
+    }
+
     fn given_faces(&self) -> GivenFaces<'_> {
         GivenFaces { given: self.surface.face_rows(), oriented: &self.faces, registered: &self.in_domain }
     }
@@ -56,18 +67,63 @@ impl Correspondence {
     pub(crate) fn new(source: Arc<Registered>, target: Arc<Registered>, locations: Vec<Location>) -> Self {
         let positions = points_on(&locations, &vectors(target.surface.vertices()), &target.faces);
         let area_ratio = area_ratios(rows(source.surface.vertices()), &source.faces, &positions);
-        Self { source, target, locations, positions, area_ratio }
+        Self { source, target, locations, positions, area_ratio, in_holes: Vec::new() }
     }
 
-    /// g⁻¹, by looking up the target's vertices among the source's faces in the domain.
+    /// g⁻¹, by looking up the target's vertices among the source's faces in the domain; on a disk whose boundary was
+    /// carried onto the source's, from there.
     ///
     /// # Errors
     /// [`Error::CancelledEarly`] where the observer ends it.
-    pub(crate) fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
+    pub(super) fn inverse(
+        &self,
+        carried: Option<&Carried>,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, Error> {
+        let target = match carried {
+            None => self.target.clone(),
+            Some(Carried { image, .. }) => {
+                Registered::new(&self.target.surface, &self.target.faces, image.clone())
+            }
+        };
         let watch = Watch::new(observer, 0.0, "Looking up places");
         let locator = Locator::new(&self.source.in_domain, &self.source.faces);
-        let locations = locator.locate_all(&self.target.in_domain, &watch).ok_or(Error::CancelledEarly)?;
-        Ok(Self::new(self.target.clone(), self.source.clone(), locations))
+        let mut locations = locator.locate_all(&target.in_domain, &watch).ok_or(Error::CancelledEarly)?;
+        if let Some(carried) = carried {
+            carried.on_rim.set(&mut locations);
+        }
+        Ok(Self::new(target, self.source.clone(), locations))
+    }
+
+    /// The map of the given surfaces, as this is the map of the same with their holes filled. A place on a filling keeps
+    /// its position; its location is the nearest on the target.
+    pub(super) fn of_given(&self, [source, target]: [&Surface; 2]) -> Self {
+        let [source, target] = [self.source.of_given(source), self.target.of_given(target)];
+        let locator = Locator::new(&target.in_domain, &target.faces);
+        let (n, m) = (source.in_domain.len(), target.faces.len());
+        let is_in_hole = |vertex: &usize| self.locations[*vertex].triangle.index() >= m;
+        let locations = parallel::map(n, |vertex| {
+            if is_in_hole(&vertex) {
+                locator.locate(source.in_domain[vertex])
+            } else {
+                self.locations[vertex]
+            }
+        });
+        let positions = self.positions[..n].to_vec();
+        let area_ratio = area_ratios(rows(source.surface.vertices()), &source.faces, &positions);
+        let in_holes = (0..n).filter(is_in_hole).collect();
+        Self { source, target, locations, positions, area_ratio, in_holes }
+    }
+
+    /// The source and the target.
+    pub(super) fn sides(&self) -> [&Registered; 2] {
+        [&self.source, &self.target]
+    }
+
+    /// The source's vertices whose positions lie on fillings of the target's holes, ascending. Their locations are the
+    /// nearest on the target itself.
+    pub fn in_holes(&self) -> &[usize] {
+        &self.in_holes
     }
 
     /// The surface that is mapped.

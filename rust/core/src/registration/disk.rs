@@ -6,11 +6,13 @@
 //! the areas of the faces next to it too.
 
 use super::between::Between;
+use super::boundary::{OnRim, Onto};
 use super::correspondence::{Correspondence, Registered, meshes};
+use super::filling::Filling;
 use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions};
-use super::result::{DiskRegistration, Registration};
+use super::result::{CarryingOptions, DiskRegistration, Registration};
 use super::verdict::{MISSED, located, missed, verdict};
 use crate::arrays::{from_rows, rows};
 use crate::codomain::CanonicalDomain;
@@ -49,6 +51,16 @@ pub fn register_disks(
     options: &RegistrationOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<DiskRegistration, Error> {
+    if options.fill_holes {
+        let filling = Filling::Disks;
+        return filling.registered(
+            [source_surface, target_surface],
+            landmarks,
+            options,
+            observer,
+            register_disks,
+        );
+    }
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;
@@ -71,11 +83,14 @@ pub fn register_disks(
     // 4. h: the source's landmarks carried to the target's; if some are missed, the target's to the source's
     let images = [turned, lifted(rows(g.uv.view()))];
     let mut met = meet([source, target], images, landmarks, options, &mut history, &mut in_domain)?;
-    // 5. g⁻¹: the locations on the target
+    // 5. The source's boundary onto the target's, which is a polygon
+    let on_rim = met.onto_target([source, target], landmarks, options, &mut history, &mut in_domain)?;
+    // 6. g⁻¹: the locations on the target
     let mut phase = Phase { whole: &mut in_domain, from: 0.95, to: 1.0 };
     let locator = Locator::new(&met.target, target.faces());
     let (mut locations, mut status) = located(&locator, &met.source, met.status, &mut phase)?;
-    // 6. The descent between the surfaces
+    on_rim.set(&mut locations);
+    // 7. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
         let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
         let between = Between {
@@ -89,7 +104,7 @@ pub fn register_disks(
         };
         (locations, met.source, status) = between.lower(locations, &mut history, &mut phase);
     }
-    // 7. Figures
+    // 8. Figures
     let error = |(&p, &q): (&usize, &usize)| met.source[p].distance(met.target[q]);
     let landmark_error: Vec<f64> = landmarks.source.iter().zip(landmarks.target).map(error).collect();
     let missed = missed(landmarks, options, &landmark_error, target, &locations);
@@ -117,6 +132,10 @@ pub fn register_disks(
         landmark_error: landmark_error.into(),
         status,
         missed,
+        off_boundary: on_rim.inside,
+        carrying: CarryingOptions::new(options),
+        whole: None,
+        original: None,
         iterations: history.iterations(),
         distortion,
         target_distortion,
@@ -141,13 +160,14 @@ fn meet(
     let disk = |mesh, landmarks, places| Carrying {
         mesh,
         domain: CanonicalDomain::Disk,
+        holds_boundary: false,
         landmarks,
         places,
         weight: options.weight,
         angle_weight: options.angle_weight_in_domain(),
     };
     let there = disk(source, landmarks.source, &theirs);
-    let mut phase = Phase { whole: observer, from: 0.6, to: 0.9 };
+    let mut phase = Phase { whole: observer, from: 0.6, to: 0.85 };
     let (carried, status) = there.carry(source_image.clone(), history, &mut phase)?;
     let there =
         Meeting { gap: there.farthest(&carried), source: carried, target: target_image.clone(), status };
@@ -155,7 +175,7 @@ fn meet(
         return Ok(there);
     }
     let back = disk(target, landmarks.target, &ours);
-    let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
+    let mut phase = Phase { whole: observer, from: 0.85, to: 0.9 };
     let (carried, status) = back.carry(target_image, history, &mut phase)?;
     let back = Meeting { gap: back.farthest(&carried), source: source_image, target: carried, status };
     Ok(if back.gap < there.gap { back } else { there })
@@ -167,6 +187,39 @@ struct Meeting {
     target: Vec<Vector3>,
     gap: f64,
     status: Status,
+}
+
+impl Meeting {
+    /// Carries the source's boundary onto the target's, where that is possible; returns what of it lies where.
+    fn onto_target(
+        &mut self,
+        meshes: [&TriangleMesh; 2],
+        landmarks: &Landmarks<'_>,
+        options: &RegistrationOptions<'_>,
+        history: &mut History,
+        observer: &mut dyn Observer,
+    ) -> Result<OnRim, Error> {
+        let onto = Onto {
+            meshes,
+            images: [&self.source, &self.target],
+            landmarks: [landmarks.source, landmarks.target],
+            weight: options.weight,
+            angle_weight: options.angle_weight_in_domain(),
+        };
+        if self.status == Status::Cancelled {
+            // one solve, and the landmarks stay where it takes them
+            let on_rim = onto.on_rim(&self.source).unwrap_or_default();
+            if !on_rim.map.is_empty() {
+                self.source = lifted(&on_rim.map);
+            }
+            return Ok(on_rim);
+        }
+        let mut phase = Phase { whole: observer, from: 0.9, to: 0.95 };
+        let Some(carried) = onto.carry(history, &mut phase)? else { return Ok(OnRim::default()) };
+        self.source = carried.image;
+        self.status = carried.status.unwrap_or(self.status);
+        Ok(carried.on_rim)
+    }
 }
 
 /// A map rotated by an angle, or as it is if rounding would fold a sliver.

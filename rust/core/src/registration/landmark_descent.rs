@@ -12,8 +12,9 @@
 //! Cost: the flow, and about ten factorizations with two unknowns per vertex.
 
 use super::flow::flow;
+use crate::codomain::motion::Motion;
 use crate::codomain::planar::{flat, lifted};
-use crate::codomain::{CanonicalDomain, SpatialMap};
+use crate::codomain::{CanonicalDomain, Codomain, SpatialMap};
 use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::energy::landmark_penalty::LandmarkPenalty;
 use crate::energy::stretch::Profile;
@@ -90,6 +91,8 @@ struct Goals {
 pub(super) struct Carrying<'a> {
     pub mesh: &'a TriangleMesh,
     pub domain: CanonicalDomain,
+    /// Whether the boundary of a disk stays where it is, as on a polygon, instead of sliding along the circle.
+    pub holds_boundary: bool,
     /// The landmarks of this surface, (k,).
     pub landmarks: &'a [usize],
     /// The places to carry them to, (k,).
@@ -111,7 +114,7 @@ impl Carrying<'_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> Result<(SpatialMap, Status), Error> {
-        if self.farthest(&map) <= THERE {
+        if !self.holds_boundary && self.farthest(&map) <= THERE {
             return Ok((map, Status::Converged));
         }
         // 1. The surface as its map shows it, in elimination order; angles are those of h
@@ -143,7 +146,7 @@ impl Carrying<'_> {
     fn problem(&self, by_order: &Renumbered) -> Result<Problem, Error> {
         let mesh = &by_order.mesh;
         let floor = target_floors::floors(mesh.face_areas())[0];
-        let energy = target_floors::energy(mesh, mesh.face_areas(), self.domain.into(), floor);
+        let energy = target_floors::energy(mesh, mesh.face_areas(), self.codomain(), floor);
         let mut number_of = vec![Vertex::default(); mesh.n_vertices()];
         by_order
             .vertices
@@ -153,9 +156,17 @@ impl Carrying<'_> {
         let landmarks = self.landmarks.iter().map(|&vertex| number_of[vertex]).collect();
         let penalty = LandmarkPenalty::new(&energy, landmarks, self.places.to_vec(), self.weight);
         let motions = Vertex::all(mesh.n_vertices())
-            .map(|vertex| self.domain.motion(mesh.is_boundary(vertex)))
+            .map(|vertex| match mesh.is_boundary(vertex) {
+                true if self.holds_boundary => Motion::Held,
+                on_boundary => self.domain.motion(on_boundary),
+            })
             .collect();
         Ok(Problem::new(energy, motions, Order::AsGiven)?.with_landmarks(penalty))
+    }
+
+    /// Where the map goes: with its boundary held it goes to a polygon, no circle.
+    fn codomain(&self) -> Codomain {
+        if self.holds_boundary { Codomain::Plane } else { self.domain.into() }
     }
 
     /// A map with the landmarks at or near their places, by an area-preserving flow. Where faces too coarse or too thin
@@ -173,7 +184,7 @@ impl Carrying<'_> {
         for round in 0..ROUNDS {
             let watch = Watch::new(observer, 0.1 * round as f64, MESSAGE);
             let mended = |map: SpatialMap| self.mended(mesh, problem, map);
-            if self.landmarks.len() <= MOST_IN_FLOW {
+            if self.landmarks.len() <= MOST_IN_FLOW && !self.holds_boundary {
                 map = flow(self.domain, map, problem.penalty.vertices(), self.places, &mended, &watch);
             }
             if farthest(problem, &map) <= NEAR {
@@ -233,7 +244,7 @@ impl Carrying<'_> {
     ) -> (Problem, SpatialMap, Status) {
         problem.penalty.weight = goals.weight;
         let surface =
-            target_floors::MappedSurface { mesh, targets: mesh.face_areas(), codomain: self.domain.into() };
+            target_floors::MappedSurface { mesh, targets: mesh.face_areas(), codomain: self.codomain() };
         let (mut no_nearer, mut status) = (0, Status::MaxIterations);
         for stage in 0..STAGES {
             let before = farthest(&problem, &map);

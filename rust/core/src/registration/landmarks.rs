@@ -16,6 +16,13 @@ pub struct Landmarks<'a> {
 }
 
 impl Landmarks<'_> {
+    /// Refuses vertices that are out of range on the source or the target.
+    pub(super) fn check_range(&self, [source, target]: [usize; 2]) -> Result<(), Error> {
+        check_range(Side::Source, self.source, source)?;
+        check_range(Side::Target, self.target, target)?;
+        Ok(())
+    }
+
     /// Refuses pairs that cannot be registered, before any work, and fewer than `needed`.
     pub(super) fn check(
         &self,
@@ -36,14 +43,21 @@ impl Landmarks<'_> {
     }
 }
 
+fn check_range(side: Side, landmarks: &[usize], n_vertices: usize) -> Result<(), LandmarkError> {
+    match Elements::collect((0..landmarks.len()).filter(|&pair| landmarks[pair] >= n_vertices)) {
+        None => Ok(()),
+        Some(pairs) => {
+            let value = landmarks[pairs.first[0]];
+            Err(LandmarkError::OutOfRange { side, pairs, value, n_vertices })
+        }
+    }
+}
+
 fn check_side(side: Side, landmarks: &[usize], mesh: &TriangleMesh) -> Result<(), LandmarkError> {
     let n_vertices = mesh.n_vertices();
+    check_range(side, landmarks, n_vertices)?;
     let pairs =
         |is_bad: &dyn Fn(usize) -> bool| Elements::collect((0..landmarks.len()).filter(|&pair| is_bad(pair)));
-    if let Some(pairs) = pairs(&|pair| landmarks[pair] >= n_vertices) {
-        let value = landmarks[pairs.first[0]];
-        return Err(LandmarkError::OutOfRange { side, pairs, value, n_vertices });
-    }
     let mut first = vec![usize::MAX; n_vertices];
     (0..landmarks.len()).rev().for_each(|pair| first[landmarks[pair]] = pair);
     if let Some(pairs) = pairs(&|pair| first[landmarks[pair]] != pair) {

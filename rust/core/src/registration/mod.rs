@@ -11,13 +11,16 @@
 //! Cost: the two maps, and about as much again for carrying the landmarks.
 
 mod between;
+mod boundary;
 pub(crate) mod correspondence;
 mod disk;
 mod features;
 mod figures;
+mod filling;
 mod flow;
 mod follow;
 mod given_faces;
+mod inverse;
 mod landmark_descent;
 mod landmarks;
 mod morph;

@@ -44,6 +44,9 @@ pub struct RegistrationOptions<'a> {
     /// ≥ 0: how strongly each vertex is pulled to its own position, after the similarity that brings the source nearest
     /// to its image, with [`Energy::Surface`]: for bodies in like poses.
     pub position_weight: f64,
+    /// Fills holes for the time being: all boundary loops but the longest of a disk, all of a sphere. So surfaces with
+    /// different numbers of holes, and open ones and closed ones, can be registered.
+    pub fill_holes: bool,
 }
 
 impl Default for RegistrationOptions<'_> {
@@ -56,6 +59,7 @@ impl Default for RegistrationOptions<'_> {
             weights: None,
             features: None,
             position_weight: 0.0,
+            fill_holes: false,
         }
     }
 }

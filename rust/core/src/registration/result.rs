@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The result of a registration by points.
 
+use std::sync::Arc;
+
 use ndarray::{Array1, Array2};
 
 use super::correspondence::Correspondence;
+use super::options::RegistrationOptions;
 use super::strain::Strain;
-use crate::control::{Observer, Status};
+use crate::control::Status;
 use crate::disk::DiskMap;
 use crate::distortion::Distortion;
-use crate::error::Error;
 use crate::sphere::SphereMap;
 
 /// A registration of disks.
@@ -39,6 +41,9 @@ pub struct Registration<Map> {
     /// The pairs that did not meet: farther apart than 10⁻³ in the domain, or than .5 % of the
     /// target's size on the target.
     pub missed: Vec<usize>,
+    /// Vertices of the source's boundary that lie a little inside the target, since faces between them would have no
+    /// area on a straight side of its boundary; ascending. All others lie on the target's boundary. Empty for spheres.
+    pub off_boundary: Vec<usize>,
     /// Why the run ended; [`Status::LandmarksMissed`] if some pairs did not meet.
     pub status: Status,
     /// Iterations of carrying the landmarks.
@@ -50,30 +55,29 @@ pub struct Registration<Map> {
     pub target_distortion: Distortion,
     /// Wall time of the whole call.
     pub seconds: f64,
+    pub(super) carrying: CarryingOptions,
+    /// The registration of the surfaces with their holes filled.
+    pub(super) whole: Option<Arc<Self>>,
+    /// The registration that this is the inverse of.
+    pub(super) original: Option<Arc<Self>>,
 }
 
-impl<Map: Clone> Registration<Map> {
-    /// The registration of the target onto the source: g⁻¹, from the same maps to the domain. Cost: one point location
-    /// per vertex of the target.
-    ///
-    /// # Errors
-    /// [`Error::CancelledEarly`] where the observer ends it.
-    pub fn inverse(&self, observer: &mut dyn Observer) -> Result<Self, Error> {
-        Ok(Self {
-            correspondence: self.correspondence.inverse(observer)?,
-            registered: self.target_registered.clone(),
-            target_registered: self.registered.clone(),
-            source_map: self.target_map.clone(),
-            target_map: self.source_map.clone(),
-            distortion: self.target_distortion.clone(),
-            target_distortion: self.distortion.clone(),
-            landmarks: [self.landmarks[1].clone(), self.landmarks[0].clone()],
-            landmark_error: self.landmark_error.clone(),
-            missed: self.missed.clone(),
-            ..*self
-        })
-    }
+/// The options of carrying landmarks in the domain.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CarryingOptions {
+    /// λ at the beginning.
+    pub weight: f64,
+    /// The weight of the angle distortion against that of the areas.
+    pub angle_weight: f64,
+}
 
+impl CarryingOptions {
+    pub(super) fn new(options: &RegistrationOptions<'_>) -> Self {
+        Self { weight: options.weight, angle_weight: options.angle_weight_in_domain() }
+    }
+}
+
+impl<Map> Registration<Map> {
     /// How far g stretches and shrinks each face of the source.
     pub fn strain(&self) -> Strain {
         let landmarks: Vec<Vec<usize>> = self.landmarks[0].iter().map(|&vertex| vec![vertex]).collect();

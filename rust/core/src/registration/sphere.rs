@@ -8,10 +8,11 @@ use std::borrow::Cow;
 
 use super::between::Between;
 use super::correspondence::{Correspondence, Registered, meshes};
+use super::filling::Filling;
 use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
 use super::options::{Energy, RegistrationOptions};
-use super::result::{Registration, SphereRegistration};
+use super::result::{CarryingOptions, Registration, SphereRegistration};
 use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
@@ -60,6 +61,16 @@ pub fn register_spheres(
     options: &RegistrationOptions<'_>,
     observer: &mut dyn Observer,
 ) -> Result<SphereRegistration, Error> {
+    if options.fill_holes {
+        let filling = Filling::Spheres;
+        return filling.registered(
+            [source_surface, target_surface],
+            landmarks,
+            options,
+            observer,
+            register_spheres,
+        );
+    }
     let mut history = History::start();
     // 1. Refuse what cannot be registered before any work
     let (source, target) = meshes(source_surface, target_surface)?;
@@ -86,6 +97,7 @@ pub fn register_spheres(
     let carrying = |mesh, landmarks| Carrying {
         mesh,
         domain: CanonicalDomain::Sphere,
+        holds_boundary: false,
         landmarks,
         places: &places,
         weight: options.weight,
@@ -143,6 +155,10 @@ pub fn register_spheres(
         landmark_error: landmark_error.into(),
         status,
         missed,
+        off_boundary: Vec::new(),
+        carrying: CarryingOptions::new(options),
+        whole: None,
+        original: None,
         iterations: history.iterations(),
         distortion,
         target_distortion,

@@ -13,7 +13,7 @@ use crate::vector::Vector3;
 /// Largest final distance of a landmark from its place, in a domain of radius 1; beyond it the pair is missed.
 pub const MISSED: f64 = 1e-3;
 
-/// Largest final distance of a landmark from its partner on the target, relative to the target's size.
+/// Largest final distance of a landmark from its partner on the target, relative to the target's largest extent.
 const MISSED_ON_TARGET: f64 = 5e-3;
 
 /// The locations of points. A cancelled run gets them too: a million take seconds.
@@ -42,12 +42,17 @@ pub(super) fn missed(
     target: &TriangleMesh,
     locations: &[Location],
 ) -> Vec<usize> {
+    let extent = |axis: usize| {
+        let along = || target.points().iter().map(|point| point[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    let far = MISSED_ON_TARGET * (0..3).map(extent).fold(0.0, f64::max);
     let is_missed = |&pair: &usize| {
         let location = locations[landmarks.source[pair]];
         let place = location.point_on(target.points(), target.faces());
         let on_target = place.distance(target.points()[landmarks.target[pair]]);
         let is_exact = options.pair_weight(pair).is_infinite();
-        is_exact && (landmark_error[pair] > MISSED || on_target > MISSED_ON_TARGET)
+        is_exact && (landmark_error[pair] > MISSED || on_target > far)
     };
     (0..landmark_error.len()).filter(is_missed).collect()
 }

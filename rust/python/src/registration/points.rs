@@ -53,6 +53,10 @@ use crate::surface::Given;
 /// position_weight : float
 ///     How strongly every vertex is pulled to its own position, ≥ 0, after the similarity that brings the source nearest
 ///     to its image: for bodies in like poses; only with "surface".
+/// fill_holes : bool
+///     Fill all boundary loops but the longest of either surface for the time of the call, so that both may have
+///     different numbers of holes. The result is that of the given vertices; `in_holes` has those of the source that come
+///     to lie on a filling of the target.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -85,7 +89,7 @@ use crate::surface::Given;
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="surface", weight=1.0, area_weight=1.0,
                     angle_weight=None, weights=None, features=None, feature_weight=None, position_weight=0.0,
-                    progress=None))]
+                    fill_holes=false, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_disks(
     py: Python<'_>,
@@ -101,6 +105,7 @@ pub fn register_disks(
     features: Option<&Bound<'_, PyAny>>,
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
+    fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let energy = choice("energy", energy, &ENERGIES)?;
@@ -110,6 +115,7 @@ pub fn register_disks(
         area_weight,
         angle_weight,
         position_weight,
+        fill_holes,
         ..Default::default()
     };
     let arguments = Arguments::new(
@@ -165,6 +171,10 @@ pub fn register_disks(
 /// position_weight : float
 ///     How strongly every vertex is pulled to its own position, ≥ 0, after the similarity that brings the source nearest
 ///     to its image: for bodies in like poses; only with "surface".
+/// fill_holes : bool
+///     Fill all boundary loops of either surface for the time of the call, so that open surfaces can be registered. The
+///     result is that of the given vertices; `in_holes` has those of the source that come to lie on a filling of the
+///     target.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
 ///
@@ -194,7 +204,7 @@ pub fn register_disks(
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="surface", weight=1.0,
                     area_weight=1.0, angle_weight=None, weights=None, features=None, feature_weight=None,
-                    position_weight=0.0, progress=None))]
+                    position_weight=0.0, fill_holes=false, progress=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_spheres(
     py: Python<'_>,
@@ -210,6 +220,7 @@ pub fn register_spheres(
     features: Option<&Bound<'_, PyAny>>,
     feature_weight: Option<&Bound<'_, PyAny>>,
     position_weight: f64,
+    fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let energy = choice("energy", energy, &ENERGIES)?;
@@ -219,6 +230,7 @@ pub fn register_spheres(
         area_weight,
         angle_weight,
         position_weight,
+        fill_holes,
         ..Default::default()
     };
     let arguments = Arguments::new(

@@ -60,6 +60,14 @@ pub struct Registration {
     /// size on the target. By curves: farther than 1e-9 of the target's size.
     #[pyo3(get)]
     missed: Py<PyArray1<i64>>,
+    /// (j,) int64: vertices of the source's boundary that lie a little inside the target, since faces between them would
+    /// have no area on a straight side of its boundary; all others lie on its boundary. Empty but for disks.
+    #[pyo3(get)]
+    off_boundary: Py<PyArray1<i64>>,
+    /// (j,) int64: with `fill_holes`, the source vertices whose positions lie on a filling of the target's holes. Their
+    /// `triangles` and `barycentric` are the nearest place on the target itself, from where `pull` takes data.
+    #[pyo3(get)]
+    in_holes: Py<PyArray1<i64>>,
     /// "converged", "landmarks_missed", "max_iterations", "stalled" or "cancelled". No face is folded in
     /// any case, except with the solver "heat", where `certificates` tell.
     #[pyo3(get)]
@@ -134,6 +142,8 @@ impl Registration {
             target_map,
             landmark_error: from_array(py, figures.landmark_error.clone()),
             missed: from_index_list(py, figures.missed.iter().copied()),
+            off_boundary: from_index_list(py, figures.off_boundary.iter().copied()),
+            in_holes: from_index_list(py, map.in_holes().iter().copied()),
             status: figures.status.as_str(),
             distortion: Py::new(py, Distortion::new(py, figures.distortion.clone()))?,
             area_distortion: from_array(py, area_ratio.mapv(|ratio| ratio.max(1.0 / ratio))),
@@ -154,6 +164,7 @@ impl Registration {
 struct Figures<'a> {
     landmark_error: &'a Array1<f64>,
     missed: &'a [usize],
+    off_boundary: &'a [usize],
     status: Status,
     distortion: &'a authalic::Distortion,
     target_distortion: &'a authalic::Distortion,
@@ -169,6 +180,7 @@ impl<'a> Figures<'a> {
             Finished::Curves(curves) => Self {
                 landmark_error: &curves.map.curve_error,
                 missed: &curves.map.missed,
+                off_boundary: &[],
                 status: curves.map.status,
                 distortion: &curves.map.distortion,
                 target_distortion: &curves.inverse.distortion,
@@ -182,6 +194,7 @@ impl<'a> Figures<'a> {
         Self {
             landmark_error: &registration.landmark_error,
             missed: &registration.missed,
+            off_boundary: &registration.off_boundary,
             status: registration.status,
             distortion: &registration.distortion,
             target_distortion: &registration.target_distortion,

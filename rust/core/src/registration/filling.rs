@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Holes that are filled for the time of a registration, so that surfaces with different numbers of holes, and open and
+//! closed ones, can be registered.
+//!
+//! A hole is filled by rings of vertices that grow coarser toward its middle, each the mean of its neighbors: a smooth
+//! membrane. The filled surfaces are registered; the result is that of the given vertices and faces. Where a vertex of
+//! the source comes to lie on a filling of the target, it has a position there and its data from the nearest place of
+//! the surface.
+//!
+//! Cost: one sparse LU with some three unknowns per vertex of a hole.
+
+use std::iter::successors;
+use std::sync::Arc;
+
+use ndarray::{Array2, ArrayView2, Axis, Slice, concatenate};
+use sprs::TriMat;
+
+use super::Landmarks;
+use super::features::Features;
+use super::options::RegistrationOptions;
+use super::result::Registration;
+use crate::arrays::{rows, vectors};
+use crate::control::Observer;
+use crate::disk::{DiskMap, apex_of};
+use crate::distortion::{Distortion, Image, measure};
+use crate::error::{Error, Side};
+use crate::mesh::geometry::area;
+use crate::mesh::{Surface, TriangleMesh, Vertex};
+use crate::sparse::solve_general;
+use crate::sphere::SphereMap;
+use crate::vector::{Vector3, coordinates};
+
+/// The number of vertices of a ring over that of the ring around it.
+const COARSER: f64 = 0.7;
+
+/// Rings of at most so many vertices have the middle inside.
+const INNERMOST: usize = 8;
+
+/// Faces of a filling are no smaller than this, relative to the square of their longest edge.
+const THINNEST: f64 = 1e-3;
+
+/// Which holes are filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Filling {
+    /// All boundary loops but the longest.
+    Disks,
+    /// All boundary loops.
+    Spheres,
+}
+
+/// A registration by points, as [`register_disks`](super::register_disks).
+type Register<Map> = fn(
+    &Surface,
+    &Surface,
+    &Landmarks<'_>,
+    &RegistrationOptions<'_>,
+    &mut dyn Observer,
+) -> Result<Registration<Map>, Error>;
+
+impl Filling {
+    /// The registration of two surfaces by that of the filled ones.
+    ///
+    /// # Errors
+    /// Those of the registration.
+    pub(super) fn registered<Map: OfGiven>(
+        self,
+        given: [&Surface; 2],
+        landmarks: &Landmarks<'_>,
+        options: &RegistrationOptions<'_>,
+        observer: &mut dyn Observer,
+        register: Register<Map>,
+    ) -> Result<Registration<Map>, Error> {
+        landmarks.check_range(given.map(Surface::n_vertices))?;
+        let fill =
+            |surface: &Surface, side| self.filled(surface).map_err(|error: Error| error.of_surface(side));
+        let [source, target] = [fill(given[0], Side::Source)?, fill(given[1], Side::Target)?];
+        let signals = options
+            .features
+            .map(|features| [source.extended(features.source), target.extended(features.target)]);
+        let features = options.features.zip(signals.as_ref()).map(|(features, [ours, theirs])| Features {
+            source: ours.view(),
+            target: theirs.view(),
+            ..features
+        });
+        let options = RegistrationOptions { features, fill_holes: false, ..*options };
+        let whole = register(&source.surface, &target.surface, landmarks, &options, observer)?;
+        if source.holes.is_empty() && target.holes.is_empty() {
+            return Ok(whole);
+        }
+        whole.of_given(given)
+    }
+
+    /// A surface with its holes filled; the given vertices and faces come first.
+    fn filled(self, surface: &Surface) -> Result<Filled, Error> {
+        let mesh = surface.mesh()?;
+        let loops = match self {
+            Self::Disks => mesh.boundary_loops().get(1..).unwrap_or_default(),
+            Self::Spheres => mesh.boundary_loops(),
+        };
+        if loops.is_empty() {
+            return Ok(Filled { surface: surface.clone(), holes: Vec::new() });
+        }
+        let (mut points, mut faces) = (vectors(surface.vertices()), mesh.faces().to_vec());
+        let mut holes = Vec::new();
+        for hole in loops {
+            let before = points.len();
+            fill(hole, &mut points, &mut faces);
+            holes.push(Hole { rim: hole.clone(), n_vertices: points.len() - before });
+        }
+        Ok(Filled { surface: Surface::of_checked_rows(coordinates(points), faces), holes })
+    }
+}
+
+/// A surface with its holes filled.
+struct Filled {
+    surface: Surface,
+    holes: Vec<Hole>,
+}
+
+/// A filled hole: its boundary loop and the number of vertices inside.
+struct Hole {
+    rim: Vec<Vertex>,
+    n_vertices: usize,
+}
+
+impl Filled {
+    /// Signals of the given vertices, (n, k), for the filled surface: each hole has the mean of its rim.
+    fn extended(&self, signals: ArrayView2<'_, f64>) -> Array2<f64> {
+        let mut extended = signals.to_owned();
+        for hole in &self.holes {
+            if hole.rim.iter().any(|vertex| vertex.index() >= signals.nrows()) {
+                return signals.to_owned();
+            }
+            let rim: Vec<usize> = hole.rim.iter().map(|vertex| vertex.index()).collect();
+            let mean = signals.select(Axis(0), &rim).mean_axis(Axis(0)).expect("a rim has vertices");
+            let inside =
+                mean.broadcast((hole.n_vertices, mean.len())).expect("one row per vertex").to_owned();
+            extended = concatenate![Axis(0), extended, inside];
+        }
+        extended
+    }
+}
+
+/// Fills one hole by rings of vertices, or by a cone where those would have faces without area.
+fn fill(hole: &[Vertex], points: &mut Vec<Vector3>, faces: &mut Vec<[Vertex; 3]>) {
+    let (n_points, n_faces) = (points.len(), faces.len());
+    // 1. Rings that grow coarser, and the middle
+    let counts = successors(Some(hole.len()), |&count| {
+        (count > INNERMOST).then(|| ((COARSER * count as f64).round() as usize).max(5))
+    });
+    let mut rings: Vec<Vec<Vertex>> = Vec::new();
+    let mut next = n_points;
+    for count in counts {
+        rings.push(if rings.is_empty() {
+            hole.to_vec()
+        } else {
+            (next..next + count).map(Vertex::new).collect()
+        });
+        next += if rings.len() == 1 { 0 } else { count };
+    }
+    let middle = Vertex::new(next);
+    rings.windows(2).for_each(|pair| stitch(&pair[0], &pair[1], faces));
+    let innermost = rings.last().expect("the hole is the first");
+    for k in 0..innermost.len() {
+        faces.push([innermost[(k + 1) % innermost.len()], innermost[k], middle]);
+    }
+    // 2. Each vertex the mean of its neighbors
+    let membrane = membrane(n_points, next + 1 - n_points, &faces[n_faces..], points);
+    if let Some(membrane) = membrane {
+        points.extend(membrane);
+        let is_fat = |face: &[Vertex; 3]| {
+            let [a, b, c] = face.map(|vertex| points[vertex]);
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            area([a, b, c].map(|x| x * (1.0 / longest))) > THINNEST
+        };
+        if faces[n_faces..].iter().all(is_fat) {
+            return;
+        }
+    }
+    // 3. Or a cone
+    points.truncate(n_points);
+    faces.truncate(n_faces);
+    let rim: Vec<Vector3> = hole.iter().map(|&vertex| points[vertex]).collect();
+    points.push(apex_of(&rim));
+    let apex = Vertex::new(n_points);
+    faces.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k], apex]));
+}
+
+/// The faces between a ring and the next one inside. The ring has the surface on its left and these on its right.
+fn stitch(outer: &[Vertex], inner: &[Vertex], faces: &mut Vec<[Vertex; 3]>) {
+    let (n, m) = (outer.len(), inner.len());
+    let (mut i, mut j) = (0, 0);
+    while i < n || j < m {
+        let [here, there] = [outer[i % n], inner[j % m]];
+        // the ring that lags behind goes on: (i + 1)/n against (j + 1)/m
+        if j == m || (i < n && (i + 1) * m <= (j + 1) * n) {
+            i += 1;
+            faces.push([outer[i % n], here, there]);
+        } else {
+            j += 1;
+            faces.push([here, there, inner[j % m]]);
+        }
+    }
+}
+
+/// The places of `count` new vertices from number `first`, each the mean of its neighbors in `faces`; `None` where the
+/// system is singular.
+fn membrane(first: usize, count: usize, faces: &[[Vertex; 3]], points: &[Vector3]) -> Option<Vec<Vector3>> {
+    let mut matrix = TriMat::new((count, count));
+    let mut rhs = vec![0.0; 3 * count];
+    // around an inner vertex every edge belongs to two faces, in one of them in each direction
+    for face in faces {
+        for k in 0..3 {
+            let (from, to) = (face[k].index(), face[(k + 1) % 3].index());
+            if from < first {
+                continue;
+            }
+            let row = from - first;
+            matrix.add_triplet(row, row, 1.0);
+            match to.checked_sub(first) {
+                Some(column) => matrix.add_triplet(row, column, -1.0),
+                None => (0..3).for_each(|axis| rhs[axis * count + row] += points[to][axis]),
+            }
+        }
+    }
+    solve_general(&matrix.to_csc(), &mut rhs).ok()?;
+    Some((0..count).map(|row| Vector3::from_fn(|axis| rhs[axis * count + row])).collect())
+}
+
+/// What a filled surface has for the given vertices and faces, which come first.
+pub trait OfGiven: Clone {
+    /// The part of the given surface, whose faces are oriented as `faces`.
+    #[doc(hidden)]
+    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error>;
+}
+
+impl OfGiven for DiskMap {
+    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error> {
+        let (uv, distortion) = part(&self.uv, given, faces)?;
+        Ok(Self { uv, distortion, ..self.clone() })
+    }
+}
+
+impl OfGiven for SphereMap {
+    fn of_given(&self, given: &TriangleMesh, faces: &[[Vertex; 3]]) -> Result<Self, Error> {
+        let (positions, distortion) = part(&self.positions, given, faces)?;
+        let targets = self.targets[..faces.len()].to_vec();
+        Ok(Self { positions, distortion, targets, refinement: None, ..self.clone() })
+    }
+}
+
+/// The rows of the given vertices in the disk, (n, 2), or on the sphere, (n, 3), and their figures.
+fn part(
+    image: &Array2<f64>,
+    given: &TriangleMesh,
+    faces: &[[Vertex; 3]],
+) -> Result<(Array2<f64>, Distortion), Error> {
+    let part = image.slice_axis(Axis(0), Slice::from(..given.n_vertices())).to_owned();
+    let distortion = if part.ncols() == 2 {
+        measure(given.points(), faces, Image::Plane(rows(part.view())), given.face_areas())?
+    } else {
+        measure(given.points(), faces, Image::Sphere(&vectors(part.view())), given.face_areas())?
+    };
+    Ok((part, distortion))
+}
+
+impl<Map: OfGiven> Registration<Map> {
+    /// The registration of two given surfaces, as this is that of the same with their holes filled.
+    pub(super) fn of_given(self, given: [&Surface; 2]) -> Result<Self, Error> {
+        let correspondence = self.correspondence.of_given(given);
+        let [source, target] = [given[0].mesh()?, given[1].mesh()?];
+        let [faces, target_faces] = correspondence.sides().map(|side| &side.faces[..]);
+        let (registered, distortion) = part(&self.registered, source, faces)?;
+        let (target_registered, target_distortion) = part(&self.target_registered, target, target_faces)?;
+        Ok(Self {
+            registered,
+            target_registered,
+            distortion,
+            target_distortion,
+            source_map: self.source_map.of_given(source, faces)?,
+            target_map: self.target_map.of_given(target, target_faces)?,
+            landmark_error: self.landmark_error.clone(),
+            missed: self.missed.clone(),
+            off_boundary: self.off_boundary.clone(),
+            landmarks: self.landmarks.clone(),
+            original: None,
+            correspondence,
+            whole: Some(Arc::new(self.clone())),
+            ..self
+        })
+    }
+}

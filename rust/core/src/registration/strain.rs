@@ -21,8 +21,9 @@ use crate::vector::Vector3;
 /// A face is stretched if a length in it grows or shrinks by more than this.
 const STRETCHED: f64 = 2.0;
 
-/// The surroundings of a landmark, along edges, relative to the square root of the area.
-const AROUND: f64 = 0.2;
+/// The surroundings of a landmark, along edges, relative to the square root of the area. Where two pairs of animals or
+/// men were swapped, the mean over so wide surroundings named one of them in 11 of 12 cases, over half of it in 7.
+const AROUND: f64 = 0.4;
 
 /// The strain of a registration, face by face and in figures.
 #[derive(Debug, Clone)]

@@ -18,8 +18,8 @@ SIZE, STEP, FINAL = 30, 10, 200
 """The eigenfunctions of ZoomOut's first map, of each step and of its last map."""
 ORIENTED = 0.1
 """pyFM's own advice: without it the map is often mirrored."""
-SKIPPED = 5
-"""Every fifth descriptor counts."""
+DESCRIPTORS, KEPT = 100, 180
+"""Descriptors of the surface and of each landmark, and about how many of all are kept, evenly."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,8 @@ def zoomout(pair):
     sides = (TriMesh(*side.mesh, area_normalize=True, center=True) for side in (pair.target, pair.source))
     model = FunctionalMapping(*sides)
     marks = pair.landmarks[:, ::-1] if len(pair.landmarks) else None
-    model.preprocess(landmarks=marks, subsample_step=SKIPPED, k_process=FINAL)
+    step = max(DESCRIPTORS * (1 + len(pair.landmarks)) // KEPT, 1)
+    model.preprocess(n_descr=DESCRIPTORS, landmarks=marks, subsample_step=step, k_process=FINAL)
     if pair.features:
         model.add_descriptors(signals(pair.target), signals(pair.source))
     model.fit(K=(SIZE, SIZE), w_orient=ORIENTED)

@@ -12,9 +12,10 @@ import authalic
 from ..messages import problems
 from ..registration import elements
 from ..registration.curves import check_curves, registered_by_curves
+from ..registration.domain import domain
 from ..registration.kept import Kept, fingerprint
 from ..registration.piece import check_piece
-from ..registration.points import check_landmarks, domain
+from ..registration.points import check_landmarks
 from ..registration.problems import in_words
 from ..registration.pulls import Pulls
 from ..registration.registered import Registered, registered_by_points
@@ -200,19 +201,21 @@ def _registered_by_points(
     sides: tuple[Side, Side], pairs: Sequence[PointPair], settings: Settings, pulls: Pulls, watch: _Watch
 ) -> Registered:
     surfaces, patches = zip(*(_in_library(side) for side in sides), strict=True)
-    shape = domain(sides, patches, settings.domain)
-    borders = [np.concatenate([np.empty(0, int), *boundaries(pieces)]) for pieces in patches]
-    landmarks = check_landmarks(sides, pairs, shape, borders)
-    make: Any = authalic.register_disks if shape == "DISK" else authalic.register_spheres
+    common = domain(sides, patches, settings.domain)
+    landmarks = check_landmarks(sides, pairs, common)
+    make: Any = authalic.register_disks if common.shape == "DISK" else authalic.register_spheres
     native = make(
         *surfaces,
         source_landmarks=landmarks[0],
         target_landmarks=landmarks[1],
         weight=settings.weight,
         **(_of_shapes(settings, pulls) if settings.is_pulled else _of_areas(settings)),
+        fill_holes=any(common.holes),
         **watch.of(make),
     )
-    registered = registered_by_points(native, sides, shape, landmarks, [name for name, _, _ in pairs])
+    names = [name for name, _, _ in pairs]
+    registered = registered_by_points(native, sides, common.shape, landmarks, names)
+    registered.filled = common.in_words(sides)
     if settings.is_pulled:
         registered.energy = float("nan")
     return registered

@@ -47,9 +47,17 @@ class Registering:
         name="Domain",
         description="The shape that both surfaces are mapped to",
         items=(
-            ("AUTO", "Automatic", "A disk for surfaces with a boundary, a sphere for closed ones"),
-            ("DISK", "Disk", "Both surfaces must have one boundary, and normals on the same side"),
-            ("SPHERE", "Sphere", "Both surfaces must be closed"),
+            (
+                "AUTO",
+                "Automatic",
+                "A disk for surfaces with a boundary, a sphere for closed ones and where one is closed",
+            ),
+            (
+                "DISK",
+                "Disk",
+                "The longest boundaries are matched, all others are filled. Normals must be on the same side",
+            ),
+            ("SPHERE", "Sphere", "All boundaries are filled"),
         ),
         default="AUTO",
     )

@@ -307,34 +307,49 @@ def test_poll() -> None:
         register()
 
 
-def test_open_and_closed() -> None:
-    source, target = meshes.add_grid("Sail"), meshes.icosphere(2)
-    pairs.pair(source, target, {"One": (24, 1), "Two": (25, 2)})
-    refusal("Sail is open and Icosphere is closed; both must be open or both closed: fill the hole of Sail")
+def test_an_open_surface_onto_a_closed_one(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = meshes.icosphere(3), meshes.icosphere(3)
+    target.name = "Twin"
+    cut_off = [vertex for vertex in source.data.vertices if vertex.co.z > 0.9]
+    gone = len(cut_off)
+    meshes.remove(source, [vertex.index for vertex in cut_off])
+    ends = zip(pairs.nearest(source, CORNERS[:4]), pairs.nearest(target, CORNERS[:4]), strict=True)
+    pairs.pair(source, target, {str(number): both for number, both in enumerate(ends)})
+    assert gone and register() == {"FINISHED"}
+    assert "1 hole of Icosphere was filled for the map" in capfd.readouterr().out
+    assert not source.data.uv_layers.get(UV_MAP)
+    goal = pairs.positions(source, KEY)
+    np.testing.assert_allclose(np.linalg.norm(goal, axis=1), 1, atol=0.03)
 
 
-@pytest.mark.parametrize(
-    ("make", "domain", "pattern"),
-    [
-        (sheets, "SPHERE", "Sheet: has a boundary, but a sphere has none; fill it or set Domain"),
-        (balls, "DISK", "Icosphere: is closed, a disk has a boundary; set Domain to Automatic"),
-    ],
-)
-def test_wanted_domain(make: Callable[..., tuple[MeshObject, MeshObject]], domain: str, pattern: str) -> None:
-    make()
-    refusal(pattern, domain=domain)
-
-
-def test_holes_are_named() -> None:
+@pytest.mark.parametrize("domain", ["AUTO", "DISK", "SPHERE"])
+def test_holes_of_one_are_filled(domain: str, capfd: pytest.CaptureFixture[str]) -> None:
     vertices, faces = meshes.grid(n=8)
-    holed = meshes.add(
-        vertices, [face for number, face in enumerate(faces) if number not in (18, 45)], "Holed"
-    )
-    pairs.pair(holed, meshes.add_grid("Sheet", n=8), [40, 41])
-    refusal(
-        r"Holed: has 3 boundaries where one is allowed; fill the one of 4 edges at vertex \d+; the one of 4 "
-        r"edges at vertex \d+ \(select a boundary edge, Select Boundary Loop, F\)"
-    )
+    kept = [face for number, face in enumerate(faces) if number not in (18, 45)]
+    holed, sheet = meshes.add(vertices, kept, "Holed"), meshes.add(vertices, faces, "Twin")
+    pairs.pair(holed, sheet, [40, 41, 20, 60])
+    assert register(domain=domain) == {"FINISHED"}
+    said = capfd.readouterr().out
+    if domain == "SPHERE":
+        assert "3 holes of Holed were filled for the map; 1 hole of Twin was filled" in said
+    else:
+        assert "2 holes of Holed were filled for the map" in said and "of Twin was filled" not in said
+    after = pairs.positions(holed, KEY)
+    assert np.isfinite(after).all()
+    assert domain == "SPHERE" or (np.linalg.norm(after - vertices, axis=1) < 0.5).all()
+
+
+def test_a_landmark_on_the_rim_of_a_filled_hole() -> None:
+    vertices, faces = meshes.grid(n=8)
+    kept = [face for number, face in enumerate(faces) if number != 18]
+    holed, sheet = meshes.add(vertices, kept, "Holed"), meshes.add(vertices, faces, "Twin")
+    pairs.pair(holed, sheet, [int(faces[18][0]), 60])
+    assert register() == {"FINISHED"}
+
+
+def test_a_disk_of_a_closed_surface_is_refused() -> None:
+    balls()
+    refusal("Icosphere: is closed, a disk has a boundary; set Domain to Automatic", domain="DISK")
 
 
 def test_handle() -> None:

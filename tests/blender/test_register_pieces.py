@@ -52,7 +52,7 @@ def _ball(radius: float, place: tuple[float, ...]) -> MeshObject:
     return bpy.context.object
 
 
-@pytest.mark.parametrize("holes", [False])
+@pytest.mark.parametrize("holes", [False, True])
 def test_a_base_mesh_of_four_pieces_is_wrapped_onto_a_scan(
     holes: bool, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -200,6 +200,18 @@ def test_light_weights_are_no_mask(capfd: pytest.CaptureFixture[str]) -> None:
     assert "masked" not in capfd.readouterr().out
 
 
+def test_a_mask_on_the_source_alone(capfd: pytest.CaptureFixture[str]) -> None:
+    """Its hole is filled for the map onto the closed target."""
+    source, target = balls()
+    masked(source, cap(source, 0.9))
+    assert register() == {"FINISHED"}
+    assert "1 hole of Icosphere was filled for the map" in capfd.readouterr().out
+    after = pairs.positions(source, KEY)
+    expected = pairs.moved(pairs.positions(source), target.matrix_world)
+    assert np.isfinite(after).all()
+    assert np.linalg.norm(after - expected, axis=1).max() < 0.3 * pairs.size(expected)
+
+
 def test_a_landmark_on_the_mask_is_refused() -> None:
     source, target = balls()
     for obj in (source, target):
@@ -237,3 +249,26 @@ def test_a_transfer_goes_to_the_matched_piece_alone() -> None:
     assert (weights[-84:] == 0).all() and len(weights) == count
     corners = vertices < count - 84
     np.testing.assert_allclose(meshes.uv(source, "Map")[corners], uv[corners], atol=1e-3)
+
+
+def test_suzanne_with_eyes_is_wrapped_onto_one_without(capfd: pytest.CaptureFixture[str]) -> None:
+    """Her sockets are open; those of the target are closed by n-gons."""
+    target = meshes.closed_suzanne(1)
+    target.name = "Twin"
+    target.matrix_world = TILTED
+    source = meshes.suzanne(1)
+    source.name = "Monkey"
+    points = pairs.positions(target)
+    away = (
+        np.linalg.norm(np.abs(points) - [0.35, 0.7, 0.25], axis=1) > 0.4
+    )  # from eyes, and their mirror images
+    chosen = np.flatnonzero(away)[::120]
+    ends = zip(pairs.nearest(source, points[chosen]), chosen.tolist(), strict=True)
+    pairs.pair(source, target, {str(number): both for number, both in enumerate(ends)})
+    assert register() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "2 other pieces of Monkey followed" in said and "2 holes of Monkey were filled" in said
+    after = pairs.positions(source, KEY)
+    expected = pairs.moved(pairs.positions(source), TILTED)
+    assert np.isfinite(after).all()
+    assert np.median(np.linalg.norm(after - expected, axis=1)) < 0.05 * pairs.size(expected)

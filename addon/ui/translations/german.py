@@ -241,6 +241,11 @@ _TOOLTIPS = {
         "Teile biegen sich mit der Oberfläche, wie es Schuhe und Handschuhe sollen"
     ),
     "Small pieces keep their shapes, large ones bend": "Kleine Teile behalten ihre Form, große biegen sich",
+    "All boundaries are filled": "Alle Ränder werden gefüllt",
+    "The longest boundaries are matched, all others are filled. Normals must be on the same side": (
+        "Die längsten Ränder werden zugeordnet, alle anderen gefüllt. Normalen müssen auf derselben "
+        "Seite sein"
+    ),
     "Merge the vertices of open edges that lie on each other, so that faces are joined.\n\nUV maps, "
     "landmarks and shape keys stay": (
         "Die Vertices offener Kanten verschmelzen, die aufeinanderliegen, damit Flächen verbunden "
@@ -266,12 +271,8 @@ _TOOLTIPS = {
     "A disk for islands with a boundary, a sphere for closed ones without handles": (
         "Eine Scheibe für Inseln mit Rand, eine Kugel für geschlossene ohne Henkel"
     ),
-    "A disk for surfaces with a boundary, a sphere for closed ones": (
-        "Eine Scheibe für Oberflächen mit Rand, eine Kugel für geschlossene"
-    ),
-    "Both surfaces must be closed": "Beide Oberflächen müssen geschlossen sein",
-    "Both surfaces must have one boundary, and normals on the same side": (
-        "Beide Oberflächen müssen einen Rand haben und Normalen auf derselben Seite"
+    "A disk for surfaces with a boundary, a sphere for closed ones and where one is closed": (
+        "Eine Scheibe für Oberflächen mit Rand, eine Kugel für geschlossene und wo eine geschlossen ist"
     ),
     "A rectangle as long as the equator. The poles are its upper and lower sides; faces at the seam "
     "extend beyond the right side": (

@@ -137,7 +137,7 @@ def lifted(points):
 
 
 def assert_embedding(image, faces):
-    """No face folded by exact arithmetic; the whole sphere once, or a disk whose boundary runs once around."""
+    """No face folded by exact arithmetic; the whole sphere once, or a disk with its boundary once around."""
     if image.shape[1] == 3:
         assert np.abs(np.linalg.norm(image, axis=1) - 1).max() < 1e-14
         assert oracle.folded_on_sphere(image, faces) == []
@@ -168,7 +168,7 @@ def assert_located(result, pair):
 
 
 def assert_on_the_boundary(result):
-    """The source's boundary lies on the target's, one coordinate exactly 0, but for the vertices that are named."""
+    """The source's boundary lies on the target's, one coordinate exactly 0, except where it is named."""
     rim = oracle.boundary_loop(result.target_faces)
     edges = {tuple(edge) for edge in np.sort(np.stack([rim, np.roll(rim, -1)], axis=1), axis=1)}
     for vertex in np.setdiff1d(boundary_vertices(result.faces), result.off_boundary):

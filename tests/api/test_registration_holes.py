@@ -20,7 +20,8 @@ def plates():
 def open_ball(level=3, top=0.8):
     """A ball with its top cut off."""
     ball = meshes.ball(level)
-    return meshes.compact(meshes.Mesh(ball.vertices, ball.faces[(ball.vertices[ball.faces][..., 2] < top).all(axis=1)]))
+    is_below = (ball.vertices[ball.faces][..., 2] < top).all(axis=1)
+    return meshes.compact(meshes.Mesh(ball.vertices, ball.faces[is_below]))
 
 
 def swapped(pair):
@@ -65,7 +66,8 @@ def assert_arrays(result, source, target):
     assert (result.barycentric >= 0).all()
     assert np.abs(result.barycentric.sum(axis=1) - 1).max() < 1e-14
     on_target = np.setdiff1d(np.arange(n), result.in_holes)
-    places = np.einsum("ik,ikx->ix", result.barycentric, target.vertices[result.target_faces[result.triangles]])
+    corners = target.vertices[result.target_faces[result.triangles]]
+    places = np.einsum("ik,ikx->ix", result.barycentric, corners)
     assert np.abs(places - result.positions)[on_target].max() < 1e-13 * pairs.size(target)
     # data come from the nearest place, so they stay within their range
     values = np.arange(n_target) % 7

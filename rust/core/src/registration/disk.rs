@@ -3,7 +3,7 @@
 //!
 //! f and g are the area-preserving maps of source and target to the unit disk, h moves the source's landmarks onto the
 //! target's. The paper holds the boundary of h at the best rotation; here it slides along the circle, which preserves
-//! the areas of the faces next to it too.
+//! the areas of the faces next to it too. At last it is laid onto the boundary of g's image, which is a polygon.
 
 use super::between::Between;
 use super::boundary::{OnRim, Onto};

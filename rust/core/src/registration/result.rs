@@ -25,7 +25,7 @@ pub struct Registration<Map> {
     /// g: the location of each source vertex on the target.
     pub correspondence: Correspondence,
     /// The source's vertices, (n, 2) or (n, 3), in the parameter domain with the landmarks in place: h∘f on the disk,
-    /// h₀∘f₀ on the sphere.
+    /// h₀∘f₀ on the sphere. The boundary of a disk lies on that of the target's image, a polygon.
     pub registered: Array2<f64>,
     /// The target's vertices in that domain: g on the disk, h₁∘f₁ on the sphere. On the disk they are moved only where
     /// moving the source's landmarks alone misses some.

@@ -32,7 +32,7 @@ pub struct Registration {
     #[pyo3(get)]
     barycentric: Py<PyArray2<f64>>,
     /// (n, 2) or (n, 3) float64: the source vertices in the parameter domain, the unit disk or sphere, with the
-    /// landmarks in place.
+    /// landmarks in place. The boundary of a disk lies on that of the target's image, a polygon.
     #[pyo3(get)]
     registered: Reals,
     /// (n_t, 2) or (n_t, 3) float64: the target vertices in the parameter domain.

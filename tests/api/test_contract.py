@@ -67,6 +67,7 @@ REGISTRATION = {
     "position_weight": 0.0,
     "fill_holes": False,
     "progress": None,
+    "preview": None,
 }
 SEAMS = {
     "target": 1.4,
@@ -145,6 +146,7 @@ KEYWORDS = {
         "source_sphere": None,
         "target_sphere": None,
         "progress": None,
+        "preview": None,
     },
     "hyperbolic_structure": {"curves": inspect.Parameter.empty, "metric": "newton", "progress": None},
     "homotopy": {"align": False},

@@ -45,6 +45,7 @@ def test_all_but_the_surfaces_is_keyword_only():
         "source_sphere": None,
         "target_sphere": None,
         "progress": None,
+        "preview": None,
     }
 
 

@@ -61,7 +61,8 @@ def test_a_surface_onto_itself_is_the_identity(name, count):
 
 @both
 def test_noise_moves_little(pair):
-    noise = 1e-12 * pairs.size(pair.source) * np.random.default_rng(3).standard_normal(pair.source.vertices.shape)
+    rng = np.random.default_rng(3)
+    noise = 1e-12 * pairs.size(pair.source) * rng.standard_normal(pair.source.vertices.shape)
     moved = pair._replace(source=meshes.Mesh(pair.source.vertices + noise, pair.source.faces))
     here, there = register(pair), register(moved)
     assert np.abs(here.positions - there.positions).max() <= 1e-6 * pairs.size(pair.target)
@@ -97,8 +98,29 @@ def test_a_descent_that_is_cancelled_returns_a_map_without_folds(pair):
     pairs.assert_embedding(result.registered, result.faces)
 
 
+@both
+def test_previews_come_nearer_to_the_result_and_change_no_bit(pair):
+    seen = []
+    result = register(pair, preview=seen.append)
+    assert len(seen) > 2
+    assert all(positions.shape == result.positions.shape for positions in seen)
+    ways = [np.abs(positions - result.positions).max() for positions in (seen[0], seen[-1])]
+    assert ways[1] < ways[0]
+    assert np.array_equal(result.positions, register(pair).positions)
+
+
+def test_an_error_in_a_preview_is_raised():
+    def preview(_positions):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        register(BALLS, preview=preview)
+    with pytest.raises(TypeError, match="preview must be callable"):
+        register(BALLS, preview=3)
+
+
 def test_a_map_that_converged_is_where_single_vertices_cannot_better_it():
-    """By an independent route: each of many vertices moved a little in space raises the energy to first order."""
+    """By an independent route: many vertices moved a little in space gain nothing to first order."""
     pair = BALLS
     result = register(pair)
     assert result.status == "converged"
@@ -121,7 +143,8 @@ def test_a_map_that_converged_is_where_single_vertices_cannot_better_it():
 def test_soft_landmarks_come_nearer_the_more_they_weigh(pair):
     shifted = pair.target_landmarks.copy()
     neighbors = pair.target.faces[(pair.target.faces == shifted[0]).any(axis=1)]
-    shifted[0] = np.setdiff1d(neighbors, [*pair.target_landmarks, *pairs.boundary_vertices(pair.target.faces)])[0]
+    taken = [*pair.target_landmarks, *pairs.boundary_vertices(pair.target.faces)]
+    shifted[0] = np.setdiff1d(neighbors, taken)[0]
     pair = pair._replace(target_landmarks=shifted)
 
     def gap(weight):

@@ -5,6 +5,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use ndarray::Array2;
+
 /// Listens to a run and may end it.
 ///
 /// Any `FnMut(f64, &str) -> bool` is an observer.
@@ -22,6 +24,12 @@ pub trait Observer: Send {
     /// Called between the steps of a run with the fraction done in `[0, 1]` and a short message. A long step also calls
     /// it from within, on any thread, with the last fraction. `false` cancels, and the run returns its best map so far.
     fn progress(&mut self, fraction: f64, message: &str) -> bool;
+
+    /// Called after each step of a registration between surfaces: `positions()` computes the images so far of the
+    /// source's vertices, (n, 3), on the target as given. Does nothing by default.
+    fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+        let _ = positions;
+    }
 }
 
 impl<F: FnMut(f64, &str) -> bool + Send> Observer for F {
@@ -51,6 +59,10 @@ impl<'a> Phase<'a> {
 impl Observer for Phase<'_> {
     fn progress(&mut self, fraction: f64, message: &str) -> bool {
         self.whole.progress(self.from + fraction * (self.to - self.from), message)
+    }
+
+    fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+        self.whole.preview(positions);
     }
 }
 

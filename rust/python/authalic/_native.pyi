@@ -592,6 +592,7 @@ def register_disks(
     position_weight: float = 0.0,
     fill_holes: bool = False,
     progress: _Progress | None = None,
+    preview: Callable[[_Reals], object] | None = None,
 ) -> Registration: ...
 def register_spheres(
     source: _Surface,
@@ -609,6 +610,7 @@ def register_spheres(
     position_weight: float = 0.0,
     fill_holes: bool = False,
     progress: _Progress | None = None,
+    preview: Callable[[_Reals], object] | None = None,
 ) -> Registration: ...
 def register_hyperbolic(
     source: _Surface,
@@ -629,6 +631,7 @@ def register_hyperbolic(
     source_sphere: ArrayLike | None = None,
     target_sphere: ArrayLike | None = None,
     progress: _Progress | None = None,
+    preview: Callable[[_Reals], object] | None = None,
 ) -> Registration: ...
 def homotopy(
     vertices: ArrayLike | _Handle, registration: Registration, t: float, *, align: bool = False

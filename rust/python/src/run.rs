@@ -11,9 +11,11 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use authalic::{Error, Observer};
+use numpy::ndarray::Array2;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
+use crate::arrays::from_array;
 use crate::errors::{internal, to_python};
 
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
@@ -21,6 +23,7 @@ const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 /// A message from the worker to the waiting thread.
 enum Message<T> {
     Progress(f64, String),
+    Preview(Array2<f64>),
     Done(Result<T, Error>),
     Panicked(String),
 }
@@ -31,6 +34,8 @@ struct Remote<T> {
     /// Present if the caller gave a progress function. Each report waits for the answer, so that the step at which
     /// a run is cancelled does not depend on timing.
     line: Option<(Sender<Message<T>>, Receiver<bool>)>,
+    /// Present if the caller gave a preview function, which is not waited for.
+    previews: Option<Sender<Message<T>>>,
     /// The largest fraction so far, so that progress never falls when a step is tried again.
     reached: f64,
 }
@@ -49,6 +54,13 @@ impl<T: Send> Observer for Remote<T> {
         // a refusal is final: the caller is not asked again
         self.cancelled.fetch_or(!goes_on, Ordering::Relaxed);
         goes_on
+    }
+
+    fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+        if let Some(sender) = &self.previews {
+            // sending fails if the caller has gone on Ctrl-C
+            let _ = sender.send(Message::Preview(positions()));
+        }
     }
 }
 
@@ -78,14 +90,30 @@ pub fn run<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&mut dyn Observer) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
-    if let Some(progress) = progress.filter(|progress| !progress.is_callable()) {
-        return Err(PyTypeError::new_err(format!("progress must be callable, but is {}", progress.repr()?)));
+    run_with_preview(py, progress, None, work)
+}
+
+/// [`run`] that shows maps on the way to a preview function.
+pub fn run_with_preview<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    preview: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&mut dyn Observer) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    for (name, function) in [("progress", progress), ("preview", preview)] {
+        if let Some(function) = function.filter(|function| !function.is_callable()) {
+            return Err(PyTypeError::new_err(format!(
+                "{name} must be callable, but is {}",
+                function.repr()?
+            )));
+        }
     }
     let (sender, messages) = channel();
     let (answer, answers) = channel();
     let cancelled = Arc::new(AtomicBool::new(false));
     let line = progress.map(|_| (sender.clone(), answers));
-    let mut remote = Remote { cancelled: cancelled.clone(), line, reached: 0.0 };
+    let previews = preview.map(|_| sender.clone());
+    let mut remote = Remote { cancelled: cancelled.clone(), line, previews, reached: 0.0 };
     std::thread::spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| work(&mut remote)));
         // sending fails if the caller has gone on Ctrl-C
@@ -93,7 +121,7 @@ pub fn run<T: Send + 'static>(
             sender.send(outcome.map_or_else(|panic| Message::Panicked(panic_text(&*panic)), Message::Done));
     });
     // a receiver is not Sync; the lock allows waiting without the GIL
-    let outcome = wait(py, progress, &Mutex::new(messages), &answer);
+    let outcome = wait(py, [progress, preview], &Mutex::new(messages), &answer);
     cancelled.store(true, Ordering::Relaxed);
     outcome
 }
@@ -101,7 +129,7 @@ pub fn run<T: Send + 'static>(
 /// Serves progress and signals until the worker is done.
 fn wait<T: Send>(
     py: Python<'_>,
-    progress: Option<&Bound<'_, PyAny>>,
+    [progress, preview]: [Option<&Bound<'_, PyAny>>; 2],
     messages: &Mutex<Receiver<Message<T>>>,
     answer: &Sender<bool>,
 ) -> PyResult<T> {
@@ -112,6 +140,11 @@ fn wait<T: Send>(
             Ok(Message::Progress(fraction, text)) => {
                 // sending fails if the worker has ended meanwhile
                 let _ = answer.send(go_on(progress, fraction, &text)?);
+            }
+            Ok(Message::Preview(positions)) => {
+                if let Some(preview) = preview {
+                    preview.call1((from_array(py, positions),))?;
+                }
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {

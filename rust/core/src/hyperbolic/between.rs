@@ -14,6 +14,8 @@ use crate::vector::Vector3;
 /// Two surfaces with a map that takes curves to curves.
 pub(super) struct Between<'a, 'f> {
     pub meshes: [&'a TriangleMesh; 2],
+    /// The target's vertices as given.
+    pub target_points: &'a [Vector3],
     /// The target's vertices on its rough sphere.
     pub target_in_domain: &'a [Vector3],
     pub curves: &'a LandmarkCurves<'a>,
@@ -43,6 +45,7 @@ impl Between<'_, '_> {
         let problem = SurfaceProblem {
             source,
             target,
+            target_points: self.target_points,
             domain: CanonicalDomain::Sphere,
             target_in_domain: self.target_in_domain,
             held,

@@ -12,6 +12,7 @@ use super::harmonic::piece_map::map_piece;
 use super::options::{HarmonicSolver, HyperbolicEnergy, HyperbolicOptions};
 use super::slice::isotopy::Isotopy;
 use super::slice::slice_pair;
+use crate::arrays::vectors;
 use crate::control::{History, Observer, Phase, Watch};
 use crate::error::{CurveError, Elements, Error, NumericsError, Side};
 use crate::mesh::{Surface, TriangleMesh};
@@ -82,7 +83,9 @@ pub fn register_hyperbolic(
     // 5. The descent between the surfaces
     if options.energy == HyperbolicEnergy::Surface {
         let meshes = [source, target];
-        let between = Between { meshes, target_in_domain: &placement.target, curves, signals, options };
+        let target_points = &vectors(target_surface.vertices());
+        let target_in_domain = &placement.target;
+        let between = Between { meshes, target_points, target_in_domain, curves, signals, options };
         let mut phase = Phase { whole: observer, from: 0.95, to: 1.0 };
         assembly.lower(between, &mut history, &mut phase);
     }

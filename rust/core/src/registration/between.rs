@@ -16,6 +16,8 @@ use crate::vector::Vector3;
 pub(super) struct Between<'a, 'f> {
     pub source: &'a TriangleMesh,
     pub target: &'a TriangleMesh,
+    /// The target's vertices as given.
+    pub target_points: &'a [Vector3],
     pub domain: CanonicalDomain,
     /// The target's vertices in the domain.
     pub target_in_domain: &'a [Vector3],
@@ -32,7 +34,7 @@ impl Between<'_, '_> {
         history: &mut History,
         observer: &mut dyn Observer,
     ) -> (Vec<Location>, Vec<Vector3>, Status) {
-        let Self { source, target, domain, target_in_domain, options, .. } = self;
+        let Self { source, target, target_points, domain, target_in_domain, options, .. } = self;
         let (held, pulls) = self.held_and_pulled();
         let mut signals = self.signals;
         if options.position_weight > 0.0 {
@@ -40,8 +42,17 @@ impl Between<'_, '_> {
             signals.add_positions([source, target], &images, options.position_weight);
         }
         let face_energy = options.face_energy();
-        let problem =
-            SurfaceProblem { source, target, domain, target_in_domain, held, pulls, signals, face_energy };
+        let problem = SurfaceProblem {
+            source,
+            target,
+            target_points,
+            domain,
+            target_in_domain,
+            held,
+            pulls,
+            signals,
+            face_energy,
+        };
         let (locations, status) = descend(&problem, start, history, observer);
         let registered = in_domain(&locations, target.faces(), target_in_domain, domain);
         (locations, registered, status)

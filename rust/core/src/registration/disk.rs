@@ -14,7 +14,7 @@ use super::landmarks::{Landmarks, best_turn, fewest};
 use super::options::{Energy, RegistrationOptions};
 use super::result::{CarryingOptions, DiskRegistration, Registration};
 use super::verdict::{MISSED, located, missed, verdict};
-use crate::arrays::{from_rows, rows};
+use crate::arrays::{from_rows, rows, vectors};
 use crate::codomain::CanonicalDomain;
 use crate::codomain::planar::{flat, lifted};
 use crate::control::{History, Observer, Phase, Status};
@@ -93,9 +93,11 @@ pub fn register_disks(
     // 7. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
         let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
+        let target_points = vectors(target_surface.vertices());
         let between = Between {
             source,
             target,
+            target_points: &target_points,
             domain: CanonicalDomain::Disk,
             target_in_domain: &met.target,
             landmarks,

@@ -116,9 +116,11 @@ pub fn register_spheres(
     // 6. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
         let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };
+        let target_points = vectors(target_surface.vertices());
         let between = Between {
             source,
             target,
+            target_points: &target_points,
             domain: CanonicalDomain::Sphere,
             target_in_domain: &target_registered,
             landmarks,

@@ -11,7 +11,7 @@ use super::surfaces::{SOURCE, TARGET, checked, vertex_paths};
 use crate::arrays::real_table;
 use crate::errors::bad_option;
 use crate::options::{choice, metrics, parse_iterations};
-use crate::run::run;
+use crate::run::run_with_preview;
 use crate::surface::Given;
 
 /// Registers two surfaces of genus 0 by landmark curves: a one-to-one map of the source onto the target that takes
@@ -63,6 +63,9 @@ use crate::surface::Given;
 ///     The target on such a sphere; give both or neither. They need not be aligned.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between steps and within long ones; False cancels.
+/// preview : callable(positions), optional
+///     Called after each step of the descent between the surfaces with the (n, 3) float64 images so far of the source's
+///     vertices on the target.
 ///
 /// Returns
 /// -------
@@ -97,7 +100,7 @@ use crate::surface::Given;
 #[pyo3(signature = (source, target, *, source_curves, target_curves, energy="surface", area_weight=1.0,
                     angle_weight=1.0, features=None, feature_weight=None, position_weight=0.0, metric="newton",
                     solver="newton", max_iterations=None, tolerance=None, source_sphere=None, target_sphere=None,
-                    progress=None))]
+                    progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_hyperbolic(
     py: Python<'_>,
@@ -118,6 +121,7 @@ pub fn register_hyperbolic(
     source_sphere: Option<&Bound<'_, PyAny>>,
     target_sphere: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    preview: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let mut options = HyperbolicOptions {
         energy: choice("energy", energy, &ENERGIES)?,
@@ -146,7 +150,7 @@ pub fn register_hyperbolic(
         }
     };
     let features = GivenFeatures::new(features, feature_weight)?;
-    let finished = run(py, progress, move |observer| {
+    let finished = run_with_preview(py, progress, preview, move |observer| {
         let (source, target) = (checked(source, Side::Source)?, checked(target, Side::Target)?);
         let curves = LandmarkCurves { source: &source_curves, target: &target_curves };
         let spheres = spheres.as_ref().map(|[source, target]| [source.view(), target.view()]);

@@ -10,7 +10,7 @@ use super::result::Registration;
 use super::surfaces::{SOURCE, TARGET, checked};
 use crate::indices::index_list;
 use crate::options::choice;
-use crate::run::run;
+use crate::run::run_with_preview;
 use crate::surface::Given;
 
 /// Registers two disks: a map of the source onto the target that preserves areas and takes landmarks to landmarks.
@@ -59,6 +59,9 @@ use crate::surface::Given;
 ///     to lie on a filling of the target.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
+/// preview : callable(positions), optional
+///     Called after each step of the descent between the surfaces with the (n, 3) float64 images so far of the source's
+///     vertices on the target.
 ///
 /// Returns
 /// -------
@@ -89,7 +92,7 @@ use crate::surface::Given;
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks, target_landmarks, energy="surface", weight=1.0, area_weight=1.0,
                     angle_weight=None, weights=None, features=None, feature_weight=None, position_weight=0.0,
-                    fill_holes=false, progress=None))]
+                    fill_holes=false, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_disks(
     py: Python<'_>,
@@ -107,6 +110,7 @@ pub fn register_disks(
     position_weight: f64,
     fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
+    preview: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
@@ -124,7 +128,7 @@ pub fn register_disks(
         [weights, features, feature_weight],
         options,
     )?;
-    let finished = run(py, progress, move |observer| {
+    let finished = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(authalic::register_disks, observer).map(Finished::Disk)
     })?;
     Registration::new(py, finished)
@@ -177,6 +181,9 @@ pub fn register_disks(
 ///     target.
 /// progress : callable(fraction, message) -> bool, optional
 ///     Called between iterations and within long steps; False cancels and returns the best map so far.
+/// preview : callable(positions), optional
+///     Called after each step of the descent between the surfaces with the (n, 3) float64 images so far of the source's
+///     vertices on the target.
 ///
 /// Returns
 /// -------
@@ -204,7 +211,7 @@ pub fn register_disks(
 #[pyfunction]
 #[pyo3(signature = (source, target, *, source_landmarks=None, target_landmarks=None, energy="surface", weight=1.0,
                     area_weight=1.0, angle_weight=None, weights=None, features=None, feature_weight=None,
-                    position_weight=0.0, fill_holes=false, progress=None))]
+                    position_weight=0.0, fill_holes=false, progress=None, preview=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments of the Python function
 pub fn register_spheres(
     py: Python<'_>,
@@ -222,6 +229,7 @@ pub fn register_spheres(
     position_weight: f64,
     fill_holes: bool,
     progress: Option<&Bound<'_, PyAny>>,
+    preview: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Registration> {
     let energy = choice("energy", energy, &ENERGIES)?;
     let options = RegistrationOptions {
@@ -239,7 +247,7 @@ pub fn register_spheres(
         [weights, features, feature_weight],
         options,
     )?;
-    let finished = run(py, progress, move |observer| {
+    let finished = run_with_preview(py, progress, preview, move |observer| {
         arguments.register(authalic::register_spheres, observer).map(Finished::Sphere)
     })?;
     Registration::new(py, finished)

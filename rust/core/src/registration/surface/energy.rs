@@ -10,8 +10,8 @@
 //! Vertices add soft landmarks, w |g(v) − place|², and signals, |f(v) − f(g(v))|² by area. Both surfaces have an area
 //! of 1.
 
-use super::SurfaceProblem;
 use super::density::{Expansion, FaceEnergy, Hats, gram, jacobian};
+use super::problem::{Pull, SurfaceProblem};
 use super::target::{Placed, Root, Target, of_unit_area, product};
 use crate::mesh::geometry::triangle;
 use crate::mesh::{TriangleMesh, Vertex};
@@ -60,7 +60,7 @@ impl<'a> SurfaceEnergy<'a> {
         let areas: Vec<f64> = source.face_areas().iter().map(|area| area / total).collect();
         let hats = parallel::map(source.n_faces(), |face| hats(triangle(&points, source.faces()[face])));
         let shares = source.vertex_shares(&areas);
-        let pull = |pull: &super::Pull| (pull.vertex, target.points[pull.place], pull.weight);
+        let pull = |pull: &Pull| (pull.vertex, target.points[pull.place], pull.weight);
         let mut pulls: Vec<_> = problem.pulls.iter().map(pull).collect();
         pulls.sort_by_key(|(vertex, _, _)| *vertex);
         Self { source, target, guard, kind, areas, hats, shares, pulls, problem }

@@ -15,17 +15,18 @@
 mod density;
 mod energy;
 mod newton;
+mod problem;
 mod sweep;
 mod target;
 mod walk;
 
 pub(crate) use density::FaceEnergy;
+pub(crate) use problem::{Pull, SurfaceProblem};
 
-use super::features::Signals;
-use crate::codomain::CanonicalDomain;
+use crate::arrays::from_vectors;
 use crate::control::{History, Observer, Status, Watch};
-use crate::location::Location;
-use crate::mesh::{TriangleMesh, Vertex};
+use crate::location::{Location, points_on};
+use crate::mesh::Vertex;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
 use crate::vector::Vector3;
@@ -56,38 +57,6 @@ const SMALL_ROUND: f64 = 1e-4;
 
 const MESSAGE: &str = "Keeping shapes";
 
-/// A vertex that is pulled to a place on the target: weight × |g(v) − place|² / the target's area.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Pull {
-    /// The vertex of the source.
-    pub vertex: Vertex,
-    /// The vertex of the target that it is pulled to.
-    pub place: Vertex,
-    /// The weight, against the energy of the source, whose area counts as 1.
-    pub weight: f64,
-}
-
-/// A map of one surface onto another whose energy is to be lowered.
-pub(crate) struct SurfaceProblem<'a> {
-    /// The surface that is mapped.
-    pub source: &'a TriangleMesh,
-    /// The surface that it is mapped onto.
-    pub target: &'a TriangleMesh,
-    /// The domain in which no face may fold.
-    pub domain: CanonicalDomain,
-    /// The target's vertices in the domain, the unit sphere or the disk in the plane z = 1.
-    pub target_in_domain: &'a [Vector3],
-    /// The vertices of the source that do not move, as exact landmarks.
-    pub held: Vec<bool>,
-    /// Soft landmarks.
-    pub pulls: Vec<Pull>,
-    /// Signals that should agree: the sum of their squared differences at the source's vertices, weighted by area with
-    /// 1 for the whole source, is part of the energy.
-    pub signals: Signals,
-    /// The energy of each face.
-    pub face_energy: FaceEnergy,
-}
-
 /// Lowers the energy from a map without folds.
 ///
 /// The boundary of a disk slides along the target's. Faces that are folded in the domain at the start stay as they are.
@@ -114,8 +83,15 @@ pub(crate) fn descend(
     let mut factor = Factor::new(&analysis);
     let colors = Colors::new(problem.source, &motions);
     // 3. Stages, from one that smooths the way to one that only keeps folds away
-    let mut descent =
-        Descent { history, observer, analysis: &analysis, factor: &mut factor, colors: &colors, done: 0 };
+    let mut descent = Descent {
+        history,
+        observer,
+        analysis: &analysis,
+        factor: &mut factor,
+        colors: &colors,
+        done: 0,
+        target_points: problem.target_points,
+    };
     let (mut map, mut status) = (map, Status::MaxIterations);
     for (stage, (guard, rounds)) in STAGES.into_iter().enumerate() {
         energy.guard = guard;
@@ -157,8 +133,10 @@ struct Descent<'a> {
     analysis: &'a Analysis,
     factor: &'a mut Factor<f64>,
     colors: &'a Colors,
-    /// Rounds done, or skipped.
+    /// Rounds done.
     done: usize,
+    /// The target's vertices as given.
+    target_points: &'a [Vector3],
 }
 
 impl Descent<'_> {
@@ -202,6 +180,11 @@ impl Descent<'_> {
             let Some(Step { energies: [before, after], share, slope }) = step else { break };
             self.history.push_start(before, slope.abs());
             self.history.push(after, share, slope.abs());
+            let positions = || {
+                let locations: Vec<Location> = moving.map.iter().map(|placed| placed.location).collect();
+                from_vectors(points_on(&locations, self.target_points, moving.energy.target.faces()))
+            };
+            self.observer.preview(&positions);
             small = if before - after < SMALL_STEP * before { small + 1 } else { 0 };
             if small >= 2 {
                 break;

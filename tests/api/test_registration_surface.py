@@ -109,6 +109,23 @@ def test_previews_come_nearer_to_the_result_and_change_no_bit(pair):
     assert np.array_equal(result.positions, register(pair).positions)
 
 
+def test_previews_of_filled_surfaces_have_the_given_vertices():
+    ball = meshes.SPHERES["ball"]
+    open_ball = meshes.Mesh(ball.vertices, ball.faces[:-1])
+    marks = pairs.spread(ball, 4)
+    seen = []
+    stretched = meshes.Mesh(ball.vertices * [1.0, 1.3, 0.8], ball.faces)
+    authalic.register_spheres(
+        open_ball,
+        stretched,
+        source_landmarks=marks,
+        target_landmarks=marks,
+        fill_holes=True,
+        preview=seen.append,
+    )
+    assert {positions.shape for positions in seen} == {ball.vertices.shape}
+
+
 def test_an_error_in_a_preview_is_raised():
     def preview(_positions):
         raise KeyError("mine")

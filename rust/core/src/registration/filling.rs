@@ -83,7 +83,8 @@ impl Filling {
             ..features
         });
         let options = RegistrationOptions { features, fill_holes: false, ..*options };
-        let whole = register(&source.surface, &target.surface, landmarks, &options, observer)?;
+        let mut observer = PreviewOfGiven { whole: observer, n_vertices: given[0].n_vertices() };
+        let whole = register(&source.surface, &target.surface, landmarks, &options, &mut observer)?;
         if source.holes.is_empty() && target.holes.is_empty() {
             return Ok(whole);
         }
@@ -108,6 +109,24 @@ impl Filling {
             holes.push(Hole { rim: hole.clone(), n_vertices: points.len() - before });
         }
         Ok(Filled { surface: Surface::of_checked_rows(coordinates(points), faces), holes })
+    }
+}
+
+/// Passes on what a run on filled surfaces reports, previews without the vertices inside the holes.
+struct PreviewOfGiven<'a> {
+    whole: &'a mut dyn Observer,
+    /// The number of the source's vertices as given, which come first.
+    n_vertices: usize,
+}
+
+impl Observer for PreviewOfGiven<'_> {
+    fn progress(&mut self, fraction: f64, message: &str) -> bool {
+        self.whole.progress(fraction, message)
+    }
+
+    fn preview(&mut self, positions: &dyn Fn() -> Array2<f64>) {
+        let n = self.n_vertices;
+        self.whole.preview(&|| positions().slice_axis(Axis(0), Slice::from(..n)).to_owned());
     }
 }
 

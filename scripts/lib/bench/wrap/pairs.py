@@ -109,8 +109,8 @@ def corresponding(both):
     return Pair(source, target, true[chosen], true[others[:: max(len(others) // CHECKED, 1)]])
 
 
-def hemispheres():
-    """fsaverage5, white, left onto mirrored right: by ends and middles of 12 curves, and by signals alone."""
+def hemispheres(features):
+    """fsaverage5, white, left onto mirrored right: by ends and middles of 12 curves, or by signals alone."""
     pair = cortices.across("white", 12)
     source, target = (
         Surface(name, side.vertices, side.faces, dict(side.fields))
@@ -120,8 +120,8 @@ def hemispheres():
         [(p[0], q[0]), (p[len(p) // 2], q[len(q) // 2]), (p[-1], q[-1])]
         for p, q in zip(pair.source.curves, pair.target.curves, strict=True)
     ]
-    yield Pair(source, target, distinct(np.concatenate(marks)), NO_PAIRS)
-    yield Pair(source, target, NO_PAIRS, NO_PAIRS, features=True)
+    landmarks = NO_PAIRS if features else distinct(np.concatenate(marks))
+    yield Pair(source, target, landmarks, NO_PAIRS, features)
 
 
 def averages():
@@ -193,9 +193,12 @@ COLLECTIONS = (
         "primates", "TOSCA, gorillas onto humans, 8 landmarks", _FARTHEST, ("bench/tosca",), primates,
     ),
     Collection(
-        "brains", "fsaverage5, left onto mirrored right",
-        "White surfaces: by the ends and middles of 12 curves, and by sulc and curv without a landmark.",
-        _BRAINS, hemispheres,
+        "brains", "fsaverage5, left onto mirrored right, by landmarks",
+        "White surfaces; the ends and middles of 12 curves.", _BRAINS, lambda: hemispheres(False),
+    ),
+    Collection(
+        "signals", "fsaverage5, left onto mirrored right, by signals",
+        "White surfaces; sulc and curv lead the map, without a landmark.", _BRAINS, lambda: hemispheres(True),
     ),
     Collection(
         "averages", "S1200 onto Conte69",

@@ -262,3 +262,198 @@ fn hats([a, b, c]: [Vector3; 3]) -> Hats {
     let third = [0.0, 1.0 / y];
     [[-second[0] - third[0], -second[1] - third[1]], second, third]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_maps::Sample;
+    use super::*;
+    use crate::location::tests::number;
+    use crate::registration::features::Signals;
+
+    const NO_GUARD: Guard = Guard { weight: 0.0, slack: 0.0 };
+    const STEP: f64 = 1e-6;
+
+    fn placed(energy: &SurfaceEnergy<'_>, sample: &Sample) -> Vec<Placed> {
+        sample.start.iter().map(|&location| energy.target.placed(location)).collect()
+    }
+
+    /// The slope of a function of a place along a vector, by a central difference.
+    fn slope(
+        energy: &SurfaceEnergy<'_>,
+        placed: &Placed,
+        along: Vector3,
+        value: impl Fn(&Placed) -> f64,
+    ) -> f64 {
+        let at =
+            |step: f64| value(&energy.target.placed(energy.target.walked(placed.location, along * step)));
+        (at(STEP) - at(-STEP)) / (2.0 * STEP)
+    }
+
+    #[test]
+    fn gradients_of_faces_are_those_of_differences() {
+        let sample = Sample::spheres();
+        let mut problem = sample.problem();
+        for kind in [[1.0, 1.0], [0.4, 2.0]] {
+            problem.face_energy = FaceEnergy { area_weight: kind[0], angle_weight: kind[1] };
+            for slack in [0.0, 3.0] {
+                let energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack });
+                let map = placed(&energy, &sample);
+                for face in 0..energy.areas.len() {
+                    let corners = energy.corners(&map, face);
+                    let frames = corners.map(|placed| energy.target.frame(placed.location.triangle));
+                    let expansion =
+                        energy.face_expansion(face, corners, [&frames[0], &frames[1], &frames[2]]);
+                    let scale = energy.areas[face] * energy.face_value(face, corners);
+                    assert!((expansion.value - scale).abs() < 1e-12 * scale);
+                    for k in 0..3 {
+                        for d in 0..2 {
+                            let difference = slope(&energy, corners[k], frames[k][d], |moved| {
+                                let mut corners = corners;
+                                corners[k] = moved;
+                                energy.areas[face] * energy.face_value(face, corners)
+                            });
+                            let gradient = expansion.gradient[2 * k + d];
+                            assert!((gradient - difference).abs() < 1e-6 * scale.max(gradient.abs()));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_slack_leaves_out_the_guard_of_good_faces_alone() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let value_with = |guard: Guard| {
+            let energy = SurfaceEnergy::new(&problem, guard);
+            let map = placed(&energy, &sample);
+            (0..energy.areas.len())
+                .map(|face| energy.face_value(face, energy.corners(&map, face)))
+                .collect::<Vec<f64>>()
+        };
+        let without = value_with(NO_GUARD);
+        let in_domain = value_with(Guard { weight: 1.0, slack: 0.0 });
+        let beyond = value_with(Guard { weight: 1.0, slack: 3.0 });
+        let mut n_bad = 0;
+        for face in 0..without.len() {
+            let bad = in_domain[face] - without[face] > 3.0;
+            assert_eq!(beyond[face] > without[face], bad);
+            n_bad += usize::from(bad);
+        }
+        assert!(0 < n_bad && n_bad < without.len());
+    }
+
+    #[test]
+    fn gradients_of_vertices_are_those_of_differences() {
+        let sample = Sample::spheres();
+        let mut problem = sample.problem();
+        let n = sample.source.n_vertices();
+        let pull = |v: usize, place: usize, weight: f64| Pull {
+            vertex: Vertex::new(v),
+            place: Vertex::new(place),
+            weight,
+        };
+        problem.pulls = vec![pull(9, 40, 3.0), pull(2, 11, 0.5), pull(9, 7, 1.0)];
+        problem.signals = Signals {
+            width: 2,
+            source: (0..2 * n).map(number).collect(),
+            target: (0..2 * sample.target.n_vertices()).map(|i| number(1000 + i)).collect(),
+        };
+        let energy = SurfaceEnergy::new(&problem, NO_GUARD);
+        let map = placed(&energy, &sample);
+        for vertex in Vertex::all(n) {
+            let frame = energy.target.frame(map[vertex].location.triangle);
+            let expansion = energy.vertex_expansion(vertex, &map[vertex], &frame);
+            for d in 0..2 {
+                let value = |moved: &Placed| energy.vertex_value(vertex, moved);
+                let difference = slope(&energy, &map[vertex], frame[d], value);
+                assert!((expansion.gradient[d] - difference).abs() < 1e-7);
+            }
+            // the energy is a square in each face, so that its Hessian is that of differences too
+            let at = |x: f64, y: f64| {
+                let along = (frame[0] * x + frame[1] * y) * 1e-3;
+                let moved = energy.target.coordinates(map[vertex].location.triangle, along);
+                let mut location = map[vertex].location;
+                (0..3).for_each(|k| location.barycentric[k] += moved[k]);
+                energy.vertex_value(vertex, &energy.target.placed(location))
+            };
+            let twice = 2.0 * at(0.0, 0.0);
+            let second = [
+                at(1.0, 0.0) + at(-1.0, 0.0) - twice,
+                0.25 * (at(1.0, 1.0) + at(-1.0, -1.0) - at(1.0, -1.0) - at(-1.0, 1.0)),
+                at(0.0, 1.0) + at(0.0, -1.0) - twice,
+            ];
+            for (second, entry) in second.into_iter().zip(expansion.hessian) {
+                assert!((1e6 * second - entry).abs() < 1e-6 * (1.0 + entry.abs()));
+            }
+        }
+    }
+
+    #[test]
+    fn soft_landmarks_count_by_their_distance_on_a_target_of_area_one() {
+        let sample = Sample::spheres();
+        let mut problem = sample.problem();
+        problem.pulls = vec![Pull { vertex: Vertex(5), place: Vertex(30), weight: 2.5 }];
+        let energy = SurfaceEnergy::new(&problem, NO_GUARD);
+        let map = placed(&energy, &sample);
+        let area: f64 = sample.target.face_areas().iter().sum();
+        let there = sample.start[5].point_on(sample.target.points(), sample.target.faces());
+        let distance = there.distance(sample.target.points()[30]);
+        let expected = 2.5 * distance * distance / area;
+        assert!((energy.vertex_value(Vertex(5), &map[5]) - expected).abs() < 1e-12 * expected);
+        assert_eq!(energy.vertex_value(Vertex(6), &map[6]), 0.0);
+    }
+
+    #[test]
+    fn the_energy_of_a_folded_face_is_infinite() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, NO_GUARD);
+        let map = placed(&energy, &sample);
+        for face in 0..energy.areas.len() {
+            let [a, b, c] = energy.corners(&map, face);
+            assert!(energy.face_value(face, [a, b, c]).is_finite());
+            assert_eq!(energy.face_value(face, [b, a, c]), f64::INFINITY);
+            assert_eq!(energy.face_value(face, [a, a, c]), f64::INFINITY);
+        }
+    }
+
+    #[test]
+    fn the_guard_sets_in_without_a_kink() {
+        for slack in [0.0, 3.0] {
+            let guard = Guard { weight: 0.7, slack };
+            for energy in [1.0, 2.999, 3.0, 3.001, 4.0, 50.0] {
+                let h = 1e-6;
+                let difference = (guard.value(energy + h) - guard.value(energy - h)) / (2.0 * h);
+                let [first, second] = guard.slopes(energy);
+                assert!((first - difference).abs() < 1e-6);
+                if energy != slack {
+                    let difference = (guard.slopes(energy + h)[0] - guard.slopes(energy - h)[0]) / (2.0 * h);
+                    assert!((second - difference).abs() < 1e-6);
+                }
+            }
+        }
+        let guard = Guard { weight: 0.7, slack: 3.0 };
+        assert_eq!([guard.value(3.0), guard.value(1.0), guard.slopes(3.0)[0]], [0.0; 3]);
+    }
+
+    #[test]
+    fn the_whole_is_the_sum_of_its_parts() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, NO_GUARD);
+        let map = placed(&energy, &sample);
+        // 1. Without a guard it is the mean of the distortion
+        let [whole, mean] = [energy.value(&map), energy.mean_distortion(&map)];
+        assert!((whole - mean).abs() < 1e-12 * whole);
+        // 2. The stars of all vertices have each face three times
+        let stars: f64 = Vertex::all(map.len())
+            .map(|vertex| energy.star_value(&map, vertex, &map[vertex], f64::INFINITY))
+            .sum();
+        assert!((stars - 3.0 * whole).abs() < 1e-12 * stars);
+        // 3. A star above its limit is worth nothing
+        let star = energy.star_value(&map, Vertex(3), &map[3], f64::INFINITY);
+        assert_eq!(energy.star_value(&map, Vertex(3), &map[3], 0.5 * star), f64::INFINITY);
+    }
+}

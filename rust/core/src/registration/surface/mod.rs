@@ -16,6 +16,8 @@ mod density;
 mod energy;
 mod newton;
 mod problem;
+#[cfg(test)]
+mod sample_maps;
 mod sweep;
 mod target;
 mod walk;
@@ -29,7 +31,6 @@ use crate::location::{Location, points_on};
 use crate::mesh::Vertex;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
-use crate::vector::Vector3;
 use energy::{Guard, SurfaceEnergy};
 use newton::{Motion, Moving, Step};
 use sweep::Colors;
@@ -191,5 +192,113 @@ impl Descent<'_> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sample_maps::Sample;
+    use super::*;
+    use crate::control::Silent;
+    use crate::mesh::TriangleMesh;
+    use crate::mesh::geometry::triangle;
+    use crate::vector::Vector3;
+
+    fn descended(problem: &SurfaceProblem<'_>, start: &[Location]) -> (Vec<Location>, Status) {
+        descend(problem, start.to_vec(), &mut History::start(), &mut Silent)
+    }
+
+    /// The mean over the source's area of (tr G⁻¹H + tr H⁻¹G)/4, where G and H are the inner products of the edges of a
+    /// face and of its image, both surfaces at one area.
+    fn mean_distortion(sample: &Sample, map: &[Location]) -> f64 {
+        let images = points_on(map, sample.target.points(), sample.target.faces());
+        let area = |mesh: &TriangleMesh| mesh.face_areas().iter().sum::<f64>();
+        let scale = (area(&sample.source) / area(&sample.target)).sqrt();
+        let images: Vec<Vector3> = images.into_iter().map(|x| x * scale).collect();
+        let products = |points: &[Vector3], face: [Vertex; 3]| {
+            let [a, b, c] = triangle(points, face);
+            [(b - a).dot(b - a), (b - a).dot(c - a), (c - a).dot(c - a)]
+        };
+        let of_face = |(&face, area): (&[Vertex; 3], &f64)| {
+            let (g, h) = (products(sample.source.points(), face), products(&images, face));
+            let determinant = |[xx, xy, yy]: [f64; 3]| xx * yy - xy * xy;
+            let mixed = g[2] * h[0] - 2.0 * g[1] * h[1] + g[0] * h[2];
+            area * 0.25 * (mixed / determinant(g) + mixed / determinant(h))
+        };
+        let sum: f64 = sample.source.faces().iter().zip(sample.source.face_areas()).map(of_face).sum();
+        sum / area(&sample.source)
+    }
+
+    fn n_folded(sample: &Sample, map: &[Location]) -> usize {
+        let images = points_on(map, &sample.target_in_domain, sample.target.faces());
+        let is_folded = |face: &&[Vertex; 3]| {
+            let [a, b, c] = triangle(&images, **face);
+            a.dot(b.cross(c)) <= 0.0
+        };
+        sample.source.faces().iter().filter(is_folded).count()
+    }
+
+    #[test]
+    fn an_ellipsoid_comes_to_lie_on_a_bumpy_ball_with_little_distortion_and_no_folds() {
+        let sample = Sample::spheres();
+        let (map, _) = descended(&sample.problem(), &sample.start);
+        let [before, after] = [&sample.start, &map].map(|map| mean_distortion(&sample, map));
+        assert!(before > 1.5 && after < 1.1, "{before} {after}");
+        assert_eq!(n_folded(&sample, &map), 0);
+    }
+
+    #[test]
+    fn exact_landmarks_stay_where_they_are() {
+        let sample = Sample::spheres();
+        let mut problem = sample.problem();
+        let landmarks = [0, 11, 37];
+        landmarks.iter().for_each(|&vertex| problem.held[vertex] = true);
+        let (map, _) = descended(&problem, &sample.start);
+        assert!(landmarks.iter().all(|&vertex| map[vertex] == sample.start[vertex]));
+        assert!(mean_distortion(&sample, &map) < mean_distortion(&sample, &sample.start));
+    }
+
+    #[test]
+    fn the_boundary_of_a_disk_stays_on_that_of_the_target() {
+        let sample = Sample::disks();
+        let (map, _) = descended(&sample.problem(), &sample.start);
+        assert!(mean_distortion(&sample, &map) < mean_distortion(&sample, &sample.start));
+        assert_eq!(n_folded(&sample, &map), 0);
+        for vertex in Vertex::all(map.len()).filter(|&vertex| sample.source.is_boundary(vertex)) {
+            assert!(boundary_edge(&sample.target, &map[vertex]).is_some());
+        }
+    }
+
+    #[test]
+    fn an_isometry_is_returned_bit_for_bit() {
+        let sample = Sample::turned_ball();
+        assert!((mean_distortion(&sample, &sample.start) - 1.0).abs() < 1e-12);
+        assert_eq!(descended(&sample.problem(), &sample.start), (sample.start.clone(), Status::Converged));
+    }
+
+    #[test]
+    fn a_cancelled_descent_returns_its_map_so_far() {
+        let sample = Sample::spheres();
+        let mut left = 5;
+        let mut observer = |_: f64, _: &str| {
+            left -= 1;
+            left > 0
+        };
+        let (map, status) =
+            descend(&sample.problem(), sample.start.clone(), &mut History::start(), &mut observer);
+        assert_eq!(status, Status::Cancelled);
+        assert_eq!(n_folded(&sample, &map), 0);
+        assert!(mean_distortion(&sample, &map) < mean_distortion(&sample, &sample.start));
+    }
+
+    #[test]
+    fn faces_folded_at_the_start_stay_as_they_are() {
+        let sample = Sample::spheres();
+        let mut start = sample.start.clone();
+        start.swap(0, 40);
+        let folded = n_folded(&sample, &start);
+        let (map, _) = descended(&sample.problem(), &start);
+        assert!(folded > 0 && n_folded(&sample, &map) == folded);
+        assert!(mean_distortion(&sample, &map).is_finite());
     }
 }

@@ -354,3 +354,102 @@ fn shifted(hessian: &[[f64; 6]; 6], area: f64) -> [[f64; 6]; 6] {
     }
     element
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::energy::Guard;
+    use super::super::sample_maps::Sample;
+    use super::*;
+    use crate::control::Silent;
+    use crate::sparse::Order;
+
+    const GUARD: Guard = Guard { weight: 0.1, slack: 3.0 };
+
+    /// Some steps from the start of a sample.
+    fn stepped(sample: &Sample, energy: &SurfaceEnergy<'_>, motions: &[Motion], n: usize) -> Vec<Placed> {
+        let dofs: Vec<u8> = motions.iter().map(|motion| motion.n_unknowns()).collect();
+        let faces = sample.source.faces();
+        let analysis = Analysis::new(motions.len(), faces, &dofs, Order::Sparse).unwrap();
+        let mut factor = Factor::new(&analysis);
+        let map = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let mut moving = Moving { energy, motions, map };
+        for _ in 0..n {
+            let before = energy.value(&moving.map);
+            let mut silent = Silent;
+            let watch = Watch::new(&mut silent, 0.0, "");
+            let Some(step) = moving.step(&analysis, &mut factor, &watch).unwrap() else { break };
+            let after = energy.value(&moving.map);
+            assert!(after < before && step.slope < 0.0 && step.share > 0.0);
+            // the step tells what the whole energy says
+            for (told, value) in step.energies.into_iter().zip([before, after]) {
+                assert!((told - value).abs() < 1e-12 * value);
+            }
+        }
+        moving.map
+    }
+
+    fn n_folded(sample: &Sample, map: &[Placed]) -> usize {
+        let is_folded = |face: &&[Vertex; 3]| {
+            let [a, b, c] = face.map(|vertex| map[vertex].in_domain);
+            a.dot(b.cross(c)) <= 0.0
+        };
+        sample.source.faces().iter().filter(is_folded).count()
+    }
+
+    #[test]
+    fn steps_lower_the_energy_and_fold_nothing() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let motions = vec![Motion::Free; sample.start.len()];
+        let [start, end] = [0, 5].map(|n| stepped(&sample, &energy, &motions, n));
+        assert_eq!([n_folded(&sample, &start), n_folded(&sample, &end)], [0, 0]);
+        assert!(energy.value(&end) < 0.8 * energy.value(&start));
+    }
+
+    #[test]
+    fn held_vertices_stay_bit_for_bit() {
+        let sample = Sample::spheres();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let mut motions = vec![Motion::Free; sample.start.len()];
+        (0..motions.len()).step_by(4).for_each(|vertex| motions[vertex] = Motion::Held);
+        let [start, end] = [0, 5].map(|n| stepped(&sample, &energy, &motions, n));
+        assert!((0..motions.len()).step_by(4).all(|vertex| start[vertex] == end[vertex]));
+        assert!((1..motions.len()).step_by(4).any(|vertex| start[vertex] != end[vertex]));
+    }
+
+    #[test]
+    fn vertices_that_slide_stay_on_the_boundary() {
+        let sample = Sample::disks();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let on_boundary = |vertex| sample.source.is_boundary(vertex);
+        let motions: Vec<Motion> = Vertex::all(sample.start.len())
+            .map(|vertex| if on_boundary(vertex) { Motion::Slides } else { Motion::Free })
+            .collect();
+        let [start, end] = [0, 5].map(|n| stepped(&sample, &energy, &motions, n));
+        assert_eq!([n_folded(&sample, &start), n_folded(&sample, &end)], [0, 0]);
+        let mut n_moved = 0;
+        for vertex in Vertex::all(end.len()).filter(|&vertex| on_boundary(vertex)) {
+            assert!(boundary_edge(&sample.target, &end[vertex].location).is_some());
+            n_moved += usize::from(start[vertex] != end[vertex]);
+        }
+        assert!(n_moved > 0 && energy.value(&end) < energy.value(&start));
+    }
+
+    #[test]
+    fn a_soft_landmark_draws_its_vertex_near() {
+        let sample = Sample::spheres();
+        let mut problem = sample.problem();
+        let motions = vec![Motion::Free; sample.start.len()];
+        let distance = |weight: f64, problem: &mut super::super::SurfaceProblem<'_>| {
+            problem.pulls = vec![super::super::Pull { vertex: Vertex(20), place: Vertex(20), weight }];
+            let energy = SurfaceEnergy::new(problem, GUARD);
+            let end = stepped(&sample, &energy, &motions, 8);
+            end[20].point.distance(energy.target.points[20])
+        };
+        let [weak, strong] = [1e-3, 1e3].map(|weight| distance(weight, &mut problem));
+        assert!(strong < 0.1 * weak, "{strong} {weak}");
+    }
+}

@@ -112,3 +112,73 @@ impl Moving<'_, '_> {
         (sum / f64::from(count)).max(LEAST_RADIUS / (source.n_vertices() as f64).sqrt())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::energy::{Guard, SurfaceEnergy};
+    use super::super::sample_maps::Sample;
+    use super::*;
+
+    const GUARD: Guard = Guard { weight: 0.1, slack: 3.0 };
+
+    #[test]
+    fn vertices_of_one_color_have_no_common_face() {
+        let source = Sample::disks().source;
+        let mut motions = vec![Motion::Free; source.n_vertices()];
+        motions[7] = Motion::Held;
+        let colors = Colors::new(&source, &motions);
+        let mut color_of = vec![None; source.n_vertices()];
+        for (color, group) in colors.0.iter().enumerate() {
+            for &vertex in group {
+                assert_eq!(color_of[vertex].replace(color), None, "once");
+            }
+        }
+        for vertex in Vertex::all(source.n_vertices()) {
+            assert_eq!(color_of[vertex].is_none(), vertex == Vertex(7));
+        }
+        for [a, b, c] in source.faces() {
+            for [v, w] in [[a, b], [b, c], [c, a]] {
+                assert!(color_of[*v].is_none() || color_of[*v] != color_of[*w]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_vertex_put_aside_is_brought_back() {
+        let sample = Sample::turned_ball();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let right: Vec<Placed> =
+            sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        for vertex in Vertex::all(right.len()) {
+            // 1. Most of the way to a neighbor
+            let mut aside = right.clone();
+            let mut location = sample.start[vertex];
+            let place = (0..3).find(|&k| location.barycentric[k] == 1.0).unwrap();
+            (location.barycentric[place], location.barycentric[(place + 1) % 3]) = (0.3, 0.7);
+            aside[vertex] = energy.target.placed(location);
+            // 2. It alone may move
+            let mut motions = vec![Motion::Held; right.len()];
+            motions[vertex] = Motion::Free;
+            let colors = Colors::new(&sample.source, &motions);
+            let mut moving = Moving { energy: &energy, motions: &motions, map: aside.clone() };
+            (0..3).for_each(|_| moving.sweep(&colors));
+            let away = |map: &[Placed]| map[vertex].point.distance(right[vertex].point);
+            assert!(away(&moving.map) < 0.5 * away(&aside), "{vertex}");
+            assert!(energy.value(&moving.map) < energy.value(&aside));
+            assert!(Vertex::all(right.len()).all(|v| v == vertex || moving.map[v] == right[v]));
+        }
+    }
+
+    #[test]
+    fn an_isometry_is_left_alone() {
+        let sample = Sample::turned_ball();
+        let problem = sample.problem();
+        let energy = SurfaceEnergy::new(&problem, GUARD);
+        let map: Vec<Placed> = sample.start.iter().map(|&location| energy.target.placed(location)).collect();
+        let motions = vec![Motion::Free; map.len()];
+        let mut moving = Moving { energy: &energy, motions: &motions, map: map.clone() };
+        moving.sweep(&Colors::new(&sample.source, &motions));
+        assert_eq!(moving.map, map);
+    }
+}

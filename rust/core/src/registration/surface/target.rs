@@ -217,3 +217,103 @@ pub(super) fn boundary_edge(mesh: &TriangleMesh, location: &Location) -> Option<
     let around = mesh.vertex_corners(vertex).iter().flat_map(|corner| corner.face().corners());
     around.into_iter().find(|corner| is_boundary(corner) && corner.half_edge(mesh.faces())[0] == vertex)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_maps::{Sample, at_vertex, flat_disk};
+    use super::*;
+    use crate::location::tests::number;
+
+    fn random_place(mesh: &TriangleMesh, i: usize) -> Location {
+        let weights = [0, 1, 2].map(|k| 1.1 + number(3 * i + k));
+        let sum: f64 = weights.iter().sum();
+        Location { triangle: Face::new(7 * i % mesh.n_faces()), barycentric: weights.map(|w| w / sum) }
+    }
+
+    #[test]
+    fn the_metric_measures_lengths_of_the_surface_where_the_map_is_linear() {
+        let (flat, in_domain) = flat_disk(4);
+        // a disk drawn out and tilted in space
+        let tilted = |&Vector3([x, y, _]): &Vector3| Vector3([1.5 * x + 0.3 * y, 0.7 * y, x - 0.4 * y]);
+        let mesh = flat.at_points(in_domain.iter().map(tilted).collect());
+        let mesh = TriangleMesh::at_given_points(mesh.points().to_vec(), mesh.faces().to_vec()).unwrap();
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Disk);
+        for i in 0..50 {
+            let places = [0, 1, 2].map(|k| target.placed(random_place(&mesh, 3 * i + k)));
+            let metric = target.mean_metric([&places[0], &places[1], &places[2]]);
+            for [a, b] in [[0, 1], [1, 2], [2, 0]] {
+                let way = places[b].in_domain - places[a].in_domain;
+                let length = places[a].point.distance(places[b].point);
+                assert!((product(&metric, way, way).sqrt() - length).abs() < 1e-12);
+                assert!((Root::new(&metric).apply(way).norm() - length).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_root_of_a_metric_has_its_products() {
+        let metric = [2.0, 0.3, -0.4, 1.0, 0.2, 0.7];
+        let root = Root::new(&metric);
+        for i in 0..20 {
+            let [x, y] = [0, 1].map(|k| Vector3::from_fn(|axis| number(6 * i + 3 * k + axis)));
+            assert!((root.apply(x).dot(root.apply(y)) - product(&metric, x, y)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_surface_has_an_area_of_one_and_its_frames_lie_in_its_faces() {
+        let sample = Sample::spheres();
+        let target = Target::new(&sample.target, &sample.target_in_domain, sample.domain);
+        let mut area = 0.0;
+        for face in Face::all(sample.target.n_faces()) {
+            let [a, b, c] = target.corners(face);
+            area += 0.5 * (b - a).cross(c - a).norm();
+            let [x, y] = target.frame(face);
+            for (value, expected) in [(x.dot(x), 1.0), (y.dot(y), 1.0), (x.dot(y), 0.0)] {
+                assert!((value - expected).abs() < 1e-14);
+            }
+            assert!(x.cross(y).distance((b - a).cross(c - a).normalized()) < 1e-12);
+        }
+        assert!((area - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn velocities_in_space_and_in_the_domain_are_those_of_differences() {
+        for sample in [Sample::spheres(), Sample::disks()] {
+            let target = Target::new(&sample.target, &sample.target_in_domain, sample.domain);
+            for i in 0..50 {
+                let place = random_place(&sample.target, i);
+                for axis in target.frame(place.triangle) {
+                    let change = target.coordinates(place.triangle, axis);
+                    let h = 1e-6;
+                    let [before, after] = [-h, h].map(|h| {
+                        let barycentric = std::array::from_fn(|k| place.barycentric[k] + h * change[k]);
+                        target.placed(Location { barycentric, ..place })
+                    });
+                    let slope = |from: Vector3, to: Vector3| (to - from) * (0.5 / h);
+                    assert!(slope(before.point, after.point).distance(axis) < 1e-8);
+                    let pushed = target.pushed(&target.placed(place), change);
+                    let difference = slope(before.in_domain, after.in_domain);
+                    assert!(difference.distance(pushed) < 1e-8 * (1.0 + pushed.norm()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_on_the_boundary_and_no_others_have_an_edge_there() {
+        let (mesh, _) = flat_disk(3);
+        for corner in Corner::all(mesh.n_faces()) {
+            let edge = boundary_edge(&mesh, &Location::on_edge(corner, 0.4));
+            assert_eq!(edge, mesh.opposite(corner).is_none().then_some(corner));
+        }
+        for i in 0..50 {
+            assert_eq!(boundary_edge(&mesh, &random_place(&mesh, i)), None);
+        }
+        for vertex in Vertex::all(mesh.n_vertices()) {
+            let edge = boundary_edge(&mesh, &at_vertex(&mesh, vertex));
+            assert_eq!(edge.is_some(), mesh.is_boundary(vertex));
+            assert!(edge.is_none_or(|edge| edge.half_edge(mesh.faces()).contains(&vertex)));
+        }
+    }
+}

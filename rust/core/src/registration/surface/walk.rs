@@ -104,3 +104,136 @@ fn first_edge(barycentric: &[f64; 3], change: &[f64; 3]) -> (f64, Option<usize>)
     }
     (share, edge)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_maps::{at_vertex, flat_disk, mesh};
+    use super::*;
+    use crate::codomain::CanonicalDomain;
+    use crate::location::tests::number;
+    use crate::mesh::{Face, TriangleMesh, Vertex, faces_of_indices};
+
+    /// A cube of two triangles a side, with its vertices on the unit sphere.
+    fn cube() -> (TriangleMesh, Vec<Vector3>) {
+        let sides = [[4, 5, 7, 6], [0, 2, 3, 1], [1, 3, 7, 5], [0, 4, 6, 2], [2, 6, 7, 3], [0, 1, 5, 4]];
+        let faces: Vec<[u32; 3]> =
+            sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let points: Vec<Vector3> = (0..8u32)
+            .map(|i| Vector3::from_fn(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }).normalized())
+            .collect();
+        (mesh(points.iter().copied(), &faces_of_indices(&faces)), points)
+    }
+
+    /// Side of a cube of area 1.
+    fn side() -> f64 {
+        (1.0f64 / 6.0).sqrt()
+    }
+
+    /// A place in the first triangle of the top of the cube, beside its center.
+    const NEAR_TOP: Location = Location { triangle: Face(0), barycentric: [0.45, 0.1, 0.45] };
+
+    fn random_places(mesh: &TriangleMesh, n: usize) -> impl Iterator<Item = Location> {
+        let n_faces = mesh.n_faces();
+        (0..n).map(move |i| {
+            let weights = [0, 1, 2].map(|k| 1.1 + number(3 * i + k));
+            let sum: f64 = weights.iter().sum();
+            Location { triangle: Face::new(7 * i % n_faces), barycentric: weights.map(|w| w / sum) }
+        })
+    }
+
+    #[test]
+    fn walks_over_a_flat_surface_are_straight() {
+        let (mesh, in_domain) = flat_disk(4);
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Disk);
+        let vertices = Vertex::all(mesh.n_vertices()).map(|vertex| at_vertex(&mesh, vertex));
+        let mut n_inside = 0;
+        for (i, start) in random_places(&mesh, 300).chain(vertices).enumerate() {
+            let along = Vector3([0.4 * number(1000 + 2 * i), 0.4 * number(1001 + 2 * i), 0.0]);
+            let end = start.point_on(&target.points, mesh.faces()) + along;
+            // the radius of a disk of area 1 is 0.56, and the polygon lies within it
+            if end.norm() < 0.5 {
+                let place = target.walked(start, along);
+                assert!(place.point_on(&target.points, mesh.faces()).distance(end) < 1e-12, "{i}");
+                assert!(place.barycentric.iter().all(|&x| x >= 0.0));
+                n_inside += 1;
+            }
+        }
+        assert!(n_inside > 100);
+    }
+
+    #[test]
+    fn the_boundary_ends_a_walk_on_its_straight_way() {
+        let (mesh, in_domain) = flat_disk(4);
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Disk);
+        for (i, start) in random_places(&mesh, 50).enumerate() {
+            let along = Vector3([(i as f64).cos(), (i as f64).sin(), 0.0]) * 3.0;
+            let place = target.walked(start, along);
+            let [from, to] = [start, place].map(|place| place.point_on(&target.points, mesh.faces()));
+            assert!(boundary_edge(&mesh, &place).is_some());
+            assert!((to - from).cross(along).norm() < 1e-12 && (to - from).dot(along) > 0.0);
+        }
+    }
+
+    #[test]
+    fn walks_over_a_cube_are_straight_on_its_unfolded_sides() {
+        let (mesh, in_domain) = cube();
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Sphere);
+        let (start, half) = (target.placed(NEAR_TOP).point, 0.5 * side());
+        assert!((start[2] - half).abs() < 1e-12);
+        // 1. Over an edge, down the next side: what is left of the way forward goes down, what is sideways stays
+        let (forward, sideways) = (0.8 * side(), 0.05 * side());
+        let place = target.walked(NEAR_TOP, Vector3([forward, sideways, 0.0]));
+        let down = start[0] + forward - half;
+        let expected = Vector3([half, start[1] + sideways, half - down]);
+        assert!(target.placed(place).point.distance(expected) < 1e-12);
+        // 2. There and back: the way has turned by a right angle with the side
+        let back = target.walked(place, Vector3([0.0, -sideways, forward]));
+        assert!(target.placed(back).point.distance(start) < 1e-12);
+        // 3. Around all four sides
+        let around = target.walked(NEAR_TOP, Vector3([4.0 * side(), sideways, 0.0]));
+        let expected = start + Vector3([0.0, sideways, 0.0]);
+        assert!(target.placed(around).point.distance(expected) < 1e-12);
+    }
+
+    #[test]
+    fn walks_along_the_boundary_keep_their_length_around_its_corners() {
+        // on the round boundary of the flat disk every edge is as long: k edges turn a place by k parts of the circle
+        let (mesh, in_domain) = flat_disk(4);
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Disk);
+        let corner = Corner::all(mesh.n_faces()).find(|&corner| mesh.opposite(corner).is_none()).unwrap();
+        let start = Location::on_edge(corner, 0.3);
+        let point = |place: Location| place.point_on(&target.points, mesh.faces());
+        let [from, to] = corner.half_edge(mesh.faces()).map(|vertex| target.points[vertex]);
+        let length = from.distance(to);
+        for k in -50..=50 {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
+            let Vector3([x, y, z]) = point(start);
+            let turned = Vector3([cosine * x - sine * y, sine * x + cosine * y, z]);
+            let end = target.walked_along_boundary(start, f64::from(k) * length);
+            assert!(point(end).distance(turned) < 1e-12, "{k}");
+            let back = target.walked_along_boundary(end, -f64::from(k) * length);
+            assert!(point(back).distance(point(start)) < 1e-12, "{k}");
+        }
+        let part = target.walked_along_boundary(start, 0.4 * length);
+        assert!(point(part).distance(point(Location::on_edge(corner, 0.7))) < 1e-12);
+    }
+
+    #[test]
+    fn a_walk_along_the_boundary_starts_at_its_vertices_too() {
+        let (mesh, in_domain) = flat_disk(3);
+        let target = Target::new(&mesh, &in_domain, CanonicalDomain::Disk);
+        for vertex in Vertex::all(mesh.n_vertices()).filter(|&vertex| mesh.is_boundary(vertex)) {
+            for corner in mesh.vertex_corners(vertex) {
+                let mut start = Location { triangle: corner.face(), barycentric: [0.0; 3] };
+                start.barycentric[corner.place()] = 1.0;
+                for distance in [-0.1, 0.1] {
+                    let end = target.walked_along_boundary(start, distance);
+                    let way = end.point_on(&target.points, mesh.faces()) - target.points[vertex];
+                    // an edge is longer than the walk
+                    assert!((way.norm() - 0.1).abs() < 1e-12);
+                    assert!(target.points[vertex].cross(way)[2] * distance > 0.0, "the surface on the left");
+                }
+            }
+        }
+    }
+}

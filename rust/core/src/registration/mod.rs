@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Registration of surfaces by landmarks: a one-to-one map g of a source onto a target that takes landmark
-//! vertices to landmark vertices and keeps areas.
+//! vertices to landmark vertices and keeps shapes, or areas.
 //!
 //! [`register_disks`] (Liu & Yueh 2023, section 6) and [`register_spheres`] (Sutti & Yueh 2024, section 6.6)
 //! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
-//! locate each vertex of the source on the target. [`Energy::Surface`] starts from there and descends on the energy
-//! of g itself, in space. [`homotopy`] morphs along g, [`follow`] takes points beside the source along.
+//! locate each vertex of the source on the target. With [`Energy::Area`] that is g. [`Energy::Surface`], the default,
+//! starts from there and descends on the energy of g itself, in space. [`homotopy`] morphs along g,
+//! [`follow`] takes points beside the source along.
 //!
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
 //! Cost: the two maps, and about as much again for carrying the landmarks.

@@ -273,6 +273,9 @@ mod tests {
     const NO_GUARD: Guard = Guard { weight: 0.0, slack: 0.0 };
     const STEP: f64 = 1e-6;
 
+    /// With these exponents faces of little distortion exceed the slack of the guard too.
+    const STEEP: FaceEnergy = FaceEnergy { area_weight: 3.0, angle_weight: 3.0 };
+
     fn placed(energy: &SurfaceEnergy<'_>, sample: &Sample) -> Vec<Placed> {
         sample.start.iter().map(|&location| energy.target.placed(location)).collect()
     }
@@ -293,8 +296,9 @@ mod tests {
     fn gradients_of_faces_are_those_of_differences() {
         let sample = Sample::spheres();
         let mut problem = sample.problem();
-        for kind in [[1.0, 1.0], [0.4, 2.0]] {
-            problem.face_energy = FaceEnergy { area_weight: kind[0], angle_weight: kind[1] };
+        let kinds = [[1.0, 1.0], [0.4, 2.0]].map(|[area_weight, angle_weight]| FaceEnergy { area_weight, angle_weight });
+        for kind in kinds.into_iter().chain([STEEP]) {
+            problem.face_energy = kind;
             for slack in [0.0, 3.0] {
                 let energy = SurfaceEnergy::new(&problem, Guard { weight: 0.7, slack });
                 let map = placed(&energy, &sample);
@@ -324,7 +328,8 @@ mod tests {
     #[test]
     fn a_slack_leaves_out_the_guard_of_good_faces_alone() {
         let sample = Sample::spheres();
-        let problem = sample.problem();
+        let mut problem = sample.problem();
+        problem.face_energy = STEEP;
         let value_with = |guard: Guard| {
             let energy = SurfaceEnergy::new(&problem, guard);
             let map = placed(&energy, &sample);

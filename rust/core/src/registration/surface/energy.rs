@@ -296,7 +296,8 @@ mod tests {
     fn gradients_of_faces_are_those_of_differences() {
         let sample = Sample::spheres();
         let mut problem = sample.problem();
-        let kinds = [[1.0, 1.0], [0.4, 2.0]].map(|[area_weight, angle_weight]| FaceEnergy { area_weight, angle_weight });
+        let kinds = [[1.0, 1.0], [0.4, 2.0]]
+            .map(|[area_weight, angle_weight]| FaceEnergy { area_weight, angle_weight });
         for kind in kinds.into_iter().chain([STEEP]) {
             problem.face_energy = kind;
             for slack in [0.0, 3.0] {

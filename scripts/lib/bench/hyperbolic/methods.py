@@ -24,12 +24,13 @@ def hyperbolic(pair, **options):
 
 
 def curves_result(pair, **options):
-    """The result of `authalic.register_hyperbolic` for a pair."""
+    """The result of `authalic.register_hyperbolic` for a pair, by the paper's harmonic map."""
     return authalic.register_hyperbolic(
         pair.source.mesh,
         pair.target.mesh,
         source_curves=pair.source.curves,
         target_curves=pair.target.curves,
+        energy="harmonic",
         **options,
     )
 
@@ -57,11 +58,11 @@ def harmonic(pair):
 
 
 def spheres(pair):
-    """`authalic.register_spheres` with points on the curves."""
+    """`authalic.register_spheres` with points on the curves, by the papers' energy of areas."""
     source, target = landmarks(pair)
     began = time.perf_counter()
     result = authalic.register_spheres(
-        pair.source.mesh, pair.target.mesh, source_landmarks=source, target_landmarks=target
+        pair.source.mesh, pair.target.mesh, source_landmarks=source, target_landmarks=target, energy="area"
     )
     seconds = time.perf_counter() - began
     remark = f"{result.status}, {len(source)} points" + missed(result)

@@ -31,6 +31,7 @@ use crate::location::{Location, points_on};
 use crate::mesh::Vertex;
 use crate::parallel;
 use crate::sparse::{Analysis, Factor, Failure, Order};
+use crate::vector::Vector3;
 use energy::{Guard, SurfaceEnergy};
 use newton::{Motion, Moving, Step};
 use sweep::Colors;
@@ -202,7 +203,6 @@ mod tests {
     use crate::control::Silent;
     use crate::mesh::TriangleMesh;
     use crate::mesh::geometry::triangle;
-    use crate::vector::Vector3;
 
     fn descended(problem: &SurfaceProblem<'_>, start: &[Location]) -> (Vec<Location>, Status) {
         descend(problem, start.to_vec(), &mut History::start(), &mut Silent)

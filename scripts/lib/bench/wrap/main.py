@@ -21,7 +21,7 @@ from bench.peers.worker import message
 from bench.report import Report, fixed, machine, plain, scientific
 from bench.wrap import geodesics, pairs, pictures
 from bench.wrap.measures import Measures, measured
-from bench.wrap.methods import METHODS, PACKAGE, SURFACE, ZOOMOUT, suits
+from bench.wrap.methods import AREA, METHODS, PACKAGE, SURFACE, ZOOMOUT, suits
 
 DRAWN = 3
 """The pairs of a collection that are drawn, the first ones."""
@@ -40,9 +40,10 @@ geodesic distance ({{distance}}) between image and true partner where truth is k
 root of the target's area; so is *landmarks*, the greatest distance of a given landmark, straight. *max(J,
 1/J)* is the mean area distortion, each face at most 10. *Folds* are counted exactly in the domain.
 
-`{SURFACE}` and the papers' energy are `authalic.register_spheres` with no other option. *{ZOOMOUT}* is pyFM's
-(package {PACKAGE}): wave kernels and the same landmarks, then 30 to 200 eigenfunctions. It takes vertices to
-vertices and is not one-to-one: faces that it takes to a line or a point have infinite strain."""
+`{SURFACE}` and `{AREA}`, the papers' energy, are `authalic.register_spheres` with holes filled and no
+other option. *{ZOOMOUT}* is pyFM's (package {PACKAGE}): wave kernels and the same landmarks, then 30 to 200
+eigenfunctions. It takes vertices to vertices and is not one-to-one: faces that it takes to a line or a point
+have infinite strain."""
 
 
 def main(arguments=None):

@@ -35,8 +35,8 @@ class Placed:
 
 
 def registered(energy, pair):
-    """`authalic.register_spheres`."""
-    options = {"energy": energy}
+    """`authalic.register_spheres`; a vertex in a hole of the target counts at the nearest place beside it."""
+    options = {"energy": energy, "fill_holes": True}
     if len(pair.landmarks):
         options |= {"source_landmarks": pair.landmarks[:, 0], "target_landmarks": pair.landmarks[:, 1]}
     if pair.features:
@@ -44,8 +44,9 @@ def registered(energy, pair):
     began = time.perf_counter()
     result = authalic.register_spheres(pair.source.mesh, pair.target.mesh, **options)
     seconds = time.perf_counter() - began
-    folded = len(result.distortion.folded)
-    return Placed(result.triangles, result.barycentric, folded, seconds, result.status)
+    folded, filled = len(result.distortion.folded), len(result.in_holes)
+    remark = result.status + (f", {filled} vertices in holes" if filled else "")
+    return Placed(result.triangles, result.barycentric, folded, seconds, remark)
 
 
 def signals(surface):

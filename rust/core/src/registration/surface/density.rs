@@ -57,11 +57,9 @@ impl Expansion {
 
     /// Adds `factor` times the square of a linear form to the Hessian.
     pub(super) fn add_square(&mut self, factor: f64, row: &[f64; 6]) {
-        for i in 0..6 {
-            let scaled = factor * row[i];
-            for j in 0..6 {
-                self.hessian[i][j] += scaled * row[j];
-            }
+        for (entries, x) in self.hessian.iter_mut().zip(row) {
+            let scaled = factor * x;
+            entries.iter_mut().zip(row).for_each(|(entry, y)| *entry += scaled * y);
         }
     }
 }

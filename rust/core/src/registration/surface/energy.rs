@@ -140,14 +140,14 @@ impl<'a> SurfaceEnergy<'a> {
             std::array::from_fn(|k| changes[k].map(|change| root.apply(target.pushed(corners[k], change))));
         let (mut expansion, by_metric) = self.kind.expansion(&measured, hats, &moves);
         // 2. The metric changes with the place
-        for k in 0..3 {
-            let slopes = target.corner_metrics(&corners[k].location).map(|metric| {
+        for (k, (placed, changes)) in corners.into_iter().zip(&changes).enumerate() {
+            let slopes = target.corner_metrics(&placed.location).map(|metric| {
                 let [x, y] = flat;
                 let entries = [product(metric, x, x), product(metric, x, y), product(metric, y, y)];
                 (0..3).map(|i| by_metric[i] * entries[i]).sum::<f64>() / 3.0
             });
-            for d in 0..2 {
-                expansion.gradient[2 * k + d] += (0..3).map(|i| changes[k][d][i] * slopes[i]).sum::<f64>();
+            for (d, change) in changes.iter().enumerate() {
+                expansion.gradient[2 * k + d] += change.iter().zip(slopes).map(|(x, y)| x * y).sum::<f64>();
             }
         }
         // 3. What counts of it
@@ -311,8 +311,8 @@ mod tests {
                     let scale = energy.areas[face] * energy.face_value(face, corners);
                     assert!((expansion.value - scale).abs() < 1e-12 * scale);
                     for k in 0..3 {
-                        for d in 0..2 {
-                            let difference = slope(&energy, corners[k], frames[k][d], |moved| {
+                        for (d, axis) in frames[k].into_iter().enumerate() {
+                            let difference = slope(&energy, corners[k], axis, |moved| {
                                 let mut corners = corners;
                                 corners[k] = moved;
                                 energy.areas[face] * energy.face_value(face, corners)
@@ -371,9 +371,9 @@ mod tests {
         for vertex in Vertex::all(n) {
             let frame = energy.target.frame(map[vertex].location.triangle);
             let expansion = energy.vertex_expansion(vertex, &map[vertex], &frame);
-            for d in 0..2 {
+            for (d, axis) in frame.into_iter().enumerate() {
                 let value = |moved: &Placed| energy.vertex_value(vertex, moved);
-                let difference = slope(&energy, &map[vertex], frame[d], value);
+                let difference = slope(&energy, &map[vertex], axis, value);
                 assert!((expansion.gradient[d] - difference).abs() < 1e-7);
             }
             // the energy is a square in each face, so that its Hessian is that of differences too

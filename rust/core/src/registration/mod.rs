@@ -6,7 +6,7 @@
 //! map both surfaces into one domain, carry the landmarks onto each other there without folding a face, and
 //! locate each vertex of the source on the target. With [`Energy::Area`] that is g. [`Energy::Surface`], the default,
 //! starts from there and descends on the energy of g itself, in space. [`homotopy`] morphs along g,
-//! [`follow`] takes points beside the source along.
+//! [`follow()`] takes points beside the source along.
 //!
 //! Input: two [`TriangleMesh`](crate::mesh::TriangleMesh)es, both disks or both spheres, and pairs of [`Landmarks`].
 //! Cost: the two maps, and about as much again for carrying the landmarks.

@@ -598,7 +598,7 @@ def test_what_there_is_can_be_kept() -> None:
     pairs.pair(source, target, {f"Corner {number}": both for number, both in enumerate(ends)})
     registration = part("jobs.register")
     job = registration.job(bpy.context, registration.Settings()).start()
-    while job.poll()[0] and job.poll()[1] < 0.6:
+    while job.poll()[0] and job.poll()[1] < 0.42:
         time.sleep(0.01)
     job.end_early()
     report = job.apply()

@@ -42,7 +42,7 @@ impl Signals {
     /// [`Error::InvalidArray`] where shapes do not fit, or a signal is not finite or does not vary.
     pub(crate) fn new(features: &Features<'_>, meshes: [&TriangleMesh; 2]) -> Result<Self, Error> {
         features.check(meshes)?;
-        let areas = meshes.map(vertex_areas);
+        let areas = meshes.map(|mesh| mesh.vertex_shares(mesh.face_areas()));
         let mut signals = Self::default();
         for column in 0..features.source.ncols() {
             let weight = features.weights[if features.weights.len() == 1 { 0 } else { column }];
@@ -83,7 +83,7 @@ impl Signals {
         images: &[Vector3],
         weight: f64,
     ) {
-        let alignment = similarity(source.points(), images, &vertex_areas(source));
+        let alignment = similarity(source.points(), images, &source.vertex_shares(source.face_areas()));
         let moved: Vec<Vector3> = source.points().iter().map(|&point| alignment.apply(point)).collect();
         let area: f64 = target.face_areas().iter().sum();
         for axis in 0..3 {
@@ -128,15 +128,6 @@ fn check_signals(name: &'static str, signals: ArrayView2<'_, f64>, mesh: &Triang
         None => Ok(()),
         Some(bad) => invalid(format!("NaN or infinite at vertices {bad}"), "finite".into()),
     }
-}
-
-/// A third of the area of the faces at each vertex.
-fn vertex_areas(mesh: &TriangleMesh) -> Vec<f64> {
-    let mut areas = vec![0.0; mesh.n_vertices()];
-    for (face, area) in mesh.faces().iter().zip(mesh.face_areas()) {
-        face.iter().for_each(|&vertex| areas[vertex] += area / 3.0);
-    }
-    areas
 }
 
 /// A signal less its mean.

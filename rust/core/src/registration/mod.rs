@@ -15,6 +15,7 @@ mod between;
 mod boundary;
 pub(crate) mod correspondence;
 mod disk;
+mod feature_start;
 mod features;
 mod figures;
 mod filling;

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::between::Between;
 use super::correspondence::{Correspondence, Registered, meshes};
+use super::feature_start::{OnSphere, aligned};
 use super::filling::Filling;
 use super::landmark_descent::Carrying;
 use super::landmarks::{Landmarks, fewest};
@@ -17,7 +18,7 @@ use super::verdict::{located, missed, verdict, worst};
 use crate::alignment::rotation::{best_rotation, rotate};
 use crate::arrays::{from_vectors, vectors};
 use crate::codomain::CanonicalDomain;
-use crate::control::{History, Observer, Phase, Status};
+use crate::control::{History, Observer, Phase, Status, Watch};
 use crate::distortion::{Image, folded_on_sphere, measure};
 use crate::error::{Error, Side};
 use crate::location::Locator;
@@ -29,6 +30,10 @@ use crate::vector::Vector3;
 
 /// Two meeting places are too close below this part of the distance of their landmarks on either surface.
 const CROWDED: f64 = 0.3;
+
+/// Angle weight of both maps where features alone lay the spheres over each other: maps that trade areas for angles lay
+/// like parts of two surfaces at like places of the sphere.
+const FEATURE_ANGLE_WEIGHT: f64 = 1.0;
 
 /// Weight, against that of a landmark, of the wish to rotate as little as possible.
 const LEAST_TURN: f64 = 1e-9;
@@ -83,15 +88,30 @@ pub fn register_spheres(
     let target = &*not_inside_out(target, source);
     let mut in_domain = Phase { whole: observer, from: 0.0, to: options.share_of_domain() };
     // 2. Both surfaces to the sphere
-    let alone = SphereMapOptions { angle_weight: options.angle_weight_in_domain(), ..Default::default() };
+    let is_laid_by_landmarks = landmarks.source.len() >= fewest(CanonicalDomain::Sphere);
+    let angle_weight =
+        if is_laid_by_landmarks { options.angle_weight_in_domain() } else { FEATURE_ANGLE_WEIGHT };
+    let alone = SphereMapOptions { angle_weight, ..Default::default() };
     let map = |mesh: &TriangleMesh, side, observer: &mut dyn Observer| {
         map_sphere(mesh, &alone, observer).map_err(|error| error.of_surface(side))
     };
     let f0 = map(source, Side::Source, &mut Phase { whole: &mut in_domain, from: 0.0, to: 0.3 })?;
     let f1 = map(target, Side::Target, &mut Phase { whole: &mut in_domain, from: 0.3, to: 0.6 })?;
-    // 3. The best rotation of the landmarks, and the middle of each pair
+    // 3. The source turned by landmarks, and bent by features; the middle of each pair
     let [on_sphere, target_on_sphere] = [&f0, &f1].map(|map| vectors(map.positions.view()));
-    let turned = turned(source, on_sphere, landmarks, &target_on_sphere);
+    let by_landmarks =
+        is_laid_by_landmarks.then(|| turned(source, on_sphere.clone(), landmarks, &target_on_sphere));
+    let (turned, start) = match by_landmarks {
+        Some(turned) if options.features.is_none() => (turned, Status::Converged),
+        by_landmarks => aligned(
+            OnSphere { mesh: source, map: &on_sphere },
+            OnSphere { mesh: target, map: &target_on_sphere },
+            &signals,
+            by_landmarks,
+            &pairs(landmarks, &on_sphere, &target_on_sphere),
+            &Watch::new(&mut in_domain, 0.6, "Aligning features"),
+        )?,
+    };
     let places = meeting_places(&pairs(landmarks, &turned, &target_on_sphere));
     // 4. h₀ and h₁: the landmarks of both carried to the middles
     let carrying = |mesh, landmarks| Carrying {
@@ -101,7 +121,7 @@ pub fn register_spheres(
         landmarks,
         places: &places,
         weight: options.weight,
-        angle_weight: options.angle_weight_in_domain(),
+        angle_weight,
     };
     let mut phase = Phase { whole: &mut in_domain, from: 0.6, to: 0.75 };
     let (mut registered, first) =
@@ -112,7 +132,8 @@ pub fn register_spheres(
     // 5. h₁⁻¹: the locations of the source on the target
     let mut phase = Phase { whole: &mut in_domain, from: 0.9, to: 1.0 };
     let locator = Locator::new(&target_registered, target.faces());
-    let (mut locations, mut status) = located(&locator, &registered, worst([first, second]), &mut phase)?;
+    let (mut locations, mut status) =
+        located(&locator, &registered, worst([start, first, second]), &mut phase)?;
     // 6. The descent between the surfaces
     if options.energy == Energy::Surface && status != Status::Cancelled {
         let mut phase = Phase { whole: observer, from: options.share_of_domain(), to: 1.0 };

@@ -180,7 +180,7 @@ def assert_on_the_boundary(result):
 def assert_figures(result, pair):
     """The figures in the result are those of its maps."""
     source, target = result.registered[pair.source_landmarks], result.target_registered[pair.target_landmarks]
-    assert np.abs(result.landmark_error - np.linalg.norm(source - target, axis=1)).max() < 1e-12
+    assert np.abs(result.landmark_error - np.linalg.norm(source - target, axis=1)).max(initial=0) < 1e-12
     assert set(np.flatnonzero(result.landmark_error > MISSED)) <= set(result.missed.tolist())
     assert result.missed.tolist() == sorted(set(result.missed.tolist()))
     if result.status != "cancelled":

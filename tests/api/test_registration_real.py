@@ -49,7 +49,8 @@ def fsaverage5(field, points):
         for a, b in zip(curves["left"], curves["mirrored_right"], strict=True)
         for pick in points
     ]
-    return pairs.Pair(left, right, *np.array(landmarks).T), left_arrays["sulc"], right_arrays["sulc"]
+    landmarks = np.array(landmarks, int).reshape(-1, 2)
+    return pairs.Pair(left, right, *landmarks.T), left_arrays["sulc"], right_arrays["sulc"]
 
 
 def hcp(given_order):
@@ -110,6 +111,28 @@ def test_the_left_cortex_onto_the_mirrored_right(field, points):
     correlation, difference = result.compare(left_arrays, right_arrays)
     print(f"sulc: correlation {correlation:.3f}, mean difference {difference:.3f}")
     assert correlation > 0.5
+
+
+@pytest.mark.parametrize("field", ["V_white", "V_pial"])
+@pytest.mark.parametrize("has_landmarks", [False, True])
+def test_cortices_find_each_other_by_sulci_and_curvature(field, has_landmarks):
+    pair, _, _ = fsaverage5(field, POINTS["ends"] if has_landmarks else [])
+    names = ("sulc", "curv")
+    features = [
+        np.stack([surface(f"brain/fsaverage5_{side}_10242.npz", field)[1][name] for name in names], axis=1)
+        for side in ("left", "right")
+    ]
+    result = pairs.register(pair, energy="surface", features=tuple(features))
+    assert_sound(result, pair)
+    correlation, _ = result.compare(features[0][:, 0], features[1][:, 0])
+    print(f"sulc: correlation {correlation:.3f}, area ratio {result.area_distortion.mean():.3f}", end=", ")
+    print(f"{result.seconds:.1f} s")
+    if has_landmarks:
+        pairs.assert_landmarks_meet(result, pair)
+        assert correlation > 0.8
+    else:
+        assert correlation > 0.95
+        assert result.area_distortion.mean() < 1.25
 
 
 @pytest.mark.parametrize("given_order", [False, True], ids=["matching_ends", "ends_as_stored"])

@@ -16,7 +16,7 @@ use crate::sparse::{Analysis, Factor, Failure, Order};
 use crate::vector::Vector3;
 
 /// μ, in units of the signals' variances.
-const STIFFNESS: f64 = 3.0;
+const STIFFNESS: f64 = 1.0;
 /// Most steps for signals of one smoothness.
 const STEPS: usize = 10;
 /// A step that gains less than this part of the energy is the last.

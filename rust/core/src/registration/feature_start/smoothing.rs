@@ -15,7 +15,7 @@ use crate::vector::Vector3;
 const STEPS: usize = 2;
 
 /// Bounds of cotangents, so that slivers neither hold values fast nor let them go apart.
-const COTANGENTS: [f64; 2] = [0.05, 20.0];
+const COTANGENTS: [f64; 2] = [0.01, 20.0];
 
 /// The cotangents of the faces of a map to the sphere, (m, 3), within bounds.
 pub(super) fn bounded_cotangents(faces: &[[Vertex; 3]], map: &[Vector3]) -> Vec<[f64; 3]> {

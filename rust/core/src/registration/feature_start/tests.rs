@@ -134,6 +134,6 @@ fn smoothing_damps_harmonics_by_their_degree() {
         let factor = (1.0 + 0.5 * 0.25 / 2.0 * degree * (degree + 1.0)).powi(-2);
         let error = |v: usize| (smooth[3 * v + signal] - factor * values[3 * v + signal]).abs();
         let worst = (0..map.len()).map(error).fold(0.0, f64::max);
-        assert!(worst < 0.01, "{degree}: {worst}");
+        assert!(worst < 0.02, "{degree}: {worst}");
     }
 }

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use super::*;
 use crate::alignment::rotation::rotation_of;
 use crate::control::Silent;
+use crate::mesh::TriangleMesh;
 use crate::vector::coordinates;
 
 /// A sphere of rings between two poles.

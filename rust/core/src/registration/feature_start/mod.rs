@@ -55,14 +55,14 @@ pub(super) fn aligned(
         let theirs = smoothing[1].smoothed(&signals.target, signals.width, radius, watch)?;
         Some([ours, theirs])
     };
-    let given = || turned.clone().unwrap_or_else(|| source.map.to_vec());
     // 1. The rotation
-    let [Some(rough), Some(fine)] = [RADII[0], ROTATION_RADIUS].map(smoothed) else {
-        return Ok((given(), Status::Cancelled));
-    };
-    let start = match turned.clone() {
+    let start = match turned {
         Some(turned) => turned,
         None => {
+            let cancelled = || Ok((source.map.to_vec(), Status::Cancelled));
+            let [Some(rough), Some(fine)] = [RADII[0], ROTATION_RADIUS].map(smoothed) else {
+                return cancelled();
+            };
             let levels = [&rough, &fine].map(|[ours, theirs]| {
                 (
                     SphereSignals::new(source, ours, signals.width),
@@ -70,7 +70,7 @@ pub(super) fn aligned(
                 )
             });
             let Some(rotation) = RotationSearch { levels: &levels, pairs }.best(watch) else {
-                return Ok((given(), Status::Cancelled));
+                return cancelled();
             };
             let turned = parallel::map(source.map.len(), |v| rotate(rotation, source.map[v]).normalized());
             // rounding may fold a sliver

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drivers of shape keys: the rules by which their values follow bones and properties."""
 
-import re
 from collections.abc import Collection
 from typing import Any
 
 import bpy
 
 from .. import messages
+from . import shape_keys
 from .types import MeshObject
-
-_OF_KEY = re.compile(r'key_blocks\["((?:[^"\\]|\\.)*)"\]')
 
 
 def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> tuple[str, list[str]]:
@@ -21,7 +19,7 @@ def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> tuple[s
     "" without drivers, and a line for each driver that is not copied or that follows nothing.
     """
     of_origin, keys = origin.data.shape_keys, obj.data.shape_keys
-    wanted = [driver for driver in _drivers(of_origin) if _key_of(driver.data_path) in names]
+    wanted = [driver for driver in _drivers(of_origin) if shape_keys.in_path(driver.data_path) in names]
     if not wanted:
         return "", []
     animation: Any = keys.animation_data_create()
@@ -32,19 +30,23 @@ def copy(origin: MeshObject, obj: MeshObject, names: Collection[str]) -> tuple[s
         try:
             copied.append(animation.drivers.from_existing(src_driver=driver))
         except (RuntimeError, TypeError) as problem:
-            problems.append(f"driver of shape key {_key_of(driver.data_path)}: {problem}")
+            problems.append(_line(driver, str(problem)))
     for driver in copied:
         _retarget(driver, origin, obj)
         if any(target.id is None for target in _targets(driver)):
-            problems.append(f"driver of shape key {_key_of(driver.data_path)}: a variable has no target")
+            problems.append(_line(driver, "a variable has no target"))
     return _phrase(copied, {obj, obj.data, keys}), problems
+
+
+def _line(driver: Any, problem: str) -> str:
+    return f"driver of shape key {shape_keys.in_path(driver.data_path)}: {problem}"
 
 
 def _phrase(drivers: list[Any], own: Collection[bpy.types.ID]) -> str:
     """The driven keys and what drives them besides the `own` data of their object."""
     if not drivers:
         return ""
-    driven = dict.fromkeys(str(_key_of(driver.data_path)) for driver in drivers)
+    driven = dict.fromkeys(str(shape_keys.in_path(driver.data_path)) for driver in drivers)
     used = {target.id for driver in drivers for target in _targets(driver)} - {None, *own}
     by = f", which follow {messages.named(sorted(each.name for each in used))}" if used else ""
     return f"drivers of {messages.named(list(driven))}{by}"
@@ -52,12 +54,6 @@ def _phrase(drivers: list[Any], own: Collection[bpy.types.ID]) -> str:
 
 def _drivers(keys: bpy.types.Key | None) -> list[Any]:
     return list(keys.animation_data.drivers) if keys and keys.animation_data else []
-
-
-def _key_of(path: str) -> str | None:
-    """The name of the shape key in a data path, or None."""
-    match = _OF_KEY.match(path)
-    return bpy.utils.unescape_identifier(match[1]) if match else None
 
 
 def _targets(driver: Any) -> list[Any]:

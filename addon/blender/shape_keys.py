@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shape keys of meshes that are not in edit mode, as numpy arrays."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -11,6 +12,8 @@ from ..surfaces.arrays import Floats, Reals
 from ..surfaces.surface import Surface
 from . import meshes
 from .types import MeshObject
+
+_IN_PATH = re.compile(r'key_blocks\["((?:[^"\\]|\\.)*)"\]')
 
 
 def read(obj: MeshObject) -> Surface:
@@ -68,6 +71,12 @@ def find(obj: MeshObject, name: str) -> bpy.types.ShapeKey | None:
     """The shape key of a name, or None."""
     keys = obj.data.shape_keys
     return None if keys is None else keys.key_blocks.get(name)
+
+
+def in_path(path: str) -> str | None:
+    """The name of the shape key that a data path begins with, or None."""
+    match = _IN_PATH.match(path)
+    return bpy.utils.unescape_identifier(match[1]) if match else None
 
 
 def make_relative(obj: MeshObject, wanted: Mapping[str, str]) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import bridge, messages
-from ..blender import drivers, layers, vertex_groups
+from ..blender import animation, drivers, layers, vertex_groups
 from ..bridge.progress import Progress
 from ..registration import elements, offsets, seams, weights
 from ..registration.registered import Registered
@@ -73,14 +73,14 @@ class Carried:
 class Report:
     """The layers (kind, name) that were written, and refusals.
 
-    `by` names the registration, `driven` the drivers of shape keys that were copied, or is "".
+    `by` names the registration, `moved` the drivers and key frames of shape keys that were copied.
     """
 
     source: str
     target: str
     by: str
     written: list[tuple[str, str]]
-    driven: str
+    moved: list[str]
     refusals: list[str]
     notes: list[str]
     seconds: float
@@ -88,7 +88,7 @@ class Report:
     def __str__(self) -> str:
         kinds = dict.fromkeys(kind for kind, _ in self.written)
         parts = [_listed(kind, [layer[1] for layer in self.written if layer[0] == kind]) for kind in kinds]
-        parts += [self.driven] if self.driven else []
+        parts += self.moved
         line = f"{', '.join(parts)} from {self.target} to {self.source} {self.by}, {self.seconds:.2f} s"
         left = [f"left out: {messages.listed(self.refusals)}"] if self.refusals else []
         return "; ".join([line, *left, *self.notes])
@@ -141,6 +141,7 @@ def written(task: Task, carried_: Carried) -> Report:
     notes = layers.relate(couple.source, done)
     keys = [item.name for item in done if item.kind == layers.KEY]
     driven, loose = drivers.copy(couple.target, couple.source, keys)
+    framed, unframed = animation.copy(couple.target, couple.source, keys)
     if task.settings.registration is not None:
         last_registration.remember(couple.source, task.settings.registration)
     return Report(
@@ -148,8 +149,8 @@ def written(task: Task, carried_: Carried) -> Report:
         target=couple.target.name,
         by=_by(carried_),
         written=[(item.kind, item.name) for item in done],
-        driven=driven,
-        refusals=left + loose,
+        moved=[phrase for phrase in (driven, framed) if phrase],
+        refusals=left + loose + unframed,
         notes=[*warnings(registered), *notes, *_rests(couple)],
         seconds=time.perf_counter() - task.started,
     )

@@ -2,23 +2,26 @@
 """Landmark pairs as JSON. Plain logic, no bpy.
 
     {"format": "authalic-landmarks", "version": 1, "source": "Head A", "target": "Head B",
-     "pairs": [{"name": "Nose", "source": 12, "target": 345}],
+     "pairs": [{"name": "Nose", "source": 12, "target": 345},
+               {"name": "Chin", "source": 17, "target": 350, "weight": 10.0}],
      "curves": [{"name": "Brow", "source": [3, 4, 9], "target": [7, 8, 12]}]}
 
-"source" and "target" of a pair are vertex numbers, from 0, on the objects of those names. A curve has the
-numbers of all vertices along its edges; a closed one repeats the first at the end. A file without curves has
-no "curves".
+"source" and "target" of a pair are vertex numbers, from 0, on the objects of those names. A pair with a
+"weight" is soft. A curve has the numbers of all vertices along its edges; a closed one repeats the first at
+the end. A file without curves has no "curves".
 """
 
 import json
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, TypeGuard
+from pathlib import Path as FilePath
+from typing import Any, NamedTuple, TypeGuard
 
 from ..surfaces.arrays import Path
 
 FORMAT, VERSION = "authalic-landmarks", 1
+_MOST_WEIGHT = 1e38  # single precision has no larger ones
 _NUMBERS = re.compile(r"\[\n[\d,\s]+\]")  # lists of numbers, which are to be one line
 
 
@@ -26,28 +29,36 @@ class CannotRead(Exception):
     """The file is no file of landmarks; says why."""
 
 
+class Point(NamedTuple):
+    """A pair of vertices; the weight of a soft one, None for one that meets exactly."""
+
+    name: str
+    source: int
+    target: int
+    weight: float | None = None
+
+
 @dataclass
 class Landmarks:
-    """The names of two objects, pairs (name, source vertex, target vertex), and pairs of curves.
+    """The names of two objects, pairs of points, and pairs of curves.
 
     These are (name, source vertices, target vertices); None where a file says nothing about curves.
     """
 
     source: str
     target: str
-    pairs: list[tuple[str, int, int]]
+    pairs: list[Point]
     curves: list[tuple[str, Path, Path]] | None = field(default=None)
 
 
 def to_text(landmarks: Landmarks) -> str:
     """The text of a file."""
-    listed = [{"name": name, "source": a, "target": b} for name, a, b in landmarks.pairs]
-    content = {
+    content: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
         "source": landmarks.source,
         "target": landmarks.target,
-        "pairs": listed,
+        "pairs": [_entry(pair) for pair in landmarks.pairs],
     }
     if landmarks.curves:
         content["curves"] = [
@@ -55,6 +66,17 @@ def to_text(landmarks: Landmarks) -> str:
         ]
     text = json.dumps(content, indent=2, ensure_ascii=False)
     return _NUMBERS.sub(lambda match: f"[{', '.join(match[0][1:-1].replace(',', ' ').split())}]", text) + "\n"
+
+
+def write(path: FilePath, landmarks: Landmarks) -> None:
+    """Writes a file whole: where that fails, with `OSError`, a file that was there stays as it was."""
+    path = path.resolve()
+    beside = path.with_name(f".{path.name}.part")
+    try:
+        beside.write_text(to_text(landmarks), encoding="utf-8")
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
 
 
 def from_text(text: str) -> Landmarks:
@@ -76,10 +98,15 @@ def from_text(text: str) -> Landmarks:
     return Landmarks(
         source=_name(content, "source"),
         target=_name(content, "target"),
-        pairs=[_pair(item, f"pair {number}", _vertex, number) for number, item in enumerate(listed, 1)],
+        pairs=[_point(item, number) for number, item in enumerate(listed, 1)],
         curves=curves
         and [_pair(item, f"curve {number}", _path, number) for number, item in enumerate(curves, 1)],
     )
+
+
+def _entry(pair: Point) -> dict[str, Any]:
+    entry = {"name": pair.name, "source": pair.source, "target": pair.target}
+    return entry if pair.weight is None else {**entry, "weight": pair.weight}
 
 
 def _name(content: dict[str, object], key: str) -> str:
@@ -87,6 +114,14 @@ def _name(content: dict[str, object], key: str) -> str:
     if not isinstance(value, str):
         raise CannotRead(f'"{key}" is {json.dumps(value)}, not the name of an object')
     return value
+
+
+def _point(item: object, number: int) -> Point:
+    name, source, target = _pair(item, f"pair {number}", _vertex, number)
+    weight = item.get("weight") if isinstance(item, dict) else None
+    if weight is not None and not _is_weight(weight):
+        raise CannotRead(f"the weight of pair {number} is {json.dumps(weight)}, not a number above 0")
+    return Point(name, source, target, weight)
 
 
 def _pair(item: object, what: str, read: Callable[[object, str], object], number: int) -> Any:
@@ -119,3 +154,7 @@ def _path(value: object, what: str) -> Path:
 
 def _is_vertex(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _is_weight(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < _MOST_WEIGHT

@@ -7,15 +7,17 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 import bpy
+import numpy as np
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import messages
-from ..blender.types import MeshObject, OperatorMixin, Status, is_mesh
+from ..blender.types import Landmark, MeshObject, OperatorMixin, Status, is_mesh
 from ..landmarks import curves as landmark_curves
 from ..landmarks import files as landmark_files
 from ..landmarks import points as landmark_points
 from ..landmarks.curves import Curve
+from ..landmarks.files import Point
 from ..landmarks.objects import CannotPair, active_source
 from ..landmarks.points import Pair
 from . import poll
@@ -58,7 +60,8 @@ class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):  # t
 
     def run(self, source: MeshObject, path: FilePath) -> Status:
         pairs, curves = landmark_points.pairs(source), landmark_curves.pairs(source)
-        sound = [pair[:3] for pair in pairs if pair.problem is None]
+        listed = zip(pairs, source.authalic_landmarks, strict=True)
+        sound = [_point(pair, landmark) for pair, landmark in listed if pair.problem is None]
         usable = [curve for curve in curves if curve.problem is None]
         whole = [(curve.name, curve.source.vertices, curve.target.vertices) for curve in usable]
         unsound: list[Pair | Curve] = [*pairs, *curves]
@@ -66,7 +69,7 @@ class AUTHALIC_OT_landmark_export(_File, bpy.types.Operator, ExportHelper):  # t
         if not sound and not whole:
             raise CannotPair(f"nothing was written, {messages.listed(left)}")
         content = landmark_files.Landmarks(source.name, source.authalic_target.name, sound, whole)
-        path.write_text(landmark_files.to_text(content), encoding="utf-8")
+        landmark_files.write(path, content)
         done = f"Wrote {_counted(sound, whole)} to {path.name}"
         if left:
             self.report({"WARNING"}, f"{done}, not {messages.listed(left)}")
@@ -96,18 +99,27 @@ class AUTHALIC_OT_landmark_import(_File, bpy.types.Operator, ImportHelper):  # t
             source.authalic_target = named
         try:
             landmark_curves.check_all(source, content.curves or [])
-            landmark_points.replace(source, content.pairs)
+            landmark_points.replace(source, [pair[:3] for pair in content.pairs])
             if content.curves is not None:
                 landmark_curves.replace(source, content.curves)
         except CannotPair:
             source.authalic_target = before
             raise
+        for landmark, pair in zip(source.authalic_landmarks, content.pairs, strict=True):
+            if pair.weight is not None:
+                landmark.is_soft, landmark.weight = True, pair.weight
         target = source.authalic_target.name
         done = f"Read {_counted(content.pairs, content.curves)} of {source.name} and {target}"
         is_for_others = (content.source, content.target) != (source.name, target)
         note = f', in the file those of "{content.source}" and "{content.target}"' if is_for_others else ""
         self.report({"INFO"}, done + note)
         return {"FINISHED"}
+
+
+def _point(pair: Pair, landmark: Landmark) -> Point:
+    """A pair as a file has it; weights have single precision, and as few digits as tell them apart."""
+    weight = float(str(np.float32(landmark.weight))) if landmark.is_soft else None
+    return Point(pair.name, pair.source_vertex, pair.target_vertex, weight)
 
 
 def _counted(pairs: Sized | None, curves: Sized | None) -> str:

@@ -48,6 +48,41 @@ def test_export_and_import(heads: tuple[MeshObject, MeshObject], tmp_path: Path)
     assert heads[0].authalic_target == heads[1]
 
 
+def test_soft_landmarks_keep_their_weights(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
+    for vertex, (is_soft, weight) in enumerate([(True, 0.3), (False, 7.0), (True, 123.456)], 20):
+        pairing.add(vertex, vertex)
+        landmark = heads[0].authalic_landmarks[-1]
+        landmark.is_soft, landmark.weight = is_soft, weight
+    path = tmp_path / "pairs.json"
+    bpy.ops.authalic.landmark_export(filepath=str(path))
+    written = [pair.get("weight") for pair in json.loads(path.read_text())["pairs"]]
+    assert written == [0.3, None, 123.456]
+    bpy.ops.authalic.landmark_clear()
+    bpy.ops.authalic.landmark_import(filepath=str(path))
+    soft = [landmark.is_soft for landmark in heads[0].authalic_landmarks]
+    weights = [landmark.weight for landmark in heads[0].authalic_landmarks]
+    assert soft == [True, False, True]
+    assert (weights[0], weights[2]) == pytest.approx((0.3, 123.456))
+
+
+def test_a_file_that_cannot_be_written_whole_stays(
+    heads: tuple[MeshObject, MeshObject], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pairing.add(20, 30)
+    path = tmp_path / "pairs.json"
+    bpy.ops.authalic.landmark_export(filepath=str(path))
+    before = path.read_bytes()
+
+    def full(self: Path, _text: str, **_options: object) -> None:
+        self.write_bytes(b"{")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    pairing.refused("No space left", bpy.ops.authalic.landmark_export, filepath=str(path))
+    assert path.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["pairs.json"]
+
+
 def test_export_leaves_out_what_is_lost(heads: tuple[MeshObject, MeshObject], tmp_path: Path) -> None:
     pairing.add(20, 30)
     pairing.add(21, 31)
@@ -74,6 +109,9 @@ GOOD = {"format": "authalic-landmarks", "version": 1, "source": "Head A", "targe
         ({**GOOD, "pairs": [{"source": True, "target": 2}]}, "the source of pair 1 is true"),
         ({**GOOD, "pairs": [{"source": 1, "target": -2}]}, "the target of pair 1 is -2"),
         ({**GOOD, "pairs": [{"source": 1, "target": 2, "name": 3}]}, "the name of pair 1 is 3"),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2, "weight": 0}]}, "the weight of pair 1 is 0"),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2, "weight": "soft"}]}, 'the weight of pair 1 is "soft"'),
+        ({**GOOD, "pairs": [{"source": 1, "target": 2, "weight": 10**400}]}, "not a number above 0"),
         ({**GOOD, "pairs": [{"source": 1, "target": 2}, {"source": 99, "target": 3}]}, "no vertex 99"),
         (
             {

@@ -438,6 +438,71 @@ def test_a_driver_without_a_target_is_named(capfd: pytest.CaptureFixture[str]) -
     assert "Warning: " in said and "driver of shape key Smile: a variable has no target" in said
 
 
+def test_key_frames_are_copied_whole(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = copies()
+    for name in ("Smile", "Frown", "Still"):
+        add_key(target, name, np.ones(3))
+    keys = target.data.shape_keys.key_blocks
+    for frame, value, ease in ((1.5, 0.2, "BEZIER"), (10, 0.9, "BOUNCE"), (20, 0.1, "CONSTANT")):
+        keys["Smile"].value = value
+        keys["Smile"].keyframe_insert("value", frame=frame)
+        curve_of(target, "Smile").keyframe_points[-1].interpolation = ease
+    curve = curve_of(target, "Smile")
+    curve.keyframe_points[0].handle_right_type = "FREE"
+    curve.keyframe_points[0].handle_right = (4, 0.8)
+    curve.modifiers.new("CYCLES").mode_after = "MIRROR"
+    curve.modifiers.new("NOISE").strength = 0.05
+    keys["Frown"].keyframe_insert("mute", frame=5)
+    add_key(source, "Smile", np.ones(3)).keyframe_insert("value", frame=77)
+    add_key(source, "Own", np.ones(3)).keyframe_insert("value", frame=3)
+    for _ in range(2):  # a second transfer replaces the key frames of the first
+        only("shape_keys")
+    said = capfd.readouterr().out
+    assert "3 shape keys (Smile; Frown; Still), key frames of Smile, Frown from Twin" in said
+    copied = source.data.shape_keys
+    paths = [each.data_path for each in part("blender.animation")._all(copied)]
+    wanted = ["Frown", "Own", "Smile"]
+    assert sorted(paths) == [f'key_blocks["{n}"].{"mute" if n == "Frown" else "value"}' for n in wanted]
+    assert copied.animation_data.action != target.data.shape_keys.animation_data.action
+    for frame in (0, 1.5, 3, 7, 12, 15, 20, 25, 40, 90):
+        bpy.context.scene.frame_set(int(frame), subframe=frame % 1)
+        assert copied.key_blocks["Smile"].value == pytest.approx(keys["Smile"].value, abs=1e-6)
+    assert [point.co.x for point in curve_of(source, "Own").keyframe_points] == [3]
+
+
+def test_key_frames_that_cannot_be_copied_are_named(capfd: pytest.CaptureFixture[str]) -> None:
+    source, target = copies()
+    add_key(target, "Smile", np.ones(3)).keyframe_insert("value", frame=1)
+    add_key(target, "Frown", np.ones(3)).keyframe_insert("value", frame=1)
+    curve_of(target, "Frown").convert_to_samples(1, 10)
+    animation = target.data.shape_keys.animation_data
+    animation.nla_tracks.new().strips.new("Old", 1, bpy.data.actions.new("Old"))
+    only("shape_keys")
+    said = capfd.readouterr().out
+    assert "key frames of Smile from Twin" in said
+    assert "key frames of shape key Frown: they are baked" in said and "NLA strips of" in said
+    copied = part("blender.animation")._all(source.data.shape_keys)
+    assert [each.data_path for each in copied] == ['key_blocks["Smile"].value']
+
+
+def test_keys_that_share_their_key_frames_keep_them() -> None:
+    source, target = copies()
+    add_key(target, "Smile", np.ones(3)).keyframe_insert("value", frame=4)
+    add_key(source, "Smile", np.ones(3)).keyframe_insert("value", frame=9)
+    ours, theirs = (obj.data.shape_keys.animation_data for obj in (source, target))
+    ours.action = theirs.action
+    if hasattr(ours, "action_slot"):
+        ours.action_slot = theirs.action_slot
+    only("shape_keys")
+    assert [point.co.x for point in curve_of(target, "Smile").keyframe_points] == [4]
+    assert ours.action == theirs.action
+
+
+def curve_of(obj: MeshObject, key: str) -> Any:
+    """The F-curve of the value of a shape key."""
+    return part("blender.animation")._curve(obj.data.shape_keys, f'key_blocks["{key}"].value')
+
+
 def driven(key: Any, by: Any, path: str) -> None:
     """Makes a property drive the value of a shape key."""
     driver = key.driver_add("value").driver
